@@ -1,0 +1,57 @@
+#pragma once
+// Sequential, bounds-checked reading of bytes. Reading past the end yields zeros and sets a sticky
+// flag, so that a decoder reads a whole layout and asks once, at the end, whether the bytes
+// sufficed.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace nendo {
+
+class ByteReader {
+public:
+  explicit constexpr ByteReader(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
+
+  constexpr std::uint8_t u8() noexcept {
+    if (position_ >= bytes_.size()) {
+      overrun_ = true;
+      return 0;
+    }
+    return std::to_integer<std::uint8_t>(bytes_[position_++]);
+  }
+  constexpr std::uint16_t u16_le() noexcept {
+    const unsigned low = u8();
+    return static_cast<std::uint16_t>(low | (static_cast<unsigned>(u8()) << 8U));
+  }
+  constexpr std::uint32_t u24_le() noexcept {
+    const std::uint32_t low = u16_le();
+    return low | (static_cast<std::uint32_t>(u8()) << 16U);
+  }
+  constexpr std::uint32_t u32_le() noexcept {
+    const std::uint32_t low = u16_le();
+    return low | (static_cast<std::uint32_t>(u16_le()) << 16U);
+  }
+  constexpr std::span<const std::byte> take(std::size_t count) noexcept {
+    if (count > remaining()) {
+      overrun_ = true;
+      count = remaining();
+    }
+    const auto part = bytes_.subspan(position_, count);
+    position_ += count;
+    return part;
+  }
+
+  [[nodiscard]] constexpr std::size_t remaining() const noexcept {
+    return bytes_.size() - position_;
+  }
+  /// True once any read went past the end.
+  [[nodiscard]] constexpr bool overrun() const noexcept { return overrun_; }
+
+private:
+  std::span<const std::byte> bytes_;
+  std::size_t position_ = 0;
+  bool overrun_ = false;
+};
+
+} // namespace nendo

@@ -1,0 +1,52 @@
+#pragma once
+// LatestValue: hands the newest value from one writer thread to one reader thread through three
+// buffers. The writer fills its buffer in place and publishes it with one exchange, whatever its
+// size; a reader that polls gets the newest value or learns that there is none. Both sides are
+// wait-free and never touch the same buffer.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace nendo {
+
+template <class T>
+class LatestValue {
+  static_assert(std::atomic<std::uint8_t>::is_always_lock_free);
+
+public:
+  /// All three buffers start as copies of `initial`, so that sizes are set before the first
+  /// publish.
+  explicit LatestValue(const T& initial) : buffers_{initial, initial, initial} {}
+
+  /// Writer only: the buffer to fill. It holds some older value; fill all of it.
+  T& back() noexcept { return buffers_[back_]; }
+  /// Writer only, wait-free: makes back() the latest value. True if that replaced one that nobody
+  /// had read.
+  bool publish() noexcept {
+    const std::uint8_t old =
+        middle_.exchange(static_cast<std::uint8_t>(back_ | fresh), std::memory_order_acq_rel);
+    back_ = old & index_mask;
+    return (old & fresh) != 0;
+  }
+
+  /// Reader only, wait-free: takes the latest value if there is a new one. The reference that
+  /// front() gives stays valid and unchanged until the next call of update().
+  bool update() noexcept {
+    if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
+    front_ = middle_.exchange(front_, std::memory_order_acq_rel) & index_mask;
+    return true;
+  }
+  const T& front() const noexcept { return buffers_[front_]; }
+
+private:
+  static constexpr std::uint8_t fresh = 4;
+  static constexpr std::uint8_t index_mask = 3;
+
+  std::array<T, 3> buffers_;
+  alignas(128) std::uint8_t back_ = 0;
+  alignas(128) std::atomic<std::uint8_t> middle_{1};
+  alignas(128) std::uint8_t front_ = 2;
+};
+
+} // namespace nendo

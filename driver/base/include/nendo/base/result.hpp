@@ -1,0 +1,79 @@
+#pragma once
+// Result<T>: a value or an Error, for everything that can fail outside the loop. A small part of
+// C++23's std::expected. Inside the loop failures are enums and counters, never strings.
+
+#include <cassert>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace nendo {
+
+/// What a caller can act on. The values are the program's exit codes.
+enum class Errc {
+  failed = 1,        ///< the job failed
+  usage = 2,         ///< an argument is wrong
+  no_device = 3,     ///< no such glove, or it does not answer like one
+  no_permission = 4, ///< the device may not be opened
+  bad_input = 5,     ///< a file cannot be used
+};
+
+/// `message` is one line that says what, where, and what to do about it.
+struct Error {
+  Errc code = Errc::failed;
+  std::string message;
+};
+
+template <class T>
+class [[nodiscard]] Result {
+public:
+  // Implicit on purpose: `return value;` and `return Error{...};` are how a Result is made.
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+  explicit operator bool() const noexcept { return state_.index() == 0; }
+
+  T& operator*() & noexcept {
+    assert(*this);
+    return *std::get_if<0>(&state_);
+  }
+  const T& operator*() const& noexcept {
+    assert(*this);
+    return *std::get_if<0>(&state_);
+  }
+  T&& operator*() && noexcept {
+    assert(*this);
+    return std::move(*std::get_if<0>(&state_));
+  }
+  T* operator->() noexcept { return &**this; }
+  const T* operator->() const noexcept { return &**this; }
+
+  const Error& error() const noexcept {
+    const Error* const held = std::get_if<1>(&state_);
+    if (held == nullptr) std::abort(); // a caller's bug; GCC -O2 warns of null without this
+    return *held;
+  }
+
+private:
+  std::variant<T, Error> state_;
+};
+
+template <>
+class [[nodiscard]] Result<void> {
+public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)), ok_(false) {}
+
+  explicit operator bool() const noexcept { return ok_; }
+  const Error& error() const noexcept {
+    assert(!ok_);
+    return error_;
+  }
+
+private:
+  Error error_;
+  bool ok_ = true;
+};
+
+} // namespace nendo

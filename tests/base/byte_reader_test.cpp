@@ -1,0 +1,39 @@
+#include <nendo/base/byte_reader.hpp>
+
+#include <array>
+
+#include <doctest/doctest.h>
+
+using nendo::ByteReader;
+
+TEST_SUITE("byte_reader") {
+  constexpr std::array<std::byte, 6> bytes{std::byte{0x01}, std::byte{0x02}, std::byte{0x03},
+                                           std::byte{0x04}, std::byte{0x85}, std::byte{0xF6}};
+
+  TEST_CASE("multi-byte numbers are read least significant byte first") {
+    ByteReader reader(bytes);
+    CHECK(reader.u16_le() == 0x0201);
+    CHECK(reader.u32_le() == 0xF6850403U);
+    CHECK(reader.remaining() == 0);
+    CHECK_FALSE(reader.overrun());
+    CHECK(ByteReader(bytes).u24_le() == 0x030201U);
+  }
+
+  TEST_CASE("reading past the end gives zeros and is remembered") {
+    ByteReader reader{std::span(bytes).first(3)};
+    CHECK(reader.u32_le() == 0x030201U);
+    CHECK(reader.overrun());
+    CHECK(reader.u8() == 0);
+    CHECK(reader.take(1).empty());
+    CHECK(reader.overrun());
+  }
+
+  TEST_CASE("take hands out exactly what is asked for") {
+    ByteReader reader(bytes);
+    CHECK(reader.take(4).size() == 4);
+    CHECK(reader.u8() == 0x85);
+    CHECK_FALSE(reader.overrun());
+    CHECK(reader.take(2).size() == 1);
+    CHECK(reader.overrun());
+  }
+}

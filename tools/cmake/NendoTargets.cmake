@@ -1,0 +1,46 @@
+# nendo_library(<name> SOURCES ... HEADERS ...) makes nendo_<name> with the alias nendo::<name>, its public headers
+# as a verified file set under include/, and everything in src/ private. nendo_settings() is what every target gets.
+
+set(NENDO_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them")
+
+function(nendo_settings target scope)
+  target_compile_features(${target} ${scope} cxx_std_20)
+  if(scope STREQUAL "INTERFACE")
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET default)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+    -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wformat=2
+    $<$<BOOL:${NENDO_WERROR}>:-Werror>)
+  if(NENDO_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${NENDO_SANITIZE} -fno-sanitize-recover=all
+      -fno-omit-frame-pointer -O1)
+    target_link_options(${target} PUBLIC -fsanitize=${NENDO_SANITIZE})
+  endif()
+  if(NENDO_FUZZ) # coverage for the fuzz targets, which link what everything else links
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    target_link_options(${target} PUBLIC -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
+function(nendo_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS" ${ARGN})
+  set(target nendo_${name})
+  set(scope PUBLIC)
+  if(ARG_SOURCES)
+    add_library(${target} ${ARG_SOURCES})
+    nendo_settings(${target} PUBLIC)
+    target_include_directories(${target} PRIVATE src)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION}
+      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  else()
+    add_library(${target} INTERFACE)
+    nendo_settings(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(nendo::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS include FILES ${ARG_HEADERS})
+  install(TARGETS ${target} EXPORT nendoTargets FILE_SET HEADERS
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()

@@ -1,0 +1,28 @@
+# nendo_test(<folder> SOURCES ... LIBRARIES ... [INCLUDES ...]): one doctest program test_<folder>, one ctest case per
+# TEST_CASE. INCLUDES names private src/ folders of the unit under test.
+include(doctest)
+
+function(nendo_test folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
+  set(target test_${folder})
+  add_executable(${target} ${ARG_SOURCES} ${PROJECT_SOURCE_DIR}/tests/support/main.cpp)
+  nendo_settings(${target} PRIVATE)
+  target_link_libraries(${target} PRIVATE doctest::doctest ${ARG_LIBRARIES})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
+  target_compile_definitions(${target} PRIVATE NENDO_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+  doctest_discover_tests(${target} TEST_PREFIX "${folder}/" 
+    PROPERTIES TIMEOUT 120 FAIL_REGULAR_EXPRESSION "test cases: +0 ")
+endfunction()
+
+# nendo_fuzz(<name> SOURCE ... LIBRARIES ...): a libFuzzer program fuzz_<name>; runs over its corpus in
+# tests/fuzz/<name>/. Clang only.
+function(nendo_fuzz name)
+  cmake_parse_arguments(ARG "" "SOURCE" "LIBRARIES;INCLUDES" ${ARGN})
+  set(target fuzz_${name})
+  add_executable(${target} ${ARG_SOURCE})
+  nendo_settings(${target} PRIVATE)
+  target_compile_options(${target} PRIVATE -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -O1)
+  target_link_options(${target} PRIVATE -fsanitize=fuzzer,address,undefined)
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
+  target_include_directories(${target} PRIVATE ${ARG_INCLUDES})
+endfunction()
