@@ -1,0 +1,54 @@
+#pragma once
+// From what a user types to an open glove. One grammar everywhere:
+//   serial:/dev/ttyUSB0   serial:/dev/ttyUSB0?baud=38400   auto   auto:left
+//   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/driver/glove.hpp>
+
+namespace nendo::driver {
+
+/// `kind:target?key=value&key=value`, taken apart but not yet judged.
+struct GloveSpec {
+  std::string text; ///< as typed
+  std::string kind;
+  std::string target; ///< may be empty
+  std::map<std::string, std::string> options;
+};
+
+/// Error: usage, naming what cannot be read in it.
+Result<GloveSpec> parse_glove_spec(std::string_view text);
+
+/// Opens and identifies the glove; may block, 5 seconds at most. `side` is the hand that the user
+/// wants it for: it picks among several for `auto` and is the default for `sim`. Errors: usage
+/// (kind, option), no_device (missing, or does not answer like a glove), no_permission.
+Result<std::unique_ptr<Glove>> open_glove(std::string_view spec, Side side = Side::right);
+
+/// A line a kind of glove, for `--help`: its grammar and what it is.
+struct DriverSummary {
+  std::string_view grammar;
+  std::string_view summary;
+};
+std::vector<DriverSummary> driver_summaries();
+
+/// A port or USB device that may be a glove. Listing writes nothing to any device.
+struct GloveCandidate {
+  std::string spec;        ///< what to give to open_glove(); empty if nendo has no driver for it
+  std::string device;      ///< path or bus address
+  std::string description; ///< what the device says of itself
+  std::string reason;      ///< why it may be a glove
+  bool identified = false; ///< the device or a udev rule names it a glove; `auto` opens only these
+  bool may_open = false;   ///< this user has the permission
+};
+
+/// Serial ports (libserialport) and known USB gloves (libusb), identified ones first. May block
+/// briefly.
+std::vector<GloveCandidate> find_gloves();
+
+} // namespace nendo::driver

@@ -1,0 +1,97 @@
+#pragma once
+// What a glove delivers: raw counts for up to 24 named sensor slots, with the time of arrival.
+// Counts only; angles begin in `hand`. This is the one header of `driver` that `hand` may include.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include <nendo/base/spsc_ring.hpp>
+#include <nendo/base/units.hpp>
+
+namespace nendo {
+
+enum class Side : std::uint8_t { left, right };
+
+constexpr std::string_view name_of(Side side) noexcept {
+  return side == Side::left ? "left" : "right";
+}
+
+/// The CyberGlove's 24 sensor slots, in the order of its mask bits (vendor library and manual
+/// agree). The abduction sensors beside the thumb's measure the angle between two neighbouring
+/// fingers.
+enum class Sensor : std::uint8_t {
+  thumb_roll,
+  thumb_mcp,
+  thumb_ip,
+  thumb_abduction,
+  index_mcp,
+  index_pip,
+  index_dip,
+  index_abduction, ///< reserved by the protocol, built into no known glove
+  middle_mcp,
+  middle_pip,
+  middle_dip,
+  index_middle_abduction,
+  ring_mcp,
+  ring_pip,
+  ring_dip,
+  middle_ring_abduction,
+  little_mcp,
+  little_pip,
+  little_dip,
+  ring_little_abduction,
+  palm_arch,
+  wrist_pitch,
+  wrist_yaw,
+  unused, ///< slot 23
+};
+
+inline constexpr std::size_t sensor_slots = 24;
+
+inline constexpr std::array<std::string_view, sensor_slots> sensor_names{
+    "thumb_roll", "thumb_mcp",   "thumb_ip",   "thumb_abduction",
+    "index_mcp",  "index_pip",   "index_dip",  "index_abduction",
+    "middle_mcp", "middle_pip",  "middle_dip", "index_middle_abduction",
+    "ring_mcp",   "ring_pip",    "ring_dip",   "middle_ring_abduction",
+    "little_mcp", "little_pip",  "little_dip", "ring_little_abduction",
+    "palm_arch",  "wrist_pitch", "wrist_yaw",  "unused",
+};
+
+constexpr std::string_view name_of(Sensor sensor) noexcept {
+  return sensor_names[static_cast<std::size_t>(sensor)];
+}
+
+/// A set of sensor slots; bit k is slot k, as in the glove's own masks.
+struct SensorMask {
+  std::uint32_t bits = 0;
+
+  constexpr bool has(Sensor sensor) const noexcept {
+    return ((bits >> static_cast<unsigned>(sensor)) & 1U) != 0;
+  }
+  friend constexpr bool operator==(SensorMask, SensorMask) = default;
+};
+
+/// The masks of the two gloves that were sold: 22 sensors, and 18 (without the four DIP sensors).
+inline constexpr SensorMask sensors_22{0x7FFF7F};
+inline constexpr SensorMask sensors_18{0x7BBB3F};
+
+struct GloveSample {
+  HostTime arrival{}; ///< when the record's last byte reached the host
+  std::uint64_t sequence =
+      0; ///< counts every record of this glove, also those that the ring refused
+  std::array<RawCount, sensor_slots> raw{};
+  SensorMask present;             ///< which slots of `raw` were measured
+  std::uint32_t device_ticks = 0; ///< the glove's own time stamp in 1/115200 s, if has_device_time
+  bool has_device_time = false;
+  Side side = Side::right;
+
+  constexpr RawCount operator[](Sensor sensor) const noexcept {
+    return raw[static_cast<std::size_t>(sensor)];
+  }
+};
+
+using SampleRing = SpscRing<GloveSample>;
+
+} // namespace nendo

@@ -1,0 +1,46 @@
+#include "discovery/auto_glove.hpp"
+
+#include <string>
+
+#include "cyberglove/cyberglove_driver.hpp"
+#include "glove_spec.hpp"
+
+namespace nendo::driver {
+namespace {
+
+using namespace std::chrono_literals;
+
+Result<Side> wanted_side(const GloveSpec& spec, Side side) {
+  if (spec.target.empty()) return side;
+  for (const Side known : {Side::left, Side::right}) {
+    if (spec.target == name_of(known)) return known;
+  }
+  return Error{Errc::usage, spec.text + ": after auto: comes left or right, not " + spec.target};
+}
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, Side side) {
+  if (auto allowed = allow_options(spec, {}); !allowed) return allowed.error();
+  const auto wanted = wanted_side(spec, side);
+  if (!wanted) return wanted.error();
+  const HostTime deadline = HostClock::now() + 4500ms;
+  std::string why;
+  Errc code = Errc::no_device;
+  for (const GloveCandidate& candidate : find_gloves()) {
+    if (!candidate.identified || candidate.spec.empty()) continue;
+    const auto parsed = parse_glove_spec(candidate.spec);
+    if (!parsed || HostClock::now() >= deadline) continue;
+    auto glove = open_serial_by(*parsed, deadline);
+    if (glove && (*glove)->info().side == *wanted) return glove;
+    if (!glove && glove.error().code == Errc::no_permission) code = Errc::no_permission;
+    why += glove ? candidate.spec + " is a " + std::string(name_of((*glove)->info().side)) + " hand"
+                 : glove.error().message;
+    why += "; ";
+  }
+  if (why.empty()) why = "no port is known to be a glove's; ";
+  return Error{code, spec.text + ": no " + std::string(name_of(*wanted)) + " glove found: " + why +
+                         "name the port, e.g. serial:/dev/ttyUSB0 (`nendo devices` lists them)"};
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,52 @@
+// The one place that knows all drivers. To add one: an include and a line in the table.
+
+#include <nendo/driver/open_glove.hpp>
+
+#include <array>
+
+#include "cyberglove/cyberglove_driver.hpp"
+#include "discovery/auto_glove.hpp"
+#include "simulated/simulated_driver.hpp"
+
+namespace nendo::driver {
+namespace {
+
+struct Driver {
+  std::string_view kind;
+  std::string_view grammar;
+  std::string_view summary;
+  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, Side side);
+};
+
+constexpr std::array drivers{
+    Driver{"serial", "serial:PATH[?baud=N]", "a CyberGlove at a serial, USB or Bluetooth port",
+           open_serial},
+    Driver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",
+           open_auto},
+    Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
+           "a simulated glove", open_simulated},
+};
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_glove(std::string_view text, Side side) {
+  const auto spec = parse_glove_spec(text);
+  if (!spec) return spec.error();
+  std::string known;
+  for (const Driver& driver : drivers) {
+    if (driver.kind == spec->kind) return driver.open(*spec, side);
+    known += (known.empty() ? "" : ", ") + std::string(driver.kind);
+  }
+  return Error{Errc::usage,
+               "glove \"" + spec->text + "\": unknown kind " + spec->kind + "; known: " + known};
+}
+
+std::vector<DriverSummary> driver_summaries() {
+  std::vector<DriverSummary> summaries;
+  summaries.reserve(drivers.size());
+  for (const Driver& driver : drivers)
+    summaries.push_back({driver.grammar, driver.summary});
+  return summaries;
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,173 @@
+#include "simulated/simulated_driver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "simulated/hand_motion.hpp"
+#include "simulated/typical_wearer.hpp"
+
+namespace nendo::driver {
+namespace {
+
+struct Settings {
+  Motion motion = Motion::sculpt;
+  std::string motion_name = "sculpt";
+  std::uint32_t seed = 1;
+  double rate_hz = 90.0;
+  Side side = Side::right;
+  unsigned sensors = 22;
+};
+
+class SimulatedGlove final : public Glove {
+public:
+  SimulatedGlove(const GloveSpec& spec, const Settings& settings)
+      : motion_(settings.motion, settings.side, settings.seed), wearer_(settings.seed),
+        period_(std::chrono::duration_cast<HostClock::duration>(
+            std::chrono::duration<double>(1.0 / settings.rate_hz))) {
+    info_.source = spec.text;
+    info_.model = "simulated glove, " + std::to_string(settings.sensors) + " sensors, motion " +
+                  settings.motion_name;
+    info_.side = settings.side;
+    info_.sensors = settings.sensors == 18 ? sensors_18 : sensors_22;
+    info_.rate_hz = settings.rate_hz;
+  }
+
+  const GloveInfo& info() const noexcept override { return info_; }
+
+  Result<void> start(SampleRing& ring) override {
+    if (started_) return Error{Errc::failed, info_.source + ": start() was called twice"};
+    try {
+      reader_ = std::jthread([this, &ring](const std::stop_token& stop) { read(stop, ring); });
+    } catch (const std::system_error& error) {
+      return Error{Errc::failed, info_.source + ": no thread for the reader: " + error.what()};
+    }
+    started_ = true;
+    return {};
+  }
+
+  void stop() noexcept override {
+    reader_.request_stop();
+    if (reader_.joinable()) reader_.join();
+  }
+
+  GloveStats stats() const noexcept override {
+    GloveStats stats;
+    stats.records = records_.load(std::memory_order_relaxed);
+    stats.ring_refused = ring_refused_.load(std::memory_order_relaxed);
+    return stats;
+  }
+
+private:
+  void read(const std::stop_token& stop, SampleRing& ring) {
+    const HostTime begin = HostClock::now();
+    std::mutex mutex;
+    std::condition_variable_any
+        wake; // woken by `stop` alone: a slow glove stops as promptly as a fast one
+    std::unique_lock lock(mutex);
+    for (std::int64_t tick = 0;; ++tick) {
+      wake.wait_until(lock, stop, begin + tick * period_, [] { return false; });
+      if (stop.stop_requested()) return;
+      tick = std::max(tick, (HostClock::now() - begin) / period_);
+      deliver(tick * period_, ring);
+    }
+  }
+
+  void deliver(HostClock::duration elapsed, SampleRing& ring) {
+    GloveSample sample;
+    const auto raw = wearer_.counts(motion_.at(to_seconds(elapsed)));
+    for (std::size_t k = 0; k < sensor_slots; ++k) {
+      if (info_.sensors.has(static_cast<Sensor>(k))) sample.raw[k] = raw[k];
+    }
+    sample.present = info_.sensors;
+    sample.side = info_.side;
+    sample.sequence = records_.load(std::memory_order_relaxed);
+    sample.has_device_time = true;
+    sample.device_ticks = static_cast<std::uint32_t>(
+        static_cast<std::uint64_t>(to_seconds(elapsed) * device_ticks_per_s));
+    sample.arrival = HostClock::now();
+    if (!ring.try_push(sample)) ring_refused_.fetch_add(1, std::memory_order_relaxed);
+    records_.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  static constexpr double device_ticks_per_s = 115200.0;
+
+  GloveInfo info_;
+  HandMotion motion_;
+  TypicalWearer wearer_;
+  HostClock::duration period_;
+  std::atomic<std::uint64_t> records_{0};
+  std::atomic<std::uint64_t> ring_refused_{0};
+  bool started_ = false;
+  std::jthread reader_; // last: joined before what it uses is gone
+};
+
+template <class Number>
+bool read_number(const std::string& text, Number& number) noexcept {
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc{} && stopped == end;
+}
+
+struct Option {
+  std::string_view key;
+  std::string_view allowed;
+};
+constexpr std::array<Option, 4> options{{{"seed", "a whole number from 0 to 4294967295"},
+                                         {"rate", "a number from 1 to 1000 (hertz)"},
+                                         {"hand", "left or right"},
+                                         {"sensors", "18 or 22"}}};
+
+// False: the value is none of those that `options` allows for this key.
+bool set_option(Settings& settings, const std::string& key, const std::string& value) {
+  if (key == "seed") return read_number(value, settings.seed);
+  if (key == "rate") {
+    return read_number(value, settings.rate_hz) && settings.rate_hz >= 1.0 &&
+           settings.rate_hz <= 1000.0;
+  }
+  if (key == "hand") {
+    settings.side = value == "left" ? Side::left : Side::right;
+    return value == name_of(settings.side);
+  }
+  settings.sensors = value == "18" ? 18 : 22;
+  return value == std::to_string(settings.sensors);
+}
+
+Error usage(const GloveSpec& spec, std::string_view what) {
+  return Error{Errc::usage, std::string(spec.text).append(": ").append(what)};
+}
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, Side side) {
+  Settings settings;
+  settings.side = side;
+  if (!spec.target.empty()) settings.motion_name = spec.target;
+  const auto motion = find_motion(settings.motion_name);
+  if (!motion) return usage(spec, motion.error().message);
+  settings.motion = *motion;
+  for (const auto& [key, value] : spec.options) {
+    const auto* option = std::find_if(options.begin(), options.end(),
+                                      [&name = key](const Option& o) { return o.key == name; });
+    if (option == options.end()) {
+      return usage(spec, "no option '" + key + "'; there are seed, rate, hand, sensors");
+    }
+    if (!set_option(settings, key, value)) {
+      std::string what = "option " + key;
+      what.append(" is '").append(value).append("', but must be ").append(option->allowed);
+      return usage(spec, what);
+    }
+  }
+  return std::unique_ptr<Glove>(std::make_unique<SimulatedGlove>(spec, settings));
+}
+
+} // namespace nendo::driver

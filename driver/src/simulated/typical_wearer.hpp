@@ -1,0 +1,37 @@
+#pragma once
+// From joint angles to what a glove's 8-bit converter makes of them on a typical wearer's hand. The
+// inverse of a calibration: angle = gain (count - offset).
+
+#include <array>
+#include <cstdint>
+#include <random>
+
+#include <nendo/driver/sample.hpp>
+
+#include "simulated/hand_motion.hpp"
+
+namespace nendo::driver {
+
+struct NominalSensor {
+  double offset_counts; ///< the count at angle 0
+  double gain_rad;      ///< radians a count
+};
+
+/// Round numbers in the middle of what calibrations of real gloves show. Zero for the slots that no
+/// glove has.
+NominalSensor nominal_sensor(Sensor sensor) noexcept;
+
+class TypicalWearer {
+public:
+  explicit TypicalWearer(std::uint32_t seed) : random_(seed) {}
+
+  /// Counts 1..255 (0 is the end of a record on the wire), with converter noise; every call draws
+  /// new noise. Slots that no glove has stay 0.
+  std::array<RawCount, sensor_slots> counts(const JointAngles& angles);
+
+private:
+  std::mt19937 random_;
+  std::normal_distribution<double> noise_counts_{0.0, 0.5};
+};
+
+} // namespace nendo::driver

@@ -1,0 +1,33 @@
+#pragma once
+// From a path to a Transport: libserialport for real ports, termios for pseudo-terminals, since
+// Debian 12's libserialport 0.1.1 opens neither pseudo-terminals (they have no modem lines) nor
+// symbolic links.
+
+#include <memory>
+#include <string>
+
+#include <nendo/base/result.hpp>
+
+#include "transport/transport.hpp"
+
+namespace nendo::driver {
+
+/// Opens a terminal as 8N1, raw, without flow control, for this program alone. Follows symbolic
+/// links. `baud` has no meaning for a pseudo-terminal. Errors: no_device (missing, not a terminal,
+/// in use), no_permission.
+Result<std::unique_ptr<Transport>> open_transport(const std::string& path, int baud);
+
+/// The path with symbolic links followed, but no further than to a name that the kernel knows as a
+/// serial port.
+std::string resolve_port(const std::string& path);
+/// True for /dev/<name> with an entry in /sys/class/tty: a real port, and what libserialport can
+/// open.
+bool is_serial_port(const std::string& path);
+
+/// The back ends; `path` is resolved.
+Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int baud);
+Result<std::unique_ptr<Transport>> open_termios(const std::string& path);
+/// What a failed attempt to open or lock `path` means to the user.
+Error open_error(const std::string& path, int error_number);
+
+} // namespace nendo::driver

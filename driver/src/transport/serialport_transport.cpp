@@ -1,0 +1,136 @@
+#include "transport/open_transport.hpp"
+
+#include <cerrno>
+
+#include <fcntl.h>
+#include <libserialport.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+
+#include "transport/serial_ports.hpp"
+#include "transport/wait_fd.hpp"
+
+namespace nendo::driver {
+namespace {
+
+struct PortCloser {
+  void operator()(sp_port* port) const noexcept { sp_free_port(port); }
+};
+using PortHandle = std::unique_ptr<sp_port, PortCloser>;
+
+struct ConfigCloser {
+  void operator()(sp_port_config* config) const noexcept { sp_free_config(config); }
+};
+
+/// Owns an open port.
+class SerialportTransport final : public Transport {
+public:
+  SerialportTransport(PortHandle port, int fd) noexcept : port_(std::move(port)), fd_(fd) {}
+  ~SerialportTransport() override {
+    // Otherwise closing waits, half a minute by default, for bytes that a dead line will never
+    // take.
+    sp_flush(port_.get(), SP_BUF_BOTH);
+    sp_close(port_.get());
+  }
+
+  ReadResult read_some(std::span<std::byte> buffer,
+                       std::chrono::milliseconds timeout) noexcept override {
+    const IoStatus ready = wait_fd(fd_, POLLIN, HostClock::now() + timeout);
+    if (ready != IoStatus::done) return {ready, 0};
+    const int count = sp_nonblocking_read(port_.get(), buffer.data(), buffer.size());
+    if (count > 0) return {IoStatus::done, static_cast<std::size_t>(count)};
+    // An unplugged adapter is readable for ever and yields nothing; libserialport calls that "no
+    // data".
+    return {IoStatus::gone, 0};
+  }
+
+  IoStatus write_all(std::span<const std::byte> bytes,
+                     std::chrono::milliseconds timeout) noexcept override {
+    return write_all_fd(fd_, bytes, timeout, [this](std::span<const std::byte> rest) {
+      const int count = sp_nonblocking_write(port_.get(), rest.data(), rest.size());
+      // 0.1.1 reports a full output buffer as a failure.
+      return count < 0 && sp_last_error_code() == EAGAIN ? 0 : static_cast<int>(count);
+    });
+  }
+
+  void discard_input() noexcept override { sp_flush(port_.get(), SP_BUF_INPUT); }
+
+private:
+  const PortHandle port_;
+  const int fd_;
+};
+
+/// 8N1 without flow control; both modem lines asserted, never toggled (the 1990s interface unit may
+/// be powered by or look at them; nothing documents it). Returns 0 or an error number.
+int configure(sp_port* port, int baud) {
+  sp_port_config* raw = nullptr;
+  if (sp_new_config(&raw) != SP_OK) return ENOMEM;
+  const std::unique_ptr<sp_port_config, ConfigCloser> config(raw);
+  sp_set_config_baudrate(raw, baud);
+  sp_set_config_bits(raw, 8);
+  sp_set_config_parity(raw, SP_PARITY_NONE);
+  sp_set_config_stopbits(raw, 1);
+  sp_set_config_rts(raw, SP_RTS_ON);
+  sp_set_config_cts(raw, SP_CTS_IGNORE);
+  sp_set_config_dtr(raw, SP_DTR_ON);
+  sp_set_config_dsr(raw, SP_DSR_IGNORE);
+  sp_set_config_xon_xoff(raw, SP_XONXOFF_DISABLED); // 0x11 and 0x13 are sensor values
+  return sp_set_config(port, raw) == SP_OK ? 0 : sp_last_error_code();
+}
+
+/// libserialport 0.1.1 lets two programs open one port. TIOCEXCL keeps others out, but not root;
+/// the lock does.
+int make_exclusive(int fd) {
+  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return errno;
+  return ::ioctl(fd, TIOCEXCL) == 0 ? 0 : errno;
+}
+
+int close_with(sp_port* port, int error_number) {
+  sp_close(port);
+  return error_number;
+}
+
+int open_port(sp_port* port, int baud, int& fd) {
+  if (sp_open(port, SP_MODE_READ_WRITE) != SP_OK) return sp_last_error_code();
+  if (sp_get_port_handle(port, &fd) != SP_OK) return close_with(port, EBADF);
+  if (const int e = make_exclusive(fd); e != 0) return close_with(port, e);
+  if (const int e = configure(port, baud); e != 0) return close_with(port, e);
+  return 0;
+}
+
+std::string text_or_empty(const char* text) {
+  return text != nullptr ? text : "";
+}
+
+} // namespace
+
+Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int baud) {
+  sp_port* raw = nullptr;
+  if (sp_get_port_by_name(path.c_str(), &raw) != SP_OK) return open_error(path, ENODEV);
+  PortHandle port(raw);
+  int fd = -1;
+  if (const int e = open_port(raw, baud, fd); e != 0) return open_error(path, e);
+  return std::unique_ptr<Transport>(std::make_unique<SerialportTransport>(std::move(port), fd));
+}
+
+std::vector<SerialPortInfo> list_serial_ports() {
+  std::vector<SerialPortInfo> found;
+  sp_port** ports = nullptr;
+  if (sp_list_ports(&ports) != SP_OK) return found;
+  for (sp_port** at = ports; *at != nullptr; ++at) {
+    SerialPortInfo info;
+    info.path = text_or_empty(sp_get_port_name(*at));
+    info.description = text_or_empty(sp_get_port_description(*at));
+    info.is_usb = sp_get_port_transport(*at) == SP_TRANSPORT_USB;
+    if (info.is_usb) {
+      info.manufacturer = text_or_empty(sp_get_port_usb_manufacturer(*at));
+      info.product = text_or_empty(sp_get_port_usb_product(*at));
+      sp_get_port_usb_vid_pid(*at, &info.vendor_id, &info.product_id);
+    }
+    found.push_back(std::move(info));
+  }
+  sp_free_port_list(ports);
+  return found;
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,260 @@
+#include "cyberglove/cyberglove_parser.hpp"
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using namespace nendo::driver::cyberglove;
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+constexpr RecordShape plain_22{22, false, false};
+constexpr RecordShape full_22{22, true, true};
+constexpr RecordShape plain_18{18, false, false};
+
+Bytes bytes_of(std::string_view text) {
+  Bytes bytes;
+  for (const char c : text)
+    bytes.push_back(static_cast<std::byte>(c));
+  return bytes;
+}
+
+/// Header, values first, first+1 ..., then `tail` and NUL: the layout as published.
+Bytes record_bytes(std::size_t values, int first, std::string_view tail = "") {
+  Bytes bytes{std::byte{'S'}};
+  for (std::size_t k = 0; k < values; ++k)
+    bytes.push_back(static_cast<std::byte>(first + static_cast<int>(k)));
+  const Bytes end = bytes_of(tail);
+  bytes.insert(bytes.end(), end.begin(), end.end());
+  bytes.push_back(std::byte{0});
+  return bytes;
+}
+
+Bytes joined(std::initializer_list<Bytes> parts) {
+  Bytes all;
+  for (const Bytes& part : parts)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+struct Outcome {
+  std::vector<Record> records;
+  ParserCounters counters;
+  std::size_t pending = 0;
+};
+
+Outcome parse(const RecordShape& shape, std::span<const std::byte> input) {
+  Parser parser(shape);
+  Outcome outcome;
+  parser.push(input, [&](const Record& record) { outcome.records.push_back(record); });
+  outcome.counters = parser.counters();
+  outcome.pending = parser.pending();
+  CHECK(outcome.counters.bytes == input.size());
+  CHECK(outcome.counters.bytes ==
+        outcome.counters.record_bytes + outcome.counters.discarded_bytes + outcome.pending);
+  CHECK(outcome.pending < most_record_bytes);
+  CHECK(outcome.counters.records == outcome.records.size());
+  return outcome;
+}
+
+} // namespace
+
+TEST_SUITE("cyberglove_parser") {
+  TEST_CASE("empty input yields nothing") {
+    const Outcome outcome = parse(plain_22, {});
+    CHECK(outcome.records.empty());
+    CHECK(outcome.counters.bytes == 0);
+  }
+
+  TEST_CASE("a good record is delivered as it was sent") {
+    for (const RecordShape& shape : {plain_22, plain_18}) {
+      const Outcome outcome = parse(shape, record_bytes(shape.values, 100));
+      REQUIRE(outcome.records.size() == 1);
+      for (std::size_t k = 0; k < shape.values; ++k)
+        CHECK(outcome.records[0].values[k] == 100 + k);
+      CHECK(outcome.counters.discarded_bytes == 0);
+      CHECK_FALSE(outcome.records[0].sampled_too_fast);
+    }
+  }
+
+  TEST_CASE("a polled record has its own header letter") {
+    Bytes polled = record_bytes(22, 1);
+    polled[0] = std::byte{'G'};
+    CHECK(parse(plain_22, polled).records.size() == 1);
+    polled[0] = std::byte{'g'};
+    CHECK(parse(plain_22, polled).records.empty());
+  }
+
+  TEST_CASE("two records in a row are two, also when values look like headers") {
+    const Outcome outcome =
+        parse(plain_22, joined({record_bytes(22, 'S' - 3), record_bytes(22, 9)}));
+    REQUIRE(outcome.records.size() == 2);
+    CHECK(outcome.records[1].values[0] == 9);
+  }
+
+  TEST_CASE("garbage that ends in NUL costs no record, garbage that does not costs the next one") {
+    const Outcome ended =
+        parse(plain_22, joined({bytes_of(std::string("AT\r\n\0", 5)), record_bytes(22, 9)}));
+    CHECK(ended.records.size() == 1);
+    CHECK(ended.counters.bad_records == 1);
+    CHECK(ended.counters.discarded_bytes == 5);
+    const Outcome open =
+        parse(plain_22, joined({bytes_of("AT\r\n"), record_bytes(22, 9), record_bytes(22, 50)}));
+    REQUIRE(open.records.size() == 1);
+    CHECK(open.records[0].values[0] == 50);
+  }
+
+  TEST_CASE("a truncated record is held back, and dropped when the next one follows at once") {
+    Bytes half = record_bytes(22, 9);
+    half.resize(10);
+    CHECK(parse(plain_22, half).pending == 10);
+    const Outcome outcome =
+        parse(plain_22, joined({half, record_bytes(22, 9), record_bytes(22, 50)}));
+    REQUIRE(outcome.records.size() == 1);
+    CHECK(outcome.records[0].values[0] == 50);
+    CHECK(outcome.counters.bad_records == 1);
+  }
+
+  TEST_CASE("an over-long record is dropped as one, whatever its length, and holds no memory") {
+    for (const std::size_t length : {24U, 34U, 35U, 36U, 37U, 72U, 5000U}) {
+      CAPTURE(length);
+      Bytes overlong(length, std::byte{'S'});
+      overlong.push_back(std::byte{0});
+      const Outcome outcome = parse(plain_22, joined({overlong, record_bytes(22, 9)}));
+      CHECK(outcome.records.size() == 1);
+      CHECK(outcome.counters.bad_records == 1);
+      CHECK(outcome.counters.discarded_bytes == length + 1);
+    }
+  }
+
+  TEST_CASE("a record with a bad terminator is dropped with the one it runs into") {
+    Bytes bad = record_bytes(22, 9);
+    bad.back() = std::byte{0x0D};
+    const Outcome outcome =
+        parse(plain_22, joined({bad, record_bytes(22, 50), record_bytes(22, 99)}));
+    REQUIRE(outcome.records.size() == 1);
+    CHECK(outcome.records[0].values[0] == 99);
+  }
+
+  TEST_CASE("a value of zero cannot be delivered") {
+    Bytes zero = record_bytes(22, 9);
+    zero[5] = std::byte{0};
+    CHECK(parse(plain_22, zero).records.empty());
+    CHECK_FALSE(decode_record(zero, plain_22));
+  }
+
+  TEST_CASE("the time stamp's flags say which of its bytes are zero") {
+    using namespace std::string_view_literals;
+    // The manual's example of the layout, with and without the flag byte's bit 7.
+    for (const auto tail : {"\x8A\x02\x01\x01\x01\x87"sv, "\x0A\x02\x01\x01\x01\x87"sv}) {
+      const Outcome outcome = parse(full_22, record_bytes(22, 9, tail));
+      REQUIRE(outcome.records.size() == 1);
+      CHECK(outcome.records[0].ticks == 0x00010002U);
+    }
+    CHECK(parse(full_22, record_bytes(22, 9, "\x80\x04\x03\x02\x01\x87")).records[0].ticks ==
+          0x01020304U);
+    CHECK(parse(full_22, record_bytes(22, 9, "\x8F\x01\x01\x01\x01\x87")).records[0].ticks == 0);
+  }
+
+  TEST_CASE("a status byte without its constant bit is damage") {
+    CHECK(parse(full_22, record_bytes(22, 9, "\x8A\x02\x01\x01\x01\x07")).records.empty());
+  }
+
+  TEST_CASE("error pairs stand before the NUL: too fast is a good record, unplugged is none") {
+    const auto too_fast = parse(plain_22, record_bytes(22, 9, "es"));
+    REQUIRE(too_fast.records.size() == 1);
+    CHECK(too_fast.records[0].sampled_too_fast);
+    for (const char* tail : {"eg", "eges", "eseg"}) {
+      CAPTURE(tail);
+      const auto outcome = parse(plain_22, record_bytes(22, 9, tail));
+      CHECK(outcome.records.empty());
+      CHECK(outcome.counters.bad_records == 1);
+    }
+    for (const char* tail : {"e", "ex", "eses", "egeg", "esese", "se", "xx"}) {
+      CAPTURE(tail);
+      CHECK(parse(plain_22, record_bytes(22, 9, tail)).records.empty());
+    }
+    CHECK(parse(full_22, record_bytes(22, 9,
+                                      "\x8A\x02\x01\x01\x01\x87"
+                                      "es"))
+              .records.size() == 1);
+  }
+
+  TEST_CASE("a record of another shape is never taken for one") {
+    CHECK(parse(plain_18, record_bytes(22, 9)).records.empty());
+    CHECK(parse(plain_22, record_bytes(18, 9)).records.empty());
+    CHECK(parse(full_22, record_bytes(22, 9)).records.empty());
+  }
+
+  TEST_CASE("where the stream is cut into chunks makes no difference") {
+    const Bytes stream =
+        joined({bytes_of("noise"), record_bytes(22, 1, "\x8A\x02\x01\x01\x01\x87"),
+                record_bytes(22, 2, "\x81\x01\x02\x03\x04\x87"), Bytes(50, std::byte{7}),
+                record_bytes(22, 3,
+                             "\x81\x01\x02\x03\x04\x87"
+                             "es"),
+                record_bytes(22, 4, "\x81\x01\x02\x03\x04\x87")});
+    const Outcome whole = parse(full_22, stream);
+    REQUIRE(whole.records.size() == 2);
+    for (std::size_t first = 0; first <= stream.size(); ++first) {
+      Parser parser(full_22);
+      std::vector<int> firsts;
+      const auto sink = [&](const Record& record) { firsts.push_back(record.values[0]); };
+      parser.push(std::span(stream).first(first), sink);
+      parser.push(std::span(stream).subspan(first), sink);
+      CHECK(firsts == std::vector<int>{2, 4});
+      CHECK(parser.counters().discarded_bytes == whole.counters.discarded_bytes);
+    }
+  }
+
+  TEST_CASE("every byte is accounted for, however the stream is mutilated") {
+    std::mt19937 random(5);
+    for (int round = 0; round < 400; ++round) {
+      Bytes stream;
+      for (int k = 0; k < 30; ++k) {
+        const Bytes next =
+            record_bytes(22, static_cast<int>(1 + random() % 200), "\x8A\x02\x01\x01\x01\x87");
+        stream.insert(stream.end(), next.begin(), next.end());
+      }
+      for (auto k = random() % 40; k > 0; --k) {
+        const auto at = stream.begin() + static_cast<std::ptrdiff_t>(random() % stream.size());
+        switch (random() % 3) {
+        case 0:
+          *at = static_cast<std::byte>(random());
+          break;
+        case 1:
+          stream.erase(at);
+          break;
+        default:
+          stream.insert(at, static_cast<std::byte>(random()));
+        }
+      }
+      const Outcome outcome = parse(full_22, stream);
+      CHECK(outcome.records.size() <= 70);
+      for (const Record& record : outcome.records) {
+        CHECK(std::none_of(record.values.begin(), record.values.begin() + 22,
+                           [](auto v) { return v == 0; }));
+      }
+    }
+  }
+
+  TEST_CASE("after a reset the unfinished record is discarded and the new shape holds") {
+    Parser parser(plain_22);
+    int records = 0;
+    const auto count = [&](const Record&) { ++records; };
+    Bytes half = record_bytes(22, 9);
+    half.resize(10);
+    parser.push(half, count);
+    parser.reset(plain_18);
+    parser.count_discarded(7);
+    parser.push(record_bytes(18, 9), count);
+    CHECK(records == 1);
+    CHECK(parser.counters().discarded_bytes == 17);
+    CHECK(parser.counters().bytes == 17 + 20);
+  }
+}

@@ -1,0 +1,369 @@
+#include "emulator/cyberglove_unit.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <initializer_list>
+#include <random>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using namespace std::chrono_literals;
+using nendo::Side;
+using nendo::driver::CyberGloveUnit;
+using nendo::driver::Motion;
+using nendo::driver::UnitOptions;
+
+TEST_SUITE("cyberglove_unit") {
+  namespace {
+  using Bytes = std::vector<std::uint8_t>;
+
+  // A unit and a host that talks to it.
+  struct Bench {
+    explicit Bench(const UnitOptions& options = {}) : unit(options) {}
+
+    void send(const Bytes& bytes) { unit.receive(std::as_bytes(std::span(bytes)), now); }
+    Bytes receive() {
+      const auto output = unit.output();
+      Bytes bytes;
+      for (const std::byte byte : output)
+        bytes.push_back(std::to_integer<std::uint8_t>(byte));
+      unit.take(output.size());
+      return bytes;
+    }
+    Bytes ask(const Bytes& bytes) {
+      send(bytes);
+      return receive();
+    }
+    Bytes ask(std::string_view text) { return ask(Bytes(text.begin(), text.end())); }
+    Bytes after(CyberGloveUnit::Time time) {
+      now += time;
+      unit.advance(now);
+      return receive();
+    }
+
+    CyberGloveUnit unit;
+    CyberGloveUnit::Time now = 1h; // not 0: a unit has usually been on for a while
+  };
+
+  std::vector<Bytes> split(const Bytes& stream) {
+    std::vector<Bytes> records(1);
+    for (const std::uint8_t byte : stream) {
+      records.back().push_back(byte);
+      if (byte == 0) records.emplace_back();
+    }
+    CHECK(records.back().empty());
+    records.pop_back();
+    return records;
+  }
+
+  UnitOptions with_sensors(unsigned sensors) {
+    UnitOptions options;
+    options.sensors = sensors;
+    return options;
+  }
+  } // namespace
+
+  TEST_CASE("queries get the reference replies") {
+    Bench right;
+    CHECK(right.ask("?S") == Bytes{0x3F, 0x53, 0x16, 0x00});
+    CHECK(right.ask("?G") == Bytes{0x3F, 0x47, 0x03, 0x00});
+    CHECK(right.ask("?K") == Bytes{0x3F, 0x4B, 0x7F, 0xFF, 0x7F, 0x00});
+    CHECK(right.ask("?W") == Bytes{0x3F, 0x57, 0x00, 0x00});
+    CHECK(right.ask("?R") == Bytes{0x3F, 0x52, 0x01, 0x00});
+    CHECK(right.ask("?N") == Bytes{0x3F, 0x4E, 0x16, 0x00});
+    CHECK(right.ask("?M") == Bytes{0x3F, 0x4D, 0xFF, 0xFF, 0xFF, 0x00});
+    CHECK(right.ask("?V").size() == 7);
+    CHECK(right.ask("?B") == Bytes{0x3F, 0x42, 0x00, 0x00});
+
+    UnitOptions options = with_sensors(18);
+    options.side = Side::left;
+    Bench left(options);
+    CHECK(left.ask("?S") == Bytes{0x3F, 0x53, 0x12, 0x00});
+    CHECK(left.ask("?K") == Bytes{0x3F, 0x4B, 0x3F, 0xBB, 0x7B, 0x00});
+    CHECK(left.ask("?R") == Bytes{0x3F, 0x52, 0x00, 0x00});
+  }
+
+  TEST_CASE("at power-up the filter is on and the switch drives the light, nothing else") {
+    Bench bench;
+    // Byte 1: plugged in, always. Byte 2: switch controls light, filter, right hand, valid.
+    CHECK(bench.ask("?P") == Bytes{0x3F, 0x50, 0x81, 0xD8, 0x00, 0x00});
+    for (const char letter : std::string_view("DLQUW")) {
+      CHECK(bench.ask(std::string("?") + letter)[2] == 0);
+    }
+    CHECK(bench.ask("?F")[2] == 1);
+    CHECK(bench.ask("?J")[2] == 1);
+    // 90 records a second: 1280 ticks, once; high byte first.
+    CHECK(bench.ask("?T") == Bytes{0x3F, 0x54, 0x05, 0x00, 0x00, 0x01, 0x00});
+  }
+
+  TEST_CASE("the information text starts as one known host expects, and names the glove") {
+    const auto text = [](Side side) {
+      UnitOptions options;
+      options.side = side;
+      const Bytes bytes = Bench(options).ask("?i");
+      CHECK(std::count(bytes.begin(), bytes.end(), 0) == 1);
+      CHECK(bytes.back() == 0);
+      return std::string(bytes.begin(), bytes.end());
+    };
+    CHECK(text(Side::right).substr(0, 7) == "?i \r\nCG");
+    CHECK(text(Side::left).substr(0, 7) != "?i \r\nCG");
+    CHECK(text(Side::left).find("CyberGlove") != std::string::npos);
+  }
+
+  TEST_CASE("set commands answer with their letter, in the binary and in the text form") {
+    Bench bench;
+    CHECK(bench.ask(Bytes{0x46, 0x00}) == Bytes{0x46, 0x00});
+    CHECK(bench.ask("?F")[2] == 0);
+    CHECK(bench.ask(Bytes{0x55, 0x01}) == Bytes{0x55, 0x00});
+    CHECK(bench.ask("?U")[2] == 1);
+    CHECK(bench.ask("u 0\r") == Bytes{'u', 0x00});
+    CHECK(bench.ask("?U")[2] == 0);
+    CHECK(bench.ask("d 1\r") == Bytes{'d', 0x00});
+    CHECK(bench.ask("?D")[2] == 1);
+    CHECK(bench.ask(Bytes{'M', 0x03, 0x00, 0x40}) == Bytes{'M', 0x00}); // 0x03 is data here
+    CHECK(bench.ask("?M") == Bytes{0x3F, 0x4D, 0x03, 0x00, 0x40, 0x00});
+    CHECK(bench.ask(Bytes{'T', 0x04, 0x80, 0x00, 0x01}) == Bytes{'T', 0x00});
+    CHECK(bench.ask("?T") == Bytes{0x3F, 0x54, 0x04, 0x80, 0x00, 0x01, 0x00});
+    CHECK(bench.ask("t 1536 2\r") == Bytes{'t', 0x00});
+    CHECK(bench.ask("?T") == Bytes{0x3F, 0x54, 0x06, 0x00, 0x00, 0x02, 0x00});
+    CHECK(bench.ask(Bytes{'F', '0'}) == Bytes{'F', 0x00}); // a digit in the binary form means on
+    CHECK(bench.ask("?F")[2] == 1);
+  }
+
+  TEST_CASE("the switch drives the light as long as it is told to") {
+    Bench bench;
+    bench.ask("w 1\r");
+    CHECK(bench.ask("?L")[2] == 1);
+    bench.ask(Bytes{'J', 0});
+    bench.ask("w 0\r");
+    CHECK(bench.ask("?L")[2] == 1);
+    bench.ask("l 0\r");
+    CHECK(bench.ask("?L")[2] == 0);
+  }
+
+  TEST_CASE("parameter flags set all switches at once and cannot change what is read-only") {
+    Bench bench;
+    CHECK(bench.ask(Bytes{'P', 0x00, 0x24, 0x01}) == Bytes{'P', 0x00});
+    CHECK(bench.ask("?P") == Bytes{0x3F, 0x50, 0x81, 0xE4, 0x01, 0x00});
+    CHECK(bench.ask("?D")[2] == 1);
+    CHECK(bench.ask("?U")[2] == 1);
+    CHECK(bench.ask("?F")[2] == 0);
+    CHECK(bench.ask("?Q")[2] == 1);
+  }
+
+  TEST_CASE("what it does not know or cannot read it answers with an error pair") {
+    Bench bench;
+    CHECK(bench.ask("X") == Bytes{'e', '?', 0});
+    CHECK(bench.ask("?X") == Bytes{'e', '?', 0});
+    CHECK(bench.ask("t 1152\r") == Bytes{'e', 'n', 0});
+    CHECK(bench.ask("t 1152 1 1\r") == Bytes{'e', 'n', 0});
+    CHECK(bench.ask("t 65536 1\r") == Bytes{'e', 'n', 0});
+    CHECK(bench.ask("u on\r") == Bytes{'e', 'n', 0});
+    CHECK(bench.ask("n 256\r") == Bytes{'e', 'n', 0});
+    CHECK(bench.ask("u " + std::string(5000, '1') + "\r") == Bytes{'e', 'n', 0});
+    CHECK(bench.ask("?S").size() == 4);
+  }
+
+  TEST_CASE("a command that stays incomplete is forgotten") {
+    Bench bench;
+    CHECK(bench.ask("AT\r") == Bytes{'e', '?', 0}); // a modem probe; T waits for three more bytes
+    bench.after(1100ms);
+    CHECK(bench.ask("?S").size() == 4);
+    bench.ask("t 11");
+    CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03, 0x00});
+    CHECK(bench.ask("?S").size() == 4);
+  }
+
+  TEST_CASE("a record is its header, a value above 0 for every sensor, and NUL") {
+    for (const unsigned sensors : {18U, 22U}) {
+      Bench bench(with_sensors(sensors));
+      for (int n = 0; n < 200; ++n) {
+        const Bytes record = bench.ask("G");
+        REQUIRE(record.size() == sensors + 2);
+        CHECK(record[0] == 'G');
+        CHECK(std::find(record.begin(), record.end(), 0) == record.end() - 1);
+        bench.now += 50ms;
+      }
+    }
+  }
+
+  TEST_CASE("time stamp and status follow the values as in the reference record") {
+    Bench bench;
+    bench.now = 0s;
+    bench.ask(
+        Bytes{'P', 0x06, 0x24, 0x00}); // switch and light on; status and time stamp in records
+    // 0x00010002 ticks of 1/115200 s, rounded up to the next nanosecond.
+    bench.now = CyberGloveUnit::Time((0x00010002LL * 78125 + 8) / 9);
+    const Bytes record = bench.ask("G");
+    REQUIRE(record.size() == 30);
+    CHECK(Bytes(record.begin() + 23, record.end()) ==
+          Bytes{0x8A, 0x02, 0x01, 0x01, 0x01, 0x87, 0x00});
+  }
+
+  TEST_CASE(
+      "the time stamp, its zero bytes restored, counts 115200 a second and wraps after 2^32") {
+    Bench bench;
+    bench.now = 0s;
+    bench.ask(Bytes{'D', 0x01});
+    for (const auto seconds : {0s, 1s, 3600s, 37282s, 37283s, 100000s}) {
+      bench.now = seconds;
+      const Bytes record = bench.ask("G");
+      REQUIRE(record.size() == 29);
+      std::uint32_t ticks = 0;
+      for (unsigned k = 0; k < 4; ++k) {
+        const bool was_zero = ((record[23] >> k) & 1) != 0;
+        if (was_zero) CHECK(record[24 + k] == 1);
+        ticks |= static_cast<std::uint32_t>(was_zero ? 0 : record[24 + k]) << (8 * k);
+      }
+      CHECK(record[23] >= 0x80);
+      CHECK(ticks ==
+            static_cast<std::uint32_t>(static_cast<std::uint64_t>(seconds.count()) * 115200));
+    }
+  }
+
+  TEST_CASE("the software mask and the count choose which values a record holds") {
+    UnitOptions options;
+    options.motion = Motion::rest;
+    Bench whole(options);
+    Bench masked(options);
+    masked.ask(Bytes{'M', 0x71, 0xFF, 0xFF}); // thumb roll, index MCP, PIP, DIP and all later ones
+    masked.ask(Bytes{'N', 5});
+    const Bytes all = whole.ask("G");
+    const Bytes some = masked.ask("G");
+    CHECK(some == Bytes{'G', all[1], all[5], all[6], all[7], all[8], 0});
+    masked.ask(Bytes{'N', 255});
+    CHECK(masked.ask("G").size() == 19 + 2);
+    masked.ask(Bytes{'M', 0x80, 0, 0}); // a sensor that the glove does not have
+    CHECK(masked.ask("G") == Bytes{'G', 0});
+  }
+
+  TEST_CASE("the text form of a record holds the numbers of the binary form") {
+    UnitOptions options;
+    options.motion = Motion::rest;
+    const Bytes binary = Bench(options).ask("G");
+    const Bytes text = Bench(options).ask("g");
+    std::string expected = "g";
+    for (std::size_t k = 1; k + 1 < binary.size(); ++k)
+      expected += " " + std::to_string(binary[k]);
+    expected += std::string("\r\n\0", 3);
+    CHECK(std::string(text.begin(), text.end()) == expected);
+  }
+
+  TEST_CASE("a stream has the period that T sets, to the record") {
+    Bench bench;
+    bench.ask("t 1152 1\r");
+    CHECK(bench.ask("S").empty());
+    REQUIRE(bench.unit.next_due());
+    CHECK(*bench.unit.next_due() - bench.now == 10ms);
+    std::size_t records = 0;
+    for (int n = 0; n < 1000; ++n)
+      records += split(bench.after(7ms)).size();
+    CHECK(records == 700);
+    CHECK(bench.unit.counters().records == 700);
+    CHECK(bench.unit.counters().bytes_refused == 0);
+    CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03, 0x00});
+    CHECK(bench.after(1s).empty());
+    CHECK_FALSE(bench.unit.next_due());
+  }
+
+  TEST_CASE(
+      "a period too short for the device gives its best rate and the error pair in every record") {
+    Bench bench;
+    bench.ask("t 576 1\r"); // 200 a second; with the filter it manages 112
+    bench.ask("S");
+    for (const Bytes& record : split(bench.after(100ms))) {
+      REQUIRE(record.size() == 26);
+      CHECK(Bytes(record.end() - 3, record.end()) == Bytes{'e', 's', 0});
+    }
+    CHECK(bench.unit.counters().records == 11);
+    bench.ask(Bytes{0x03});
+    bench.ask(Bytes{'T', 0, 0, 0, 0}); // as fast as possible is never too fast
+    bench.ask("S");
+    for (const Bytes& record : split(bench.after(100ms)))
+      CHECK(record.size() == 24);
+    CHECK(bench.unit.counters().records == 22);
+  }
+
+  TEST_CASE("a streaming unit obeys nothing but 0x03") {
+    Bench bench;
+    bench.ask("S");
+    Bytes all;
+    for (unsigned byte = 0; byte < 256; ++byte) {
+      if (byte != 0x03) all.push_back(static_cast<std::uint8_t>(byte));
+    }
+    CHECK(bench.ask(all).empty());
+    for (const Bytes& record : split(bench.after(100ms))) {
+      CHECK(record.size() == 24);
+      CHECK(record[0] == 'S');
+    }
+    CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03, 0x00});
+    CHECK(bench.ask("?P") == Bytes{0x3F, 0x50, 0x81, 0xD8, 0x00, 0x00});
+  }
+
+  TEST_CASE("a restart takes 1.75 s, during which it is deaf, and undoes every setting") {
+    Bench bench;
+    bench.ask(Bytes{'U', 1});
+    bench.ask("t 11520 1\r");
+    CHECK(bench.ask(Bytes{0x12}).empty());
+    CHECK(bench.ask("?S").empty());
+    CHECK(bench.after(1749ms).empty());
+    CHECK(bench.after(1ms) == Bytes{0x12, 0x0D, 0x0A, 0x00});
+    CHECK(bench.ask("?U")[2] == 0);
+    CHECK(bench.ask("?T")[3] == 0);
+    CHECK(bench.ask(Bytes{0x09}) == Bytes{0x09, 0x00});
+  }
+
+  TEST_CASE("the motion begins with the first record, whenever that is") {
+    Bench early;
+    Bench late;
+    late.after(5min);
+    CHECK(early.ask("S").empty());
+    CHECK(late.ask("S").empty());
+    CHECK(early.after(400ms) == late.after(400ms));
+  }
+
+  TEST_CASE("a host that does not read costs whole records, all of them counted") {
+    Bench bench;
+    bench.send({'S'});
+    bench.now += 100s;
+    bench.unit.advance(bench.now);
+    CHECK(bench.unit.output().size() <= CyberGloveUnit::output_capacity);
+    const auto counters = bench.unit.counters();
+    CHECK(counters.records * 24 + counters.bytes_refused == 9000 * 24);
+    for (const Bytes& record : split(bench.receive()))
+      CHECK(record.size() == 24);
+    CHECK(split(bench.after(100ms)).size() == 9);
+    // However long nobody looked, there is no work to catch up with.
+    bench.after(24h * 365);
+    CHECK(bench.unit.counters().records * 24 + bench.unit.counters().bytes_refused >
+          60'000'000'000);
+  }
+
+  TEST_CASE("no bytes whatever make it crash or say more than its output holds") {
+    std::mt19937 random(4);
+    for (int round = 0; round < 200; ++round) {
+      Bench bench;
+      for (int n = 0; n < 200; ++n) {
+        Bytes bytes(random() % 40);
+        for (auto& byte : bytes)
+          byte = static_cast<std::uint8_t>(random());
+        bench.send(bytes);
+        bench.now += std::chrono::milliseconds(random() % 500);
+        bench.unit.advance(bench.now);
+        REQUIRE(bench.unit.output().size() <= CyberGloveUnit::output_capacity);
+        if (random() % 4 == 0) bench.unit.take(random() % 2000);
+      }
+      // Whatever it was told, the usual way back works: stop, wait out a half command or a restart,
+      // ask.
+      bench.send({0x03});
+      bench.after(2s);
+      bench.ask(Bytes{0x03});
+      CHECK(bench.ask("?S") == Bytes{0x3F, 0x53, 0x16, 0x00});
+    }
+  }
+}

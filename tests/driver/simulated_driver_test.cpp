@@ -1,0 +1,144 @@
+#include "simulated/simulated_driver.hpp"
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using namespace std::chrono_literals;
+using nendo::Errc;
+using nendo::GloveSample;
+using nendo::HostClock;
+using nendo::SampleRing;
+using nendo::Sensor;
+using nendo::Side;
+using nendo::driver::Glove;
+using nendo::driver::GloveSpec;
+using nendo::driver::open_simulated;
+
+TEST_SUITE("simulated_driver") {
+  namespace {
+  GloveSpec spec(const std::string& motion = "",
+                 const std::map<std::string, std::string>& options = {}) {
+    return {"sim:" + motion, "sim", motion, options};
+  }
+
+  std::vector<GloveSample> run(Glove& glove, std::size_t count) {
+    SampleRing ring(1024);
+    REQUIRE(glove.start(ring));
+    std::vector<GloveSample> samples;
+    const auto deadline = HostClock::now() + 10s;
+    while (samples.size() < count && HostClock::now() < deadline) {
+      ring.drain([&](const GloveSample& sample) { samples.push_back(sample); });
+      std::this_thread::sleep_for(1ms);
+    }
+    glove.stop();
+    REQUIRE(samples.size() >= count);
+    return samples;
+  }
+  } // namespace
+
+  TEST_CASE("without options it is a right or left 22-sensor glove at 90 Hz, as the caller wants") {
+    const auto glove = open_simulated(spec(), Side::left);
+    REQUIRE(glove);
+    const auto& info = (*glove)->info();
+    CHECK(info.source == "sim:");
+    CHECK(info.side == Side::left);
+    CHECK(info.sensors == nendo::sensors_22);
+    CHECK(info.rate_hz == 90.0);
+  }
+
+  TEST_CASE("options choose hand, sensors, rate and seed") {
+    const auto glove = open_simulated(
+        spec("pinch", {{"hand", "right"}, {"sensors", "18"}, {"rate", "500"}, {"seed", "7"}}),
+        Side::left);
+    REQUIRE(glove);
+    CHECK((*glove)->info().side == Side::right);
+    CHECK((*glove)->info().sensors == nendo::sensors_18);
+    CHECK((*glove)->info().rate_hz == 500.0);
+    const auto samples = run(**glove, 10);
+    CHECK(samples[0].side == Side::right);
+    CHECK(samples[0].present == nendo::sensors_18);
+    CHECK(samples[0][Sensor::index_dip].value == 0);
+    CHECK(samples[0][Sensor::index_pip].value > 0);
+  }
+
+  TEST_CASE("a wrong option is a usage error that names it and what is allowed") {
+    const auto message = [](const std::string& motion,
+                            const std::map<std::string, std::string>& options) {
+      const auto glove = open_simulated(spec(motion, options), Side::right);
+      REQUIRE_FALSE(glove);
+      CHECK(glove.error().code == Errc::usage);
+      return glove.error().message;
+    };
+    CHECK(message("dance", {}).find("rest, wave, pinch, grasp, sculpt") != std::string::npos);
+    CHECK(message("", {{"colour", "red"}}).find("'colour'") != std::string::npos);
+    CHECK(message("", {{"rate", "0"}}).find("1 to 1000") != std::string::npos);
+    CHECK(message("", {{"rate", "1001"}}).find("rate is '1001'") != std::string::npos);
+    CHECK(message("", {{"rate", "nan"}}).find("1 to 1000") != std::string::npos);
+    CHECK(message("", {{"rate", "90Hz"}}).find("1 to 1000") != std::string::npos);
+    CHECK(message("", {{"rate", ""}}).find("1 to 1000") != std::string::npos);
+    CHECK(message("", {{"seed", "-1"}}).find("whole number") != std::string::npos);
+    CHECK(message("", {{"hand", "both"}}).find("left or right") != std::string::npos);
+    CHECK(message("", {{"sensors", "20"}}).find("18 or 22") != std::string::npos);
+  }
+
+  TEST_CASE("samples are numbered, in order, and keep the rate on the average") {
+    const auto glove = open_simulated(spec("sculpt", {{"rate", "200"}}), Side::right);
+    REQUIRE(glove);
+    const auto samples = run(**glove, 100);
+    for (std::size_t n = 1; n < samples.size(); ++n) {
+      REQUIRE(samples[n].sequence == samples[n - 1].sequence + 1);
+      REQUIRE(samples[n].arrival > samples[n - 1].arrival);
+      // The device's time lies on the grid: a late sample moves none of those after it.
+      const std::uint32_t ticks = samples[n].device_ticks - samples[n - 1].device_ticks;
+      REQUIRE((ticks + 1) % 576 <= 2); // 115200 / 200
+    }
+    const double took_s = nendo::to_seconds(samples.back().arrival - samples.front().arrival);
+    CHECK(took_s > 0.99 * static_cast<double>(samples.size() - 1) / 200.0 - 0.02);
+    const auto stats = (*glove)->stats();
+    CHECK(stats.records >= samples.size());
+    CHECK(stats.bytes == 0);
+    CHECK(stats.bad_records == 0);
+    CHECK(stats.ring_refused == 0);
+  }
+
+  TEST_CASE("two gloves of one seed give the same counts") {
+    const auto first = open_simulated(spec("rest"), Side::right);
+    const auto second = open_simulated(spec("rest"), Side::right);
+    REQUIRE(first);
+    REQUIRE(second);
+    CHECK(run(**first, 1)[0].raw == run(**second, 1)[0].raw);
+  }
+
+  TEST_CASE("a full ring costs samples, which are counted") {
+    const auto glove = open_simulated(spec("rest", {{"rate", "1000"}}), Side::right);
+    REQUIRE(glove);
+    SampleRing ring(2);
+    REQUIRE((*glove)->start(ring));
+    while ((*glove)->stats().ring_refused < 3)
+      std::this_thread::sleep_for(1ms);
+    (*glove)->stop();
+    const auto stats = (*glove)->stats();
+    CHECK(stats.records == stats.ring_refused + 2);
+  }
+
+  TEST_CASE("even a slow glove stops promptly, any number of times, and starts but once") {
+    const auto glove = open_simulated(spec("rest", {{"rate", "1"}}), Side::right);
+    REQUIRE(glove);
+    SampleRing ring(16);
+    REQUIRE((*glove)->start(ring));
+    std::this_thread::sleep_for(20ms);
+    const auto twice = (*glove)->start(ring);
+    REQUIRE_FALSE(twice);
+    CHECK(twice.error().code == Errc::failed);
+    const auto before = HostClock::now();
+    (*glove)->stop();
+    (*glove)->stop();
+    CHECK(HostClock::now() - before < 500ms);
+  }
+}
