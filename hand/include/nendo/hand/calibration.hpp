@@ -1,0 +1,33 @@
+#pragma once
+// Calibration: from raw counts to sensor angles, one line a sensor: angle = gain * (raw - offset).
+// This is the vendor's own form (VirtualHand SDK, vhtCyberGlove). Flexion and spreading are
+// positive.
+
+#include <array>
+
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::hand {
+
+struct SensorCalibration {
+  double gain_rad_per_count = 0.0;
+  double offset_counts = 0.0;
+
+  constexpr double angle_rad(RawCount raw) const noexcept {
+    return gain_rad_per_count * (static_cast<double>(raw.value) - offset_counts);
+  }
+};
+
+struct Calibration {
+  std::array<SensorCalibration, sensor_slots> sensors{};
+
+  constexpr const SensorCalibration& operator[](Sensor sensor) const noexcept {
+    return sensors[static_cast<std::size_t>(sensor)];
+  }
+};
+
+/// Usable for an average hand in an 18- or 22-sensor CyberGlove without any file; a wearer's own
+/// calibration is better. The same for both sides.
+Calibration default_calibration() noexcept;
+
+} // namespace nendo::hand

@@ -1,0 +1,48 @@
+#pragma once
+// The angles of a hand's joints, made from one glove sample. What a glove does not measure is
+// filled by stated rules.
+
+#include <array>
+
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/calibration.hpp>
+#include <nendo/hand/joints.hpp>
+
+namespace nendo::hand {
+
+/// Index, middle, ring or little finger. Flexion > 0 bends towards the palm; abduction > 0 turns
+/// towards the thumb.
+struct FingerAngles {
+  double mcp_flexion_rad = 0.0;
+  double mcp_abduction_rad = 0.0;
+  double pip_flexion_rad = 0.0;
+  double dip_flexion_rad = 0.0;
+};
+
+/// All zero is the flat hand with closed fingers and the thumb beside the index finger.
+struct JointAngles {
+  double thumb_roll_rad = 0.0;      ///< > 0 carries the thumb across in front of the palm
+  double thumb_abduction_rad = 0.0; ///< > 0 opens the web between thumb and index finger
+  double thumb_mcp_flexion_rad = 0.0;
+  double thumb_ip_flexion_rad = 0.0;
+  std::array<FingerAngles, 4> fingers{}; ///< index, middle, ring, little
+  double palm_arch_rad = 0.0;   ///< > 0 brings the little finger's metacarpal towards the thumb
+  double wrist_pitch_rad = 0.0; ///< > 0 flexes the hand towards the palm
+  double wrist_yaw_rad = 0.0;   ///< > 0 turns the hand towards the thumb (radial)
+
+  FingerAngles& operator[](Finger finger) noexcept {
+    return fingers[static_cast<std::size_t>(finger) - 1];
+  }
+  const FingerAngles& operator[](Finger finger) const noexcept {
+    return fingers[static_cast<std::size_t>(finger) - 1];
+  }
+};
+
+/// Applies the calibration and clamps every angle to the joint's range of motion.
+/// The abduction sensors measure pairs; the middle finger's own abduction, which none measures, is
+/// taken as zero. A missing DIP sensor is estimated from the PIP as 0.32 PIP^2 + 0.17 PIP (the
+/// vendor library's rule for 18-sensor gloves); any other missing sensor counts as zero. Wait-free;
+/// the result is finite.
+JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration) noexcept;
+
+} // namespace nendo::hand

@@ -1,0 +1,74 @@
+#include <nendo/hand/joints.hpp>
+
+namespace nendo::hand {
+namespace {
+
+constexpr std::array<std::string_view, joint_count> names{
+    "palm",
+    "wrist",
+    "thumb_metacarpal",
+    "thumb_proximal",
+    "thumb_distal",
+    "thumb_tip",
+    "index_metacarpal",
+    "index_proximal",
+    "index_intermediate",
+    "index_distal",
+    "index_tip",
+    "middle_metacarpal",
+    "middle_proximal",
+    "middle_intermediate",
+    "middle_distal",
+    "middle_tip",
+    "ring_metacarpal",
+    "ring_proximal",
+    "ring_intermediate",
+    "ring_distal",
+    "ring_tip",
+    "little_metacarpal",
+    "little_proximal",
+    "little_intermediate",
+    "little_distal",
+    "little_tip",
+};
+
+constexpr bool is_metacarpal(Joint joint) noexcept {
+  return joint == Joint::thumb_metacarpal || joint == Joint::index_metacarpal ||
+         joint == Joint::middle_metacarpal || joint == Joint::ring_metacarpal ||
+         joint == Joint::little_metacarpal;
+}
+
+} // namespace
+
+std::string_view name_of(Joint joint) noexcept {
+  return names[index_of(joint)];
+}
+
+std::optional<Joint> parent_of(Joint joint) noexcept {
+  if (joint == Joint::wrist) return std::nullopt;
+  if (joint == Joint::palm || is_metacarpal(joint)) return Joint::wrist;
+  return static_cast<Joint>(index_of(joint) - 1); // a finger's joints stand in order
+}
+
+std::optional<PaperNode> paper_node_of(Joint joint) noexcept {
+  if (joint == Joint::palm) return std::nullopt;
+  if (joint == Joint::wrist) return PaperNode{PaperNode::Kind::parent, 0};
+  // Each metacarpal that has been passed on the way to a joint took one place out of the count.
+  std::uint8_t metacarpals = 0;
+  std::uint8_t others = 0;
+  for (std::size_t at = index_of(Joint::thumb_metacarpal); at < index_of(joint); ++at) {
+    is_metacarpal(static_cast<Joint>(at)) ? ++metacarpals : ++others;
+  }
+  if (is_metacarpal(joint)) return PaperNode{PaperNode::Kind::palm_joint, metacarpals};
+  return PaperNode{PaperNode::Kind::joint, others};
+}
+
+std::optional<Joint> joint_of(PaperNode node) noexcept {
+  for (std::size_t at = 0; at < joint_count; ++at) {
+    const auto joint = static_cast<Joint>(at);
+    if (paper_node_of(joint) == node) return joint;
+  }
+  return std::nullopt;
+}
+
+} // namespace nendo::hand
