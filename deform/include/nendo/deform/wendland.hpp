@@ -1,0 +1,34 @@
+#pragma once
+// Wendland's compactly supported radial functions, positive definite in R^3, normalised to psi(0) =
+// 1 (Wendland 1995). t = |x - c| / r; all are zero for t >= 1.
+
+#include <optional>
+#include <string_view>
+
+namespace nendo::deform {
+
+enum class Wendland { c0, c2, c4, c6 };
+
+/// psi(t), t >= 0.
+constexpr double wendland(Wendland kernel, double t) noexcept {
+  if (!(t < 1.0)) return 0.0;
+  const double u = 1.0 - t;
+  const double u2 = u * u;
+  switch (kernel) {
+  case Wendland::c0:
+    return u2;
+  case Wendland::c2:
+    return u2 * u2 * (4.0 * t + 1.0);
+  case Wendland::c4:
+    return u2 * u2 * u2 * ((35.0 * t + 18.0) * t + 3.0) / 3.0;
+  case Wendland::c6:
+    return u2 * u2 * u2 * u2 * (((32.0 * t + 25.0) * t + 8.0) * t + 1.0);
+  }
+  return 0.0;
+}
+
+/// "wendland-c2" and so on.
+std::string_view name_of(Wendland kernel) noexcept;
+std::optional<Wendland> wendland_named(std::string_view name) noexcept;
+
+} // namespace nendo::deform

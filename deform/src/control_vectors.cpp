@@ -1,0 +1,127 @@
+#include <nendo/deform/control_vectors.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "file_io.hpp"
+#include "text.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+/// The solve is dense: this many need 134 MB a matrix and some ten seconds.
+constexpr std::size_t most_rows = 4096;
+
+constexpr std::array<std::string_view, 7> column_names{"x", "y", "z", "dx", "dy", "dz", "radius"};
+
+std::string_view trimmed(std::string_view text) noexcept {
+  constexpr std::string_view blanks = " \t\r";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+/// Cuts the part before the first `separator` off `rest`.
+std::string_view cut(std::string_view& rest, char separator) noexcept {
+  const std::size_t at = std::min(rest.find(separator), rest.size());
+  const std::string_view part = rest.substr(0, at);
+  rest.remove_prefix(std::min(at + 1, rest.size()));
+  return part;
+}
+
+class CsvParser {
+public:
+  explicit CsvParser(std::string_view name) : name_(name) {}
+
+  Result<ControlVectors> parse(std::string_view text);
+
+private:
+  Result<void> header(std::string_view row);
+  Result<void> numbers(std::string_view row);
+  ControlVectors vectors() const;
+
+  Error bad(const std::string& what) const { return bad_line(name_, line_, what); }
+
+  std::string_view name_;
+  std::size_t line_ = 0;
+  std::size_t columns_ = 0; ///< 6 or 7; 0 before the header
+  std::vector<double> numbers_;
+};
+
+Result<ControlVectors> CsvParser::parse(std::string_view text) {
+  while (!text.empty()) {
+    ++line_;
+    const std::string_view row = trimmed(cut(text, '\n'));
+    if (row.empty() || row.front() == '#') continue;
+    const auto done = columns_ == 0 ? header(row) : numbers(row);
+    if (!done) return done.error();
+  }
+  if (numbers_.empty())
+    return Error{Errc::bad_input, std::string(name_) + ": has no control vectors"};
+  return vectors();
+}
+
+Result<void> CsvParser::header(std::string_view row) {
+  std::size_t column = 0;
+  while (!row.empty()) {
+    const std::string_view name = trimmed(cut(row, ','));
+    if (column == column_names.size() || name != column_names[column])
+      return bad("column " + std::to_string(column + 1) + ": " + quoted(name) +
+                 ", but the header must be x,y,z,dx,dy,dz or x,y,z,dx,dy,dz,radius");
+    ++column;
+  }
+  if (column < 6)
+    return bad("column " + std::to_string(column + 1) +
+               ": missing, the header must be x,y,z,dx,dy,dz or x,y,z,dx,dy,dz,radius");
+  columns_ = column;
+  return {};
+}
+
+Result<void> CsvParser::numbers(std::string_view row) {
+  if (numbers_.size() / columns_ == most_rows)
+    return bad("more than " + std::to_string(most_rows) + " control vectors");
+  const auto fields = static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) + 1;
+  if (fields != columns_)
+    return bad("column " + std::to_string(std::min(fields, columns_) + 1) + ": has " +
+               std::to_string(fields) + " columns, the header " + std::to_string(columns_));
+  for (std::size_t column = 0; column < columns_; ++column) {
+    const std::string_view field = trimmed(cut(row, ','));
+    const auto number = to_number(field);
+    const std::string place =
+        "column " + std::to_string(column + 1) + " (" + std::string(column_names[column]) + "): ";
+    if (!number || !is_usable(*number))
+      return bad(place + quoted(field) + " is not a finite number of at most 1e100");
+    if (column == 6 && *number <= 0.0) return bad(place + "a radius must be greater than 0");
+    numbers_.push_back(*number);
+  }
+  return {};
+}
+
+ControlVectors CsvParser::vectors() const {
+  const auto columns = static_cast<Eigen::Index>(columns_);
+  const Eigen::Map<const Eigen::MatrixXd> table(
+      numbers_.data(), columns, static_cast<Eigen::Index>(numbers_.size()) / columns);
+  ControlVectors result;
+  result.starts = table.topRows<3>();
+  result.displacements = table.middleRows<3>(3);
+  if (columns_ == 7) result.radii = table.row(6).transpose();
+  return result;
+}
+
+} // namespace
+
+Result<ControlVectors> parse_control_vectors(std::string_view text, std::string_view name) {
+  return CsvParser(name).parse(text);
+}
+
+Result<ControlVectors> read_control_vectors(const std::filesystem::path& path) {
+  const auto text = read_file(path);
+  if (!text) return text.error();
+  return parse_control_vectors(*text, path.string());
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,65 @@
+#include <nendo/deform/mesh_file.hpp>
+
+#include <new>
+#include <string>
+
+#include "file_io.hpp"
+#include "mesh_formats.hpp"
+#include "text.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+Error bad_file(std::string_view name, const std::string& what) {
+  return {Errc::bad_input, std::string(name) + ": " + what};
+}
+
+bool is_ply(std::string_view text) noexcept {
+  return text.starts_with("ply\n") || text.starts_with("ply\r\n");
+}
+
+Result<Mesh> parse_text(std::string_view text, std::string_view name) {
+  if (text.empty()) return bad_file(name, "is empty");
+  if (text.size() > most_file_bytes) return bad_file(name, "is larger than 4 GiB");
+  auto mesh = is_ply(text) ? parse_ply(text, name) : parse_obj(text, name);
+  if (mesh && mesh->vertices.cols() == 0)
+    return bad_file(name, "has no vertices, so it is no OBJ or PLY mesh");
+  return mesh;
+}
+
+Eigen::Index first_unusable_vertex(const Points& vertices) noexcept {
+  Eigen::Index at = 0;
+  while (at < vertices.cols() && (vertices.col(at).array().abs() <= largest_number).all())
+    ++at;
+  return at;
+}
+
+} // namespace
+
+Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name) {
+  return parse_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+}
+
+Result<Mesh> read_mesh(const std::filesystem::path& path) {
+  try {
+    const auto text = read_file(path);
+    if (!text) return text.error();
+    return parse_text(*text, path.string());
+  } catch (const std::bad_alloc&) {
+    return bad_file(path.string(), "is too large for the memory of this machine");
+  }
+}
+
+Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
+  const std::string ending = path.extension().string();
+  if (ending != ".obj" && ending != ".ply")
+    return Error{Errc::usage, path.string() + ": the name must end in .obj or .ply"};
+  const Eigen::Index bad = first_unusable_vertex(mesh.vertices);
+  if (bad < mesh.vertices.cols())
+    return Error{Errc::failed, path.string() + ": not written, vertex " + std::to_string(bad) +
+                                   " is not finite or beyond 1e100"};
+  return replace_file(path, ending == ".obj" ? obj_text(mesh) : ply_text(mesh));
+}
+
+} // namespace nendo::deform

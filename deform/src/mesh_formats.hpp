@@ -1,0 +1,44 @@
+#pragma once
+// The two file formats, text in, text out. See mesh_file.hpp for what is kept and which errors
+// there are.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::deform {
+
+Result<Mesh> parse_obj(std::string_view text, std::string_view name);
+Result<Mesh> parse_ply(std::string_view text, std::string_view name);
+
+std::string obj_text(const Mesh& mesh);
+/// Binary, little-endian, coordinates in double.
+std::string ply_text(const Mesh& mesh);
+
+/// The largest index of a list and where it stood. A face may come before its vertices, so that
+/// only the end of the file tells whether an index is good.
+struct HighestIndex {
+  std::uint32_t index = 0;
+  std::size_t place = 0; ///< line or byte offset, as the format counts; 0 if there was no index
+
+  void note(std::uint32_t seen, std::size_t where) noexcept {
+    if (place != 0 && seen <= index) return;
+    index = seen;
+    place = where;
+  }
+  bool is_beyond(std::size_t count) const noexcept { return place != 0 && index >= count; }
+};
+
+/// Columns of `rows` numbers each.
+template <int rows>
+Eigen::Matrix<double, rows, Eigen::Dynamic> columns_of(const std::vector<double>& numbers) {
+  return Eigen::Map<const Eigen::Matrix<double, rows, Eigen::Dynamic>>(
+      numbers.data(), rows, static_cast<Eigen::Index>(numbers.size()) / rows);
+}
+
+} // namespace nendo::deform

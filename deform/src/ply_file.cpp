@@ -1,0 +1,277 @@
+// PLY: the body after the header, and the writer.
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "mesh_formats.hpp"
+#include "ply_header.hpp"
+#include "text.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+template <class Number>
+Number from_bytes(const char* bytes, bool reversed) noexcept {
+  char ordered[sizeof(Number)];
+  for (std::size_t i = 0; i < sizeof(Number); ++i)
+    ordered[i] = bytes[reversed ? sizeof(Number) - 1 - i : i];
+  Number number;
+  std::memcpy(&number, ordered, sizeof number);
+  return number;
+}
+
+double decode(PlyType type, const char* bytes, bool reversed) noexcept {
+  switch (type) {
+  case PlyType::int8:
+    return from_bytes<std::int8_t>(bytes, reversed);
+  case PlyType::uint8:
+    return from_bytes<std::uint8_t>(bytes, reversed);
+  case PlyType::int16:
+    return from_bytes<std::int16_t>(bytes, reversed);
+  case PlyType::uint16:
+    return from_bytes<std::uint16_t>(bytes, reversed);
+  case PlyType::int32:
+    return from_bytes<std::int32_t>(bytes, reversed);
+  case PlyType::uint32:
+    return from_bytes<std::uint32_t>(bytes, reversed);
+  case PlyType::float32:
+    return static_cast<double>(from_bytes<float>(bytes, reversed));
+  case PlyType::float64:
+    break;
+  }
+  return from_bytes<double>(bytes, reversed);
+}
+
+/// The numbers of the body one by one. A double holds every PLY type exactly.
+class PlyBody {
+public:
+  PlyBody(std::string_view text, const PlyHeader& header, std::string_view name)
+      : bytes_(text.substr(header.body_offset)), offset_(header.body_offset),
+        first_line_(header.body_line), name_(name), format_(header.format),
+        words_(bytes_, TextScanner::Dialect::plain) {}
+
+  /// Nothing if there is no such number; then error() says why.
+  std::optional<double> number(PlyType type) {
+    if (format_ == PlyFormat::ascii) {
+      word_ = words_.field_on_any_line();
+      return to_number(word_);
+    }
+    if (bytes_.size() - at_ < size_of(type)) return std::nullopt;
+    const bool native =
+        (format_ == PlyFormat::little_endian) == (std::endian::native == std::endian::little);
+    const double value = decode(type, bytes_.data() + at_, !native);
+    at_ += size_of(type);
+    return value;
+  }
+
+  /// How many items of these sizes the rest could hold at the most; one digit and one blank each in
+  /// ASCII.
+  bool has_room_for(std::uint64_t count, std::uint64_t item_bytes) const noexcept {
+    if (format_ == PlyFormat::ascii) return count <= (bytes_.size() - words_.offset() + 1) / 2;
+    return item_bytes == 0 || count <= (bytes_.size() - at_) / item_bytes;
+  }
+
+  /// Line or byte of the number read last; never 0.
+  std::size_t place() const noexcept {
+    return format_ == PlyFormat::ascii ? first_line_ + words_.line() - 1 : offset_ + at_;
+  }
+  Error error_at(std::size_t place, const std::string& what) const {
+    if (format_ == PlyFormat::ascii) return bad_line(name_, place, what);
+    return {Errc::bad_input, std::string(name_) + ": byte " + std::to_string(place) + ": " + what};
+  }
+  Error bad(const std::string& what) const { return error_at(place(), what); }
+  Error no_number() const {
+    return bad(word_.empty() ? "the file is cut off" : quoted(word_) + " is not a number");
+  }
+
+private:
+  std::string_view bytes_;
+  std::size_t offset_;
+  std::size_t first_line_;
+  std::string_view name_;
+  PlyFormat format_;
+  TextScanner words_;
+  std::string_view word_; ///< ASCII: the one read last
+  std::size_t at_ = 0;    ///< binary
+};
+
+/// What a value is used for.
+enum class Use { skip, x, y, z, corners };
+
+class PlyParser {
+public:
+  PlyParser(std::string_view text, const PlyHeader& header, std::string_view name)
+      : header_(header), name_(name), body_(text, header, name) {}
+
+  Result<Mesh> parse();
+
+private:
+  Result<std::vector<Use>> uses_of(const PlyElement& element) const;
+  Result<void> read_element(const PlyElement& element);
+  Result<void> read_list(const PlyProperty& property, Use use);
+  Result<void> read_corner(PlyType type);
+  Result<void> read_value(const PlyProperty& property, Use use);
+
+  const PlyHeader& header_;
+  std::string_view name_;
+  PlyBody body_;
+  std::vector<double> coordinates_;
+  double vertex_[3] = {};
+  HighestIndex highest_;
+  Mesh mesh_;
+};
+
+Result<Mesh> PlyParser::parse() {
+  for (const auto& element : header_.elements)
+    if (const auto done = read_element(element); !done) return done.error();
+  mesh_.vertices = columns_of<3>(coordinates_);
+  const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+  if (highest_.is_beyond(vertices))
+    return body_.error_at(highest_.place, "a face names vertex " + std::to_string(highest_.index) +
+                                              ", counted from 0, of " + std::to_string(vertices));
+  return std::move(mesh_);
+}
+
+Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
+  std::vector<Use> uses;
+  int wanted = 0;
+  for (const auto& property : element.properties) {
+    Use use = Use::skip;
+    if (element.name == "vertex" && !property.count_type) {
+      if (property.name == "x") use = Use::x;
+      if (property.name == "y") use = Use::y;
+      if (property.name == "z") use = Use::z;
+    } else if (element.name == "face" && property.count_type) {
+      if (property.name == "vertex_indices" || property.name == "vertex_index") use = Use::corners;
+    }
+    wanted += use == Use::skip ? 0 : 1;
+    uses.push_back(use);
+  }
+  const std::string name(name_);
+  if (element.name == "vertex" && wanted != 3)
+    return Error{Errc::bad_input, name + ": a PLY vertex needs one x, one y and one z"};
+  if (element.name == "face" && wanted != 1)
+    return Error{Errc::bad_input, name + ": a PLY face needs one list vertex_indices"};
+  return uses;
+}
+
+Result<void> PlyParser::read_element(const PlyElement& element) {
+  const auto uses = uses_of(element);
+  if (!uses) return uses.error();
+  if (element.properties.empty()) return {};
+  std::uint64_t least_bytes = 0;
+  for (const auto& property : element.properties)
+    least_bytes += size_of(property.count_type.value_or(property.type));
+  if (!body_.has_room_for(element.count, least_bytes))
+    return body_.bad("the header promises " + std::to_string(element.count) + " of " +
+                     quoted(element.name) + ", the file is too short for them");
+  if (element.name == "vertex") coordinates_.reserve(3 * element.count);
+  for (std::uint64_t row = 0; row < element.count; ++row) {
+    for (std::size_t i = 0; i < uses->size(); ++i) {
+      const auto& property = element.properties[i];
+      auto done =
+          property.count_type ? read_list(property, (*uses)[i]) : read_value(property, (*uses)[i]);
+      if (!done) return done;
+    }
+    if (element.name == "vertex") coordinates_.insert(coordinates_.end(), vertex_, vertex_ + 3);
+  }
+  return {};
+}
+
+Result<void> PlyParser::read_list(const PlyProperty& property, Use use) {
+  const auto count = body_.number(*property.count_type);
+  if (!count) return body_.no_number();
+  if (!(*count >= 0.0) || *count != std::floor(*count) ||
+      *count > std::numeric_limits<std::uint32_t>::max())
+    return body_.bad("the length of a list is not a whole number from 0 on");
+  const auto length = static_cast<std::uint64_t>(*count);
+  if (!body_.has_room_for(length, size_of(property.type)))
+    return body_.bad("a list of " + std::to_string(length) + " reaches beyond the end of the file");
+  if (use == Use::corners && length < 3)
+    return body_.bad("a face needs 3 corners, has " + std::to_string(length));
+  for (std::uint64_t i = 0; i < length; ++i) {
+    auto done = use == Use::corners ? read_corner(property.type) : read_value(property, use);
+    if (!done) return done;
+  }
+  if (use == Use::corners)
+    mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+  return {};
+}
+
+Result<void> PlyParser::read_corner(PlyType type) {
+  const auto value = body_.number(type);
+  if (!value) return body_.no_number();
+  if (!(*value >= 0.0) || *value != std::floor(*value) ||
+      *value > std::numeric_limits<std::uint32_t>::max())
+    return body_.bad("a vertex index is not a whole number from 0 on");
+  const auto index = static_cast<std::uint32_t>(*value);
+  highest_.note(index, body_.place());
+  mesh_.face_corners.push_back(index);
+  return {};
+}
+
+Result<void> PlyParser::read_value(const PlyProperty& property, Use use) {
+  const auto value = body_.number(property.type);
+  if (!value) return body_.no_number();
+  if (use == Use::skip) return {};
+  if (!is_usable(*value)) return body_.bad("a coordinate is not finite or beyond 1e100");
+  vertex_[static_cast<int>(use) - static_cast<int>(Use::x)] = *value;
+  return {};
+}
+
+template <class Number>
+void append_little_endian(std::string& text, Number number) {
+  char bytes[sizeof number];
+  std::memcpy(bytes, &number, sizeof number);
+  if constexpr (std::endian::native == std::endian::big)
+    for (std::size_t i = 0; i < sizeof number / 2; ++i)
+      std::swap(bytes[i], bytes[sizeof number - 1 - i]);
+  text.append(bytes, sizeof number);
+}
+
+bool has_large_face(const Mesh& mesh) noexcept {
+  for (std::size_t face = 0; face < mesh.face_count(); ++face)
+    if (mesh.face_starts[face + 1] - mesh.face_starts[face] > 255) return true;
+  return false;
+}
+
+} // namespace
+
+Result<Mesh> parse_ply(std::string_view text, std::string_view name) {
+  const auto header = parse_ply_header(text, name);
+  if (!header) return header.error();
+  return PlyParser(text, *header, name).parse();
+}
+
+std::string ply_text(const Mesh& mesh) {
+  // uchar and int are what every reader knows; uint only where a face or the model is too large for
+  // them.
+  const bool large_face = has_large_face(mesh);
+  const bool large_model = mesh.vertices.cols() > std::numeric_limits<std::int32_t>::max();
+  std::string text = "ply\nformat binary_little_endian 1.0\ncomment nendo\nelement vertex " +
+                     std::to_string(mesh.vertices.cols()) +
+                     "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                     std::to_string(mesh.face_count()) + "\nproperty list " +
+                     (large_face ? "uint" : "uchar") + (large_model ? " uint" : " int") +
+                     " vertex_indices\nend_header\n";
+  for (const double coordinate : mesh.vertices.reshaped())
+    append_little_endian(text, coordinate);
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face];
+    const std::uint32_t end = mesh.face_starts[face + 1];
+    if (large_face)
+      append_little_endian(text, end - begin);
+    else
+      append_little_endian(text, static_cast<std::uint8_t>(end - begin));
+    for (std::uint32_t at = begin; at < end; ++at)
+      append_little_endian(text, mesh.face_corners[at]);
+  }
+  return text;
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,57 @@
+#pragma once
+// The header of a PLY file (Turk 1994): which elements follow, in which order, with which
+// properties.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::deform {
+
+enum class PlyFormat { ascii, little_endian, big_endian };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+constexpr std::size_t size_of(PlyType type) noexcept {
+  switch (type) {
+  case PlyType::int8:
+  case PlyType::uint8:
+    return 1;
+  case PlyType::int16:
+  case PlyType::uint16:
+    return 2;
+  case PlyType::int32:
+  case PlyType::uint32:
+  case PlyType::float32:
+    return 4;
+  case PlyType::float64:
+    break;
+  }
+  return 8;
+}
+
+struct PlyProperty {
+  std::string_view name;
+  PlyType type = PlyType::float32;     ///< of the value, or of a list's items
+  std::optional<PlyType> count_type{}; ///< of a list's length; nothing for a single value
+};
+
+struct PlyElement {
+  std::string_view name;
+  std::uint64_t count = 0; ///< as the file says: not yet checked against its bytes
+  std::vector<PlyProperty> properties{};
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t body_offset = 0;
+  std::size_t body_line = 1;
+};
+
+/// Error: bad_input with the line. The names point into `text`.
+Result<PlyHeader> parse_ply_header(std::string_view text, std::string_view name);
+
+} // namespace nendo::deform

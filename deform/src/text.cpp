@@ -1,0 +1,97 @@
+#include "text.hpp"
+
+#include <charconv>
+
+namespace nendo::deform {
+
+namespace {
+
+constexpr bool is_blank(char c) noexcept {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+template <class Number>
+std::optional<Number> parse_whole(std::string_view field) noexcept {
+  // from_chars knows no plus sign; "+-1" must not slip through.
+  if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
+  Number number{};
+  const char* const end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, number);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return number;
+}
+
+} // namespace
+
+std::optional<double> to_number(std::string_view field) noexcept {
+  return parse_whole<double>(field);
+}
+
+std::optional<std::int64_t> to_integer(std::string_view field) noexcept {
+  return parse_whole<std::int64_t>(field);
+}
+
+std::string quoted(std::string_view field) {
+  constexpr std::size_t most = 24;
+  std::string text = "'";
+  for (const char c : field.substr(0, most))
+    text += c < ' ' || c > '~' ? '?' : c;
+  text += field.size() > most ? "...'" : "'";
+  return text;
+}
+
+Error bad_line(std::string_view name, std::size_t line, const std::string& what) {
+  return {Errc::bad_input, std::string(name) + ":" + std::to_string(line) + ": " + what};
+}
+
+/// Of a backslash and the line end after it, 0 if there is none at this place.
+std::size_t TextScanner::continuation_length() const noexcept {
+  if (dialect_ != Dialect::obj || text_[at_] != '\\') return 0;
+  const std::string_view after = text_.substr(at_ + 1, 2);
+  if (after.starts_with('\n')) return 2;
+  return after == "\r\n" ? 3 : 0;
+}
+
+std::string_view TextScanner::field() noexcept {
+  while (at_ < text_.size()) {
+    if (const std::size_t length = continuation_length(); length > 0) {
+      at_ += length;
+      ++line_;
+    } else if (is_blank(text_[at_])) {
+      ++at_;
+    } else {
+      break;
+    }
+  }
+  if (at_ == text_.size() || text_[at_] == '\n') return {};
+  if (dialect_ == Dialect::obj && text_[at_] == '#') return {};
+  const std::size_t begin = at_;
+  while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_]) &&
+         continuation_length() == 0)
+    ++at_;
+  return text_.substr(begin, at_ - begin);
+}
+
+std::string_view TextScanner::field_on_any_line() noexcept {
+  for (;;) {
+    const std::string_view found = field();
+    if (!found.empty() || !next_line()) return found;
+  }
+}
+
+bool TextScanner::next_line() noexcept {
+  // A continued line ends where its last part ends; a comment is never continued.
+  bool comment = false;
+  while (at_ < text_.size() && text_[at_] != '\n') {
+    comment = comment || text_[at_] == '#';
+    const std::size_t continued = comment ? 0 : continuation_length();
+    line_ += continued > 0 ? 1 : 0;
+    at_ += continued > 0 ? continued : 1;
+  }
+  if (at_ == text_.size()) return false;
+  ++at_;
+  ++line_;
+  return true;
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,88 @@
+#include <nendo/deform/control_vectors.hpp>
+
+#include <string>
+
+#include <doctest/doctest.h>
+
+using nendo::Errc;
+using nendo::deform::parse_control_vectors;
+using nendo::deform::read_control_vectors;
+
+TEST_SUITE("control_vectors") {
+  const std::string header = "x,y,z,dx,dy,dz\n";
+
+  TEST_CASE("rows become starts, displacements and radii") {
+    const auto vectors = parse_control_vectors("# two fingers\n\n x, y ,z,dx,dy,dz,radius\r\n"
+                                               "1,2,3,4,5,6,7\r\n  # the other\n"
+                                               "-1,+2.5,3e1 , .5,0,-0,0.25",
+                                               "t.csv");
+    REQUIRE(vectors);
+    CHECK(vectors->starts.cols() == 2);
+    CHECK(vectors->starts.col(0) == Eigen::Vector3d(1, 2, 3));
+    CHECK(vectors->displacements.col(0) == Eigen::Vector3d(4, 5, 6));
+    CHECK(vectors->starts.col(1) == Eigen::Vector3d(-1, 2.5, 30));
+    CHECK(vectors->displacements.col(1) == Eigen::Vector3d(0.5, 0, 0));
+    CHECK(vectors->radii == Eigen::Vector2d(7, 0.25));
+  }
+
+  TEST_CASE("without a radius column there are no radii") {
+    const auto vectors = parse_control_vectors(header + "1,2,3,4,5,6\n", "t.csv");
+    REQUIRE(vectors);
+    CHECK(vectors->radii.size() == 0);
+  }
+
+  TEST_CASE("what is wrong is named with its line and column") {
+    struct Case {
+      std::string text;
+      const char* place;
+    };
+    const std::string with_radius = "x,y,z,dx,dy,dz,radius\n";
+    const Case cases[] = {
+        {"", "t.csv: has no"},
+        {header, "t.csv: has no"},
+        {"1,2,3,4,5,6\n", "t.csv:1: column 1: '1'"},
+        {"x,y,z,dx,dy\n", "t.csv:1: column 6"},
+        {"x,y,z,dx,dy,dz,weight\n", "t.csv:1: column 7: 'weight'"},
+        {"x,y,z,dx,dy,dz,radius,more\n", "t.csv:1: column 8: 'more'"},
+        {header + "1,2,3,4,5\n", "t.csv:2: column 6"},
+        {header + "\n1,2,3,4,5,6,7\n", "t.csv:3: column 7"},
+        {header + "1,2,three,4,5,6\n", "t.csv:2: column 3 (z): 'three'"},
+        {header + "1,2,3,nan,5,6\n", "t.csv:2: column 4 (dx): 'nan'"},
+        {header + "1,2,3,4,-inf,6\n", "t.csv:2: column 5 (dy): '-inf'"},
+        {header + "1,2,3,4,5,1e101\n", "t.csv:2: column 6 (dz): '1e101'"},
+        {header + "1,,3,4,5,6\n", "t.csv:2: column 2 (y): ''"},
+        {header + "1,2 3,3,4,5,6\n", "t.csv:2: column 2 (y): '2 3'"},
+        {header + "+-1,2,3,4,5,6\n", "t.csv:2: column 1 (x): '+-1'"},
+        {header + "1\x01\x7f" + std::string(99, 'a') + ",2,3,4,5,6\n", "(x): '1??aaa"},
+        {with_radius + "1,2,3,4,5,6,0\n", "t.csv:2: column 7 (radius)"},
+        {with_radius + "1,2,3,4,5,6,-1\n", "t.csv:2: column 7 (radius)"},
+    };
+    for (const Case& one : cases) {
+      CAPTURE(one.text);
+      const auto vectors = parse_control_vectors(one.text, "t.csv");
+      REQUIRE_FALSE(vectors);
+      CHECK(vectors.error().code == Errc::bad_input);
+      CHECK_MESSAGE(vectors.error().message.find(one.place) != std::string::npos,
+                    vectors.error().message);
+      CHECK(vectors.error().message.find('\n') == std::string::npos);
+      CHECK(vectors.error().message.size() < 200);
+    }
+  }
+
+  TEST_CASE("4096 control vectors are taken, one more is refused") {
+    std::string text = header;
+    for (int row = 0; row < 4096; ++row)
+      text += "1,2,3,4,5,6\n";
+    CHECK(parse_control_vectors(text, "t.csv"));
+    const auto more = parse_control_vectors(text + "1,2,3,4,5,6\n", "t.csv");
+    REQUIRE_FALSE(more);
+    CHECK(more.error().message == "t.csv:4098: more than 4096 control vectors");
+  }
+
+  TEST_CASE("a file that is not there is bad input") {
+    const auto vectors = read_control_vectors("/nowhere/at/all.csv");
+    REQUIRE_FALSE(vectors);
+    CHECK(vectors.error().code == Errc::bad_input);
+    CHECK(vectors.error().message.starts_with("/nowhere/at/all.csv: cannot be opened"));
+  }
+}

@@ -1,0 +1,177 @@
+#include <nendo/deform/type2.hpp>
+
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "nendo/deform/type1.hpp"
+#include "support/restraint.hpp"
+#include "support/test_meshes.hpp"
+
+using namespace nendo::deform;
+using Eigen::Vector3d;
+using nendo::test::random_points;
+
+TEST_SUITE("type2") {
+  const Points clay = nendo::test::sphere(20, 30, 5.0).vertices;
+
+  static Points start_points() {
+    std::mt19937 random(31);
+    Points starts = random_points(random, 10, 5.0);
+    starts.col(0) = clay.col(100);
+    return starts;
+  }
+
+  static Points shifted(const Vector3d& by) {
+    return start_points().colwise() + by;
+  }
+
+  static double largest(const Points& points) {
+    return points.cwiseAbs().maxCoeff();
+  }
+
+  /// A straight stroke in so many pieces.
+  static Points stroked(const Points& ends, int pieces) {
+    const double length = (ends - start_points()).colwise().norm().maxCoeff();
+    Type2Deformer deformer(clay, 10, 6.0, length / pieces * (1.0 + 1e-9), {});
+    deformer.begin(start_points());
+    int applied = 0;
+    for (int part = 1; part <= 16; ++part)
+      applied +=
+          deformer.stroke_to(start_points() + (ends - start_points()) * (part / 16.0)).pieces;
+    applied += deformer.finish().pieces;
+    CHECK(applied == pieces);
+    return deformer.shape();
+  }
+
+  TEST_CASE("a stroke of no length leaves the shape alone") {
+    Type2Deformer deformer(clay, 10, 6.0, 0.1, {});
+    deformer.begin(start_points());
+    CHECK(deformer.stroke_to(start_points()).pieces == 0);
+    CHECK(deformer.finish().pieces == 0);
+    CHECK(deformer.shape() == clay);
+  }
+
+  TEST_CASE("a vertex under a fingertip is carried along any curve to its end") {
+    Type2Deformer deformer(clay, 10, 6.0, 0.1, {});
+    deformer.begin(start_points());
+    for (int sample = 1; sample <= 100; ++sample) {
+      const double turn = 0.1 * sample;
+      const Points tips = shifted({std::sin(turn), 1.0 - std::cos(turn), 0.1 * turn});
+      CHECK(is_solved(deformer.stroke_to(tips).status));
+    }
+    const Vector3d end = shifted({std::sin(10.0), 1.0 - std::cos(10.0), 1.0}).col(0);
+    CHECK((deformer.shape().col(100) - end).norm() < 0.1);
+    deformer.finish();
+    CHECK((deformer.shape().col(100) - end).norm() < 1e-6);
+  }
+
+  TEST_CASE("the fastest fingertip sets the cuts, what is left waits") {
+    Type2Deformer deformer(clay, 10, 6.0, 1.0, {});
+    deformer.begin(start_points());
+    Points tips = start_points();
+    tips(0, 0) += 2.5;
+    tips(1, 1) += 0.5;
+    CHECK(deformer.stroke_to(tips).pieces == 2);
+    CHECK((deformer.shape().col(100) - start_points().col(0) - Vector3d(2, 0, 0)).norm() < 1e-6);
+    CHECK((deformer.field().centres.col(1) - start_points().col(1) - Vector3d(0, 0.2, 0)).norm() <
+          1e-12);
+    tips(0, 0) += 0.4;
+    CHECK(deformer.stroke_to(tips).pieces == 0);
+    tips(0, 0) += 0.2;
+    CHECK(deformer.stroke_to(tips).pieces == 1);
+    CHECK(deformer.finish().pieces == 1);
+    CHECK((deformer.shape().col(100) - tips.col(0)).norm() < 1e-6);
+    CHECK(deformer.finish().pieces == 0);
+  }
+
+  TEST_CASE("finer pieces of a straight stroke converge, to something near Type-1 if it is short") {
+    std::mt19937 random(32);
+    const Points way = random_points(random, 10, 1.0);
+    const Points ends = start_points() + way;
+    double last = 1e9;
+    Points coarse = stroked(ends, 4);
+    for (const int pieces : {8, 16, 32, 64}) {
+      const Points fine = stroked(ends, pieces);
+      const double change = largest(fine - coarse);
+      CHECK(change < 0.7 * last);
+      last = change;
+      coarse = fine;
+    }
+    // The two differ by what the step adds in second order: a tenth of the step, a hundredth of the
+    // difference.
+    const auto gap_to_type1 = [&](double scale) {
+      Type1Deformer type1(clay, 10, 6.0, {});
+      Points once;
+      type1.grab(start_points());
+      type1.apply(start_points() + scale * way, once);
+      return largest(stroked(start_points() + scale * way, 16) - once);
+    };
+    CHECK(gap_to_type1(0.01) < 0.02 * gap_to_type1(0.1));
+    CHECK(gap_to_type1(0.001) < 1e-5);
+  }
+
+  TEST_CASE("a jump is cut into a bounded number of pieces and arrives") {
+    Type2Deformer deformer(clay, 10, 6.0, 1e-6, {});
+    deformer.begin(start_points());
+    CHECK(deformer.stroke_to(shifted({3, 0, 0})).pieces == Type2Deformer::most_pieces);
+    CHECK((deformer.shape().col(100) - shifted({3, 0, 0}).col(0)).norm() < 1e-6);
+    CHECK(deformer.finish().pieces == 0);
+    CHECK(is_solved(deformer.stroke_to(shifted({1e30, 0, 0})).status));
+    CHECK(deformer.shape().allFinite());
+  }
+
+  TEST_CASE("fingertips that are not finite are refused, and the stroke goes on after them") {
+    Type2Deformer deformer(clay, 10, 6.0, 0.1, {});
+    Points spoilt = start_points();
+    spoilt(2, 2) = std::nan("");
+    deformer.begin(spoilt);
+    CHECK(deformer.stroke_to(start_points()).pieces == 0); // begins here
+    for (const double bad : {std::nan(""), -1e300}) {
+      spoilt(2, 2) = bad;
+      const StrokeResult result = deformer.stroke_to(spoilt);
+      CHECK(result.status == FieldStatus::not_finite);
+      CHECK(result.pieces == 0);
+    }
+    CHECK(deformer.shape() == clay);
+    CHECK(deformer.stroke_to(shifted({0.5, 0, 0})).status == FieldStatus::ok);
+    deformer.finish();
+    CHECK((deformer.shape().col(100) - shifted({0.5, 0, 0}).col(0)).norm() < 1e-6);
+  }
+
+  TEST_CASE("two fingertips may cross on their way") {
+    Type2Deformer deformer(clay, 2, 4.0, 0.01, {.merge_fraction = 0.05});
+    Points tips(3, 2);
+    tips << -1, 1, 0, 0, 5, 5;
+    deformer.begin(tips);
+    bool shared = false;
+    for (int sample = -20; sample < 20; ++sample) {
+      const double x = 0.05 * sample;
+      tips(0, 0) = x;
+      tips(0, 1) = -x;
+      const StrokeResult result = deformer.stroke_to(tips);
+      CHECK(is_solved(result.status));
+      shared = shared || result.status == FieldStatus::merged;
+    }
+    CHECK(shared);
+    CHECK(largest(deformer.shape() - clay) < 10.0);
+  }
+
+  TEST_CASE("a stroke does not allocate") {
+    Type2Deformer deformer(clay, 10, 6.0, 0.1, {.polynomial = Polynomial::linear});
+    const Points starts = start_points();
+    const Points ends = shifted({0.35, 0, 0});
+    StrokeResult result;
+    nendo::test::RestraintCounts counts;
+    {
+      const nendo::test::Restraint restraint;
+      deformer.begin(starts);
+      result = deformer.stroke_to(ends);
+      deformer.finish();
+      counts = restraint.counts();
+    }
+    CHECK(result.pieces == 3);
+    CHECK(counts.allocations == 0);
+  }
+}

@@ -1,0 +1,41 @@
+#pragma once
+// Counts what a real-time thread must not do. While a Restraint lives, the calling thread's
+// allocations, frees and mutex operations are counted; other threads' are not.
+
+#include <cstdint>
+
+// Sanitizers have malloc and the mutexes to themselves. GCC says so by these names, Clang by
+// __has_feature.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define NENDO_COUNTS_RESTRAINT 0
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define NENDO_COUNTS_RESTRAINT 0
+#endif
+#endif
+#ifndef NENDO_COUNTS_RESTRAINT
+#define NENDO_COUNTS_RESTRAINT 1
+#endif
+
+namespace nendo::test {
+
+/// Where this is false, in sanitizer builds, all counts stay 0.
+inline constexpr bool restraint_is_counted = NENDO_COUNTS_RESTRAINT != 0;
+
+struct RestraintCounts {
+  std::uint64_t allocations = 0; ///< malloc and its family, which operator new ends in
+  std::uint64_t frees = 0;
+  std::uint64_t locks = 0; ///< mutexes locked or tried, conditions waited for or signalled
+};
+
+class Restraint {
+public:
+  Restraint() noexcept;
+  ~Restraint() noexcept;
+  Restraint(const Restraint&) = delete;
+  Restraint& operator=(const Restraint&) = delete;
+
+  RestraintCounts counts() const noexcept;
+};
+
+} // namespace nendo::test
