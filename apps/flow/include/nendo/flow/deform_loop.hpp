@@ -1,0 +1,90 @@
+#pragma once
+// The loop: drains the gloves' rings, computes both hands' fingertips, makes control vectors of
+// them, deforms the model and publishes the frame, at a fixed rate.
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <nendo/flow/frame.hpp>
+#include <nendo/flow/histogram.hpp>
+#include <nendo/flow/sculptor.hpp>
+#include <nendo/hand/calibration.hpp>
+
+namespace nendo::flow {
+
+/// One hand's way into the loop. `ring` is drained by the loop's thread alone and must outlive the
+/// loop.
+struct HandInput {
+  SampleRing* ring = nullptr;
+  hand::HandSkeleton skeleton;
+  hand::Calibration calibration = hand::default_calibration();
+  GloveSample first; ///< the pose in which the hand takes hold of the model
+};
+
+struct LoopOptions {
+  double rate_hz = 90.0; ///< within TickGrid's limits
+  SculptorOptions sculptor;
+  HostClock::duration silent_after = std::chrono::milliseconds(500);
+};
+
+/// Written by the loop's thread; read them when run() has returned.
+struct LoopStats {
+  std::uint64_t ticks = 0;
+  std::uint64_t overruns = 0; ///< ticks that ended after the next deadline
+  std::uint64_t missed = 0;   ///< deadlines that were skipped for it; the grid is kept
+  std::uint64_t failed = 0;   ///< ticks without a usable field: the shape stayed as it was
+  std::array<std::uint64_t, 2> samples{};
+  std::array<std::uint64_t, 2> silences{};
+  Histogram wake_latency; ///< from the deadline to the loop's running
+  Histogram work;         ///< from there to the published frame
+  Histogram end_to_end;   ///< from a sample's last byte to the published frame that shows it
+};
+
+class DeformLoop {
+public:
+  /// One or two hands, at most one of a side. The model's vertices are copied; everything that a
+  /// tick needs is allocated here. The hands take hold of the model at their first samples.
+  DeformLoop(const deform::Mesh& model, const Placement& placement, std::vector<HandInput> hands,
+             const LoopOptions& options);
+
+  /// Runs ticks on the calling thread until `stop` or for `most_ticks` deadlines of the grid,
+  /// skipped ones included. In a tick: no allocation, no lock, no system call but the sleep.
+  void run(const std::atomic<bool>& stop,
+           std::uint64_t most_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
+  /// One tick without its sleep, for callers with a clock of their own. Same thread as run().
+  void tick(std::uint64_t number, HostTime scheduled) noexcept;
+
+  /// Whether the hands could take hold: ok or merged.
+  deform::FieldStatus grab_status() const noexcept { return grab_status_; }
+  /// One reader thread may poll it while the loop runs.
+  FrameExchange& frames() noexcept { return frames_; }
+  const LoopStats& stats() const noexcept { return stats_; }
+  /// The shape as it stands when the loop has ended, nothing of a stroke left out. 3 by #vertices.
+  deform::Points final_shape();
+
+private:
+  void take_samples(HostTime now) noexcept;
+  void compute_hands(Frame& frame) noexcept;
+
+  struct Hand {
+    HandInput input;
+    std::size_t slot = 0; ///< of arrays by side
+    Eigen::Isometry3d T_stage_wrist;
+    GloveSample latest;
+    bool fresh = false; ///< samples came in with this tick
+    bool silent = false;
+  };
+
+  LoopOptions options_;
+  double units_per_metre_;
+  std::vector<Hand> hands_;
+  deform::Points tips_; ///< 3 by 5 a hand, model units
+  Sculptor sculptor_;
+  deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
+  LoopStats stats_;
+  FrameExchange frames_;
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,38 @@
+#pragma once
+// What a tick gives to the world, through a lock-free exchange of the latest value: both hands, the
+// field, and the deformed vertices.
+
+#include <array>
+#include <cstdint>
+
+#include <nendo/base/latest_value.hpp>
+#include <nendo/deform/csrbf.hpp>
+#include <nendo/driver/sample.hpp>
+#include <nendo/flow/placement.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::flow {
+
+struct HandFrame {
+  bool present = false;      ///< a glove drives this hand
+  bool silent = false;       ///< its glove has sent nothing for a while; the pose is frozen
+  hand::HandPose pose;       ///< on the stage, metres
+  std::uint64_t samples = 0; ///< received since the loop began
+};
+
+struct Frame {
+  std::uint64_t tick = 0;   ///< the number of the deadline on the grid
+  std::uint64_t ticks = 0;  ///< how many have run
+  std::uint64_t missed = 0; ///< how many deadlines were skipped
+  HostTime scheduled{};
+  HostTime woke{};
+  double units_per_metre = 1.0;   ///< from the stage to the model
+  std::array<HandFrame, 2> hands; ///< by Placement::index_of(side)
+  deform::FieldStatus status = deform::FieldStatus::ok;
+  deform::CsrbfField field; ///< model units
+  deform::Points vertices;  ///< 3 by #vertices, model units
+};
+
+using FrameExchange = LatestValue<Frame>;
+
+} // namespace nendo::flow

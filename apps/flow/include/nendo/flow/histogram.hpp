@@ -1,0 +1,41 @@
+#pragma once
+// A histogram of durations with constant relative precision and constant size, for use inside the
+// loop.
+
+#include <array>
+#include <cstdint>
+
+#include <nendo/base/units.hpp>
+
+namespace nendo::flow {
+
+class Histogram {
+public:
+  using Nanoseconds = std::chrono::nanoseconds;
+
+  /// Wait-free, no allocation. Negative durations count as zero.
+  void record(HostClock::duration value) noexcept;
+
+  std::uint64_t count() const noexcept { return count_; }
+  Nanoseconds min() const noexcept { return Nanoseconds(count_ == 0 ? 0 : min_ns_); }
+  Nanoseconds max() const noexcept { return Nanoseconds(max_ns_); }
+  /// The least recorded value that `fraction` (0..1) of all values do not exceed, to within 1.6 %;
+  /// never above max().
+  Nanoseconds percentile(double fraction) const noexcept;
+
+private:
+  // 64 buckets an octave; values below 64 ns have one each. 2^40 ns is 18 minutes: longer ones
+  // share the last bucket.
+  static constexpr unsigned sub_bits = 6;
+  static constexpr unsigned most_bits = 40;
+  static constexpr std::size_t bucket_count = (most_bits - sub_bits + 1) << sub_bits;
+  static std::size_t bucket_of(std::uint64_t ns) noexcept;
+  static std::uint64_t top_of(std::size_t bucket) noexcept;
+
+  std::array<std::uint64_t, bucket_count> buckets_{};
+  std::uint64_t count_ = 0;
+  std::int64_t min_ns_ = INT64_MAX;
+  std::int64_t max_ns_ = 0;
+};
+
+} // namespace nendo::flow

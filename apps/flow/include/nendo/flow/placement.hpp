@@ -1,0 +1,43 @@
+#pragma once
+// Where the hands are. A glove measures no position in space, so the model is put on a stage,
+// scaled to a size that two hands can hold, and a hand is placed at either side of it with its
+// fingertips on the surface.
+
+#include <array>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include <nendo/deform/mesh.hpp>
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::flow {
+
+/// 3 by 5, thumb to little finger, in metres.
+using Fingertips = Eigen::Matrix<double, 3, 5>;
+
+struct PlacementOptions {
+  double model_size_m = 0.8;    ///< the longest side of the model's bounding box, on the stage
+  double height_fraction = 0.7; ///< of the model's height, where the fingertips touch
+};
+
+/// The stage has the model's axes and origin, in metres: x to the operator's right, y up, z towards
+/// the operator. Models are taken as y up, z front, as OBJ files mostly are.
+struct Placement {
+  double units_per_metre = 1.0; ///< model units on a metre of the stage
+  std::array<Eigen::Isometry3d, 2> T_stage_wrist{Eigen::Isometry3d::Identity(),
+                                                 Eigen::Isometry3d::Identity()};
+  std::array<double, 2> greatest_gap_m{}; ///< farthest that a fingertip is from the surface
+
+  static constexpr std::size_t index_of(Side side) noexcept { return side == Side::left ? 0 : 1; }
+};
+
+/// tips_wrist: each hand's fingertips in its wrist's frame in the pose in which it is to touch the
+/// model; an absent hand is nullopt. A rigid registration of the five tips to the surface (point to
+/// plane), started from hands that hold the model between them, palms inwards, fingers forward,
+/// thumbs up. Allocates; not for the loop.
+Placement place_hands(const deform::Mesh& model,
+                      const std::array<std::optional<Fingertips>, 2>& tips_wrist,
+                      const PlacementOptions& options = {});
+
+} // namespace nendo::flow

@@ -1,0 +1,46 @@
+#pragma once
+// One face for the two ways of deforming, so that the loop need not know which it runs.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include <nendo/deform/type1.hpp>
+#include <nendo/deform/type2.hpp>
+
+namespace nendo::flow {
+
+/// type1: the start points are frozen, the rest shape is deformed anew each tick. type2: the
+/// fingertips' paths are followed piece by piece.
+enum class Mode : std::uint8_t { type1, type2 };
+
+std::string_view name_of(Mode mode) noexcept;
+std::optional<Mode> mode_named(std::string_view name) noexcept;
+
+struct SculptorOptions {
+  Mode mode = Mode::type1;
+  double radius = 1.0;        ///< of every control point's support, in model units
+  double piece_length = 0.05; ///< of a cut of type 2, in model units
+  deform::CsrbfOptions csrbf;
+};
+
+class Sculptor {
+public:
+  Sculptor(deform::Points rest, Eigen::Index control_points, const SculptorOptions& options);
+
+  /// The fingertips take hold of the model here (3 by control_points, model units).
+  deform::FieldStatus grab(const deform::Points& tips) noexcept;
+  /// The shape for the fingertips' present places, into `out`. Wait-free; no allocation if `out`
+  /// has the size.
+  deform::FieldStatus update(const deform::Points& tips, deform::Points& out) noexcept;
+  /// As update(), and nothing of a stroke is left waiting.
+  deform::FieldStatus finish(const deform::Points& tips, deform::Points& out) noexcept;
+
+  const deform::CsrbfField& field() const noexcept;
+
+private:
+  std::variant<deform::Type1Deformer, deform::Type2Deformer> deformer_;
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,122 @@
+#include <nendo/flow/deform_loop.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include <sys/prctl.h>
+
+#include <nendo/flow/tick_grid.hpp>
+
+namespace nendo::flow {
+
+using deform::FieldStatus;
+using deform::Points;
+
+namespace {
+
+Frame first_frame(const Points& vertices, Eigen::Index control_points, double units_per_metre) {
+  Frame frame;
+  frame.units_per_metre = units_per_metre;
+  frame.vertices = vertices;
+  frame.field.centres = Points::Zero(3, control_points);
+  frame.field.coefficients = Points::Zero(3, control_points);
+  frame.field.radii = Eigen::VectorXd::Ones(control_points);
+  for (auto& hand : frame.hands)
+    hand.pose.joints.fill(Eigen::Isometry3d::Identity());
+  return frame;
+}
+
+} // namespace
+
+DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
+                       std::vector<HandInput> hands, const LoopOptions& options)
+    : options_(options), units_per_metre_(placement.units_per_metre),
+      tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
+      sculptor_(model.vertices, tips_.cols(), options.sculptor),
+      frames_(first_frame(model.vertices, tips_.cols(), placement.units_per_metre)) {
+  assert(!hands.empty() && hands.size() <= 2);
+  for (auto& input : hands) {
+    const std::size_t slot = Placement::index_of(input.skeleton.side());
+    const GloveSample first = input.first;
+    hands_.push_back({std::move(input), slot, placement.T_stage_wrist[slot], first});
+  }
+  compute_hands(frames_.back());
+  grab_status_ = sculptor_.grab(tips_);
+}
+
+void DeformLoop::take_samples(HostTime now) noexcept {
+  for (auto& hand : hands_) {
+    const std::size_t count =
+        hand.input.ring->drain([&](const GloveSample& sample) noexcept { hand.latest = sample; });
+    hand.fresh = count > 0;
+    stats_.samples[hand.slot] += count;
+    const bool silent = now - hand.latest.arrival > options_.silent_after;
+    if (silent && !hand.silent) ++stats_.silences[hand.slot];
+    hand.silent = silent;
+  }
+}
+
+void DeformLoop::compute_hands(Frame& frame) noexcept {
+  Eigen::Index column = 0;
+  for (const auto& hand : hands_) {
+    HandFrame& shown = frame.hands[hand.slot];
+    const auto angles = hand::joint_angles(hand.latest, hand.input.calibration);
+    shown.pose = hand.input.skeleton.pose(angles, hand.T_stage_wrist);
+    shown.present = true;
+    shown.silent = hand.silent;
+    shown.samples = stats_.samples[hand.slot];
+    tips_.middleCols<5>(column) = units_per_metre_ * shown.pose.fingertip_positions();
+    column += 5;
+  }
+}
+
+void DeformLoop::tick(std::uint64_t number, HostTime scheduled) noexcept {
+  const HostTime woke = HostClock::now();
+  take_samples(woke);
+  Frame& frame = frames_.back();
+  compute_hands(frame);
+  frame.status = sculptor_.update(tips_, frame.vertices);
+  frame.field = sculptor_.field();
+  ++stats_.ticks;
+  frame.tick = number;
+  frame.ticks = stats_.ticks;
+  frame.missed = stats_.missed;
+  frame.scheduled = scheduled;
+  frame.woke = woke;
+  if (!is_solved(frame.status)) ++stats_.failed;
+  frames_.publish();
+
+  const HostTime done = HostClock::now();
+  stats_.wake_latency.record(woke - scheduled);
+  stats_.work.record(done - woke);
+  for (const auto& hand : hands_) {
+    if (hand.fresh) stats_.end_to_end.record(done - hand.latest.arrival);
+  }
+}
+
+void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) noexcept {
+  // Without real-time priority the kernel may delay a wake-up by 50 microseconds unless it is told
+  // not to.
+  ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  const TickGrid grid(HostClock::now(), options_.rate_hz);
+  for (std::uint64_t number = 0; number < most_ticks;) {
+    sleep_until(grid.deadline(number));
+    if (stop.load(std::memory_order_relaxed)) return;
+    tick(number, grid.deadline(number));
+    const std::uint64_t next = grid.first_after(HostClock::now());
+    if (next > number + 1) {
+      ++stats_.overruns;
+      stats_.missed += std::min(next, most_ticks) - number - 1;
+    }
+    number = std::max(next, number + 1);
+  }
+}
+
+Points DeformLoop::final_shape() {
+  Points shape = frames_.back().vertices;
+  sculptor_.finish(tips_, shape);
+  return shape;
+}
+
+} // namespace nendo::flow

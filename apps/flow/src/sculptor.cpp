@@ -1,0 +1,67 @@
+#include <nendo/flow/sculptor.hpp>
+
+#include <utility>
+
+namespace nendo::flow {
+
+using deform::FieldStatus;
+using deform::Points;
+using deform::Type1Deformer;
+using deform::Type2Deformer;
+
+namespace {
+
+std::variant<Type1Deformer, Type2Deformer> make(Points rest, Eigen::Index control_points,
+                                                const SculptorOptions& options) {
+  if (options.mode == Mode::type1) {
+    return Type1Deformer(std::move(rest), control_points, options.radius, options.csrbf);
+  }
+  return Type2Deformer(std::move(rest), control_points, options.radius, options.piece_length,
+                       options.csrbf);
+}
+
+} // namespace
+
+std::string_view name_of(Mode mode) noexcept {
+  return mode == Mode::type1 ? "type1" : "type2";
+}
+
+std::optional<Mode> mode_named(std::string_view name) noexcept {
+  if (name == "type1") return Mode::type1;
+  if (name == "type2") return Mode::type2;
+  return std::nullopt;
+}
+
+Sculptor::Sculptor(Points rest, Eigen::Index control_points, const SculptorOptions& options)
+    : deformer_(make(std::move(rest), control_points, options)) {}
+
+FieldStatus Sculptor::grab(const Points& tips) noexcept {
+  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->grab(tips);
+  std::get_if<Type2Deformer>(&deformer_)->begin(tips);
+  return FieldStatus::ok;
+}
+
+FieldStatus Sculptor::update(const Points& tips, Points& out) noexcept {
+  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->apply(tips, out);
+  auto* type2 = std::get_if<Type2Deformer>(&deformer_);
+  const FieldStatus status = type2->stroke_to(tips).status;
+  out = type2->shape();
+  return status;
+}
+
+FieldStatus Sculptor::finish(const Points& tips, Points& out) noexcept {
+  const FieldStatus status = update(tips, out);
+  auto* type2 = std::get_if<Type2Deformer>(&deformer_);
+  if (type2 == nullptr) return status;
+  const FieldStatus last = type2->finish().status;
+  out = type2->shape();
+  return last;
+}
+
+const deform::CsrbfField& Sculptor::field() const noexcept {
+  return std::visit(
+      [](const auto& deformer) -> const deform::CsrbfField& { return deformer.field(); },
+      deformer_);
+}
+
+} // namespace nendo::flow

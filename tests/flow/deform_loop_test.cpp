@@ -1,0 +1,138 @@
+#include <nendo/flow/deform_loop.hpp>
+
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "support/flow_fixtures.hpp"
+
+using namespace nendo;
+using namespace nendo::flow;
+using nendo::test::LoopUnderTest;
+using namespace std::chrono_literals;
+
+TEST_SUITE("deform_loop") {
+  TEST_CASE("hands that do not move leave the model as it is") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      LoopUnderTest test(mode);
+      for (std::uint64_t tick = 0; tick < 5; ++tick) {
+        test.bend(0, HostClock::now());
+        CHECK(test.frame_after_tick(tick).vertices == test.model.vertices);
+      }
+      CHECK(test.loop->final_shape() == test.model.vertices);
+    }
+  }
+
+  TEST_CASE("bending the fingers presses them into the model, and both hands do it alike") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      LoopUnderTest test(mode);
+      for (int turn = 1; turn <= 20; ++turn) {
+        test.bend(turn, HostClock::now());
+        test.frame_after_tick(static_cast<std::uint64_t>(turn));
+      }
+      const deform::Points shape = test.loop->final_shape();
+      CHECK(shape.allFinite());
+      CHECK((shape - test.model.vertices).cwiseAbs().maxCoeff() > 0.05);
+      CHECK(shape.colwise().norm().minCoeff() < 0.95); // the ball's radius was 1
+      CHECK(shape.row(0).maxCoeff() == doctest::Approx(-shape.row(0).minCoeff()).epsilon(0.02));
+    }
+  }
+
+  TEST_CASE("a frame's field is enough to deform a copy of the model elsewhere") {
+    LoopUnderTest test(Mode::type1);
+    test.bend(15, HostClock::now());
+    const Frame& frame = test.frame_after_tick(0);
+    deform::Points copy;
+    deform::displace(frame.field, test.model.vertices, copy);
+    CHECK((copy - frame.vertices).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK(frame.field.centres.cols() == 10);
+  }
+
+  TEST_CASE("a frame shows both hands, touching the model where they took hold of it") {
+    LoopUnderTest test(Mode::type1);
+    const Frame& frame = test.frame_after_tick(0);
+    for (const auto& hand : frame.hands) {
+      REQUIRE(hand.present);
+      const auto tips = (frame.units_per_metre * hand.pose.fingertip_positions()).eval();
+      for (Eigen::Index i = 0; i < 5; ++i)
+        CHECK(tips.col(i).norm() == doctest::Approx(1.0).epsilon(0.05));
+    }
+  }
+
+  TEST_CASE("a glove that falls silent freezes its hand, is reported, and comes back by itself") {
+    LoopUnderTest test(Mode::type1);
+    const HostTime now = HostClock::now();
+    test.rings[0]->try_push(test::bent_sample(Side::left, 10, now - 2s));
+    test.rings[1]->try_push(test::bent_sample(Side::right, 10, now));
+    const deform::Points shape = test.frame_after_tick(0).vertices;
+    CHECK(test.loop->frames().front().hands[0].silent);
+    CHECK_FALSE(test.loop->frames().front().hands[1].silent);
+    CHECK(test.frame_after_tick(1).vertices == shape);
+    CHECK(test.loop->stats().silences[0] == 1);
+    test.rings[0]->try_push(test::bent_sample(Side::left, 20, HostClock::now()));
+    const Frame& back = test.frame_after_tick(2);
+    CHECK_FALSE(back.hands[0].silent);
+    CHECK(back.vertices != shape);
+    CHECK(test.loop->stats().silences[0] == 1);
+  }
+
+  TEST_CASE("every sample is counted, and only the newest of a tick is shown") {
+    LoopUnderTest test(Mode::type1);
+    const HostTime now = HostClock::now();
+    for (int n = 0; n < 7; ++n)
+      test.bend(n, now);
+    const deform::Points shape = test.frame_after_tick(0).vertices;
+    CHECK(test.loop->stats().samples[0] == 7);
+    CHECK(test.loop->stats().samples[1] == 7);
+    CHECK(test.loop->stats().end_to_end.count() == 2);
+    LoopUnderTest other(Mode::type1);
+    other.bend(6, now);
+    CHECK((other.frame_after_tick(0).vertices - shape).cwiseAbs().maxCoeff() < 1e-12);
+  }
+
+  TEST_CASE("the loop keeps its grid: every deadline is either a tick or counted as missed") {
+    // 10 kHz on a mesh of 20,000 vertices cannot be kept: ticks overrun, deadlines are skipped and
+    // not caught up.
+    LoopUnderTest test(Mode::type2, 100, 10'000.0);
+    std::atomic<bool> stop{false};
+    constexpr std::uint64_t deadlines = 2000;
+    std::thread glove([&] {
+      for (int n = 0; n < 20; ++n) {
+        test.bend(n, HostClock::now());
+        std::this_thread::sleep_for(5ms);
+      }
+    });
+    test.loop->run(stop, deadlines);
+    glove.join();
+    const LoopStats& stats = test.loop->stats();
+    CHECK(stats.ticks + stats.missed == deadlines);
+    CHECK(stats.overruns > 0);
+    CHECK(stats.missed >= stats.overruns);
+    CHECK(stats.wake_latency.count() == stats.ticks);
+  }
+
+  TEST_CASE("stop ends the loop within a period, while another thread reads its frames") {
+    LoopUnderTest test(Mode::type1, 24, 200.0);
+    std::atomic<bool> stop{false};
+    std::thread loop([&] { test.loop->run(stop); });
+    std::uint64_t last = 0;
+    int seen = 0;
+    const HostTime end = HostClock::now() + 20s;
+    while (seen < 20 && HostClock::now() < end) {
+      test.bend(seen % 10, HostClock::now());
+      if (test.loop->frames().update()) {
+        const Frame& frame = test.loop->frames().front();
+        CHECK(frame.ticks > last);
+        CHECK(frame.vertices.allFinite());
+        last = frame.ticks;
+        ++seen;
+      }
+      std::this_thread::sleep_for(1ms);
+    }
+    CHECK(seen == 20);
+    stop = true;
+    const HostTime asked = HostClock::now();
+    loop.join();
+    CHECK(HostClock::now() - asked < 2s); // a period is 5 ms; the rest is for a loaded machine
+  }
+}

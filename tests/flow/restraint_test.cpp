@@ -1,0 +1,76 @@
+// The loop is sacred: after start-up its thread allocates nothing, frees nothing and takes no lock.
+
+#include <mutex>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/flow_fixtures.hpp"
+#include "support/restraint.hpp"
+
+using namespace nendo;
+using namespace nendo::flow;
+using nendo::test::LoopUnderTest;
+using nendo::test::Restraint;
+
+TEST_SUITE("restraint") {
+  TEST_CASE("the counters count: a vector, a mutex, an aligned allocation") {
+    std::mutex mutex;
+    test::RestraintCounts counts;
+    {
+      const Restraint restraint;
+      auto* vector = new std::vector<int>(100);
+      delete vector;
+      mutex.lock();
+      mutex.unlock();
+      Eigen::MatrixXd matrix(50, 50);
+      matrix.setZero();
+      counts = restraint.counts();
+    }
+    if (!test::restraint_is_counted) return;
+    CHECK(counts.allocations == 3);
+    CHECK(counts.frees == 2); // the matrix is still there
+    CHECK(counts.locks == 1);
+  }
+
+  TEST_CASE("no tick allocates, frees or locks, in either mode, with two hands in motion") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      LoopUnderTest test(mode);
+      test::RestraintCounts counts;
+      // Samples are pushed, and frames read, on this thread too: the ring and the exchange are held
+      // to the same rule.
+      {
+        const Restraint restraint;
+        for (std::uint64_t tick = 0; tick < 2000; ++tick) {
+          const int counts_bent = static_cast<int>(tick % 60);
+          test.bend(counts_bent < 30 ? counts_bent : 60 - counts_bent, HostClock::now());
+          test.frame_after_tick(tick);
+        }
+        counts = restraint.counts();
+      }
+      CAPTURE(name_of(mode));
+      CHECK(counts.allocations == 0);
+      CHECK(counts.frees == 0);
+      CHECK(counts.locks == 0);
+      CHECK(test.loop->stats().ticks == 2000);
+      CHECK(test.loop->stats().failed == 0);
+      CHECK((test.loop->frames().front().vertices - test.model.vertices).cwiseAbs().maxCoeff() >
+            1e-3);
+    }
+  }
+
+  TEST_CASE("running at the fixed rate, sleeping included, does not either") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      LoopUnderTest test(mode, 24, 2000.0);
+      std::atomic<bool> stop{false};
+      test.bend(12, HostClock::now());
+      test::RestraintCounts counts;
+      {
+        const Restraint restraint;
+        test.loop->run(stop, 500);
+        counts = restraint.counts();
+      }
+      CHECK(counts.allocations + counts.frees + counts.locks == 0);
+    }
+  }
+}

@@ -1,0 +1,59 @@
+#include <nendo/flow/sculptor.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/flow_fixtures.hpp"
+
+using namespace nendo;
+using namespace nendo::flow;
+using deform::FieldStatus;
+using deform::Points;
+
+TEST_SUITE("sculptor") {
+  const Points rest = test::ball(11).vertices; // with an equator
+  const Points tips = (Points(3, 2) << 1.0, -1.0, 0.0, 0.0, 0.0, 0.0).finished();
+
+  SculptorOptions options_for(Mode mode) {
+    SculptorOptions options;
+    options.mode = mode;
+    options.radius = 0.6;
+    options.piece_length = 0.03;
+    return options;
+  }
+
+  TEST_CASE("modes have names") {
+    for (const Mode mode : {Mode::type1, Mode::type2})
+      CHECK(mode_named(name_of(mode)) == mode);
+    CHECK_FALSE(mode_named("type3").has_value());
+  }
+
+  TEST_CASE("in either mode unmoved fingertips leave the model as it is") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      Sculptor sculptor(rest, 2, options_for(mode));
+      REQUIRE(sculptor.grab(tips) == FieldStatus::ok);
+      Points out = rest;
+      for (int turn = 0; turn < 3; ++turn)
+        CHECK(sculptor.update(tips, out) == FieldStatus::ok);
+      CHECK(out == rest);
+    }
+  }
+
+  TEST_CASE("in either mode a short stroke carries the touched vertex along, and finish leaves "
+            "nothing out") {
+    // Vertices of the ball's equator lie exactly at (1, 0, 0) and (-1, 0, 0).
+    Points ends = tips;
+    ends.col(0) += Eigen::Vector3d(0.0, 0.1, 0.0);
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      Sculptor sculptor(rest, 2, options_for(mode));
+      REQUIRE(sculptor.grab(tips) == FieldStatus::ok);
+      Points out = rest;
+      REQUIRE(sculptor.finish(ends, out) == FieldStatus::ok);
+      Eigen::Index touched = 0;
+      (rest.colwise() - Eigen::Vector3d(tips.col(0))).colwise().squaredNorm().minCoeff(&touched);
+      CHECK((out.col(touched) - ends.col(0)).norm() < 1e-9);
+      Eigen::Index far = 0;
+      (rest.colwise() - Eigen::Vector3d(0.0, 0.0, 1.0)).colwise().squaredNorm().minCoeff(&far);
+      CHECK(out.col(far) == rest.col(far));
+    }
+  }
+}

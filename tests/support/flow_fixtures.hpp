@@ -1,0 +1,82 @@
+#pragma once
+// A ball to shape and gloves that say what a test wants them to say.
+
+#include <memory>
+#include <vector>
+
+#include <nendo/flow/deform_loop.hpp>
+
+#include "support/test_meshes.hpp"
+
+namespace nendo::test {
+
+/// A sphere of radius 1 about the origin, made of about 2 `rings` squared quads.
+inline deform::Mesh ball(std::uint32_t rings) {
+  return sphere(rings, 2 * rings, 1.0);
+}
+
+/// A hand in a relaxed pose, bent further by so many counts at every finger's MCP and PIP.
+inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
+  GloveSample sample;
+  sample.side = side;
+  sample.present = sensors_22;
+  sample.arrival = arrival;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    const auto offset = hand::default_calibration()[sensor].offset_counts;
+    sample.raw[slot].value = static_cast<std::uint16_t>(offset + 20.0);
+    if (name_of(sensor).ends_with("abduction") || name_of(sensor).starts_with("wrist")) {
+      sample.raw[slot].value = static_cast<std::uint16_t>(offset);
+    }
+    if (name_of(sensor).ends_with("mcp") || name_of(sensor).ends_with("pip")) {
+      sample.raw[slot].value = static_cast<std::uint16_t>(sample.raw[slot].value + counts);
+    }
+  }
+  return sample;
+}
+
+/// A loop over two hands whose rings the test fills itself.
+struct LoopUnderTest {
+  std::vector<std::unique_ptr<SampleRing>> rings;
+  deform::Mesh model;
+  flow::Placement placement;
+  std::unique_ptr<flow::DeformLoop> loop;
+
+  explicit LoopUnderTest(flow::Mode mode, std::uint32_t rings_of_ball = 24, double rate_hz = 1000.0)
+      : model(ball(rings_of_ball)) {
+    const HostTime now = HostClock::now();
+    std::array<std::optional<flow::Fingertips>, 2> tips;
+    std::vector<flow::HandInput> inputs;
+    for (const Side side : {Side::left, Side::right}) {
+      rings.push_back(std::make_unique<SampleRing>(64));
+      const GloveSample first = bent_sample(side, 0, now);
+      const hand::HandSkeleton skeleton(side);
+      tips[flow::Placement::index_of(side)] =
+          skeleton
+              .pose(hand::joint_angles(first, hand::default_calibration()),
+                    Eigen::Isometry3d::Identity())
+              .fingertip_positions();
+      inputs.push_back({rings.back().get(), skeleton, hand::default_calibration(), first});
+    }
+    placement = flow::place_hands(model, tips);
+    flow::LoopOptions options;
+    options.rate_hz = rate_hz;
+    options.sculptor.mode = mode;
+    options.sculptor.radius = 0.5;
+    options.sculptor.piece_length = 0.02;
+    options.sculptor.csrbf.merge_fraction = 0.05;
+    loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), options);
+  }
+
+  void bend(int counts, HostTime arrival) {
+    rings[0]->try_push(bent_sample(Side::left, counts, arrival));
+    rings[1]->try_push(bent_sample(Side::right, counts, arrival));
+  }
+  const flow::Frame& frame_after_tick(std::uint64_t number) {
+    loop->tick(number, HostClock::now());
+    loop->frames().update();
+    return loop->frames().front();
+  }
+};
+
+} // namespace nendo::test
