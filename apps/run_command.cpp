@@ -1,0 +1,127 @@
+// nendo run: the main job, from gloves to a deformed model.
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+
+#include <unistd.h>
+
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/flow/tick_grid.hpp>
+
+#include "cli.hpp"
+#include "kernel_options.hpp"
+#include "run_report.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct CommandOptions {
+  RunOptions run;
+  std::string mode = "type1";
+  KernelOptions kernel;
+};
+
+std::string dated_name() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char name[64];
+  std::strftime(name, sizeof name, "nendo-%Y%m%d-%H%M%S.obj", &local);
+  return name;
+}
+
+// An hour of sculpting must not end in a file that cannot be written, so the place is looked at
+// before.
+Result<void> check_output(const std::string& out) {
+  const std::filesystem::path path(out);
+  const auto extension = path.extension();
+  if (extension != ".obj" && extension != ".ply") {
+    return Error{Errc::usage, "--out " + out + ": end the name in .obj or .ply"};
+  }
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (std::filesystem::is_directory(path)) {
+    return Error{Errc::usage, "--out " + out + ": that is a folder; name a file in it"};
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    return Error{Errc::failed,
+                 "--out " + out + ": " + folder.string() +
+                     " is not a folder that you may write to; make it or choose another"};
+  }
+  return {};
+}
+
+Result<void> check(CommandOptions& options) {
+  auto& run = options.run;
+  const auto mode = flow::mode_named(options.mode);
+  if (!mode) return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
+  run.loop.sculptor.mode = *mode;
+  const auto csrbf = options.kernel.parse();
+  if (!csrbf) return csrbf.error();
+  run.loop.sculptor.csrbf = *csrbf;
+  if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
+        run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
+    return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
+  }
+  if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
+    return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
+  }
+  if (!std::isfinite(run.radius) || run.radius < 0.0) {
+    return Error{Errc::usage, "--radius: use a length > 0 in the mesh's units, or leave it out"};
+  }
+  if (run.out.empty()) run.out = dated_name();
+  if (run.mesh.empty()) run.mesh = shipped_model("moai.obj").string();
+  return check_output(run.out);
+}
+
+int run(CommandOptions& options) {
+  if (const auto fine = check(options); !fine) return report(fine.error());
+  auto model = deform::read_mesh(options.run.mesh);
+  if (!model) return report(model.error());
+  install_stop_signals();
+  const auto hands = open_hands(options.run);
+  if (!hands) return report(hands.error());
+  const auto outcome =
+      run_session(options.run, *hands, *std::move(model), progress_for(options.run));
+  if (!outcome) return report(outcome.error());
+  print_summary(options.run, *hands, *outcome);
+  return 0;
+}
+
+} // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CommandOptions>();
+  RunOptions& run_options = options->run;
+  CLI::App& command = *app.add_subcommand("run", "Shapes a model with one or two gloves");
+  std::string gloves;
+  for (const auto& [grammar, summary] : driver::driver_summaries()) {
+    gloves += "\n  " + std::string(grammar) + "\n      " + std::string(summary);
+  }
+  command.footer(
+      "A GLOVE is one of" + gloves +
+      "\nWithout --left and --right every identified glove is used, or simulated hands.");
+  command.add_option("--left", run_options.left, "GLOVE on the left hand");
+  command.add_option("--right", run_options.right, "GLOVE on the right hand");
+  command.add_option("--mesh", run_options.mesh,
+                     "OBJ or PLY file to shape; without it, the shipped Moai");
+  command
+      .add_option("--mode", options->mode,
+                  "type1: the rest shape follows the fingertips; type2: strokes along their paths")
+      ->capture_default_str();
+  command.add_option(
+      "--radius", run_options.radius,
+      "Radius of a fingertip's influence, in the mesh's units; 0: 0.2 of its longest side");
+  add_kernel_options(command, options->kernel);
+  command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000")
+      ->capture_default_str();
+  command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
+  command.add_option("--out", run_options.out,
+                     "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
+  command.add_flag("--json", run_options.json, "Progress and summary as JSON, an object a line");
+  on_chosen(command, exit_code, [options] { return run(*options); });
+}
+
+} // namespace nendo::app

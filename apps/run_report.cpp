@@ -1,0 +1,184 @@
+#include "run_report.hpp"
+
+#include <cstdio>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array<Side, 2> sides{Side::left, Side::right};
+
+double milliseconds_of(std::chrono::nanoseconds t) {
+  return static_cast<double>(t.count()) / 1e6;
+}
+
+std::string thousands(double value) {
+  std::string digits = std::to_string(static_cast<long long>(value));
+  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
+    digits.insert(static_cast<std::size_t>(at), ",");
+  }
+  return digits;
+}
+
+ordered_json percentiles(const flow::Histogram& histogram) {
+  ordered_json line;
+  line["count"] = histogram.count();
+  line["min"] = milliseconds_of(histogram.min());
+  line["p50"] = milliseconds_of(histogram.percentile(0.50));
+  line["p90"] = milliseconds_of(histogram.percentile(0.90));
+  line["p99"] = milliseconds_of(histogram.percentile(0.99));
+  line["max"] = milliseconds_of(histogram.max());
+  return line;
+}
+
+void print_percentiles(const char* name, const flow::Histogram& histogram) {
+  std::printf("  %-14s p50 %.3f ms, p90 %.3f ms, p99 %.3f ms, max %.3f ms\n", name,
+              milliseconds_of(histogram.percentile(0.50)),
+              milliseconds_of(histogram.percentile(0.90)),
+              milliseconds_of(histogram.percentile(0.99)), milliseconds_of(histogram.max()));
+}
+
+void print_progress_json(const flow::Frame& frame, double elapsed_s) {
+  ordered_json line{{"event", "progress"},
+                    {"elapsed_s", elapsed_s},
+                    {"ticks", frame.ticks},
+                    {"missed", frame.missed}};
+  for (std::size_t slot = 0; slot < sides.size(); ++slot) {
+    if (!frame.hands[slot].present) continue;
+    line[std::string(name_of(sides[slot]))] = {{"samples", frame.hands[slot].samples},
+                                               {"silent", frame.hands[slot].silent}};
+  }
+  std::cout << line.dump() << std::endl;
+}
+
+std::string progress_line(const flow::Frame& frame, double elapsed_s, double duration_s) {
+  char text[160];
+  std::string line;
+  if (duration_s > 0.0) {
+    std::snprintf(text, sizeof text, "%5.1f of %.1f s", elapsed_s, duration_s);
+  } else {
+    std::snprintf(text, sizeof text, "%5.1f s (Ctrl-C ends)", elapsed_s);
+  }
+  line = text;
+  std::snprintf(text, sizeof text, "  %llu ticks, %llu missed",
+                static_cast<unsigned long long>(frame.ticks),
+                static_cast<unsigned long long>(frame.missed));
+  line += text;
+  for (std::size_t slot = 0; slot < sides.size(); ++slot) {
+    const auto& hand = frame.hands[slot];
+    if (!hand.present) continue;
+    line += "  " + std::string(name_of(sides[slot])) + ": ";
+    line += hand.silent ? "silent" : std::to_string(hand.samples) + " samples";
+  }
+  return line;
+}
+
+void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
+                        const RunOutcome& outcome) {
+  const auto& stats = outcome.stats;
+  ordered_json line{{"event", "summary"},
+                    {"elapsed_s", outcome.elapsed_s},
+                    {"mode", flow::name_of(options.loop.sculptor.mode)},
+                    {"kernel", deform::name_of(options.loop.sculptor.csrbf.kernel)},
+                    {"radius", outcome.radius},
+                    {"rate_hz", options.loop.rate_hz},
+                    {"ticks", stats.ticks},
+                    {"overruns", stats.overruns},
+                    {"missed", stats.missed},
+                    {"failed", stats.failed}};
+  for (const auto& hand : hands) {
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const auto glove = hand.glove->stats();
+    line[std::string(name_of(hand.side))] = {
+        {"glove", hand.glove->info().source},
+        {"model", hand.glove->info().model},
+        {"samples", stats.samples[slot]},
+        {"samples_per_s", static_cast<double>(stats.samples[slot]) / outcome.elapsed_s},
+        {"silences", stats.silences[slot]},
+        {"bad_records", glove.bad_records},
+        {"ring_refused", glove.ring_refused},
+        {"reopened", glove.reopened}};
+  }
+  line["end_to_end_ms"] = percentiles(stats.end_to_end);
+  line["wake_latency_ms"] = percentiles(stats.wake_latency);
+  line["work_ms"] = percentiles(stats.work);
+  line["vertices"] = outcome.vertices;
+  line["vertices_per_s"] =
+      static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) / outcome.elapsed_s;
+  line["result"] = outcome.result;
+  std::cout << line.dump() << std::endl;
+}
+
+void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& hands,
+                        const RunOutcome& outcome) {
+  const auto& stats = outcome.stats;
+  std::printf("\nnendo run: %.1f s, %s, %s, radius %.3g\n", outcome.elapsed_s,
+              std::string(flow::name_of(options.loop.sculptor.mode)).c_str(),
+              std::string(deform::name_of(options.loop.sculptor.csrbf.kernel)).c_str(),
+              outcome.radius);
+  for (const auto& hand : hands) {
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const auto glove = hand.glove->stats();
+    std::printf("  %-14s %s samples (%.1f/s), %llu bad records, %llu lost, %llu silences; %s\n",
+                (std::string(name_of(hand.side)) + " hand").c_str(),
+                thousands(static_cast<double>(stats.samples[slot])).c_str(),
+                static_cast<double>(stats.samples[slot]) / outcome.elapsed_s,
+                static_cast<unsigned long long>(glove.bad_records),
+                static_cast<unsigned long long>(glove.ring_refused),
+                static_cast<unsigned long long>(stats.silences[slot]),
+                hand.glove->info().source.c_str());
+  }
+  std::printf("  %-14s %s at %g Hz, %llu overruns, %llu missed\n", "ticks",
+              thousands(static_cast<double>(stats.ticks)).c_str(), options.loop.rate_hz,
+              static_cast<unsigned long long>(stats.overruns),
+              static_cast<unsigned long long>(stats.missed));
+  print_percentiles("wake-up", stats.wake_latency);
+  print_percentiles("work a tick", stats.work);
+  print_percentiles("end to end", stats.end_to_end);
+  std::printf("  %-14s from a sample's last byte to the finished mesh\n", "");
+  std::printf("  %-14s %s a second (%s in the model)\n", "vertices",
+              thousands(static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) /
+                        outcome.elapsed_s)
+                  .c_str(),
+              thousands(static_cast<double>(outcome.vertices)).c_str());
+  std::printf("  %-14s %s\n", "result", outcome.result.c_str());
+  std::fflush(stdout);
+}
+
+} // namespace
+
+Progress progress_for(const RunOptions& options) {
+  if (options.json) {
+    return [next_s = 1.0](const flow::Frame& frame, double elapsed_s) mutable {
+      if (elapsed_s < next_s) return;
+      print_progress_json(frame, elapsed_s);
+      next_s += 1.0;
+    };
+  }
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  return [terminal, next_s = 2.0, duration_s = options.duration_s](const flow::Frame& frame,
+                                                                   double elapsed_s) mutable {
+    if (!terminal && elapsed_s < next_s) return;
+    next_s += 2.0;
+    const std::string line = progress_line(frame, elapsed_s, duration_s);
+    std::cerr << (terminal ? "\r" + line + "\x1b[K" : line + "\n") << std::flush;
+  };
+}
+
+void print_summary(const RunOptions& options, const std::vector<OpenHand>& hands,
+                   const RunOutcome& outcome) {
+  if (options.json) {
+    print_summary_json(options, hands, outcome);
+  } else {
+    print_summary_text(options, hands, outcome);
+  }
+}
+
+} // namespace nendo::app

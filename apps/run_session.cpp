@@ -1,0 +1,178 @@
+#include "run_session.hpp"
+
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/flow/tick_grid.hpp>
+
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Of the model's longest side. On the stage that is 16 cm: a finger shapes what is about it, and
+// its neighbours' supports overlap with it enough that no ridge is left between two fingers that
+// press together.
+constexpr double default_radius_fraction = 0.2;
+// A cut of type 2, of the radius: far below the step at which a single finger would fold the
+// surface (0.47).
+constexpr double piece_fraction = 0.05;
+
+Result<OpenHand> open_hand(const std::string& spec, Side side) {
+  auto glove = driver::open_glove(spec, side);
+  if (!glove) return glove.error();
+  if ((*glove)->info().side != side) {
+    note(spec + " says that it is a " + std::string(name_of((*glove)->info().side)) +
+         "-hand glove; it shapes as the " + std::string(name_of(side)) + " hand, as you asked");
+  }
+  OpenHand hand;
+  hand.side = side;
+  hand.ring = std::make_unique<SampleRing>(1024);
+  hand.glove = *std::move(glove);
+  return hand;
+}
+
+// Both hands that the machine has, or simulated ones. A glove that is there but cannot be used is
+// an error.
+Result<std::vector<OpenHand>> open_any() {
+  std::vector<OpenHand> hands;
+  for (const Side side : {Side::left, Side::right}) {
+    auto hand = open_hand("auto:" + std::string(name_of(side)), side);
+    if (hand) {
+      hands.push_back(*std::move(hand));
+    } else if (hand.error().code != Errc::no_device) {
+      return hand.error();
+    }
+  }
+  if (!hands.empty()) return hands;
+  note("no glove found, so the hands are simulated (sim); name a glove with --left or --right, "
+       "e.g. --right serial:/dev/ttyUSB0, and see `nendo devices`");
+  for (const Side side : {Side::left, Side::right}) {
+    auto hand = open_hand("sim", side);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  return hands;
+}
+
+Result<std::vector<OpenHand>> open_named(const RunOptions& options) {
+  std::vector<OpenHand> hands;
+  for (const auto& [spec, side] :
+       {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
+    if (spec->empty()) continue;
+    auto hand = open_hand(*spec, side);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  return hands;
+}
+
+Result<void> wait_for_first_sample(OpenHand& hand) {
+  constexpr auto patience = milliseconds(2000);
+  const HostTime end = HostClock::now() + patience;
+  while (HostClock::now() < end && !stop_requested()) {
+    bool any = false;
+    hand.ring->drain([&](const GloveSample& sample) noexcept {
+      hand.first = sample;
+      any = true;
+    });
+    if (any) return {};
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  if (stop_requested()) return Error{Errc::failed, "stopped before the first sample came"};
+  return Error{Errc::no_device,
+               hand.glove->info().source +
+                   ": opened, but no sample came within 2 s; is the glove plugged into "
+                   "its interface unit?"};
+}
+
+flow::Placement placement_for(const std::vector<OpenHand>& hands, const deform::Mesh& model) {
+  std::array<std::optional<flow::Fingertips>, 2> tips;
+  for (const auto& hand : hands) {
+    const auto angles = hand::joint_angles(hand.first, hand::default_calibration());
+    tips[flow::Placement::index_of(hand.side)] = hand::HandSkeleton(hand.side)
+                                                     .pose(angles, Eigen::Isometry3d::Identity())
+                                                     .fingertip_positions();
+  }
+  return flow::place_hands(model, tips);
+}
+
+double longest_side(const deform::Mesh& model) {
+  return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
+}
+
+std::uint64_t ticks_for(const RunOptions& options) {
+  if (options.duration_s <= 0.0) return std::numeric_limits<std::uint64_t>::max();
+  return static_cast<std::uint64_t>(
+      std::max(1.0, std::round(options.duration_s * options.loop.rate_hz)));
+}
+
+} // namespace
+
+Result<std::vector<OpenHand>> open_hands(const RunOptions& options) {
+  const bool named = !options.left.empty() || !options.right.empty();
+  auto hands = named ? open_named(options) : open_any();
+  if (!hands) return hands;
+  for (auto& hand : *hands) {
+    if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
+  }
+  for (auto& hand : *hands) {
+    if (const auto came = wait_for_first_sample(hand); !came) return came.error();
+  }
+  return hands;
+}
+
+Result<RunOutcome> run_session(const RunOptions& options, const std::vector<OpenHand>& hands,
+                               deform::Mesh model, const Progress& progress) {
+  const double size = longest_side(model);
+  flow::LoopOptions loop_options = options.loop;
+  auto& sculptor = loop_options.sculptor;
+  sculptor.radius =
+      options.radius > 0.0 ? options.radius : default_radius_fraction * (size > 0.0 ? size : 1.0);
+  sculptor.piece_length = piece_fraction * sculptor.radius;
+  // Live fingertips meet; the exact solution for two that nearly touch would tear the surface
+  // between them.
+  sculptor.csrbf.merge_fraction = 0.05;
+
+  std::vector<flow::HandInput> inputs;
+  for (const auto& hand : hands) {
+    inputs.push_back(
+        {hand.ring.get(), hand::HandSkeleton(hand.side), hand::default_calibration(), hand.first});
+  }
+  flow::DeformLoop loop(model, placement_for(hands, model), std::move(inputs), loop_options);
+  if (!is_solved(loop.grab_status())) {
+    return Error{Errc::failed, "the hands cannot take hold of the model: " +
+                                   std::string(deform::describe(loop.grab_status()))};
+  }
+
+  std::atomic<bool> over{false};
+  std::atomic<bool> ended{false};
+  const HostTime start = HostClock::now();
+  std::thread loop_thread([&] {
+    loop.run(over, ticks_for(options));
+    ended = true;
+  });
+  HostTime next_report = start;
+  while (!ended && !stop_requested()) {
+    std::this_thread::sleep_for(milliseconds(20));
+    if (HostClock::now() < next_report) continue;
+    if (loop.frames().update())
+      progress(loop.frames().front(), to_seconds(HostClock::now() - start));
+    next_report += milliseconds(250);
+  }
+  over = true;
+  loop_thread.join();
+  const double elapsed_s = to_seconds(HostClock::now() - start);
+  for (const auto& hand : hands)
+    hand.glove->stop();
+
+  model.vertices = loop.final_shape();
+  if (const auto written = deform::write_mesh(options.out, model); !written) return written.error();
+  return RunOutcome{loop.stats(), elapsed_s, model.vertices.cols(), sculptor.radius, options.out};
+}
+
+} // namespace nendo::app

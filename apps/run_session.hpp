@@ -1,0 +1,56 @@
+#pragma once
+// A run from gloves to a shape: opens what was asked for, places the hands, and runs the loop on a
+// thread of its own.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <nendo/driver/open_glove.hpp>
+#include <nendo/flow/deform_loop.hpp>
+
+namespace nendo::app {
+
+struct RunOptions {
+  std::string left;        ///< GLOVE; empty: not asked for
+  std::string right;       ///< GLOVE; empty: not asked for
+  std::string mesh;        ///< empty: the shipped model
+  std::string out;         ///< empty: a name made of date and time
+  double duration_s = 0.0; ///< 0: until a stop signal
+  double radius = 0.0;     ///< 0: a fraction of the model's size
+  bool json = false;
+  flow::LoopOptions loop;
+};
+
+/// A glove, its samples on their way to the loop, and the first of them.
+struct OpenHand {
+  Side side = Side::right;
+  std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
+  std::unique_ptr<driver::Glove> glove;
+  GloveSample first;
+};
+
+/// Opens and starts the gloves and waits for the first sample of each. With none named it uses what
+/// is identified, and simulated hands, saying so, if there is nothing. Errors as open_glove();
+/// no_device if no sample comes.
+Result<std::vector<OpenHand>> open_hands(const RunOptions& options);
+
+/// What the summary is made of.
+struct RunOutcome {
+  flow::LoopStats stats;
+  double elapsed_s = 0.0;
+  Eigen::Index vertices = 0;
+  double radius = 0.0;
+  std::string result;
+};
+
+/// Called about four times a second with the latest frame.
+using Progress = std::function<void(const flow::Frame& frame, double elapsed_s)>;
+
+/// Runs until the duration is over or a stop signal comes, then writes the shape. Blocks.
+Result<RunOutcome> run_session(const RunOptions& options, const std::vector<OpenHand>& hands,
+                               deform::Mesh model, const Progress& progress);
+
+} // namespace nendo::app

@@ -1,0 +1,242 @@
+#include <cmath>
+#include <random>
+
+#include <Eigen/Dense>
+#include <doctest/doctest.h>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "support/program.hpp"
+
+using namespace nendo;
+using deform::Mesh;
+using deform::Points;
+using nendo::test::is_one_line_about;
+using nendo::test::TemporaryFolder;
+
+namespace {
+
+Mesh plane(Eigen::Index side) {
+  Mesh mesh;
+  mesh.vertices.resize(3, side * side);
+  for (Eigen::Index i = 0; i < side * side; ++i) {
+    mesh.vertices.col(i) << 50.0 * static_cast<double>(i % side) / static_cast<double>(side - 1),
+        50.0 * static_cast<double>(i / side) / static_cast<double>(side - 1), 0.0;
+  }
+  for (Eigen::Index i = 0; i + side < side * side; ++i) {
+    if (i % side == side - 1) continue;
+    for (const auto corner : {i, i + 1, i + side + 1, i + side}) {
+      mesh.face_corners.push_back(static_cast<std::uint32_t>(corner));
+    }
+    mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+  }
+  return mesh;
+}
+
+// The formula, evaluated from its definition: the full saddle-point matrix, solved by LU with full
+// pivoting.
+double kernel(int smoothness, double t) {
+  if (t >= 1.0) return 0.0;
+  switch (smoothness) {
+  case 0:
+    return std::pow(1 - t, 2);
+  case 2:
+    return std::pow(1 - t, 4) * (4 * t + 1);
+  case 4:
+    return std::pow(1 - t, 6) * (35 * t * t + 18 * t + 3) / 3;
+  default:
+    return std::pow(1 - t, 8) * (32 * t * t * t + 25 * t * t + 8 * t + 1);
+  }
+}
+
+Points reference(const Points& vertices, const Points& starts, const Points& moves, double radius,
+                 int smoothness, int terms) {
+  const Eigen::Index n = starts.cols();
+  const auto basis = [&](const Eigen::Vector3d& x) {
+    Eigen::VectorXd q(4);
+    q << 1.0, x;
+    return q.head(terms).eval();
+  };
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + terms, n + terms);
+  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(n + terms, 3);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      M(i, j) = kernel(smoothness, (starts.col(i) - starts.col(j)).norm() / radius);
+    }
+    M.block(i, n, 1, terms) = basis(starts.col(i)).transpose();
+    M.block(n, i, terms, 1) = basis(starts.col(i));
+    rhs.row(i) = moves.col(i).transpose();
+  }
+  const Eigen::MatrixXd solution = M.fullPivLu().solve(rhs);
+  Points out = vertices;
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      out.col(v) += kernel(smoothness, (vertices.col(v) - starts.col(i)).norm() / radius) *
+                    solution.row(i).transpose();
+    }
+    out.col(v) += solution.bottomRows(terms).transpose() * basis(vertices.col(v));
+  }
+  return out;
+}
+
+std::string csv(const Points& starts, const Points& moves) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "x,y,z,dx,dy,dz\n";
+  for (Eigen::Index i = 0; i < starts.cols(); ++i) {
+    for (int k = 0; k < 3; ++k)
+      text << starts(k, i) << ',';
+    text << moves(0, i) << ',' << moves(1, i) << ',' << moves(2, i) << '\n';
+  }
+  return text.str();
+}
+
+} // namespace
+
+TEST_SUITE("deform") {
+  TEST_CASE("deform agrees with an independent evaluation, and keeps vertices and faces in order") {
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> u(0.0, 50.0);
+    std::normal_distribution<double> push(0.0, 3.0);
+    const Mesh mesh = plane(21);
+    const double diagonal = deform::diagonal_of(mesh.vertices);
+    const TemporaryFolder folder;
+    const auto in = folder.path() / "plane.ply";
+    REQUIRE(deform::write_mesh(in, mesh));
+
+    int round = 0;
+    for (const int smoothness : {0, 2, 4, 6}) {
+      for (const auto& [polynomial, terms] :
+           {std::pair{"none", 0}, std::pair{"constant", 1}, std::pair{"linear", 4}}) {
+        Points starts(3, 10);
+        Points moves(3, 10);
+        for (Eigen::Index i = 0; i < 10; ++i) {
+          starts.col(i) << u(random), u(random), push(random);
+          moves.col(i) << push(random), push(random), push(random);
+        }
+        const auto vectors = folder.path() / "vectors.csv";
+        nendo::test::write_file(vectors, csv(starts, moves));
+        const auto out = folder.path() / (++round % 2 == 0 ? "out.obj" : "out.ply");
+        const auto done =
+            nendo::test::nendo({"deform", in.string(), "--vectors", vectors.string(), "--radius",
+                                "20", "--kernel", "wendland-c" + std::to_string(smoothness),
+                                "--polynomial", polynomial, "--out", out.string()});
+        CAPTURE(done.err);
+        REQUIRE(done.exit_code == 0);
+        const auto result = deform::read_mesh(out);
+        REQUIRE(result);
+        CHECK(result->face_corners == mesh.face_corners);
+        CHECK(result->face_starts == mesh.face_starts);
+        const Points expected = reference(mesh.vertices, starts, moves, 20.0, smoothness, terms);
+        CHECK((result->vertices - expected).cwiseAbs().maxCoeff() < 1e-9 * diagonal);
+      }
+    }
+  }
+
+  TEST_CASE(
+      "bad meshes and bad vectors get one clear line and exit code 5, and nothing is written") {
+    const TemporaryFolder folder;
+    const auto good_mesh = (folder.path() / "good.obj").string();
+    const auto good_vectors = (folder.path() / "good.csv").string();
+    nendo::test::write_file(good_mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    nendo::test::write_file(good_vectors, "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n");
+    const std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+    const std::string vertex =
+        "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    struct Case {
+      std::string name;
+      std::string text;
+    };
+    for (const Case& c :
+         {Case{"empty.obj", ""}, Case{"nan.obj", "v nan 0 0\n"},
+          Case{"index.obj", "v 0 0 0\nf 1 2 3\n"}, Case{"cut.ply", ply + "3" + vertex + "0123"},
+          Case{"lie.ply", ply + "1000000000" + vertex}, Case{"none.ply", ply + "0" + vertex}}) {
+      const auto path = (folder.path() / c.name).string();
+      nendo::test::write_file(path, c.text);
+      const auto out = folder.path() / "out.obj";
+      const auto done = nendo::test::nendo(
+          {"deform", path, "--vectors", good_vectors, "--radius", "1", "--out", out.string()});
+      CAPTURE(done.err);
+      CHECK(done.exit_code == 5);
+      CHECK(is_one_line_about(done.err, c.name));
+      CHECK_FALSE(std::filesystem::exists(out));
+    }
+    for (const Case& c :
+         {Case{"head.csv", "a,b\n"}, Case{"word.csv", "x,y,z,dx,dy,dz\n0,0,zero,0,0,1\n"},
+          Case{"inf.csv", "x,y,z,dx,dy,dz\n0,0,inf,0,0,1\n"},
+          Case{"short.csv", "x,y,z,dx,dy,dz\n1,2\n"}}) {
+      const auto path = (folder.path() / c.name).string();
+      nendo::test::write_file(path, c.text);
+      const auto done = nendo::test::nendo({"deform", good_mesh, "--vectors", path, "--radius", "1",
+                                            "--out", (folder.path() / "out.obj").string()});
+      CAPTURE(done.err);
+      CHECK(done.exit_code == 5);
+      CHECK(is_one_line_about(done.err, c.name));
+    }
+    const auto missing =
+        nendo::test::nendo({"deform", (folder.path() / "no.obj").string(), "--vectors",
+                            good_vectors, "--radius", "1", "--out", "x.obj"});
+    CHECK(missing.exit_code == 5);
+    CHECK(is_one_line_about(missing.err, "no.obj"));
+  }
+
+  TEST_CASE("difficult control vectors give a finite mesh or a clear error, never NaN") {
+    const TemporaryFolder folder;
+    const auto mesh = (folder.path() / "plane.obj").string();
+    REQUIRE(deform::write_mesh(mesh, plane(11)));
+    const std::string head = "x,y,z,dx,dy,dz\n";
+    const std::string radii = "x,y,z,dx,dy,dz,radius\n";
+    for (const std::string& text :
+         {head + "9,9,0,0,0,1\n9,9,0,0,0,1\n", head + "9,9,0,0,0,1\n9,9,0,0,5,-1\n",
+          head + "9,9,0,0,0,1\n9.0000000001,9,0,0,0,-1\n",
+          head + "1,1,0,0,0,1\n2,2,0,0,0,1\n3,3,0,0,0,2\n", head + "9,9,0,0,0,0\n",
+          head + "9,9,0,1e150,0,0\n", head + "1e300,9,0,0,0,1\n", head + "9,9,0,0,0,1e30\n",
+          radii + "9,9,0,0,0,1,5\n12,9,0,0,0,1,30\n", radii + "9,9,0,0,0,1,5\n9,9,0,0,0,2,30\n"}) {
+      for (const std::string polynomial : {"none", "constant", "linear"}) {
+        const auto vectors = folder.path() / "vectors.csv";
+        const auto out = folder.path() / "out.ply";
+        std::filesystem::remove(out);
+        nendo::test::write_file(vectors, text);
+        const auto done =
+            nendo::test::nendo({"deform", mesh, "--vectors", vectors.string(), "--radius", "10",
+                                "--polynomial", polynomial, "--out", out.string()});
+        CAPTURE(text);
+        CAPTURE(done.err);
+        if (done.exit_code == 0) {
+          const auto result = deform::read_mesh(out); // refuses what is not finite
+          REQUIRE(result);
+          CHECK(result->vertices.cols() == 121);
+        } else {
+          CHECK(done.exit_code == 5);
+          CHECK(is_one_line_about(done.err, "vectors.csv"));
+          CHECK_FALSE(std::filesystem::exists(out));
+        }
+      }
+    }
+  }
+
+  TEST_CASE("wrong options are wrong usage") {
+    const TemporaryFolder folder;
+    const auto mesh = (folder.path() / "m.obj").string();
+    const auto vectors = (folder.path() / "v.csv").string();
+    nendo::test::write_file(mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    nendo::test::write_file(vectors, "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n");
+    const auto with = [&](std::vector<std::string> more) {
+      std::vector<std::string> all{"deform", mesh, "--vectors", vectors};
+      all.insert(all.end(), more.begin(), more.end());
+      return nendo::test::nendo(all);
+    };
+    const auto out = (folder.path() / "o.obj").string();
+    CHECK(is_one_line_about(with({"--out", out}).err, "--radius"));
+    CHECK(with({"--out", out}).exit_code == 2);
+    CHECK(with({"--out", out, "--radius", "0"}).exit_code == 2);
+    CHECK(with({"--out", out, "--radius", "-3"}).exit_code == 2);
+    CHECK(with({"--out", out, "--radius", "nan"}).exit_code == 2);
+    CHECK(with({"--out", out, "--radius", "ten"}).exit_code == 2);
+    CHECK(with({"--out", out, "--radius", "1", "--kernel", "gauss"}).exit_code == 2);
+    CHECK(with({"--out", out, "--radius", "1", "--polynomial", "cubic"}).exit_code == 2);
+    CHECK(with({"--out", (folder.path() / "o.stl").string(), "--radius", "1"}).exit_code == 2);
+    CHECK(with({"--out", "/no/such/folder/o.obj", "--radius", "1"}).exit_code == 1);
+    CHECK(with({"--out", out, "--radius", "1"}).exit_code == 0);
+  }
+}

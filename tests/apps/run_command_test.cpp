@@ -1,0 +1,139 @@
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "support/program.hpp"
+
+using namespace nendo;
+using nendo::test::EmulatedGlove;
+using nendo::test::is_one_line_about;
+using nendo::test::lines_of;
+using nendo::test::TemporaryFolder;
+using nlohmann::json;
+
+namespace {
+
+json summary_of(const nendo::test::Finished& done) {
+  const auto lines = lines_of(done.out);
+  return lines.empty() ? json() : json::parse(lines.back());
+}
+
+deform::Mesh shipped_moai() {
+  const auto program = std::filesystem::path(NENDO_PROGRAM);
+  const auto mesh =
+      deform::read_mesh(program.parent_path().parent_path() / "share/nendo/models/moai.obj");
+  REQUIRE(mesh);
+  return *mesh;
+}
+
+} // namespace
+
+TEST_SUITE("run") {
+  TEST_CASE("two CyberGloves on pseudo-terminals shape the shipped model, in both modes") {
+    const TemporaryFolder folder;
+    const auto left = folder.path() / "left";
+    const auto right = folder.path() / "right";
+    const EmulatedGlove left_glove(left, "left", "22");
+    const EmulatedGlove right_glove(right, "right", "18");
+    const deform::Mesh before = shipped_moai();
+    for (const std::string mode : {"type1", "type2"}) {
+      const auto out = folder.path() / (mode + ".obj");
+      const auto done = nendo::test::nendo(
+          {"run", "--left", "serial:" + left.string(), "--right", "serial:" + right.string(),
+           "--mode", mode, "--duration", "4", "--rate", "60", "--json", "--out", out.string()});
+      CAPTURE(done.err);
+      REQUIRE(done.exit_code == 0);
+      const json summary = summary_of(done);
+      CHECK(summary["event"] == "summary");
+      CHECK(summary["ticks"].get<int>() + summary["missed"].get<int>() == 240);
+      CHECK(summary["failed"] == 0);
+      CHECK(summary["left"]["samples"].get<int>() > 100);
+      CHECK(summary["right"]["samples"].get<int>() > 100);
+      CHECK(summary["left"]["ring_refused"] == 0);
+      CHECK(summary["end_to_end_ms"]["p50"].get<double>() > 0.0);
+      CHECK(summary["vertices"] == before.vertices.cols());
+      const auto after = deform::read_mesh(out);
+      REQUIRE(after);
+      CHECK(after->face_corners == before.face_corners);
+      // The hands hold the model from both sides and have pressed by centimetres; head and foot are
+      // out of reach.
+      const double diagonal = deform::diagonal_of(before.vertices);
+      const auto moved = (after->vertices - before.vertices).colwise().norm().eval();
+      CHECK(moved.maxCoeff() > 0.01 * diagonal);
+      CHECK(moved.maxCoeff() < 0.5 * diagonal);
+      CHECK((moved.array() == 0.0).any());
+    }
+  }
+
+  TEST_CASE("Ctrl-C ends a run cleanly and still writes the result") {
+    const TemporaryFolder folder;
+    const auto out = folder.path() / "shape.ply";
+    nendo::test::Program program(
+        {"run", "--right", "sim:wave?seed=4", "--out", out.string(), "--json"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    program.signal(SIGINT);
+    const auto done = program.wait();
+    CAPTURE(done.err);
+    CHECK(done.exit_code == 0);
+    CHECK(summary_of(done)["event"] == "summary");
+    CHECK(summary_of(done)["right"]["samples"].get<int>() > 50);
+    CHECK_FALSE(summary_of(done).contains("left"));
+    CHECK(deform::read_mesh(out));
+  }
+
+  TEST_CASE("without a glove the run says that it fell back to simulated hands") {
+    const TemporaryFolder folder;
+    const auto out = folder.path() / "shape.obj";
+    const auto done = nendo::test::nendo({"run", "--duration", "1", "--out", out.string()});
+    CHECK(done.exit_code == 0);
+    CHECK(done.err.find("no glove found") != std::string::npos);
+    CHECK(done.err.find("sim") != std::string::npos);
+    for (const std::string part : {"ticks", "overruns", "p50", "p99", "vertices", "shape.obj"}) {
+      CHECK(done.out.find(part) != std::string::npos);
+    }
+    CHECK(deform::read_mesh(out));
+  }
+
+  TEST_CASE("asking for a glove that is not there is an error, not a fall-back") {
+    const TemporaryFolder folder;
+    const auto out = (folder.path() / "shape.obj").string();
+    for (const std::string glove : {"auto", "serial:/dev/no-such-port"}) {
+      const auto done =
+          nendo::test::nendo({"run", "--left", glove, "--duration", "1", "--out", out});
+      CAPTURE(done.err);
+      CHECK(done.exit_code == 3);
+      CHECK(lines_of(done.err).size() == 1);
+      CHECK(done.seconds < 5.0);
+      CHECK_FALSE(std::filesystem::exists(out));
+    }
+  }
+
+  TEST_CASE("wrong options and files are found before any glove is opened") {
+    const TemporaryFolder folder;
+    const auto out = (folder.path() / "shape.obj").string();
+    struct Case {
+      std::vector<std::string> arguments;
+      int exit_code;
+      std::string about;
+    };
+    for (const Case& c :
+         {Case{{"--mode", "type3"}, 2, "type3"}, Case{{"--rate", "0"}, 2, "--rate"},
+          Case{{"--rate", "nan"}, 2, "--rate"}, Case{{"--rate", "1e9"}, 2, "--rate"},
+          Case{{"--duration", "-1"}, 2, "--duration"}, Case{{"--radius", "-1"}, 2, "--radius"},
+          Case{{"--kernel", "gauss"}, 2, "gauss"},
+          Case{{"--mesh", "/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"}}) {
+      std::vector<std::string> arguments{"run", "--right", "sim", "--out", out};
+      arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
+      const auto done = nendo::test::nendo(arguments);
+      CAPTURE(done.err);
+      CHECK(done.exit_code == c.exit_code);
+      CHECK(is_one_line_about(done.err, c.about));
+    }
+    CHECK(
+        nendo::test::nendo({"run", "--right", "sim", "--out", "/no/such/folder/x.obj"}).exit_code ==
+        1);
+    CHECK(nendo::test::nendo({"run", "--right", "sim", "--out", "shape.stl"}).exit_code == 2);
+    CHECK_FALSE(std::filesystem::exists(out));
+  }
+}

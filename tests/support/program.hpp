@@ -1,0 +1,128 @@
+#pragma once
+// Runs the nendo program as a user would, and hands back what it said.
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "support/temporary_folder.hpp"
+
+namespace nendo::test {
+
+struct Finished {
+  int exit_code = -1; ///< 128 + n if signal n ended it
+  std::string out;
+  std::string err;
+  double seconds = 0.0;
+};
+
+inline std::string contents(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+inline void write_file(const std::filesystem::path& path, std::string_view text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A running program. Killed, if it still runs, when this is destroyed.
+class Program {
+public:
+  explicit Program(std::vector<std::string> arguments)
+      : started_(std::chrono::steady_clock::now()) {
+    arguments.insert(arguments.begin(), NENDO_PROGRAM);
+    std::vector<char*> argv;
+    for (auto& argument : arguments)
+      argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const std::string out = (folder_.path() / "out").string();
+    const std::string err = (folder_.path() / "err").string();
+    pid_ = ::fork();
+    if (pid_ != 0) return;
+    // Between fork and exec only what is safe in a child of a threaded program.
+    ::dup2(::open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+    ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), STDOUT_FILENO);
+    ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), STDERR_FILENO);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  ~Program() {
+    if (pid_ > 0) {
+      ::kill(pid_, SIGKILL);
+      ::waitpid(pid_, nullptr, 0);
+    }
+  }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void signal(int number) const { ::kill(pid_, number); }
+
+  Finished wait(std::chrono::seconds patience = std::chrono::seconds(60)) {
+    Finished finished;
+    int status = 0;
+    while (::waitpid(pid_, &status, WNOHANG) == 0) {
+      if (std::chrono::steady_clock::now() - started_ > patience) {
+        finished.err = "the test lost its patience";
+        return finished;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    pid_ = 0;
+    finished.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    finished.out = contents(folder_.path() / "out");
+    finished.err = contents(folder_.path() / "err");
+    finished.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+    return finished;
+  }
+
+private:
+  TemporaryFolder folder_;
+  std::chrono::steady_clock::time_point started_;
+  pid_t pid_ = 0;
+};
+
+inline Finished nendo(std::vector<std::string> arguments) {
+  return Program(std::move(arguments)).wait();
+}
+
+/// A CyberGlove emulated by a program of its own, ready when this is constructed.
+class EmulatedGlove {
+public:
+  EmulatedGlove(const std::filesystem::path& link, const std::string& hand,
+                const std::string& sensors)
+      : program_({"emulate", "--link", link.string(), "--hand", hand, "--sensors", sensors}) {
+    for (int turn = 0; turn < 2000 && !std::filesystem::exists(link); ++turn) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+private:
+  Program program_;
+};
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    lines.push_back(line);
+  return lines;
+}
+
+/// An error is one line that begins with the program's name and mentions `what`.
+inline bool is_one_line_about(const std::string& err, std::string_view what) {
+  return lines_of(err).size() == 1 && err.starts_with("nendo: ") &&
+         err.find(what) != std::string::npos;
+}
+
+} // namespace nendo::test
