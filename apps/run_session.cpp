@@ -1,5 +1,6 @@
 #include "run_session.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 #include <utility>
@@ -40,17 +41,25 @@ Result<OpenHand> open_hand(const std::string& spec, Side side) {
 // an error.
 Result<std::vector<OpenHand>> open_any() {
   std::vector<OpenHand> hands;
+  std::string why;
   for (const Side side : {Side::left, Side::right}) {
     auto hand = open_hand("auto:" + std::string(name_of(side)), side);
     if (hand) {
       hands.push_back(*std::move(hand));
     } else if (hand.error().code != Errc::no_device) {
       return hand.error();
+    } else {
+      why = hand.error().message;
     }
   }
   if (!hands.empty()) return hands;
-  note("no glove found, so the hands are simulated (sim); name a glove with --left or --right, "
-       "e.g. --right serial:/dev/ttyUSB0, and see `nendo devices`");
+  const auto candidates = driver::find_gloves();
+  if (std::any_of(candidates.begin(), candidates.end(),
+                  [](const auto& c) { return c.identified; })) {
+    note(why); // one is plugged in, but does not answer
+  }
+  note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
+       "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {
     auto hand = open_hand("sim", side);
     if (!hand) return hand.error();

@@ -15,7 +15,7 @@ struct Driver {
   std::string_view kind;
   std::string_view grammar;
   std::string_view summary;
-  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, Side side);
+  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side);
 };
 
 constexpr std::array drivers{
@@ -29,7 +29,7 @@ constexpr std::array drivers{
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_glove(std::string_view text, Side side) {
+Result<std::unique_ptr<Glove>> open_glove(std::string_view text, std::optional<Side> side) {
   const auto spec = parse_glove_spec(text);
   if (!spec) return spec.error();
   std::string known;

@@ -219,7 +219,9 @@ TEST_SUITE("serialport") {
     CHECK_FALSE(found[0].identified);
     CHECK(found[0].reason.find("may be a glove") != std::string::npos);
     CHECK(found[0].may_open);
+    modem_lines = 0;
     const auto glove = open_glove("auto");
+    CHECK(modem_lines == 0); // not even opened, for that would have asserted DTR and RTS
     REQUIRE_FALSE(glove);
     CHECK(glove.error().code == Errc::no_device);
     CHECK(glove.error().message.find("serial:/dev/ttyUSB0") != std::string::npos);
@@ -233,6 +235,7 @@ TEST_SUITE("serialport") {
     REQUIRE(found.size() == 1);
     CHECK(found[0].identified);
     CHECK(open_glove("auto:left"));
+    CHECK(open_glove("auto"));
     CHECK(open_glove("auto", Side::left));
     const auto right = open_glove("auto:right");
     REQUIRE_FALSE(right);

@@ -286,7 +286,7 @@ Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime de
   return open_cyberglove(spec.text, open_port, deadline);
 }
 
-Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, Side /*side*/) {
+Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> /*side*/) {
   return open_serial_by(spec, HostClock::now() + open_budget);
 }
 

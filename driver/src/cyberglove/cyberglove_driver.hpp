@@ -16,7 +16,7 @@ namespace nendo::driver {
 
 /// The table's entry for `serial:PATH?baud=N`. `side` is not needed: the glove says which hand it
 /// is.
-Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, Side side);
+Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> side);
 /// The same for the path and rate of a port, done by `deadline`.
 Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline);
 

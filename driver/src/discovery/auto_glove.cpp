@@ -10,17 +10,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Result<Side> wanted_side(const GloveSpec& spec, Side side) {
+/// nullopt: either hand will do.
+Result<std::optional<Side>> wanted_side(const GloveSpec& spec, std::optional<Side> side) {
   if (spec.target.empty()) return side;
   for (const Side known : {Side::left, Side::right}) {
-    if (spec.target == name_of(known)) return known;
+    if (spec.target == name_of(known)) return std::optional(known);
   }
   return Error{Errc::usage, spec.text + ": after auto: comes left or right, not " + spec.target};
 }
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, Side side) {
+Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Side> side) {
   if (auto allowed = allow_options(spec, {}); !allowed) return allowed.error();
   const auto wanted = wanted_side(spec, side);
   if (!wanted) return wanted.error();
@@ -32,14 +33,15 @@ Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, Side side) {
     const auto parsed = parse_glove_spec(candidate.spec);
     if (!parsed || HostClock::now() >= deadline) continue;
     auto glove = open_serial_by(*parsed, deadline);
-    if (glove && (*glove)->info().side == *wanted) return glove;
+    if (glove && (!*wanted || (*glove)->info().side == **wanted)) return glove;
     if (!glove && glove.error().code == Errc::no_permission) code = Errc::no_permission;
     why += glove ? candidate.spec + " is a " + std::string(name_of((*glove)->info().side)) + " hand"
                  : glove.error().message;
     why += "; ";
   }
   if (why.empty()) why = "no port is known to be a glove's; ";
-  return Error{code, spec.text + ": no " + std::string(name_of(*wanted)) + " glove found: " + why +
+  const std::string hand = *wanted ? std::string(name_of(**wanted)) + " " : "";
+  return Error{code, spec.text + ": no " + hand + "glove found: " + why +
                          "name the port, e.g. serial:/dev/ttyUSB0 (`nendo devices` lists them)"};
 }
 

@@ -11,6 +11,6 @@ namespace nendo::driver {
 
 /// The table's entry for `auto[:left|right]`. Opens only ports that are identified as gloves, one
 /// after the other, until one is the wanted hand.
-Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, Side side);
+Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Side> side);
 
 } // namespace nendo::driver

@@ -148,9 +148,9 @@ Error usage(const GloveSpec& spec, std::string_view what) {
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, Side side) {
+Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side) {
   Settings settings;
-  settings.side = side;
+  settings.side = side.value_or(Side::right);
   if (!spec.target.empty()) settings.motion_name = spec.target;
   const auto motion = find_motion(settings.motion_name);
   if (!motion) return usage(spec, motion.error().message);

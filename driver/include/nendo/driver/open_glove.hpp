@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,9 +27,11 @@ struct GloveSpec {
 Result<GloveSpec> parse_glove_spec(std::string_view text);
 
 /// Opens and identifies the glove; may block, 5 seconds at most. `side` is the hand that the user
-/// wants it for: it picks among several for `auto` and is the default for `sim`. Errors: usage
-/// (kind, option), no_device (missing, or does not answer like a glove), no_permission.
-Result<std::unique_ptr<Glove>> open_glove(std::string_view spec, Side side = Side::right);
+/// wants it for: `auto` opens no other, and a simulated hand is that one (right if any will do).
+/// Errors: usage (kind, option), no_device (missing, or does not answer like a glove),
+/// no_permission.
+Result<std::unique_ptr<Glove>> open_glove(std::string_view spec,
+                                          std::optional<Side> side = std::nullopt);
 
 /// A line a kind of glove, for `--help`: its grammar and what it is.
 struct DriverSummary {
