@@ -148,6 +148,7 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   sculptor.csrbf.merge_fraction = 0.05;
 
   std::vector<flow::HandInput> inputs;
+  inputs.reserve(hands.size());
   for (const auto& hand : hands) {
     inputs.push_back(
         {hand.ring.get(), hand::HandSkeleton(hand.side), hand::default_calibration(), hand.first});

@@ -150,6 +150,10 @@ TEST_SUITE("transport") {
       return; // only root may give files away
     const Error error = open_error(path, EACCES);
     CHECK(error.code == Errc::no_permission);
-    CHECK(error.message.find("sudo usermod -aG dialout $USER") != std::string::npos);
+    CHECK(error.message.find("sudo usermod -aG dialout $USER") ==
+          std::string::npos); // 0644: no use
+    std::filesystem::permissions(path, std::filesystem::perms(0660));
+    CHECK(open_error(path, EACCES).message.find("sudo usermod -aG dialout $USER") !=
+          std::string::npos);
   }
 }

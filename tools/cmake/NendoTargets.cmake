@@ -10,7 +10,7 @@ function(nendo_settings target scope)
   endif()
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET default)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
-    -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wformat=2
+    -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2
     $<$<BOOL:${NENDO_WERROR}>:-Werror>)
   if(NENDO_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${NENDO_SANITIZE} -fno-sanitize-recover=all

@@ -9,7 +9,6 @@ function(nendo_test folder)
   nendo_settings(${target} PRIVATE)
   target_link_libraries(${target} PRIVATE doctest::doctest ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
-  target_compile_definitions(${target} PRIVATE NENDO_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   doctest_discover_tests(${target} TEST_PREFIX "${folder}/" 
     PROPERTIES TIMEOUT 120 FAIL_REGULAR_EXPRESSION "test cases: +0 ")
 endfunction()

@@ -10,7 +10,6 @@
 
 namespace nendo::flow {
 
-using deform::FieldStatus;
 using deform::Points;
 
 namespace {

@@ -59,9 +59,8 @@ FieldStatus Sculptor::finish(const Points& tips, Points& out) noexcept {
 }
 
 const deform::CsrbfField& Sculptor::field() const noexcept {
-  return std::visit(
-      [](const auto& deformer) -> const deform::CsrbfField& { return deformer.field(); },
-      deformer_);
+  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
+  return type1 != nullptr ? type1->field() : std::get_if<Type2Deformer>(&deformer_)->field();
 }
 
 } // namespace nendo::flow

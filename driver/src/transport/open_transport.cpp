@@ -13,21 +13,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string group_of(const std::string& path) {
+/// The group whose members may read and write it; empty if there is none but root's.
+std::string group_with_access(const std::string& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return {};
+  constexpr mode_t group_access = S_IRGRP | S_IWGRP;
+  if (::stat(path.c_str(), &status) != 0 || (status.st_mode & group_access) != group_access)
+    return {};
   std::array<char, 4096> text{};
   group entry{};
   group* found = nullptr;
   ::getgrgid_r(status.st_gid, &entry, text.data(), text.size(), &found);
-  return found != nullptr ? found->gr_name : std::string{};
+  return found != nullptr && found->gr_gid != 0 ? found->gr_name : std::string{};
 }
 
 Error permission_error(const std::string& path) {
-  const std::string name = group_of(path);
-  if (name.empty() || name == "root") {
-    return {Errc::no_permission, path + ": no permission to open it; install nendo's udev rules, "
-                                        "then plug the glove in again"};
+  const std::string name = group_with_access(path);
+  if (name.empty()) {
+    return {Errc::no_permission,
+            path +
+                ": no permission to open it; until it is plugged in again this helps: "
+                "sudo chown $USER " +
+                path};
   }
   return {Errc::no_permission, path + ": only group " + name +
                                    " may open it; add yourself to it: sudo usermod -aG " + name +
