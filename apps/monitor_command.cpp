@@ -44,7 +44,8 @@ std::string json_line(const GloveSample& sample, const hand::Calibration& calibr
   return line.dump();
 }
 
-// 22 sensors and two lines of heading fit a terminal of 24 lines.
+// 22 sensors and two lines of heading fit a terminal of 24 lines, if the last does not end in a new
+// line.
 std::string screen(const GloveSample& sample, const driver::GloveInfo& info,
                    const driver::GloveStats& stats, const hand::Calibration& calibration) {
   constexpr int bar_width = 32;
@@ -52,16 +53,17 @@ std::string screen(const GloveSample& sample, const driver::GloveInfo& info,
   out << "\x1b[H" << info.source << ": " << info.model << ", " << name_of(sample.side)
       << " hand\x1b[K\n"
       << stats.records << " records, " << stats.bad_records << " bad, " << stats.ring_refused
-      << " lost; Ctrl-C ends\x1b[K\n";
+      << " lost; Ctrl-C ends\x1b[K";
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     if (!sample.present.has(sensor)) continue;
     const int filled = std::min(bar_width, sample[sensor].value * bar_width / 255);
-    out << std::left << std::setw(23) << name_of(sensor) << std::right << std::setw(4)
+    out << '\n'
+        << std::left << std::setw(23) << name_of(sensor) << std::right << std::setw(4)
         << sample[sensor].value << ' ' << std::string(static_cast<std::size_t>(filled), '#')
         << std::string(static_cast<std::size_t>(bar_width - filled), '.') << std::setw(6)
         << std::fixed << std::setprecision(2) << calibration[sensor].angle_rad(sample[sensor])
-        << " rad\x1b[K\n";
+        << " rad\x1b[K";
   }
   return out.str() + "\x1b[J";
 }
@@ -93,6 +95,7 @@ int monitor(const Options& options) {
     std::this_thread::sleep_for(std::chrono::milliseconds(json ? 2 : 33));
   }
   (*glove)->stop();
+  if (!json) std::cout << std::endl;
   return 0;
 }
 

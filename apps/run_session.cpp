@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <thread>
 #include <utility>
 
@@ -114,6 +115,20 @@ double longest_side(const deform::Mesh& model) {
   return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
 }
 
+// A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
+// room elsewhere.
+Result<void> keep(const std::string& out, const deform::Mesh& shape) {
+  const auto written = deform::write_mesh(out, shape);
+  if (written) return {};
+  const std::filesystem::path wanted(out);
+  const auto elsewhere = std::filesystem::temp_directory_path() / wanted.filename();
+  std::error_code ignored;
+  if (std::filesystem::exists(elsewhere, ignored) || !deform::write_mesh(elsewhere, shape))
+    return written.error();
+  return Error{Errc::failed,
+               written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
+}
+
 std::uint64_t ticks_for(const RunOptions& options) {
   if (options.duration_s <= 0.0) return std::numeric_limits<std::uint64_t>::max();
   return static_cast<std::uint64_t>(
@@ -181,7 +196,7 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
     hand.glove->stop();
 
   model.vertices = loop.final_shape();
-  if (const auto written = deform::write_mesh(options.out, model); !written) return written.error();
+  if (const auto kept = keep(options.out, model); !kept) return kept.error();
   return RunOutcome{loop.stats(), elapsed_s, model.vertices.cols(), sculptor.radius, options.out};
 }
 

@@ -1,5 +1,6 @@
 #include <nendo/hand/skeleton.hpp>
 
+#include <cmath>
 #include <numbers>
 
 namespace nendo::hand {
@@ -62,9 +63,12 @@ constexpr double thumb_pronation_rad = degrees(60);
 // much; those of index and middle finger are fixed to the carpus.
 constexpr double arch_share[4] = {0.0, 0.0, 0.5, 1.0};
 
-// The rotation that takes -Z to `direction` by the shortest way.
+// The rotation that takes -Z to `direction` by the shortest way; `direction` is not +Z. (Eigen's
+// own takes an SVD for the case that cannot be.)
 Matrix3d pointing(const Vector3d& direction) {
-  return Eigen::Quaterniond::FromTwoVectors(-Vector3d::UnitZ(), direction).toRotationMatrix();
+  const Vector3d axis = (-Vector3d::UnitZ()).cross(direction);
+  const double angle_rad = std::atan2(axis.norm(), -direction.z());
+  return angle_rad > 0.0 ? AngleAxisd(angle_rad, axis.normalized()).matrix() : Matrix3d::Identity();
 }
 
 } // namespace

@@ -82,6 +82,24 @@ TEST_SUITE("run") {
     CHECK(deform::read_mesh(out));
   }
 
+  TEST_CASE("a shape that cannot be written where it was wanted is kept elsewhere") {
+    const TemporaryFolder folder;
+    const auto name = folder.path().filename().string() + ".obj"; // of this test alone
+    const auto gone = folder.path() / "gone";
+    std::filesystem::create_directory(gone);
+    nendo::test::Program program({"run", "--left", "sim", "--out", (gone / name).string()});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    std::filesystem::remove(gone);
+    program.signal(SIGTERM);
+    const auto done = program.wait();
+    CAPTURE(done.err);
+    CHECK(done.exit_code == 1);
+    const auto rescued = std::filesystem::temp_directory_path() / name;
+    CHECK(done.err.find(rescued.string()) != std::string::npos);
+    CHECK(deform::read_mesh(rescued));
+    std::filesystem::remove(rescued);
+  }
+
   TEST_CASE("without a glove the run says that it fell back to simulated hands") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "shape.obj";

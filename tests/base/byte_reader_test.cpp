@@ -6,10 +6,12 @@
 
 using nendo::ByteReader;
 
-TEST_SUITE("byte_reader") {
-  constexpr std::array<std::byte, 6> bytes{std::byte{0x01}, std::byte{0x02}, std::byte{0x03},
-                                           std::byte{0x04}, std::byte{0x85}, std::byte{0xF6}};
+namespace {
+constexpr std::array<std::byte, 6> bytes{std::byte{0x01}, std::byte{0x02}, std::byte{0x03},
+                                         std::byte{0x04}, std::byte{0x85}, std::byte{0xF6}};
+} // namespace
 
+TEST_SUITE("byte_reader") {
   TEST_CASE("multi-byte numbers are read least significant byte first") {
     ByteReader reader(bytes);
     CHECK(reader.u16_le() == 0x0201);

@@ -9,12 +9,16 @@ using nendo::Errc;
 using nendo::Error;
 using nendo::Result;
 
-TEST_SUITE("result") {
-  Result<std::unique_ptr<int>> halve(int n) {
-    if (n % 2 != 0) return Error{Errc::bad_input, std::to_string(n) + " is odd"};
-    return std::make_unique<int>(n / 2);
-  }
+namespace {
 
+Result<std::unique_ptr<int>> halve(int n) {
+  if (n % 2 != 0) return Error{Errc::bad_input, std::to_string(n) + " is odd"};
+  return std::make_unique<int>(n / 2);
+}
+
+} // namespace
+
+TEST_SUITE("result") {
   TEST_CASE("a result holds either the value or the error") {
     auto good = halve(8);
     REQUIRE(good);

@@ -41,7 +41,7 @@ TEST_SUITE("restraint") {
       // to the same rule.
       {
         const Restraint restraint;
-        for (std::uint64_t tick = 0; tick < 2000; ++tick) {
+        for (std::uint64_t tick = 0; tick < 600; ++tick) {
           const int counts_bent = static_cast<int>(tick % 60);
           test.bend(counts_bent < 30 ? counts_bent : 60 - counts_bent, HostClock::now());
           test.frame_after_tick(tick);
@@ -52,7 +52,7 @@ TEST_SUITE("restraint") {
       CHECK(counts.allocations == 0);
       CHECK(counts.frees == 0);
       CHECK(counts.locks == 0);
-      CHECK(test.loop->stats().ticks == 2000);
+      CHECK(test.loop->stats().ticks == 600);
       CHECK(test.loop->stats().failed == 0);
       CHECK((test.loop->frames().front().vertices - test.model.vertices).cwiseAbs().maxCoeff() >
             1e-3);
@@ -67,7 +67,7 @@ TEST_SUITE("restraint") {
       test::RestraintCounts counts;
       {
         const Restraint restraint;
-        test.loop->run(stop, 500);
+        test.loop->run(stop, 300);
         counts = restraint.counts();
       }
       CHECK(counts.allocations + counts.frees + counts.locks == 0);

@@ -9,18 +9,22 @@ using namespace nendo::flow;
 using deform::FieldStatus;
 using deform::Points;
 
+namespace {
+
+const Points rest = test::ball(11).vertices; // with an equator
+const Points tips = (Points(3, 2) << 1.0, -1.0, 0.0, 0.0, 0.0, 0.0).finished();
+
+SculptorOptions options_for(Mode mode) {
+  SculptorOptions options;
+  options.mode = mode;
+  options.radius = 0.6;
+  options.piece_length = 0.03;
+  return options;
+}
+
+} // namespace
+
 TEST_SUITE("sculptor") {
-  const Points rest = test::ball(11).vertices; // with an equator
-  const Points tips = (Points(3, 2) << 1.0, -1.0, 0.0, 0.0, 0.0, 0.0).finished();
-
-  SculptorOptions options_for(Mode mode) {
-    SculptorOptions options;
-    options.mode = mode;
-    options.radius = 0.6;
-    options.piece_length = 0.03;
-    return options;
-  }
-
   TEST_CASE("modes have names") {
     for (const Mode mode : {Mode::type1, Mode::type2})
       CHECK(mode_named(name_of(mode)) == mode);

@@ -8,9 +8,11 @@ using namespace nendo;
 using namespace nendo::flow;
 using namespace std::chrono_literals;
 
-TEST_SUITE("tick_grid") {
-  const HostTime start = HostTime(1000s + 17ns);
+namespace {
+constexpr HostTime start(1000s + 17ns);
+} // namespace
 
+TEST_SUITE("tick_grid") {
   TEST_CASE("90 Hz does not drift: a day of ticks takes a day, to the nanosecond") {
     const TickGrid grid(start, 90.0);
     CHECK(grid.deadline(0) == start);

@@ -1,10 +1,11 @@
 #include <nendo/flow/placement.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 
 namespace nendo::flow {
 namespace {
@@ -94,10 +95,13 @@ Isometry3d first_guess(const Surface& surface, Side side, const Fingertips& tips
   const Matrix3d held = holding_orientation(side);
   const Vector3d inwards = -outwards_of(side) * Vector3d::UnitX();
   const Fingertips spread = tips.colwise() - tips.rowwise().mean();
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 3, 5>> svd(spread, Eigen::ComputeFullU);
-  Vector3d facing = held * svd.matrixU().col(2);
+  Eigen::SelfAdjointEigenSolver<Matrix3d> principal;
+  principal.computeDirect(spread * spread.transpose()); // the first axis is that of least extent
+  Vector3d facing = held * principal.eigenvectors().col(0);
   if (facing.dot(inwards) < 0.0) facing = -facing;
-  T.linear() = Eigen::Quaterniond::FromTwoVectors(facing, inwards) * held;
+  const Vector3d axis = facing.cross(inwards);
+  const double angle_rad = std::atan2(axis.norm(), facing.dot(inwards));
+  T.linear() = Eigen::AngleAxisd(angle_rad, axis.stableNormalized()).matrix() * held;
   T.translation() =
       first_contact(surface, side, height_fraction) - T.linear() * tips.rowwise().mean();
   return T;
