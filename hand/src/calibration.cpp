@@ -16,19 +16,19 @@ Calibration default_calibration() noexcept {
   set(Sensor::thumb_ip, 85, 0.0125);
   set(Sensor::thumb_abduction, 100, 0.0125);
   for (const auto mcp :
-       {Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::little_mcp}) {
+       {Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::pinky_mcp}) {
     set(mcp, 60, 0.0125);
   }
   for (const auto pip :
-       {Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::little_pip}) {
+       {Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::pinky_pip}) {
     set(pip, 60, 0.0125);
   }
   for (const auto dip :
-       {Sensor::index_dip, Sensor::middle_dip, Sensor::ring_dip, Sensor::little_dip}) {
+       {Sensor::index_dip, Sensor::middle_dip, Sensor::ring_dip, Sensor::pinky_dip}) {
     set(dip, 50, 0.0125);
   }
   for (const auto pair : {Sensor::index_middle_abduction, Sensor::middle_ring_abduction,
-                          Sensor::ring_little_abduction}) {
+                          Sensor::ring_pinky_abduction}) {
     set(pair, 100, 0.0100);
   }
   set(Sensor::palm_arch, 80, 0.0100);

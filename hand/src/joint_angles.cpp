@@ -58,7 +58,7 @@ JointAngles joint_angles(const GloveSample& sample, const Calibration& calibrati
   };
   const double index_middle = measured(Sensor::index_middle_abduction, pair_abduction);
   const double middle_ring = measured(Sensor::middle_ring_abduction, pair_abduction);
-  const double ring_little = measured(Sensor::ring_little_abduction, pair_abduction);
+  const double ring_pinky = measured(Sensor::ring_pinky_abduction, pair_abduction);
 
   JointAngles angles;
   angles.thumb_roll_rad = measured(Sensor::thumb_roll, thumb_roll);
@@ -69,8 +69,8 @@ JointAngles joint_angles(const GloveSample& sample, const Calibration& calibrati
       finger(Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip, index_middle);
   angles[Finger::middle] = finger(Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip, 0.0);
   angles[Finger::ring] = finger(Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip, -middle_ring);
-  angles[Finger::little] = finger(Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip,
-                                  -(middle_ring + ring_little));
+  angles[Finger::little] =
+      finger(Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip, -(middle_ring + ring_pinky));
   angles.palm_arch_rad = measured(Sensor::palm_arch, palm_arch);
   angles.wrist_pitch_rad = measured(Sensor::wrist_pitch, wrist_pitch);
   angles.wrist_yaw_rad = measured(Sensor::wrist_yaw, wrist_yaw);

@@ -24,10 +24,10 @@ TEST_SUITE("calibration") {
     };
     CHECK(reaches(Sensor::index_mcp, -20, 90));
     CHECK(reaches(Sensor::middle_pip, 0, 105));
-    CHECK(reaches(Sensor::little_dip, 0, 80));
+    CHECK(reaches(Sensor::pinky_dip, 0, 80));
     CHECK(reaches(Sensor::thumb_roll, 0, 75));
     CHECK(reaches(Sensor::thumb_abduction, 0, 50));
-    CHECK(reaches(Sensor::ring_little_abduction, 0, 30));
+    CHECK(reaches(Sensor::ring_pinky_abduction, 0, 30));
     CHECK(reaches(Sensor::wrist_pitch, -70, 70));
     CHECK(reaches(Sensor::wrist_yaw, -30, 25));
   }

@@ -70,7 +70,7 @@ TEST_SUITE("joint_angles") {
     CHECK(angle_after(Sensor::ring_pip, [](const JointAngles& a) {
             return a[Finger::ring].pip_flexion_rad;
           }) == doctest::Approx(step));
-    CHECK(angle_after(Sensor::little_dip, [](const JointAngles& a) {
+    CHECK(angle_after(Sensor::pinky_dip, [](const JointAngles& a) {
             return a[Finger::little].dip_flexion_rad;
           }) == doctest::Approx(step));
     CHECK(angle_after(Sensor::wrist_yaw, [](const JointAngles& a) { return a.wrist_yaw_rad; }) ==
@@ -81,7 +81,7 @@ TEST_SUITE("joint_angles") {
     GloveSample sample = flat_sample(sensors_22);
     set(sample, Sensor::index_middle_abduction, 20);
     set(sample, Sensor::middle_ring_abduction, 15);
-    set(sample, Sensor::ring_little_abduction, 10);
+    set(sample, Sensor::ring_pinky_abduction, 10);
     const JointAngles angles = joint_angles(sample, default_calibration());
     CHECK(angles[Finger::index].mcp_abduction_rad == doctest::Approx(0.20));
     CHECK(angles[Finger::middle].mcp_abduction_rad == 0.0);

@@ -20,7 +20,7 @@ constexpr std::string_view name_of(Side side) noexcept {
 
 /// The CyberGlove's 24 sensor slots, in the order of its mask bits (vendor library and manual
 /// agree). The abduction sensors beside the thumb's measure the angle between two neighbouring
-/// fingers.
+/// fingers. Sensors say pinky, as the glove's own documents do; joints say little, as OpenXR does.
 enum class Sensor : std::uint8_t {
   thumb_roll,
   thumb_mcp,
@@ -38,10 +38,10 @@ enum class Sensor : std::uint8_t {
   ring_pip,
   ring_dip,
   middle_ring_abduction,
-  little_mcp,
-  little_pip,
-  little_dip,
-  ring_little_abduction,
+  pinky_mcp,
+  pinky_pip,
+  pinky_dip,
+  ring_pinky_abduction,
   palm_arch,
   wrist_pitch,
   wrist_yaw,
@@ -55,7 +55,7 @@ inline constexpr std::array<std::string_view, sensor_slots> sensor_names{
     "index_mcp",  "index_pip",   "index_dip",  "index_abduction",
     "middle_mcp", "middle_pip",  "middle_dip", "index_middle_abduction",
     "ring_mcp",   "ring_pip",    "ring_dip",   "middle_ring_abduction",
-    "little_mcp", "little_pip",  "little_dip", "ring_little_abduction",
+    "pinky_mcp",  "pinky_pip",   "pinky_dip",  "ring_pinky_abduction",
     "palm_arch",  "wrist_pitch", "wrist_yaw",  "unused",
 };
 
