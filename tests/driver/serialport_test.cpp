@@ -235,6 +235,12 @@ TEST_SUITE("serialport") {
     REQUIRE(found.size() == 1);
     CHECK(found[0].identified);
     CHECK(open_glove("auto:left"));
+    // Closed, it is free again for everybody; root, for whom it always was, would not notice.
+    const int port = ::open("/dev/ttyUSB0", O_RDWR | O_NOCTTY | O_CLOEXEC);
+    int exclusive = -1;
+    CHECK(::ioctl(port, TIOCGEXCL, &exclusive) == 0);
+    CHECK(exclusive == 0);
+    ::close(port);
     CHECK(open_glove("auto"));
     CHECK(open_glove("auto", Side::left));
     const auto right = open_glove("auto:right");

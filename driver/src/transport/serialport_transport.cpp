@@ -30,6 +30,8 @@ public:
     // Otherwise closing waits, half a minute by default, for bytes that a dead line will never
     // take.
     sp_flush(port_.get(), SP_BUF_BOTH);
+    // A terminal that something else keeps alive would stay closed to everybody but root.
+    ::ioctl(fd_, TIOCNXCL);
     sp_close(port_.get());
   }
 
