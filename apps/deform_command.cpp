@@ -46,7 +46,7 @@ Result<void> deform_file(const Options& options) {
   CsrbfSolver solver(*csrbf);
   CsrbfField field;
   FieldStatus status = solver.build(vectors->starts, *radii);
-  if (status == FieldStatus::ok || status == FieldStatus::merged) {
+  if (is_solved(status)) {
     const FieldStatus solved = solver.solve(vectors->displacements, field);
     if (solved != FieldStatus::ok) status = solved;
   }
