@@ -39,7 +39,7 @@ std::string json_line(const GloveSample& sample, const hand::Calibration& calibr
                               {"sequence", sample.sequence},
                               {"hand", name_of(sample.side)},
                               {"raw", std::move(raw)}};
-  if (sample.has_device_time) line["device_time_s"] = sample.device_ticks / 115200.0;
+  if (sample.has_device_time) line["device_time_s"] = to_seconds(sample.device_time);
   if (!raw_only) line["angle_rad"] = std::move(angles);
   return line.dump();
 }

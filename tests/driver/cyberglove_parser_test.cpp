@@ -44,7 +44,7 @@ Bytes joined(std::initializer_list<Bytes> parts) {
 
 struct Outcome {
   std::vector<Record> records;
-  ParserCounters counters;
+  nendo::driver::StreamCounters counters;
   std::size_t pending = 0;
 };
 

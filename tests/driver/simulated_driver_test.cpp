@@ -95,8 +95,9 @@ TEST_SUITE("simulated_driver") {
       REQUIRE(samples[n].sequence == samples[n - 1].sequence + 1);
       REQUIRE(samples[n].arrival > samples[n - 1].arrival);
       // The device's time lies on the grid: a late sample moves none of those after it.
-      const std::uint32_t ticks = samples[n].device_ticks - samples[n - 1].device_ticks;
-      REQUIRE((ticks + 1) % 576 <= 2); // 115200 / 200
+      const auto apart = samples[n].device_time - samples[n - 1].device_time;
+      REQUIRE(apart % std::chrono::milliseconds(5) == std::chrono::nanoseconds(0));
+      REQUIRE(samples[n].measured - samples[n - 1].measured == apart);
     }
     const double took_s = nendo::to_seconds(samples.back().arrival - samples.front().arrival);
     CHECK(took_s > 0.99 * static_cast<double>(samples.size() - 1) / 200.0 - 0.02);

@@ -21,7 +21,7 @@ void check_record(const Record& record, const RecordShape& shape) {
 }
 
 void check_conservation(const Parser& parser, std::uint64_t pushed) {
-  const ParserCounters& counters = parser.counters();
+  const nendo::driver::StreamCounters& counters = parser.counters();
   require(counters.bytes == pushed);
   require(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
   require(parser.pending() < most_record_bytes);

@@ -1,8 +1,8 @@
 #pragma once
 // The CyberGlove: I, II and III over anything that looks like a serial port.
 
-#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <nendo/base/result.hpp>
@@ -10,7 +10,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/open_glove.hpp>
 
-#include "transport/transport.hpp"
+#include "stream/stream_glove.hpp"
 
 namespace nendo::driver {
 
@@ -20,8 +20,6 @@ Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<
 /// The same for the path and rate of a port, done by `deadline`.
 Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline);
 
-/// Opens the port anew; called again from the reader thread whenever the device vanished.
-using OpenPort = std::function<Result<std::unique_ptr<Transport>>()>;
 /// Opens, identifies and sets up the glove. Errors: those of `open_port`, no_device.
 Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPort open_port,
                                                HostTime deadline);

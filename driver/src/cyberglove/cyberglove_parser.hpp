@@ -10,6 +10,7 @@
 #include <span>
 
 #include "cyberglove/cyberglove_protocol.hpp"
+#include "stream/stream_counters.hpp"
 
 namespace nendo::driver::cyberglove {
 
@@ -37,15 +38,6 @@ struct Record {
 std::optional<Record> decode_record(std::span<const std::byte> frame,
                                     const RecordShape& shape) noexcept;
 
-/// Monotonic; bytes = record_bytes + discarded_bytes + pending().
-struct ParserCounters {
-  std::uint64_t bytes = 0;
-  std::uint64_t record_bytes = 0;
-  std::uint64_t discarded_bytes = 0;
-  std::uint64_t records = 0;
-  std::uint64_t bad_records = 0; ///< frames that were no good record
-};
-
 class Parser {
 public:
   explicit Parser(const RecordShape& shape) noexcept : shape_(shape) {}
@@ -64,7 +56,7 @@ public:
   /// Counts bytes that somebody else read from the same stream and that were no records.
   void count_discarded(std::uint64_t bytes) noexcept;
 
-  const ParserCounters& counters() const noexcept { return counters_; }
+  const StreamCounters& counters() const noexcept { return counters_; }
   /// Bytes of the unfinished record; always less than most_record_bytes.
   std::size_t pending() const noexcept { return held_; }
 
@@ -76,7 +68,7 @@ private:
   std::array<std::byte, most_record_bytes> frame_{};
   std::size_t held_ = 0;
   bool overlong_ = false; ///< the frame outgrew every record; skip to its NUL
-  ParserCounters counters_;
+  StreamCounters counters_;
 };
 
 } // namespace nendo::driver::cyberglove

@@ -67,17 +67,19 @@ public:
     return stats;
   }
 
+  void give(const Feedback& /*feedback*/) noexcept override {} // it has nothing to show it with
+
 private:
   void read(const std::stop_token& stop, SampleRing& ring) {
-    const HostTime begin = HostClock::now();
+    begin_ = HostClock::now();
     std::mutex mutex;
     std::condition_variable_any
         wake; // woken by `stop` alone: a slow glove stops as promptly as a fast one
     std::unique_lock lock(mutex);
     for (std::int64_t tick = 0;; ++tick) {
-      wake.wait_until(lock, stop, begin + tick * period_, [] { return false; });
+      wake.wait_until(lock, stop, begin_ + tick * period_, [] { return false; });
       if (stop.stop_requested()) return;
-      tick = std::max(tick, (HostClock::now() - begin) / period_);
+      tick = std::max(tick, (HostClock::now() - begin_) / period_);
       deliver(tick * period_, ring);
     }
   }
@@ -92,19 +94,18 @@ private:
     sample.side = info_.side;
     sample.sequence = records_.load(std::memory_order_relaxed);
     sample.has_device_time = true;
-    sample.device_ticks = static_cast<std::uint32_t>(
-        static_cast<std::uint64_t>(to_seconds(elapsed) * device_ticks_per_s));
+    sample.device_time = elapsed;
+    sample.measured = begin_ + elapsed;
     sample.arrival = HostClock::now();
     if (!ring.try_push(sample)) ring_refused_.fetch_add(1, std::memory_order_relaxed);
     records_.fetch_add(1, std::memory_order_relaxed);
   }
 
-  static constexpr double device_ticks_per_s = 115200.0;
-
   GloveInfo info_;
   HandMotion motion_;
   TypicalWearer wearer_;
   HostClock::duration period_;
+  HostTime begin_; ///< used by the reader thread only
   std::atomic<std::uint64_t> records_{0};
   std::atomic<std::uint64_t> ring_refused_{0};
   bool started_ = false;

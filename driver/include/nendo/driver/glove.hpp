@@ -2,13 +2,38 @@
 // The hardware abstraction: whatever the glove, it is one of these. An open glove is a working
 // glove; opening is open_glove()'s task (open_glove.hpp), so a half-open one does not exist.
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/sample.hpp>
 
 namespace nendo::driver {
+
+/// What a glove can do besides measuring.
+struct Abilities {
+  bool wrist_switch = false; ///< its samples tell the switch's position
+  bool light = false;        ///< a light at the wrist
+  bool vibration = false;    ///< six vibrators: thumb to pinky, palm (CyberTouch)
+  bool resistance = false;   ///< brakes on the five fingers (LucidGloves)
+};
+
+/// What the wearer sees and feels. A glove ignores what it has not.
+struct Feedback {
+  bool light = false;
+  std::array<std::uint8_t, 6> vibration{};   ///< 0 to 255
+  std::array<std::uint16_t, 5> resistance{}; ///< 0 (free) to 1000, thumb to pinky
+  friend bool operator==(const Feedback&, const Feedback&) = default;
+};
+
+/// One thing that a glove says of itself, e.g. {"firmware", "2.1"}. Names are stable, lower case
+/// with underscores, a unit at the end where there is one; values are one printable line.
+struct GloveFact {
+  std::string name;
+  std::string value;
+};
 
 struct GloveInfo {
   std::string source; ///< the GLOVE specification that opened it, e.g. "serial:/dev/ttyUSB0"
@@ -16,19 +41,29 @@ struct GloveInfo {
   Side side = Side::right;
   SensorMask sensors;   ///< slots that its samples carry
   double rate_hz = 0.0; ///< nominal records a second; 0 if unknown
+  CountScale counts;
+  Abilities abilities;
+  std::vector<GloveFact> facts; ///< everything else that it says of itself
 };
 
 /// Monotonic counts since start(). bytes = record_bytes + discarded_bytes + a remainder shorter
-/// than one record.
+/// than one record. For a glove with a clock of its own: records sent = records + missed, as soon
+/// as the next good record has arrived.
 struct GloveStats {
   std::uint64_t bytes = 0;           ///< received from the device
   std::uint64_t record_bytes = 0;    ///< that were part of a delivered record
   std::uint64_t discarded_bytes = 0; ///< that were not: noise, damaged records, replies
   std::uint64_t records = 0;         ///< whole, valid records
-  std::uint64_t bad_records = 0;     ///< framed by NUL, but of wrong length, header or content
-  std::uint64_t ring_refused = 0;    ///< samples that found the ring full
-  std::uint64_t silences = 0;        ///< times the stream stopped and was started again
-  std::uint64_t reopened = 0;        ///< times the device vanished and was opened again
+  std::uint64_t bad_records = 0;     ///< framed, but of wrong length, header, checksum or content
+  std::uint64_t implausible = 0;     ///< of these: well formed, but time stamp or status contradict
+  std::uint64_t missed = 0;    ///< sent, as the glove's own clock tells, and not delivered; the bad
+                               ///< ones among them
+  std::uint64_t too_fast = 0;  ///< delivered, but sampled off the period, as the glove says (`es`)
+  std::uint64_t unplugged = 0; ///< records without a glove (`eg`), not delivered
+  std::uint64_t ring_refused = 0; ///< samples that found the ring full
+  std::uint64_t silences = 0;     ///< times the stream stopped and was started again
+  std::uint64_t reopened = 0;     ///< times the device vanished and was opened again
+  double rate_hz = 0.0;           ///< records a second over the last second or two; 0 at first
 };
 
 class Glove {
@@ -38,7 +73,8 @@ public:
   Glove& operator=(const Glove&) = delete;
   virtual ~Glove() = default; ///< stops the stream if it runs; may block for a second
 
-  /// What was learnt when it was opened. Constant; any thread.
+  /// What was learnt when it was opened. Constant, also where another glove was plugged in
+  /// meanwhile: samples tell their hand and sensors themselves. Any thread.
   virtual const GloveInfo& info() const noexcept = 0;
   /// Starts the reader thread, which is the only producer of `ring`; the ring must outlive stop().
   /// May block for a second. Errors: no_device (it no longer answers), failed (called twice).
@@ -47,6 +83,11 @@ public:
   virtual void stop() noexcept = 0;
   /// Any thread, wait-free.
   virtual GloveStats stats() const noexcept = 0;
+  /// What the glove is to show from now on; the latest counts, and it is shown again after a
+  /// reconnect. The reader thread sends it: within 0.2 s, without losing a record of gloves that
+  /// take commands while they stream; a CyberGlove's stream pauses for it. Any thread, does not
+  /// block.
+  virtual void give(const Feedback& feedback) noexcept = 0;
 };
 
 } // namespace nendo::driver

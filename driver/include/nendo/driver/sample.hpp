@@ -3,6 +3,7 @@
 // Counts only; angles begin in `hand`. This is the one header of `driver` that `hand` may include.
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -77,14 +78,32 @@ struct SensorMask {
 inline constexpr SensorMask sensors_22{0x7FFF7F};
 inline constexpr SensorMask sensors_18{0x7BBB3F};
 
+/// What a glove's counts mean before anyone has calibrated it to a wearer.
+struct CountScale {
+  std::uint16_t most = 255; ///< the largest count
+  /// True: 0 is the straight (closed) joint and `most` the fully bent (spread) one, as gloves
+  /// report that calibrate themselves. False: the bare converter of a CyberGlove.
+  bool whole_range = false;
+  friend constexpr bool operator==(CountScale, CountScale) = default;
+};
+
+/// The switch at a CyberGlove's wrist, as far as the glove tells.
+enum class WristSwitch : std::uint8_t { unknown, off, on };
+
 struct GloveSample {
   HostTime arrival{}; ///< when the record's last byte reached the host
+  /// When the glove took it: its own time stamp on the host's clock, freed of the host's jitter by
+  /// an estimate of offset and drift. Equals `arrival` unless has_device_time.
+  HostTime measured{};
+  /// The glove's own clock since its own zero, unwrapped; if has_device_time.
+  std::chrono::nanoseconds device_time{};
   std::uint64_t sequence =
       0; ///< counts every record of this glove, also those that the ring refused
   std::array<RawCount, sensor_slots> raw{};
-  SensorMask present;             ///< which slots of `raw` were measured
-  std::uint32_t device_ticks = 0; ///< the glove's own time stamp in 1/115200 s, if has_device_time
+  SensorMask present; ///< which slots of `raw` were measured
   bool has_device_time = false;
+  bool sampled_too_fast = false; ///< the glove says that it cannot keep its period (`es`)
+  WristSwitch wrist_switch = WristSwitch::unknown;
   Side side = Side::right;
 
   constexpr RawCount operator[](Sensor sensor) const noexcept {

@@ -1,0 +1,22 @@
+#pragma once
+// What every parser counts, and what adds up for every glove.
+
+#include <cstdint>
+
+namespace nendo::driver {
+
+/// Monotonic; bytes = record_bytes + discarded_bytes + what the parser still holds, which is less
+/// than one longest record.
+struct StreamCounters {
+  std::uint64_t bytes = 0;
+  std::uint64_t record_bytes = 0;
+  std::uint64_t discarded_bytes = 0;
+  std::uint64_t records = 0;     ///< delivered
+  std::uint64_t bad_records = 0; ///< frames that were no good record
+  std::uint64_t implausible = 0; ///< of these: well formed, but contradicting what went before
+  std::uint64_t missed = 0;      ///< sent, as the device's clock tells, and not delivered
+  std::uint64_t too_fast = 0;    ///< delivered, but not sampled when they should have been
+  std::uint64_t unplugged = 0;   ///< whole records that say that no glove is plugged in
+};
+
+} // namespace nendo::driver

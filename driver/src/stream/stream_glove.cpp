@@ -1,0 +1,306 @@
+#include "stream/stream_glove.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace nendo::driver {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto start_budget = 900ms;
+constexpr auto stop_budget = 400ms;
+constexpr auto give_budget = 400ms;
+constexpr auto read_timeout = 100ms; ///< also how soon the reader notices that it is to stop
+constexpr auto shortest_silence = 1500ms;
+constexpr auto retry_interval = 500ms;
+constexpr auto rate_window = 1s;
+constexpr double rate_tolerance = 0.05;
+
+/// GloveStats, written by the reader thread and read by any.
+struct SharedStats {
+  std::atomic<std::uint64_t> bytes{0}, record_bytes{0}, discarded_bytes{0}, records{0},
+      bad_records{0}, implausible{0}, missed{0}, too_fast{0}, unplugged{0}, ring_refused{0},
+      silences{0}, reopened{0};
+  std::atomic<double> rate_hz{0.0};
+
+  /// `now` and `then` are the protocol's counters, which outlive a stop() and another start().
+  void store(const StreamCounters& now, const StreamCounters& then) noexcept {
+    record_bytes = now.record_bytes - then.record_bytes;
+    discarded_bytes = now.discarded_bytes - then.discarded_bytes;
+    records = now.records - then.records;
+    bad_records = now.bad_records - then.bad_records;
+    implausible = now.implausible - then.implausible;
+    missed = now.missed - then.missed;
+    too_fast = now.too_fast - then.too_fast;
+    unplugged = now.unplugged - then.unplugged;
+    bytes = now.bytes - then.bytes;
+  }
+  GloveStats load() const noexcept {
+    GloveStats stats;
+    stats.record_bytes = record_bytes;
+    stats.discarded_bytes = discarded_bytes;
+    stats.records = records;
+    stats.bad_records = bad_records;
+    stats.implausible = implausible;
+    stats.missed = missed;
+    stats.too_fast = too_fast;
+    stats.unplugged = unplugged;
+    stats.ring_refused = ring_refused;
+    stats.silences = silences;
+    stats.reopened = reopened;
+    stats.rate_hz = rate_hz;
+    stats.bytes = bytes; // last: read while the stream runs, it is never less than its parts
+    return stats;
+  }
+};
+
+class StreamGlove final : public Glove, private SampleSink {
+public:
+  StreamGlove(GloveInfo info, OpenPort open_port, std::unique_ptr<Transport> transport,
+              std::unique_ptr<GloveProtocol> protocol)
+      : info_(std::move(info)), open_port_(std::move(open_port)), transport_(std::move(transport)),
+        protocol_(std::move(protocol)), side_(info_.side), sensors_(info_.sensors) {}
+  ~StreamGlove() override { StreamGlove::stop(); }
+
+  const GloveInfo& info() const noexcept override { return info_; }
+  Result<void> start(SampleRing& ring) override;
+  void stop() noexcept override;
+  GloveStats stats() const noexcept override { return stats_.load(); }
+  void give(const Feedback& feedback) noexcept override;
+
+private:
+  enum class StreamEnd { stopped, silent, gone };
+
+  void run(const std::stop_token& token);
+  StreamEnd stream(const std::stop_token& token);
+  void deliver(GloveSample& sample) noexcept override;
+  void show_feedback(const std::stop_token& token) noexcept;
+  void measure_rate(HostTime now);
+  void revive(const std::stop_token& token);
+  void reopen(const std::stop_token& token);
+  bool restart(const std::stop_token& token, Occasion occasion);
+  void wait(const std::stop_token& token, std::chrono::milliseconds time);
+
+  const GloveInfo info_;
+  const OpenPort open_port_;
+  SharedStats stats_;
+  std::mutex feedback_mutex_;
+  Feedback feedback_; ///< guarded by feedback_mutex_
+  std::atomic<bool> feedback_changed_{false};
+
+  // Used by the reader thread only, while it runs.
+  std::unique_ptr<Transport> transport_; ///< null while the device is away
+  const std::unique_ptr<GloveProtocol> protocol_;
+  StreamCounters at_start_;
+  SampleRing* ring_ = nullptr;
+  Side side_;
+  SensorMask sensors_;
+  HostTime arrival_{};
+  HostTime last_record_{};
+  HostTime window_begin_{};
+  std::uint64_t window_records_ = 0;
+  std::uint64_t sequence_ = 0;
+  std::uint64_t bad_before_ = 0; ///< bad records at the time of the last good one
+  double rate_reported_hz_ = 0.0;
+  bool outage_ = false; ///< no record since the stream broke off
+
+  std::jthread reader_; // last: joined before what it uses is gone
+};
+
+Result<void> StreamGlove::start(SampleRing& ring) {
+  if (reader_.joinable()) return Error{Errc::failed, info_.source + " is streaming already"};
+  if (!transport_) return Error{Errc::no_device, info_.source + " went away; open it again"};
+  const Patience patience{HostClock::now() + start_budget, {}};
+  if (auto ready = protocol_->start_stream(*transport_, info_.source, patience); !ready)
+    return ready.error();
+  at_start_ = protocol_->counters();
+  stats_.store(at_start_, at_start_);
+  stats_.ring_refused = stats_.silences = stats_.reopened = 0;
+  ring_ = &ring;
+  sequence_ = 0;
+  bad_before_ = at_start_.bad_records;
+  outage_ = false;
+  window_begin_ = HostClock::now();
+  window_records_ = at_start_.records;
+  reader_ = std::jthread([this](const std::stop_token& token) { run(token); });
+  return {};
+}
+
+void StreamGlove::stop() noexcept {
+  if (!reader_.joinable()) return;
+  reader_.request_stop();
+  reader_.join();
+}
+
+void StreamGlove::give(const Feedback& feedback) noexcept {
+  const std::lock_guard lock(feedback_mutex_);
+  feedback_ = feedback;
+  feedback_changed_ = true;
+}
+
+void StreamGlove::run(const std::stop_token& token) {
+  for (;;) {
+    switch (stream(token)) {
+    case StreamEnd::stopped:
+      if (transport_) protocol_->end_stream(*transport_, {HostClock::now() + stop_budget, {}});
+      stats_.store(protocol_->counters(), at_start_);
+      return;
+    case StreamEnd::silent:
+      revive(token);
+      break;
+    case StreamEnd::gone:
+      reopen(token);
+      break;
+    }
+  }
+}
+
+StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
+  std::array<std::byte, 1024> buffer{};
+  const HostClock::duration three_periods =
+      info_.rate_hz > 0.0 ? std::chrono::duration_cast<HostClock::duration>(
+                                std::chrono::duration<double>(std::min(3.0 / info_.rate_hz, 60.0)))
+                          : HostClock::duration{};
+  const auto longest_silence = std::max<HostClock::duration>(shortest_silence, three_periods);
+  last_record_ = HostClock::now();
+  while (!token.stop_requested()) {
+    if (!transport_) return StreamEnd::gone;
+    const auto [status, count] = transport_->read_some(buffer, read_timeout);
+    arrival_ = HostClock::now();
+    if (status == IoStatus::gone) return StreamEnd::gone;
+    protocol_->push(std::span(buffer).first(count), arrival_, *this);
+    stats_.store(protocol_->counters(), at_start_);
+    measure_rate(arrival_);
+    if (arrival_ - last_record_ > longest_silence) return StreamEnd::silent;
+    if (feedback_changed_) show_feedback(token);
+  }
+  return StreamEnd::stopped;
+}
+
+void StreamGlove::deliver(GloveSample& sample) noexcept {
+  sample.arrival = arrival_;
+  if (!sample.has_device_time) sample.measured = arrival_;
+  sample.sequence = sequence_++;
+  last_record_ = arrival_;
+  if (!ring_->try_push(sample)) ++stats_.ring_refused;
+  bad_before_ = protocol_->counters().bad_records;
+  if (std::exchange(outage_, false)) spdlog::warn("device: {} streams again", info_.source);
+}
+
+void StreamGlove::show_feedback(const std::stop_token& token) noexcept {
+  Feedback feedback;
+  {
+    const std::lock_guard lock(feedback_mutex_);
+    feedback_changed_ = false;
+    feedback = feedback_;
+  }
+  protocol_->give(*transport_, feedback, {HostClock::now() + give_budget, token});
+}
+
+/// What the glove really delivers; a rate that is not the one it was set to is told once.
+void StreamGlove::measure_rate(HostTime now) {
+  if (now - window_begin_ < rate_window) return;
+  const std::uint64_t records = protocol_->counters().records;
+  const double rate_hz =
+      static_cast<double>(records - window_records_) / to_seconds(now - window_begin_);
+  const bool steady = std::abs(rate_hz - stats_.rate_hz) < rate_tolerance * rate_hz;
+  const bool wrong = std::abs(rate_hz - info_.rate_hz) > rate_tolerance * info_.rate_hz;
+  if (info_.rate_hz > 0.0 && steady && wrong && rate_reported_hz_ == 0.0) {
+    rate_reported_hz_ = rate_hz;
+    spdlog::warn("device: {} is set to {:.1f} records a second and delivers {:.1f}", info_.source,
+                 info_.rate_hz, rate_hz);
+  }
+  stats_.rate_hz = rate_hz;
+  window_begin_ = now;
+  window_records_ = records;
+}
+
+/// The glove fell silent, or sends nothing usable: it may have been switched off and on, or
+/// swapped.
+void StreamGlove::revive(const std::stop_token& token) {
+  if (!std::exchange(outage_, true)) {
+    ++stats_.silences;
+    spdlog::warn("device: {} sent no good record for {:.1f} s; starting its stream again",
+                 info_.source, to_seconds(HostClock::now() - last_record_));
+  }
+  const bool damaged = protocol_->counters().bad_records != bad_before_;
+  if (!restart(token, damaged ? Occasion::damaged : Occasion::reviving)) {
+    wait(token, retry_interval);
+  }
+}
+
+void StreamGlove::reopen(const std::stop_token& token) {
+  // At once: while the old handle is open, a device that is plugged in again gets another name.
+  transport_.reset();
+  if (!std::exchange(outage_, true)) {
+    spdlog::warn("device: {} went away; looking for it every 0.5 s", info_.source);
+  }
+  while (!token.stop_requested()) {
+    wait(token, retry_interval);
+    if (token.stop_requested()) return;
+    auto transport = open_port_();
+    if (!transport) continue;
+    transport_ = *std::move(transport);
+    if (restart(token, Occasion::reviving)) {
+      ++stats_.reopened;
+      return;
+    }
+    transport_.reset();
+  }
+}
+
+/// Asks anew who is there, sets it up as before and starts the stream.
+bool StreamGlove::restart(const std::stop_token& token, Occasion occasion) {
+  const Patience patience{HostClock::now() + open_budget, token};
+  const auto info = protocol_->identify(*transport_, info_.source, occasion, patience);
+  bool streams = false;
+  if (info) {
+    if (!(info->sensors == sensors_) || info->side != side_) {
+      spdlog::warn("device: {} is another glove now: {} hand, {}", info_.source,
+                   name_of(info->side), info->model);
+      side_ = info->side;
+      sensors_ = info->sensors;
+    }
+    streams = bool(protocol_->start_stream(*transport_, info_.source, patience));
+    const std::lock_guard lock(feedback_mutex_);
+    feedback_changed_ = !(feedback_ == Feedback{});
+  }
+  stats_.store(protocol_->counters(), at_start_);
+  return streams;
+}
+
+/// Sleeps, but wakes up when it is to stop.
+void StreamGlove::wait(const std::stop_token& token, std::chrono::milliseconds time) {
+  std::mutex mutex;
+  std::condition_variable_any woken;
+  std::unique_lock lock(mutex);
+  woken.wait_for(lock, token, time, [] { return false; });
+}
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_stream_glove(const std::string& source, OpenPort open_port,
+                                                 std::unique_ptr<GloveProtocol> protocol,
+                                                 HostTime deadline) {
+  auto transport = open_port();
+  if (!transport) return transport.error();
+  (*transport)->discard_input();
+  auto info = protocol->identify(**transport, source, Occasion::opening, {deadline, {}});
+  if (!info) return info.error();
+  info->source = source;
+  return std::unique_ptr<Glove>(std::make_unique<StreamGlove>(
+      *std::move(info), std::move(open_port), *std::move(transport), std::move(protocol)));
+}
+
+} // namespace nendo::driver

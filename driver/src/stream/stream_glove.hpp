@@ -1,0 +1,30 @@
+#pragma once
+// The life of every glove that sends a stream of bytes: the reader thread, silence, loss, coming
+// back, counting. What the bytes mean is the GloveProtocol's.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <nendo/base/result.hpp>
+#include <nendo/base/units.hpp>
+#include <nendo/driver/glove.hpp>
+
+#include "stream/glove_protocol.hpp"
+#include "transport/transport.hpp"
+
+namespace nendo::driver {
+
+/// Opens the device anew; called again from the reader thread whenever it vanished.
+using OpenPort = std::function<Result<std::unique_ptr<Transport>>()>;
+
+/// What an opening is allowed, in all.
+inline constexpr std::chrono::milliseconds open_budget{4000};
+
+/// Opens the port and identifies the glove, by `deadline`. Errors: those of `open_port` and of
+/// GloveProtocol::identify.
+Result<std::unique_ptr<Glove>> open_stream_glove(const std::string& source, OpenPort open_port,
+                                                 std::unique_ptr<GloveProtocol> protocol,
+                                                 HostTime deadline);
+
+} // namespace nendo::driver
