@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <string>
 
 namespace nendo::driver {
@@ -359,19 +358,7 @@ void CyberGloveUnit::send_record(Byte header, Time now, bool too_fast) {
 }
 
 bool CyberGloveUnit::send(const Message& message) {
-  if (message.size() > output_capacity - output_size_) {
-    counters_.bytes_refused += message.size();
-    return false;
-  }
-  std::memcpy(output_.data() + output_size_, message.data(), message.size());
-  output_size_ += message.size();
-  return true;
-}
-
-void CyberGloveUnit::take(std::size_t count) noexcept {
-  count = std::min(count, output_size_);
-  output_size_ -= count;
-  std::memmove(output_.data(), output_.data() + count, output_size_);
+  return EmulatedUnit::send(std::as_bytes(std::span(message)));
 }
 
 } // namespace nendo::driver

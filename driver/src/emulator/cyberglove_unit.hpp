@@ -1,6 +1,5 @@
 #pragma once
-// A CyberGlove's interface unit, from the device's side and without any I/O or clock: bytes from
-// the host and the time go in, bytes to the host come out. It shares no code with the driver's
+// A CyberGlove's interface unit, from the device's side. It shares no code with the driver's
 // parser, so that each can test the other. The facts are those of the vendor library (VirtualHand
 // 2, 1993) and of drivers that cite the manual; where sources disagree, cyberglove_unit.cpp says
 // what was chosen.
@@ -14,6 +13,7 @@
 
 #include <nendo/driver/sample.hpp>
 
+#include "emulator/emulated_unit.hpp"
 #include "emulator/unit_message.hpp"
 #include "simulated/hand_motion.hpp"
 #include "simulated/typical_wearer.hpp"
@@ -28,34 +28,15 @@ struct UnitOptions {
   std::uint32_t seed = 1;
 };
 
-struct UnitCounters {
-  std::uint64_t records = 0;       ///< put into the output
-  std::uint64_t bytes_refused = 0; ///< of records and replies for which the output had no room
-};
-
-class CyberGloveUnit {
+class CyberGloveUnit final : public EmulatedUnit {
 public:
-  using Time = std::chrono::nanoseconds; ///< since the unit was switched on; never goes back
-
-  static constexpr std::size_t output_capacity = 1024;
   static constexpr double most_rate_hz = 480.0; ///< records of 24 bytes that 115200 baud can carry
 
   explicit CyberGloveUnit(const UnitOptions& options);
 
-  /// Obeys the bytes that arrive at `now`, one after another. Any bytes are allowed.
-  void receive(std::span<const std::byte> bytes, Time now);
-  /// Does what is due at `now`: records of a stream, the end of a restart.
-  void advance(Time now);
-  /// When advance() will have something to do; empty if only the host can cause it.
-  std::optional<Time> next_due() const noexcept;
-
-  /// What waits for the host, at most output_capacity bytes. A message that does not fit is refused
-  /// whole.
-  std::span<const std::byte> output() const noexcept { return {output_.data(), output_size_}; }
-  /// The host has taken the first `count` bytes of output().
-  void take(std::size_t count) noexcept;
-
-  UnitCounters counters() const noexcept { return counters_; }
+  void receive(std::span<const std::byte> bytes, Time now) override;
+  void advance(Time now) override; ///< records of a stream, the end of a restart
+  std::optional<Time> next_due() const noexcept override;
 
 private:
   using Byte = unit::Byte;
@@ -113,10 +94,6 @@ private:
   std::optional<Time> restart_ends_;
   Time clock_origin_{};
   std::optional<Time> motion_origin_;
-
-  std::array<std::byte, output_capacity> output_{};
-  std::size_t output_size_ = 0;
-  UnitCounters counters_;
 };
 
 } // namespace nendo::driver
