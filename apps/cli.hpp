@@ -28,6 +28,7 @@ std::filesystem::path shipped_model(std::string_view file_name);
 /// Has `command` run when it is chosen; what it returns becomes the exit code.
 void on_chosen(CLI::App& subcommand, int& exit_code, std::function<int()> command);
 
+void add_bench(CLI::App& app, int& exit_code);
 void add_deform(CLI::App& app, int& exit_code);
 void add_devices(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);

@@ -48,6 +48,7 @@ int run(int argc, char** argv) {
   add_devices(app, exit_code);
   add_deform(app, exit_code);
   add_emulate(app, exit_code);
+  add_bench(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -35,16 +35,20 @@ struct SharedStats {
   std::atomic<double> rate_hz{0.0};
 
   /// `now` and `then` are the protocol's counters, which outlive a stop() and another start().
+  /// `bytes` goes first and is read last: it is never seen to be less than its parts.
   void store(const StreamCounters& now, const StreamCounters& then) noexcept {
-    record_bytes = now.record_bytes - then.record_bytes;
-    discarded_bytes = now.discarded_bytes - then.discarded_bytes;
-    records = now.records - then.records;
-    bad_records = now.bad_records - then.bad_records;
-    implausible = now.implausible - then.implausible;
-    missed = now.missed - then.missed;
-    too_fast = now.too_fast - then.too_fast;
-    unplugged = now.unplugged - then.unplugged;
-    bytes = now.bytes - then.bytes;
+    const auto set = [](std::atomic<std::uint64_t>& to, std::uint64_t value) {
+      to.store(value, std::memory_order_release);
+    };
+    set(bytes, now.bytes - then.bytes);
+    set(record_bytes, now.record_bytes - then.record_bytes);
+    set(discarded_bytes, now.discarded_bytes - then.discarded_bytes);
+    set(records, now.records - then.records);
+    set(bad_records, now.bad_records - then.bad_records);
+    set(implausible, now.implausible - then.implausible);
+    set(missed, now.missed - then.missed);
+    set(too_fast, now.too_fast - then.too_fast);
+    set(unplugged, now.unplugged - then.unplugged);
   }
   GloveStats load() const noexcept {
     GloveStats stats;
@@ -60,7 +64,7 @@ struct SharedStats {
     stats.silences = silences;
     stats.reopened = reopened;
     stats.rate_hz = rate_hz;
-    stats.bytes = bytes; // last: read while the stream runs, it is never less than its parts
+    stats.bytes = bytes;
     return stats;
   }
 };

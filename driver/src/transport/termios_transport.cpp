@@ -58,6 +58,10 @@ int make_raw_and_lock(int fd) {
 
 } // namespace
 
+std::unique_ptr<Transport> transport_of(int fd) {
+  return std::make_unique<TermiosTransport>(fd);
+}
+
 Result<std::unique_ptr<Transport>> open_termios(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return open_error(path, errno);
@@ -65,7 +69,7 @@ Result<std::unique_ptr<Transport>> open_termios(const std::string& path) {
     ::close(fd);
     return open_error(path, error_number);
   }
-  return std::unique_ptr<Transport>(std::make_unique<TermiosTransport>(fd));
+  return transport_of(fd);
 }
 
 } // namespace nendo::driver

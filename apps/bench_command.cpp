@@ -1,0 +1,115 @@
+// nendo bench: what this machine, and this program on it, can do. Every figure stands beside a
+// baseline of the same run.
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/driver/latency_probe.hpp>
+#include <nendo/flow/histogram.hpp>
+
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct DriverOptions {
+  driver::LatencyOptions latency;
+  bool json = false;
+};
+
+struct Column {
+  const char* name;
+  double fraction;
+};
+constexpr std::array columns{Column{"p50", 0.50}, Column{"p90", 0.90}, Column{"p99", 0.99},
+                             Column{"p99.9", 0.999}};
+
+double microseconds(std::chrono::nanoseconds time) {
+  return static_cast<double>(time.count()) / 1e3;
+}
+
+double ratio(const flow::Histogram& driver, const flow::Histogram& bare, double fraction) {
+  return microseconds(driver.percentile(fraction)) /
+         std::max(microseconds(bare.percentile(fraction)), 0.001);
+}
+
+void print_json(const char* line, const flow::Histogram& driver, const flow::Histogram& bare) {
+  const auto row = [](const flow::Histogram& histogram) {
+    nlohmann::ordered_json values{{"records", histogram.count()},
+                                  {"min", microseconds(histogram.min())}};
+    for (const Column& column : columns)
+      values[column.name] = microseconds(histogram.percentile(column.fraction));
+    values["max"] = microseconds(histogram.max());
+    return values;
+  };
+  const nlohmann::ordered_json object{
+      {"line", line},
+      {"driver_us", row(driver)},
+      {"bare_us", row(bare)},
+      {"ratio", {{"p50", ratio(driver, bare, 0.5)}, {"p99", ratio(driver, bare, 0.99)}}}};
+  std::cout << object.dump() << std::endl;
+}
+
+void print_row(const char* name, const flow::Histogram& histogram) {
+  std::printf("  %-22s %8.1f", name, microseconds(histogram.min()));
+  for (const Column& column : columns)
+    std::printf(" %8.1f", microseconds(histogram.percentile(column.fraction)));
+  std::printf(" %8.1f\n", microseconds(histogram.max()));
+}
+
+void print_text(const char* line, const flow::Histogram& driver, const flow::Histogram& bare) {
+  std::printf("%s, %llu records: from the write of the last byte to the sample in the ring, us\n",
+              line, static_cast<unsigned long long>(driver.count()));
+  std::printf("  %-22s %8s", "", "min");
+  for (const Column& column : columns)
+    std::printf(" %8s", column.name);
+  std::printf(" %8s\n", "max");
+  print_row("bare poll() and read()", bare);
+  print_row("CyberGlove driver", driver);
+  std::printf("  driver / bare: %.2f at the median, %.2f at the 99th percentile\n",
+              ratio(driver, bare, 0.5), ratio(driver, bare, 0.99));
+}
+
+int bench_driver(DriverOptions& options) {
+  if (options.latency.records == 0) {
+    return report({Errc::usage, "--records 0: measure at least one"});
+  }
+  install_stop_signals();
+  constexpr std::array<std::pair<driver::Line, const char*>, 2> lines{
+      {{driver::Line::pseudo_terminal, "pseudo-terminal"},
+       {driver::Line::socket_pair, "socket pair"}}};
+  for (const auto& [line, name] : lines) {
+    flow::Histogram driver;
+    flow::Histogram bare;
+    options.latency.line = line;
+    const auto measured = driver::measure_latency(
+        options.latency,
+        {[&](auto time) { driver.record(time); }, [&](auto time) { bare.record(time); }},
+        stop_requested());
+    if (!measured) return report(measured.error());
+    options.json ? print_json(name, driver, bare) : print_text(name, driver, bare);
+  }
+  return 0;
+}
+
+} // namespace
+
+void add_bench(CLI::App& app, int& exit_code) {
+  CLI::App& bench =
+      *app.add_subcommand("bench", "Measures this program on this machine, beside a baseline");
+  bench.require_subcommand(1);
+  auto options = std::make_shared<DriverOptions>();
+  CLI::App& command = *bench.add_subcommand(
+      "driver", "Latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
+  command.add_option("--records", options->latency.records, "Records to measure on each line")
+      ->capture_default_str();
+  command.add_option("--rate", options->latency.rate_hz, "Records a second, 1 to 480")
+      ->capture_default_str();
+  command.add_flag("--json", options->json, "One JSON object a line");
+  on_chosen(command, exit_code, [options] { return bench_driver(*options); });
+}
+
+} // namespace nendo::app
