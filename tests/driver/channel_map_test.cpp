@@ -39,6 +39,12 @@ TEST_SUITE("channel_map") {
     CHECK(make_channel_map(sensors_22, SensorMask{0}, 24).count == 0);
   }
 
+  TEST_CASE("high-resolution records carry the full glove's 22 values") {
+    using nendo::driver::cyberglove::hi_res_channels;
+    CHECK(hi_res_channels.count == 22);
+    CHECK(hi_res_channels.sensors() == sensors_22);
+  }
+
   TEST_CASE("the sensors of a map are those it was made of") {
     for (std::uint32_t bits = 1; bits < (1U << 24U); bits = bits * 3 + 1) {
       const auto map = make_channel_map(SensorMask{bits}, everything, 24);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -82,12 +83,14 @@ TEST_SUITE("cyberglove_parser") {
     }
   }
 
-  TEST_CASE("a polled record has its own header letter") {
-    Bytes polled = record_bytes(22, 1);
-    polled[0] = std::byte{'G'};
-    CHECK(parse(plain_22, polled).records.size() == 1);
-    polled[0] = std::byte{'g'};
-    CHECK(parse(plain_22, polled).records.empty());
+  TEST_CASE("streamed, polled and synchronised records are told by their header, others are none") {
+    Bytes record = record_bytes(22, 1);
+    for (int letter = 1; letter < 256; ++letter) {
+      CAPTURE(letter);
+      record[0] = static_cast<std::byte>(letter);
+      const bool known = letter == 'S' || letter == 'G' || letter == 'Y';
+      CHECK(parse(plain_22, record).records.size() == (known ? 1 : 0));
+    }
   }
 
   TEST_CASE("two records in a row are two, also when values look like headers") {
@@ -159,6 +162,64 @@ TEST_SUITE("cyberglove_parser") {
     CHECK(parse(full_22, record_bytes(22, 9, "\x80\x04\x03\x02\x01\x87")).records[0].ticks ==
           0x01020304U);
     CHECK(parse(full_22, record_bytes(22, 9, "\x8F\x01\x01\x01\x01\x87")).records[0].ticks == 0);
+    CHECK(parse(full_22, record_bytes(22, 9, "\x8F\x01\x02\x01\x01\x87")).records.empty());
+  }
+
+  TEST_CASE("a time stamp may begin with NUL, as on gloves that never set its bit 7") {
+    using namespace std::string_view_literals;
+    const Bytes record = record_bytes(22, 9, "\0\x04\x03\x02\x01\x87"sv);
+    const Outcome two = parse(full_22, joined({record, record}));
+    REQUIRE(two.records.size() == 2);
+    CHECK(two.records[1].ticks == 0x01020304U);
+    CHECK(two.counters.discarded_bytes == 0);
+    const auto late = parse(full_22, record_bytes(22, 9,
+                                                  "\0\x04\x03\x02\x01\x87"
+                                                  "es"sv));
+    CHECK(late.records.size() == 1);
+    // Cut off where the time stamp begins, it costs nothing but itself, whatever follows.
+    for (const char* tail : {"\x80\x04\x03\x02\x01\x87", "\x80\x04\x03\x02\x01\x87"
+                                                         "es"}) {
+      const auto cut = parse(full_22, joined({record_bytes(22, 9), record_bytes(22, 50, tail)}));
+      REQUIRE(cut.records.size() == 1);
+      CHECK(cut.records[0].values[0] == 50);
+      CHECK(cut.counters.bad_records == 1);
+    }
+    const auto twice = parse(full_22, joined({record_bytes(22, 9), Bytes{std::byte{0}}, record}));
+    CHECK(twice.records.size() == 1);
+    CHECK(twice.counters.bad_records == 2);
+  }
+
+  TEST_CASE("with one value, what follows a false time stamp may be a whole record") {
+    const RecordShape tiny{1, true, true};
+    const auto outcome =
+        parse(tiny, joined({record_bytes(1, 9), Bytes{std::byte{'x'}, std::byte{0}},
+                            record_bytes(1, 7, "\x80\x04\x03\x02\x01\x87")}));
+    REQUIRE(outcome.records.size() == 1);
+    CHECK(outcome.records[0].values[0] == 7);
+    CHECK(outcome.counters.bad_records == 2);
+  }
+
+  TEST_CASE("every combination of time stamp, status and error pairs is read") {
+    for (const bool stamp : {false, true}) {
+      for (const bool status : {false, true}) {
+        for (const std::string errors : {"", "es", "eg", "eges", "eseg"}) {
+          CAPTURE(errors);
+          const std::string tail =
+              std::string(stamp ? "\x80\x04\x03\x02\x01" : "") + (status ? "\x83" : "") + errors;
+          const auto outcome = parse({18, stamp, status}, record_bytes(18, 9, tail));
+          const bool unplugged = errors.find("eg") != std::string::npos;
+          CHECK(outcome.counters.unplugged == (unplugged ? 1 : 0));
+          CHECK(outcome.counters.bad_records == 0);
+          REQUIRE(outcome.records.size() == (unplugged ? 0 : 1));
+          if (unplugged) continue;
+          CHECK(outcome.records[0].ticks == (stamp ? 0x01020304U : 0U));
+          CHECK(outcome.records[0].stamp == (stamp ? Stamp::continues : Stamp::none));
+          CHECK(outcome.records[0].status == (status ? 0x83 : 0));
+          CHECK(outcome.records[0].sampled_too_fast == (errors == "es"));
+          CHECK(outcome.counters.too_fast == (errors == "es" ? 1 : 0));
+        }
+      }
+    }
   }
 
   TEST_CASE("a status byte without its constant bit is damage") {
@@ -173,7 +234,8 @@ TEST_SUITE("cyberglove_parser") {
       CAPTURE(tail);
       const auto outcome = parse(plain_22, record_bytes(22, 9, tail));
       CHECK(outcome.records.empty());
-      CHECK(outcome.counters.bad_records == 1);
+      CHECK(outcome.counters.unplugged == 1);
+      CHECK(outcome.counters.bad_records == 0);
     }
     for (const char* tail : {"e", "ex", "eses", "egeg", "esese", "se", "xx"}) {
       CAPTURE(tail);
@@ -241,6 +303,59 @@ TEST_SUITE("cyberglove_parser") {
                            [](auto v) { return v == 0; }));
       }
     }
+  }
+
+  TEST_CASE("one gap, or one run of bytes too many, puts no value into another one's place") {
+    Bytes stream;
+    for (int k = 0; k < 6; ++k) {
+      Bytes next = record_bytes(22, 0,
+                                k % 2 == 0 ? "\x81\x01\x02\x03\x04\x87"
+                                           : "\x82\x05\x01\x03\x04\x87"
+                                             "es");
+      for (std::size_t value = 0; value < 22; ++value) // a value tells which sensor's it is
+        next[1 + value] = static_cast<std::byte>(10 * (value + 1) + static_cast<std::size_t>(k));
+      stream.insert(stream.end(), next.begin(), next.end());
+    }
+    const auto check_places = [](std::span<const std::byte> input, std::size_t least) {
+      const Outcome outcome = parse(full_22, input);
+      CHECK(outcome.records.size() >= least);
+      for (const Record& record : outcome.records) {
+        for (std::size_t value = 0; value < 22; ++value)
+          CHECK(record.values[value] / 10 == value + 1);
+      }
+    };
+    for (std::size_t at = 0; at < stream.size(); ++at) {
+      for (std::size_t length = 1; length <= 70 && at + length <= stream.size(); ++length) {
+        Bytes gap = stream;
+        const auto from = gap.begin() + static_cast<std::ptrdiff_t>(at);
+        gap.erase(from, from + static_cast<std::ptrdiff_t>(length));
+        check_places(gap, length < 30 ? 4 : 2);
+      }
+      for (std::size_t length = 1; length <= 8; ++length) {
+        Bytes run = stream;
+        run.insert(run.begin() + static_cast<std::ptrdiff_t>(at), length, std::byte{'S'});
+        check_places(run, 5);
+      }
+    }
+  }
+
+  TEST_CASE("what a judge refuses is bad and implausible, and its bytes are discarded") {
+    Parser parser(plain_22);
+    std::vector<int> delivered;
+    const auto judge = [](Record& record) {
+      return record.values[0] == 50 ? Verdict{false, 0} : Verdict{true, 3};
+    };
+    const auto sink = [&](const Record& record) { delivered.push_back(record.values[0]); };
+    parser.push(joined({record_bytes(22, 9), record_bytes(22, 50), record_bytes(22, 60)}), judge,
+                sink);
+    CHECK(delivered == std::vector<int>{9, 60});
+    const auto& counters = parser.counters();
+    CHECK(counters.records == 2);
+    CHECK(counters.implausible == 1);
+    CHECK(counters.bad_records == 1);
+    CHECK(counters.missed == 6);
+    CHECK(counters.record_bytes == 48);
+    CHECK(counters.discarded_bytes == 24);
   }
 
   TEST_CASE("after a reset the unfinished record is discarded and the new shape holds") {

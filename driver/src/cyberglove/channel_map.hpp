@@ -34,4 +34,8 @@ constexpr ChannelMap make_channel_map(SensorMask hardware, SensorMask software,
   return map;
 }
 
+/// High-resolution records know no masks: they always carry the 22 values of the full glove.
+inline constexpr ChannelMap hi_res_channels =
+    make_channel_map(sensors_22, sensors_22, hi_res_values);
+
 } // namespace nendo::driver::cyberglove

@@ -1,9 +1,17 @@
 #pragma once
 // The CyberGlove's byte stream, taken apart into records. Pure: no I/O, clock, log or allocation;
-// bytes are hostile. Framing finds the NULs, which occur nowhere else; decoding judges what stands
-// between two of them.
+// bytes are hostile. Framing finds where a record ends; decoding judges what stands there.
+//
+// Plain records end in NUL, which occurs nowhere else (but see decode_record), so damage costs at
+// most the record that it is in and the one it runs into. High-resolution ones are full of NULs and
+// are found by their whole layout, wherever it begins.
+//
+// The protocol has no checksum. With the status byte on, one gap in a stream, or one run of bytes
+// too many without NUL, yields no record with a value in the wrong place; a byte lost and another
+// one too many in the same record do, and cannot be seen.
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,41 +22,70 @@
 
 namespace nendo::driver::cyberglove {
 
-/// What a record is expected to hold; `values` is 1 to most_values.
+enum class RecordForm : std::uint8_t { plain, hi_res };
+
+/// What a record is expected to hold; `values` is 1 to most_values, in the hi_res form 22. That
+/// form has neither time stamp nor status.
 struct RecordShape {
   std::size_t values = 22;
   bool time_stamp = false;
   bool status = false;
+  RecordForm form = RecordForm::plain;
 
   /// Without error pairs, with header and NUL.
   constexpr std::size_t bytes() const noexcept {
+    if (form == RecordForm::hi_res) return hi_res_bytes;
     return 1 + values + (time_stamp ? time_stamp_bytes : 0U) + (status ? 1U : 0U) + 1;
   }
 };
 
+/// What Record::ticks is worth. The parser says `continues` wherever there is a time stamp; a judge
+/// that compares records knows better.
+enum class Stamp : std::uint8_t { none, begins, continues };
+
 struct Record {
-  std::array<std::uint8_t, most_values>
-      values{};                  ///< the first RecordShape::values are set, none of them 0
-  std::uint32_t ticks = 0;       ///< 1/115200 s, if the shape has a time stamp
+  std::array<std::uint16_t, most_values>
+      values{};            ///< the first RecordShape::values are set, none of them 0
+  std::uint32_t ticks = 0; ///< 1/115200 s, wraps after 10.36 h; if the shape has a time stamp
+  std::uint8_t status = 0; ///< see cyberglove_protocol.hpp; 0 if the shape has none
+  Stamp stamp = Stamp::none;
   bool sampled_too_fast = false; ///< the glove could not keep its period; the values are good
+  bool no_glove = false;         ///< the values mean nothing; counted, never delivered
+  /// Of the hi_res form: since midnight of the glove's own clock. A frame is 1/30 s, whether they
+  /// are numbered from 0 or from 1; what a sub-frame is, no source says, so each counts a tenth of
+  /// a frame. The order is right whatever it is, the instant to within a frame: not for a
+  /// DeviceClock.
+  std::chrono::nanoseconds time_of_day{};
 };
 
-/// Judges one frame, its NUL included. Nothing if length, header or content are wrong or the glove
-/// is unplugged.
+/// Judges one frame, its NUL included. Nothing if length, header or content are wrong. The one NUL
+/// that may stand inside is the time stamp's first byte: sources disagree if bit 7 is set there.
 std::optional<Record> decode_record(std::span<const std::byte> frame,
                                     const RecordShape& shape) noexcept;
+
+/// What a judge makes of a well-formed record.
+struct Verdict {
+  bool plausible = true;
+  std::uint64_t missed = 0; ///< records known to have been lost since the last plausible one
+};
 
 class Parser {
 public:
   explicit Parser(const RecordShape& shape) noexcept : shape_(shape) {}
 
-  /// Takes the next bytes of the stream, cut anywhere, and hands each whole record to `sink(const
-  /// Record&)`.
+  /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is put before
+  /// `judge(Record&) -> Verdict`, and if it is plausible handed to `sink(const Record&)`.
+  template <class Judge, class Sink>
+  void push(std::span<const std::byte> chunk, Judge&& judge, Sink&& sink) {
+    for (const std::byte byte : chunk) {
+      if (auto record = push_byte(byte); record && settle(*record, judge(*record))) sink(*record);
+    }
+  }
+  /// The same, without a judge.
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
-    for (const std::byte byte : chunk) {
-      if (const auto record = push_byte(byte)) sink(*record);
-    }
+    push(
+        chunk, [](Record&) { return Verdict{}; }, sink);
   }
 
   /// Gives up the unfinished record and goes on with records of another shape.
@@ -62,12 +99,22 @@ public:
 
 private:
   std::optional<Record> push_byte(std::byte byte) noexcept;
-  void discard_held() noexcept;
+  std::optional<Record> extend_plain() noexcept;
+  std::optional<Record> end_plain() noexcept;
+  std::optional<Record> extend_hi_res() noexcept;
+  void look_for_tail(std::byte byte) noexcept;
+  bool settle(const Record& record, const Verdict& verdict) noexcept;
+  bool may_be_stamp() const noexcept;
+  void drop_bad_frame() noexcept;
+  void discard(std::size_t count) noexcept;
 
   RecordShape shape_;
   std::array<std::byte, most_record_bytes> frame_{};
   std::size_t held_ = 0;
-  bool overlong_ = false; ///< the frame outgrew every record; skip to its NUL
+  bool overlong_ = false;       ///< plain: the frame outgrew every record; skip to its NUL
+  bool nul_in_stamp_ = false;   ///< plain: the frame holds a NUL where a time stamp may have one
+  std::uint8_t tail_ = 0;       ///< hi_res: how much of CR LF NUL was just seen
+  bool damage_counted_ = false; ///< hi_res: the record that the next tail ends is counted already
   StreamCounters counters_;
 };
 

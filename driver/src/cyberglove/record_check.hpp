@@ -1,0 +1,91 @@
+#pragma once
+// Does a well-formed record agree with those before it? The protocol has no checksum; its
+// redundancy is the time stamp, which must advance by whole periods, and the status byte, most of
+// which is constant. Pure: no I/O, clock, log or allocation. One thread.
+//
+// What a flipped bit does in a record of 22 sensors, time stamp and status (30 bytes, 240 bits) at
+// 100 records a second (1152 ticks), none of its bytes a power of two:
+//   caught    51: header 8, flags of the time stamp 4, ticks 25, status 6, NUL 8
+//   harmless   4: the flags' upper half means nothing; what is delivered is right
+//   delivered 185: sensors 176, the 7 ticks' bits below the tolerance, wrist switch and light 2
+// So 77 % slip through. A sensor's bit cannot be checked by anything, unless it was the only one
+// set in its byte: then the flip makes a NUL. Where no period is known, a stamp may err by half of
+// one.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "cyberglove/cyberglove_parser.hpp"
+
+namespace nendo::driver::cyberglove {
+
+class RecordCheck {
+public:
+  /// `period_ticks` is what the glove is set to; 0 if unknown, or as fast as it can: then it is
+  /// learnt and need not be kept closely.
+  explicit RecordCheck(std::uint64_t period_ticks = 0) noexcept;
+
+  /// A judge for Parser::push. While the glove keeps its period, records sent = delivered + missed
+  /// at every plausible record. A gap of more than 16 periods, a restarted clock or another period
+  /// is believed at the third record that agrees with the two before it. Where the stamps
+  /// contradict each other again and again, first the period need not be kept closely, then they
+  /// are not believed at all: the records pass, with Stamp::none. It is Stamp::begins where the
+  /// ticks do not continue those before them.
+  Verdict operator()(Record& record) noexcept;
+
+  /// As given or learnt; 0 while unknown.
+  std::uint32_t period_ticks() const noexcept { return period_; }
+
+private:
+  /// A record and how it follows the one before.
+  struct Step {
+    std::uint32_t gap;
+    bool was_late; ///< the record before was sampled off its period, as the glove says
+    bool is_late;
+  };
+  /// Records in a row that contradict the accepted ones; perhaps they agree with each other.
+  struct Suspects {
+    int count = 0; ///< up to 2
+    std::uint32_t ticks = 0;
+    bool late = false;
+    Step step{}; ///< from the first to the second
+  };
+
+  bool status_agrees(std::uint8_t status) noexcept;
+  Verdict judge_stamp(Record& record) noexcept;
+  Verdict refuse() noexcept;
+  Verdict accept(const Record& record, std::uint64_t missed) noexcept;
+  std::uint32_t agreed_period(const Record& record) noexcept;
+  Verdict begin_again(Record& record, std::uint32_t agreed) noexcept;
+  Verdict lose_trust(Record& record) noexcept;
+  std::uint32_t periods(const Step& step) const noexcept;
+  bool keeps_period(const Step& step) const noexcept;
+  std::uint32_t steady_periods(const Step& step) const noexcept;
+  std::uint64_t follow(const Step& step, std::uint32_t count) noexcept;
+  std::uint64_t learn(std::uint32_t gap) noexcept;
+  std::uint32_t longest_gap() const noexcept;
+
+  // The clock.
+  std::uint32_t period_;
+  bool steady_;         ///< the period is kept closely, but for late records
+  bool trusted_ = true; ///< the stamps make sense
+  bool begun_ = false;
+  std::uint32_t last_ticks_ = 0;
+  bool last_late_ = false;
+  std::uint32_t late_pace_ = 0;         ///< between late records, 0 while unknown
+  std::array<std::uint32_t, 8> gaps_{}; ///< the first ones, while a period is learnt
+  std::size_t gap_count_ = 0;
+  std::uint64_t learnt_missed_ = 0; ///< in these gaps, and counted
+  int doubt_ = 0;                   ///< rises with refusals, falls with acceptances
+  std::uint64_t refused_ = 0;       ///< since the last accepted record
+  Suspects suspects_;
+
+  // The status byte.
+  bool status_known_ = false;
+  std::uint8_t status_constant_ = 0;
+  std::uint8_t status_suspect_ = 0;
+  int status_suspects_ = 0;
+};
+
+} // namespace nendo::driver::cyberglove

@@ -1,0 +1,61 @@
+// High-resolution records. The first byte chooses how the rest, the stream, is cut into chunks.
+
+#include "cyberglove/cyberglove_parser.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+using namespace nendo::driver::cyberglove;
+
+namespace {
+
+constexpr RecordShape shape{hi_res_values, false, false, RecordForm::hi_res};
+
+void require(bool law) {
+  if (!law) std::abort();
+}
+
+void check_record(const Record& record) {
+  const auto values = std::span(record.values).first(hi_res_values);
+  require(std::all_of(values.begin(), values.end(),
+                      [](auto value) { return value >= 1 && value <= hi_res_most; }));
+  // Frame 30 of a day's last second, if frames are numbered from 1.
+  require(record.time_of_day >= std::chrono::seconds(0));
+  require(record.time_of_day < std::chrono::hours(24) + std::chrono::milliseconds(34));
+}
+
+} // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::size_t longest_chunk = 1 + *data % 70U;
+  const auto stream = std::as_bytes(std::span(data, size)).subspan(1);
+  Parser parser(shape);
+  std::uint64_t records = 0;
+  for (auto rest = stream; !rest.empty();) {
+    const auto chunk = rest.first(std::min(longest_chunk, rest.size()));
+    rest = rest.subspan(chunk.size());
+    parser.push(chunk, [&](const Record& record) {
+      check_record(record);
+      ++records;
+    });
+    const nendo::driver::StreamCounters& counters = parser.counters();
+    require(counters.bytes == stream.size() - rest.size());
+    require(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
+    require(counters.record_bytes == counters.records * hi_res_bytes);
+    require(parser.pending() < hi_res_bytes);
+  }
+  require(records == parser.counters().records);
+
+  // What is found does not depend on what stands before it: every whole record of the stream is
+  // found, but where it overlaps one found earlier.
+  std::uint64_t whole = 0;
+  for (std::size_t at = 0; at + hi_res_bytes <= stream.size(); ++at) {
+    if (!decode_record(stream.subspan(at, hi_res_bytes), shape)) continue;
+    ++whole;
+    at += hi_res_bytes - 1;
+  }
+  require(whole == records);
+  return 0;
+}
