@@ -1,9 +1,12 @@
-// nendo emulate: a CyberGlove interface unit on a pseudo-terminal.
+// nendo emulate: a data glove's electronics on a pseudo-terminal, with chosen faults.
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <nendo/driver/emulator.hpp>
@@ -16,30 +19,82 @@ namespace {
 struct Options {
   driver::EmulatorOptions emulator;
   std::string hand = "right";
+  std::string mask;
+  std::string pace = "clock";
+  std::string period_order = "msb";
+  std::string stamp_bit7 = "on";
   double duration_s = 0.0;
 };
 
-std::string known_motions() {
+std::string list_of(const std::vector<std::string_view>& names) {
   std::string list;
-  for (const auto name : driver::motion_names())
+  for (const auto name : names)
     list += (list.empty() ? "" : ", ") + std::string(name);
   return list;
 }
 
-int emulate(Options& options) {
+std::string faults_explained() {
+  std::string text = "Faults (--fault, as often as you like; times in s or ms since the start):\n";
+  for (const driver::FaultForm& fault : driver::fault_forms()) {
+    std::string form(fault.form);
+    form.resize(std::max<std::size_t>(form.size() + 1, 24), ' ');
+    text += "  " + form + std::string(fault.effect) + "\n";
+  }
+  return text + "Example: nendo emulate --link /tmp/glove --fault flip=0.1% --fault unplug@5s+2s";
+}
+
+// 1 to 24 bits; anything else is no mask of a glove.
+std::optional<std::uint32_t> parse_mask(std::string_view text) {
+  if (text.starts_with("0x")) text.remove_prefix(2);
+  std::uint32_t mask = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), mask, 16);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  if (!whole || mask == 0 || mask > 0xFFFFFF) return std::nullopt;
+  return mask;
+}
+
+Result<void> complete(Options& options) {
   if (options.hand != "left" && options.hand != "right") {
-    return report({Errc::usage, "--hand " + options.hand + ": use left or right"});
+    return Error{Errc::usage, "--hand " + options.hand + ": use left or right"};
   }
   if (!std::isfinite(options.duration_s) || options.duration_s < 0.0) {
-    return report({Errc::usage, "--duration: use a number of seconds, 0 for no end"});
+    return Error{Errc::usage, "--duration: use a number of seconds, 0 for no end"};
   }
-  options.emulator.side = options.hand == "left" ? Side::left : Side::right;
+  driver::EmulatorOptions& emulator = options.emulator;
+  emulator.side = options.hand == "left" ? Side::left : Side::right;
+  emulator.pace = options.pace == "host" ? driver::EmulatorPace::host : driver::EmulatorPace::clock;
+  emulator.cyberglove.period_low_first = options.period_order == "lsb";
+  emulator.cyberglove.stamp_bit7 = options.stamp_bit7 == "on";
+  if (options.mask.empty()) return {};
+  const auto mask = parse_mask(options.mask);
+  if (!mask) {
+    return Error{Errc::usage, "--mask " + options.mask +
+                                  ": use up to 24 bits in hexadecimal, e.g. 7fff7f for 22 sensors"};
+  }
+  emulator.cyberglove.hardware_mask = *mask;
+  return {};
+}
+
+void print(const driver::EmulatorStats& stats) {
+  std::cout << stats.records_sent << " records sent, " << stats.bytes_received
+            << " bytes received from the host\n";
+  if (stats.bytes_refused > 0) {
+    std::cout << stats.bytes_refused << " bytes not sent, as no host read them\n";
+  }
+  if (stats.faults.empty()) return;
+  std::cout << "faults:";
+  for (const driver::FaultCount& fault : stats.faults)
+    std::cout << ' ' << fault.name << ' ' << fault.done << ',';
+  std::cout << " which touched " << stats.records_faulted << " records\n";
+}
+
+int emulate(Options& options) {
+  if (const auto completed = complete(options); !completed) return report(completed.error());
   const auto emulator = driver::GloveEmulator::open(options.emulator);
   if (!emulator) return report(emulator.error());
 
   install_stop_signals();
-  std::cout << "emulating a " << options.emulator.sensors << "-sensor " << options.hand
-            << "-hand CyberGlove at "
+  std::cout << "emulating a " << options.hand << "-hand " << options.emulator.glove << " at "
             << (options.emulator.link.empty() ? (*emulator)->tty_path() : options.emulator.link)
             << "; Ctrl-C ends it" << std::endl;
 
@@ -57,11 +112,64 @@ int emulate(Options& options) {
   }
   over = true;
   server.join();
-  if (!served) return report(served.error());
-  const auto stats = (*emulator)->stats();
-  std::cout << stats.records_sent << " records sent, " << stats.bytes_received
-            << " bytes received from the host\n";
-  return 0;
+  print((*emulator)->stats());
+  return served ? 0 : report(served.error());
+}
+
+void add_glove_options(CLI::App& command, Options& options) {
+  driver::EmulatorOptions& emulator = options.emulator;
+  const std::string group = "The glove";
+  const auto with_default = [&](CLI::Option* option) {
+    option->capture_default_str()->group(group);
+  };
+  with_default(command.add_option("--glove", emulator.glove,
+                                  "Its kind: " + list_of(driver::emulated_glove_names())));
+  with_default(command.add_option("--hand", options.hand, "left or right"));
+  command
+      .add_option("--sensors", emulator.sensors, "How many; a CyberGlove has 22 (default) or 18")
+      ->group(group);
+  with_default(command.add_option("--motion", emulator.motion,
+                                  "What the hand does: " + list_of(driver::motion_names())));
+  with_default(command.add_option("--rate", emulator.rate_hz,
+                                  "Records a second until the host sets its own"));
+  with_default(command.add_option("--seed", emulator.seed, "Varies motion, noise and faults"));
+  with_default(
+      command
+          .add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
+          ->check(CLI::IsMember({"clock", "host"})));
+}
+
+void add_cyberglove_options(CLI::App& command, Options& options) {
+  driver::EmulatedCyberGlove& glove = options.emulator.cyberglove;
+  const std::string group = "CyberGlove only";
+  const auto with_default = [&](CLI::Option* option) {
+    option->capture_default_str()->group(group);
+  };
+  with_default(command.add_option("--model", glove.model, "1, 2 or 3"));
+  command.add_option("--mask", options.mask, "The sensors it has, in hexadecimal, e.g. 6b3b3f")
+      ->group(group);
+  command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch")->group(group);
+  with_default(command.add_option("--reply-bytes", glove.reply_bytes,
+                                  "Of the reply to a setting: 2, or 3 as one library expects"));
+  with_default(command
+                   .add_option("--period-order", options.period_order,
+                               "Bytes of the words of T: msb or lsb first")
+                   ->check(CLI::IsMember({"msb", "lsb"})));
+  with_default(command
+                   .add_option("--stamp-bit7", options.stamp_bit7,
+                               "Bit 7 of a time stamp's first byte: on always, off if it may")
+                   ->check(CLI::IsMember({"on", "off"})));
+  command
+      .add_flag("--streaming", glove.streaming, "It streams at the start, as a dead host left it")
+      ->group(group);
+  command
+      .add_flag("--pattern", glove.pattern,
+                "No motion: in record n, slot k counts 1 + (n + 29 k) mod 255")
+      ->group(group);
+  command
+      .add_option("--replay", glove.replay,
+                  "Send the records of this file of received bytes, again and again")
+      ->group(group);
 }
 
 } // namespace
@@ -69,21 +177,20 @@ int emulate(Options& options) {
 void add_emulate(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *app.add_subcommand(
-      "emulate", "Emulates a CyberGlove interface unit on a pseudo-terminal, to test with");
+      "emulate", "Emulates a glove's electronics on a pseudo-terminal, to test with");
   command
       .add_option("--link", options->emulator.link,
                   "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
       ->required();
-  command.add_option("--sensors", options->emulator.sensors, "18 or 22")->capture_default_str();
-  command.add_option("--hand", options->hand, "left or right")->capture_default_str();
-  command.add_option("--motion", options->emulator.motion, known_motions())->capture_default_str();
-  command
-      .add_option("--rate", options->emulator.rate_hz,
-                  "Records a second until the host sets its own")
-      ->capture_default_str();
-  command.add_option("--seed", options->emulator.seed, "Varies the motion and the noise")
-      ->capture_default_str();
   command.add_option("--duration", options->duration_s, "Seconds to run; without it, until Ctrl-C");
+  command.add_option("--fault", options->emulator.faults, "What goes wrong, see below")
+      ->type_name("FAULT")
+      ->allow_extra_args(false);
+  command.add_option("--log", options->emulator.log,
+                     "Write all traffic to this file, a line a message");
+  add_glove_options(command, *options);
+  add_cyberglove_options(command, *options);
+  command.footer(faults_explained());
   on_chosen(command, exit_code, [options] { return emulate(*options); });
 }
 

@@ -12,55 +12,19 @@
 
 #include <doctest/doctest.h>
 
+#include "support/unit_bench.hpp"
+
 using namespace std::chrono_literals;
 using nendo::Side;
 using nendo::driver::CyberGloveUnit;
 using nendo::driver::Motion;
 using nendo::driver::UnitOptions;
+using nendo::test::Bytes;
+using nendo::test::split;
+using Bench = nendo::test::UnitBench;
 
 TEST_SUITE("cyberglove_unit") {
   namespace {
-  using Bytes = std::vector<std::uint8_t>;
-
-  // A unit and a host that talks to it.
-  struct Bench {
-    explicit Bench(const UnitOptions& options = {}) : unit(options) {}
-
-    void send(const Bytes& bytes) { unit.receive(std::as_bytes(std::span(bytes)), now); }
-    Bytes receive() {
-      const auto output = unit.output();
-      Bytes bytes;
-      for (const std::byte byte : output)
-        bytes.push_back(std::to_integer<std::uint8_t>(byte));
-      unit.take(output.size());
-      return bytes;
-    }
-    Bytes ask(const Bytes& bytes) {
-      send(bytes);
-      return receive();
-    }
-    Bytes ask(std::string_view text) { return ask(Bytes(text.begin(), text.end())); }
-    Bytes after(CyberGloveUnit::Time time) {
-      now += time;
-      unit.advance(now);
-      return receive();
-    }
-
-    CyberGloveUnit unit;
-    CyberGloveUnit::Time now = 1h; // not 0: a unit has usually been on for a while
-  };
-
-  std::vector<Bytes> split(const Bytes& stream) {
-    std::vector<Bytes> records(1);
-    for (const std::uint8_t byte : stream) {
-      records.back().push_back(byte);
-      if (byte == 0) records.emplace_back();
-    }
-    CHECK(records.back().empty());
-    records.pop_back();
-    return records;
-  }
-
   UnitOptions with_sensors(unsigned sensors) {
     UnitOptions options;
     options.sensors = sensors;

@@ -1,11 +1,10 @@
 #pragma once
-// Bytes and numbers as the interface unit's messages hold them, and the shape of its commands.
+// Bytes and numbers as the interface unit's messages hold them.
 
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -42,48 +41,15 @@ inline std::uint32_t from_low_first(const Message& bytes) noexcept {
   return value;
 }
 
-constexpr std::uint16_t high_first(Byte high, Byte low) noexcept {
-  return static_cast<std::uint16_t>((high << 8) | low);
-}
-
-// What a command that sets something takes: so many numbers of so many bytes. Its lower-case letter
-// takes the same numbers as text.
-struct Arguments {
-  std::size_t numbers; // 0: there is no such command
-  std::size_t width;
-};
-constexpr Arguments arguments_of(Byte letter) noexcept {
-  switch (to_upper(letter)) {
-  case 'T':
-    return {2, 2};
-  case 'M':
-  case 'P':
-    return {3, 1};
-  case 'B':
-  case 'D':
-  case 'F':
-  case 'J':
-  case 'L':
-  case 'N':
-  case 'Q':
-  case 'U':
-  case 'W':
-    return {1, 1};
-  default:
-    return {0, 0};
-  }
-}
-
-// The numbers of a text command as bytes, each `width` bytes wide and high byte first; empty if
-// they are not exactly `count` numbers that fit.
-inline Message read_numbers(const Message& text, std::size_t count, std::size_t width) {
-  const std::string line(text.begin(), text.end());
-  const char* at = line.data();
-  const char* const end = at + line.size();
+// The decimal numbers of a text command as bytes, each number `width` bytes wide, high byte first;
+// empty if there is none, or anything else, or one that does not fit.
+inline Message read_numbers(std::string_view text, std::size_t width) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
   Message bytes;
   for (;;) {
     at = std::find_if(at, end, [](char c) { return c != ' '; });
-    if (at == end) break;
+    if (at == end) return bytes;
     std::uint32_t number = 0;
     const auto [stopped, error] = std::from_chars(at, end, number);
     if (error != std::errc{} || (stopped != end && *stopped != ' ')) return {};
@@ -92,8 +58,6 @@ inline Message read_numbers(const Message& text, std::size_t count, std::size_t 
     bytes.push_back(static_cast<Byte>(number));
     at = stopped;
   }
-  if (bytes.size() != count * width) bytes.clear();
-  return bytes;
 }
 
 } // namespace nendo::driver::unit

@@ -59,6 +59,12 @@ Result<Wire> make_wire(Line line) {
   return Wire{std::move(device), std::move(host)};
 }
 
+UnitOptions at_rate(double rate_hz) {
+  UnitOptions options;
+  options.rate_hz = rate_hz;
+  return options;
+}
+
 bool write_record(int fd, std::span<const std::byte> bytes) {
   return ::write(fd, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
 }
@@ -94,7 +100,7 @@ void read_barely(const std::stop_token& stop, int fd, SampleRing& ring) {
 class Device {
 public:
   Device(const LatencyOptions& options, int driver_fd, int bare_fd)
-      : options_(options), unit_({.rate_hz = options.rate_hz}), driver_fd_(driver_fd),
+      : options_(options), unit_(at_rate(options.rate_hz)), driver_fd_(driver_fd),
         bare_fd_(bare_fd) {}
 
   void serve_dialogue(const std::atomic<bool>& opened) {

@@ -1,0 +1,75 @@
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "support/program.hpp"
+
+using nendo::test::is_one_line_about;
+
+TEST_SUITE("emulate") {
+  TEST_CASE("the help explains every fault with the form that it is written in") {
+    const auto help = nendo::test::nendo({"emulate", "--help"});
+    CHECK(help.exit_code == 0);
+    for (const char* word : {"drop=RATE%", "unplug@5s+2s[=LINK]", "swap@5s", "--pace", "--replay",
+                             "--streaming", "cyberglove"}) {
+      CAPTURE(word);
+      CHECK(help.out.find(word) != std::string::npos);
+    }
+  }
+
+  TEST_CASE("a monitor reads through noise, and Ctrl-C tells what was done") {
+    const nendo::test::TemporaryFolder folder;
+    const auto link = folder.path() / "glove";
+    nendo::test::Program emulator({"emulate", "--link", link.string(), "--rate", "100", "--fault",
+                                   "lose=5%", "--fault", "junk@0s", "--streaming"});
+    for (int turn = 0; turn < 2000 && !std::filesystem::exists(link); ++turn)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const auto monitor = nendo::test::nendo(
+        {"monitor", "serial:" + link.string(), "--json", "--raw", "--count", "50"});
+    CHECK_MESSAGE(monitor.exit_code == 0, monitor.err);
+    CHECK(nendo::test::lines_of(monitor.out).size() == 50);
+    emulator.signal(SIGINT);
+    const auto done = emulator.wait();
+    CHECK(done.exit_code == 0);
+    CHECK(done.out.find("records sent") != std::string::npos);
+    CHECK(done.out.find("faults: lose ") != std::string::npos);
+    CHECK(done.out.find(" junk 1,") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(std::filesystem::symlink_status(link)));
+  }
+
+  TEST_CASE("wrong options get one line that names them, and their exit code") {
+    const nendo::test::TemporaryFolder folder;
+    const std::string link = (folder.path() / "glove").string();
+    struct Case {
+      std::string option;
+      std::string value;
+      int exit_code;
+      std::string about;
+    };
+    for (const Case& c :
+         {Case{"--glove", "mitten", 2, "mitten"}, Case{"--fault", "drop=1", 2, "drop=RATE%"},
+          Case{"--hand", "up", 2, "--hand up"}, Case{"--mask", "7g", 2, "--mask 7g"},
+          Case{"--mask", "0", 2, "--mask 0"}, Case{"--mask", "1ffffff", 2, "--mask"},
+          Case{"--sensors", "20", 2, "sensors 20"}, Case{"--pace", "fast", 2, "--pace"},
+          Case{"--model", "0", 2, "model 0"}, Case{"--rate", "nan", 2, "rate"},
+          Case{"--rate", "481", 2, "rate"}, Case{"--reply-bytes", "4", 2, "reply-bytes 4"},
+          Case{"--stamp-bit7", "maybe", 2, "--stamp-bit7"}, Case{"--motion", "fly", 2, "fly"},
+          Case{"--replay", "/no/such/file", 5, "/no/such/file"},
+          Case{"--log", "/no/such/folder/log", 1, "/no/such/folder/log"},
+          Case{"--duration", "-1", 2, "--duration"}}) {
+      CAPTURE(c.option);
+      CAPTURE(c.value);
+      const auto done = nendo::test::nendo({"emulate", "--link", link, c.option, c.value});
+      CAPTURE(done.err);
+      CHECK(done.exit_code == c.exit_code);
+      CHECK(is_one_line_about(done.err, c.about));
+      CHECK(done.out.empty());
+    }
+    const auto without = nendo::test::nendo({"emulate"});
+    CHECK(without.exit_code == 2);
+    CHECK(is_one_line_about(without.err, "--link"));
+  }
+}

@@ -1,0 +1,263 @@
+// The emulator with its faults, paces, captures and its log, at a terminal.
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+
+#include <nendo/driver/emulator.hpp>
+
+#include "support/temporary_folder.hpp"
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::driver;
+
+TEST_SUITE("pty_faults") {
+  namespace {
+  namespace fs = std::filesystem;
+
+  class Running {
+  public:
+    explicit Running(const EmulatorOptions& options) {
+      auto opened = GloveEmulator::open(options);
+      REQUIRE_MESSAGE(opened, opened.error().message);
+      emulator_ = *std::move(opened);
+      thread_ = std::thread([this] { good_ = static_cast<bool>(emulator_->serve(stop_)); });
+    }
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+    ~Running() {
+      stop_ = true;
+      thread_.join();
+      CHECK(good_);
+    }
+    const GloveEmulator& operator*() const { return *emulator_; }
+    const GloveEmulator* operator->() const { return emulator_.get(); }
+
+  private:
+    std::unique_ptr<GloveEmulator> emulator_;
+    std::atomic<bool> stop_{false};
+    std::atomic<bool> good_{false};
+    std::thread thread_;
+  };
+
+  class Host {
+  public:
+    explicit Host(const std::string& path)
+        : fd_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+      REQUIRE(fd_ >= 0);
+      termios line{};
+      REQUIRE(::tcgetattr(fd_, &line) == 0);
+      ::cfmakeraw(&line);
+      REQUIRE(::tcsetattr(fd_, TCSANOW, &line) == 0);
+    }
+    Host(const Host&) = delete;
+    Host& operator=(const Host&) = delete;
+    ~Host() { ::close(fd_); }
+
+    void send(std::string_view bytes) {
+      REQUIRE(::write(fd_, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
+    }
+    // Reads until `enough`, the terminal is gone, or ten seconds are over.
+    template <class Enough>
+    std::string receive_until(Enough enough) {
+      std::string bytes;
+      const auto deadline = HostClock::now() + 10s;
+      while (!enough(bytes) && HostClock::now() < deadline) {
+        pollfd line{fd_, POLLIN, 0};
+        if (::poll(&line, 1, 50) <= 0) continue;
+        std::array<char, 65536> part{};
+        const ssize_t count = ::read(fd_, part.data(), part.size());
+        if (count <= 0) {
+          gone_ = true;
+          break;
+        }
+        bytes.append(part.data(), static_cast<std::size_t>(count));
+      }
+      return bytes;
+    }
+    std::string receive(std::size_t size) {
+      return receive_until([size](const std::string& bytes) { return bytes.size() >= size; });
+    }
+    bool gone() const { return gone_; }
+
+  private:
+    int fd_;
+    bool gone_ = false;
+  };
+
+  template <class Condition>
+  bool eventually(Condition condition) {
+    const auto deadline = HostClock::now() + 10s;
+    while (!condition() && HostClock::now() < deadline)
+      std::this_thread::sleep_for(2ms);
+    return condition();
+  }
+
+  std::uint64_t done(const EmulatorStats& stats, std::string_view name) {
+    for (const FaultCount& fault : stats.faults) {
+      if (fault.name == name) return fault.done;
+    }
+    return 0;
+  }
+
+  std::string contents(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+  } // namespace
+
+  TEST_CASE("at the host's pace nothing is refused, however slowly or fast the host reads") {
+    EmulatorOptions options;
+    options.pace = EmulatorPace::host;
+    const Running emulator(options);
+    Host host(emulator->tty_path());
+    host.send("D\1S");
+    constexpr std::size_t records = 20'000; // 222 s of the glove's time
+    const auto start = HostClock::now();
+    std::string stream = host.receive(20'000);
+    std::this_thread::sleep_for(300ms); // everything is full by now
+    stream += host.receive(2 + records * 29 - stream.size());
+    REQUIRE(stream.size() >= 2 + records * 29);
+    CHECK(to_seconds(HostClock::now() - start) < 100.0);
+    std::uint32_t last = 0;
+    for (std::size_t n = 0; n < records; ++n) {
+      const auto* record = reinterpret_cast<const unsigned char*>(stream.data()) + 2 + 29 * n;
+      REQUIRE(record[0] == 'S');
+      REQUIRE(record[28] == 0);
+      std::uint32_t ticks = 0;
+      for (unsigned k = 0; k < 4; ++k) {
+        if (((record[23] >> k) & 1) == 0) ticks |= std::uint32_t{record[24 + k]} << (8 * k);
+      }
+      if (n > 0) REQUIRE(ticks - last == 1280);
+      last = ticks;
+    }
+    CHECK(emulator->stats().bytes_refused == 0);
+    CHECK(emulator->stats().records_sent >= records);
+  }
+
+  TEST_CASE("an unplugged terminal hangs up, and another one comes under the other link") {
+    const test::TemporaryFolder folder;
+    EmulatorOptions options;
+    options.link = folder.path() / "first";
+    options.faults = {"unplug@300ms+200ms=" + (folder.path() / "second").string()};
+    options.cyberglove.streaming = true;
+    const Running emulator(options);
+    Host before(options.link);
+    before.receive_until([](const std::string&) { return false; });
+    CHECK(before.gone());
+    CHECK_FALSE(fs::exists(fs::symlink_status(options.link)));
+    REQUIRE(eventually([&] { return fs::exists(folder.path() / "second"); }));
+    Host after(folder.path() / "second");
+    CHECK(after.receive(48).size() >= 48); // the unit has gone on all the time
+    CHECK(done(emulator->stats(), "unplug") == 1);
+  }
+
+  TEST_CASE("the glove's own faults reach the host, at the device's time") {
+    EmulatorOptions options;
+    options.pace = EmulatorPace::host; // 60 s in a moment
+    options.cyberglove.streaming = true;
+    options.faults = {"eg@20s+10s", "restart@60s"};
+    const Running emulator(options);
+    Host host(emulator->tty_path());
+    // 90 records a second until the restart ends the stream.
+    const std::string stream = host.receive_until(
+        [&](const std::string&) { return done(emulator->stats(), "restart") == 1; });
+    const std::string rest = host.receive_until(
+        [end = HostClock::now() + 300ms](const std::string&) { return HostClock::now() > end; });
+    const std::string all = stream + rest;
+    std::size_t good = 0;
+    std::size_t without_glove = 0;
+    for (std::size_t begin = 0, end = all.find('\0'); end != std::string::npos;
+         begin = end + 1, end = all.find('\0', begin)) {
+      const bool eg = end - begin == 25 && all.substr(end - 2, 2) == "eg";
+      (eg ? without_glove : good) += 1;
+      REQUIRE((eg || end - begin == 23));
+    }
+    CHECK(without_glove == 900);
+    CHECK(good >= 4499);
+    CHECK(good <= 4501);
+  }
+
+  TEST_CASE("a modem probe's junk awaits the first host") {
+    EmulatorOptions options;
+    options.faults = {"junk@0s"};
+    const Running emulator(options);
+    Host host(emulator->tty_path());
+    CHECK(host.receive(25).substr(0, 2) == "AT");
+    CHECK(done(emulator->stats(), "junk") == 1);
+  }
+
+  TEST_CASE("records of a capture are sent for a motion's") {
+    const test::TemporaryFolder folder;
+    EmulatorOptions options;
+    options.cyberglove.replay = folder.path() / "capture";
+    std::ofstream(options.cyberglove.replay) << std::string("cut\0S123\0?S\x16\0Sabc\0", 18);
+    const Running emulator(options);
+    Host host(emulator->tty_path());
+    host.send("S");
+    CHECK(host.receive(15).substr(0, 15) == std::string("S123\0Sabc\0S123\0", 15));
+  }
+
+  TEST_CASE("the log has a line for all that is received, sent and done") {
+    const test::TemporaryFolder folder;
+    EmulatorOptions options;
+    options.log = folder.path() / "log";
+    options.faults = {"silence@1ms+1ms"};
+    {
+      const Running emulator(options);
+      Host host(emulator->tty_path());
+      host.send("?S");
+      CHECK(host.receive(4).size() == 4);
+      CHECK(eventually([&] { return done(emulator->stats(), "silence") == 1; }));
+    }
+    const std::string log = contents(options.log);
+    CHECK(log.find(" < 3f 53 |?S|\n") != std::string::npos);
+    CHECK(log.find(" > reply 3f 53 16 00 |?S..|\n") != std::string::npos);
+    CHECK(log.find(" ! silence\n") != std::string::npos);
+  }
+
+  TEST_CASE("wrong faults, files and gloves are refused in one line that names them") {
+    const auto error = [](const EmulatorOptions& options) {
+      const auto emulator = GloveEmulator::open(options);
+      REQUIRE_FALSE(emulator);
+      return emulator.error();
+    };
+    EmulatorOptions options;
+    options.glove = "mitten";
+    CHECK(error(options).message.find("mitten") != std::string::npos);
+    options = {};
+    options.faults = {"unplug@1s+1s"};
+    CHECK(error(options).message.find("link") != std::string::npos);
+    options = {};
+    options.log = "/no/such/folder/log";
+    CHECK(error(options).code == Errc::failed);
+    CHECK(error(options).message.find("/no/such/folder/log") != std::string::npos);
+    options = {};
+    options.cyberglove.replay = "/no/such/file";
+    CHECK(error(options).code == Errc::bad_input);
+    options = {};
+    options.cyberglove.model = 4;
+    CHECK(error(options).code == Errc::usage);
+    options = {};
+    options.sensors = 18;
+    options.cyberglove.hardware_mask = 0x7FFF7F;
+    CHECK(error(options).message.find("22") != std::string::npos);
+  }
+}
