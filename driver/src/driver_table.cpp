@@ -6,6 +6,8 @@
 
 #include "cyberglove/cyberglove_driver.hpp"
 #include "discovery/auto_glove.hpp"
+#include "fivedt/fivedt_driver.hpp"
+#include "lucidgloves/lucidgloves_driver.hpp"
 #include "simulated/simulated_driver.hpp"
 
 namespace nendo::driver {
@@ -21,6 +23,11 @@ struct Driver {
 constexpr std::array drivers{
     Driver{"serial", "serial:PATH[?baud=N]", "a CyberGlove at a serial, USB or Bluetooth port",
            open_serial},
+    Driver{"lucidgloves", "lucidgloves:PATH[?baud=N&range=4095|1023&hand=left|right]",
+           "LucidGloves, or what else speaks OpenGloves' encoding, at a serial port",
+           open_lucidgloves},
+    Driver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
+           "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", open_fivedt},
     Driver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",
            open_auto},
     Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",

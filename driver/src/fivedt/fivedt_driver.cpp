@@ -1,0 +1,208 @@
+#include "fivedt/fivedt_driver.hpp"
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "fivedt/fivedt_information.hpp"
+#include "fivedt/fivedt_parser.hpp"
+#include "glove_spec.hpp"
+#include "serial_options.hpp"
+#include "stream/listen.hpp"
+#include "stream/stream_glove.hpp"
+#include "transport/open_transport.hpp"
+
+namespace nendo::driver {
+namespace {
+
+using namespace fivedt;
+using namespace std::chrono_literals;
+
+constexpr auto write_timeout = 100ms;
+constexpr auto answer_time = 800ms; ///< twice for each of two questions: less than open_budget
+constexpr int tries = 2;
+constexpr auto quiet_time = 50ms; ///< longer than any gap within an answer
+constexpr auto longest_babble = 300ms;
+
+constexpr std::array<Sensor, fingers> slots{
+    Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::pinky_mcp};
+
+constexpr SensorMask sensors() noexcept {
+  SensorMask mask;
+  for (const Sensor sensor : slots)
+    mask.bits |= 1U << static_cast<unsigned>(sensor);
+  return mask;
+}
+
+class FiveDtProtocol final : public GloveProtocol {
+public:
+  FiveDtProtocol(bool wireless, const HandWishes& hands) noexcept
+      : wireless_(wireless), hands_(hands) {}
+
+  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
+                             const Patience& patience) override {
+    return wireless_ ? recognise(transport, source, patience) : ask(transport, source, patience);
+  }
+
+  Result<void> start_stream(Transport& transport, const std::string& source,
+                            const Patience& /*patience*/) override {
+    parser_.count_discarded(drop_waiting(transport));
+    parser_.reset();
+    if (!wireless_ && send(transport, stream_command) == IoStatus::gone) return went_away(source);
+    return {};
+  }
+
+  void end_stream(Transport& transport, const Patience& patience) noexcept override {
+    if (!wireless_) reset(transport, patience, quiet_time);
+  }
+
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
+            SampleSink& sink) noexcept override {
+    parser_.push(chunk, [&](const Record& record) {
+      GloveSample sample;
+      for (std::size_t k = 0; k < fingers; ++k)
+        sample.raw[static_cast<std::size_t>(slots[k])] = RawCount{record.flexion[k]};
+      sample.present = sensors();
+      sample.side = side_;
+      sink.deliver(sample);
+    });
+  }
+
+  const StreamCounters& counters() const noexcept override { return parser_.counters(); }
+
+private:
+  static IoStatus send(Transport& transport, char command) noexcept {
+    return transport.write_all(std::as_bytes(std::span(&command, 1)), write_timeout);
+  }
+  static Error went_away(const std::string& source) {
+    return {Errc::no_device, source + " went away; is the cable loose?"};
+  }
+  Error stranger(const std::string& source, std::uint64_t bytes_heard) const {
+    const std::string what =
+        wireless_ ? (bytes_heard == 0 ? ": nothing comes from it"
+                                      : ": what comes from it are no samples of a 5DT glove")
+                  : (bytes_heard == 0 ? ": no answer to A and G within 3 s"
+                                      : ": what is there does not answer G like a 5DT glove");
+    return {Errc::no_device,
+            source + what +
+                "; is the glove switched on, is this its port, and is baud right (19200, wireless "
+                "9600)?"};
+  }
+
+  /// Throws away what comes until nothing has come for quiet_time: timeout, as hoped. Done: it
+  /// never stopped.
+  IoStatus fall_quiet(Transport& transport, const Patience& patience) noexcept {
+    const HostTime until = HostClock::now() + longest_babble;
+    IoStatus heard = IoStatus::done;
+    while (heard == IoStatus::done && HostClock::now() < until)
+      heard = hear(transport, patience, quiet_time);
+    return heard;
+  }
+  IoStatus hear(Transport& transport, const Patience& patience,
+                std::chrono::milliseconds longest) noexcept {
+    return listen(transport, patience, longest, [&](std::span<const std::byte> chunk) {
+      parser_.count_discarded(chunk.size());
+      return true;
+    });
+  }
+
+  /// Ends whatever streams; waits `answer` for the first byte of the reply. Where a stream ran, the
+  /// reply is somewhere among its last samples.
+  IoStatus reset(Transport& transport, const Patience& patience,
+                 std::chrono::milliseconds answer) noexcept {
+    if (send(transport, reset_command) == IoStatus::gone) return IoStatus::gone;
+    const IoStatus heard = hear(transport, patience, answer);
+    return heard == IoStatus::done ? fall_quiet(transport, patience) : heard;
+  }
+
+  /// A glove that was reset says what it is asked and no more.
+  IoStatus ask_information(Transport& transport, const Patience& patience,
+                           InformationFinder& finder) {
+    finder = {};
+    if (send(transport, information_command) == IoStatus::gone) return IoStatus::gone;
+    const IoStatus heard =
+        listen(transport, patience, answer_time, [&](std::span<const std::byte> chunk) {
+          parser_.count_discarded(chunk.size());
+          return finder.push(chunk);
+        });
+    if (heard != IoStatus::done) return heard;
+    return fall_quiet(transport, patience) == IoStatus::timeout ? IoStatus::done
+                                                                : IoStatus::timeout;
+  }
+
+  Result<GloveInfo> ask(Transport& transport, const std::string& source, const Patience& patience) {
+    const std::uint64_t before = parser_.counters().bytes;
+    InformationFinder finder;
+    IoStatus heard = IoStatus::timeout;
+    for (int k = 0; k < tries && heard == IoStatus::timeout; ++k) {
+      heard = reset(transport, patience, answer_time);
+      if (heard != IoStatus::gone) heard = ask_information(transport, patience, finder);
+    }
+    if (heard == IoStatus::gone) return went_away(source);
+    const auto information =
+        heard == IoStatus::done ? decode_information(finder.answer()) : std::nullopt;
+    if (!information) return stranger(source, parser_.counters().bytes - before);
+    GloveInfo info = describe(choose_hand(information->side, hands_));
+    if (!information->name.empty()) info.model = information->name + ", 5 sensors";
+    info.facts.push_back({"firmware", std::to_string(information->version_major) + "." +
+                                          std::to_string(information->version_minor)});
+    info.facts.push_back({"tilt_sensor", information->tilt_sensor ? "yes" : "no"});
+    return info;
+  }
+
+  /// One sample may be noise; two of them, one right behind the other, are none by chance.
+  Result<GloveInfo> recognise(Transport& transport, const std::string& source,
+                              const Patience& patience) {
+    Parser parser;
+    std::optional<std::uint64_t> dropped; // before the last sample
+    bool proven = false;
+    const auto take = [&](const Record&) {
+      const std::uint64_t now = parser.counters().discarded_bytes;
+      proven = proven || (dropped && now - *dropped <= most_extra_bytes);
+      dropped = now;
+    };
+    const IoStatus heard =
+        listen(transport, patience, open_budget, [&](std::span<const std::byte> chunk) {
+          parser.push(chunk, take);
+          return proven;
+        });
+    parser_.count_discarded(parser.counters().bytes);
+    if (heard == IoStatus::gone) return went_away(source);
+    if (heard == IoStatus::timeout) return stranger(source, parser.counters().bytes);
+    return describe(choose_hand(std::nullopt, hands_));
+  }
+
+  GloveInfo describe(const ChosenHand& hand) {
+    side_ = hand.side;
+    GloveInfo info;
+    info.model = "5DT Data Glove 5, 5 sensors";
+    info.side = hand.side;
+    info.sensors = sensors();
+    info.counts = {255, true};
+    info.facts = {{"link", wireless_ ? "wireless" : "wired"},
+                  {"hand_source", std::string(hand.source)}};
+    return info;
+  }
+
+  const bool wireless_;
+  const HandWishes hands_;
+  Side side_ = Side::right;
+  Parser parser_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<Side> side) {
+  if (auto allowed = allow_options(spec, {"baud", "hand"}); !allowed) return allowed.error();
+  const auto baud = number_option(spec, "baud", {wired_baud, wireless_baud});
+  if (!baud) return baud.error();
+  const auto hand = hand_option(spec);
+  if (!hand) return hand.error();
+  if (auto named = require_port(spec, "5dt:/dev/ttyUSB0"); !named) return named.error();
+  auto protocol = std::make_unique<FiveDtProtocol>(*baud == wireless_baud, HandWishes{*hand, side});
+  const auto open_port = [path = spec.target, rate = *baud] { return open_transport(path, rate); };
+  return open_stream_glove(spec.text, open_port, std::move(protocol),
+                           HostClock::now() + open_budget);
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,57 @@
+#pragma once
+// The byte stream of a 5DT Data Glove 5, taken apart into samples. Pure: no I/O, clock, log or
+// allocation; bytes are hostile. Nothing marks a sample's beginning for certain, so each nine bytes
+// that begin with the header and whose checksum fits are one, and one byte is dropped where they do
+// not.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "fivedt/fivedt_protocol.hpp"
+#include "stream/stream_counters.hpp"
+
+namespace nendo::driver::fivedt {
+
+struct Record {
+  std::array<std::uint8_t, fingers> flexion{}; ///< thumb to pinky, 0 straight to 255 bent
+};
+
+/// Judges nine bytes. Nothing if header or checksum are wrong.
+std::optional<Record> decode_record(std::span<const std::byte, sample_bytes> frame) noexcept;
+
+class Parser {
+public:
+  /// Takes the next bytes of the stream, cut anywhere, and hands each whole sample to `sink(const
+  /// Record&)`. A sample that is damaged counts once as bad, however many bytes are dropped before
+  /// the next good one.
+  template <class Sink>
+  void push(std::span<const std::byte> chunk, Sink&& sink) {
+    for (const std::byte byte : chunk) {
+      if (const auto record = push_byte(byte)) sink(*record);
+    }
+  }
+
+  /// Gives up the unfinished sample; the next byte may be anywhere in one.
+  void reset() noexcept;
+  /// Counts bytes that somebody else read from the same stream and that were no samples.
+  void count_discarded(std::uint64_t bytes) noexcept;
+
+  const StreamCounters& counters() const noexcept { return counters_; }
+  /// Bytes of the unfinished sample; always less than sample_bytes.
+  std::size_t pending() const noexcept { return held_; }
+
+private:
+  std::optional<Record> push_byte(std::byte byte) noexcept;
+  void drop_first() noexcept;
+
+  std::array<std::byte, sample_bytes> frame_{};
+  std::size_t held_ = 0;
+  bool in_step_ = false;  ///< the last sample was good, and no more than extra bytes came since
+  std::size_t extra_ = 0; ///< bytes dropped since the last good sample, while in step
+  StreamCounters counters_;
+};
+
+} // namespace nendo::driver::fivedt

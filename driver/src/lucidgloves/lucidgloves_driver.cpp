@@ -1,0 +1,190 @@
+#include "lucidgloves/lucidgloves_driver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "glove_spec.hpp"
+#include "lucidgloves/lucidgloves_parser.hpp"
+#include "lucidgloves/lucidgloves_slots.hpp"
+#include "serial_options.hpp"
+#include "stream/listen.hpp"
+#include "stream/stream_glove.hpp"
+#include "transport/open_transport.hpp"
+
+namespace nendo::driver {
+namespace {
+
+using namespace lucidgloves;
+using namespace std::chrono_literals;
+
+constexpr auto write_timeout = 100ms;
+constexpr auto starting_time = 2500ms; ///< a board that restarts at opening, boot loader included
+constexpr auto learning_time = 300ms;  ///< for an answer, and for lines with all slots
+
+/// What the glove shows and says of itself at the beginning.
+struct Acquaintance {
+  SensorMask sensors;
+  std::optional<Side> hand;
+  std::optional<std::uint32_t> firmware;
+  std::optional<std::uint32_t> device;
+  bool legacy = false;
+
+  void add(const Line& line, std::uint16_t range) noexcept {
+    GloveSample sample;
+    fill_slots(line, range, sample);
+    sensors.bits |= sample.present.bits;
+    legacy = legacy || line.legacy;
+    if (line.firmware) firmware = line.firmware;
+    if (line.device) device = line.device;
+    if (line.hand == hand_left) hand = Side::left;
+    if (line.hand == hand_right) hand = Side::right;
+  }
+};
+
+class LucidGlovesProtocol final : public GloveProtocol {
+public:
+  LucidGlovesProtocol(std::uint16_t range, const HandWishes& hands) noexcept
+      : range_(range), hands_(hands), parser_(range) {}
+
+  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
+                             const Patience& patience) override {
+    Parser parser(range_);
+    Acquaintance glove;
+    const auto take = [&](std::span<const std::byte> chunk) {
+      parser.push(chunk, [&](const Line& line) { glove.add(line, range_); });
+      return glove.sensors.bits != 0;
+    };
+    const auto learn = [&](std::span<const std::byte> chunk) { return take(chunk), false; };
+    IoStatus heard = listen(transport, patience, starting_time, take);
+    const bool mute = heard == IoStatus::timeout && parser.counters().bytes == 0;
+    if (mute && !legacy_) { // another program may have stopped it
+      heard = send(transport, start_streaming);
+    }
+    if (heard != IoStatus::gone && glove.sensors.bits == 0)
+      heard = listen(transport, patience, open_budget, take);
+    if (heard == IoStatus::done && !glove.legacy) {
+      heard = send(transport, ask_information);
+      if (heard != IoStatus::gone) heard = listen(transport, patience, learning_time, learn);
+    }
+    parser_.count_discarded(parser.counters().bytes);
+    if (heard == IoStatus::gone) return went_away(source);
+    if (glove.sensors.bits == 0) return stranger(source, parser.counters());
+    const ChosenHand hand = choose_hand(glove.hand, hands_);
+    side_ = hand.side;
+    legacy_ = glove.legacy;
+    return describe(glove, hand);
+  }
+
+  /// It streams all the time; what it said before now is old.
+  Result<void> start_stream(Transport& transport, const std::string& /*source*/,
+                            const Patience& /*patience*/) override {
+    parser_.count_discarded(drop_waiting(transport));
+    parser_.reset();
+    return {};
+  }
+
+  /// The stream goes on, since a glove that somebody stopped looks dead to programs that know no
+  /// (ZA). But nobody's fingers are to stay locked.
+  void end_stream(Transport& transport, const Patience& patience) noexcept override {
+    if (braking_) give(transport, {}, patience);
+  }
+
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
+            SampleSink& sink) noexcept override {
+    parser_.push(chunk, [&](const Line& line) {
+      if (!line.measures()) return;
+      GloveSample sample;
+      fill_slots(line, range_, sample);
+      sample.side = side_;
+      sink.deliver(sample);
+    });
+  }
+
+  void give(Transport& transport, const Feedback& feedback,
+            const Patience& /*patience*/) noexcept override {
+    if (legacy_) return;
+    std::array<unsigned, fingers> brake{};
+    for (std::size_t k = 0; k < fingers; ++k)
+      brake[k] = std::min(feedback.resistance[k], most_resistance);
+    std::array<char, 40> text{};
+    const int length = std::snprintf(text.data(), text.size(), "\nA%uB%uC%uD%uE%u\n", brake[0],
+                                     brake[1], brake[2], brake[3], brake[4]);
+    std::string_view command(text.data(), static_cast<std::size_t>(length));
+    if (!cut_off_) command.remove_prefix(1); // the LF that ends what was cut off
+    cut_off_ = send(transport, command) == IoStatus::timeout;
+    braking_ = brake != std::array<unsigned, fingers>{};
+  }
+
+  const StreamCounters& counters() const noexcept override { return parser_.counters(); }
+
+private:
+  static IoStatus send(Transport& transport, std::string_view command) noexcept {
+    return transport.write_all(std::as_bytes(std::span(command)), write_timeout);
+  }
+  static Error went_away(const std::string& source) {
+    return {Errc::no_device, source + " went away; is the cable loose?"};
+  }
+  Error stranger(const std::string& source, const StreamCounters& heard) const {
+    if (heard.bytes == 0) {
+      return {Errc::no_device,
+              source + ": nothing comes from it; is the glove switched on, and is this its port?"};
+    }
+    return {Errc::no_device, source +
+                                 ": what comes from it are no lines of a LucidGlove with "
+                                 "numbers up to " +
+                                 std::to_string(range_) +
+                                 "; is this its port, and are baud and range right?"};
+  }
+  GloveInfo describe(const Acquaintance& glove, const ChosenHand& hand) const {
+    GloveInfo info;
+    info.model = "LucidGloves, " + std::to_string(std::popcount(glove.sensors.bits)) + " sensors";
+    info.side = hand.side;
+    info.sensors = glove.sensors;
+    info.counts = {range_, true};
+    info.abilities.resistance = !glove.legacy;
+    info.facts = {{"encoding", glove.legacy ? "legacy" : "alpha"},
+                  {"hand_source", std::string(hand.source)}};
+    if (glove.firmware) info.facts.push_back({"firmware", std::to_string(*glove.firmware)});
+    if (glove.device) info.facts.push_back({"device_type", std::to_string(*glove.device)});
+    return info;
+  }
+
+  const std::uint16_t range_;
+  const HandWishes hands_;
+  Side side_ = Side::right;
+  bool legacy_ = false;
+  bool braking_ = false; ///< a finger is held
+  bool cut_off_ = false; ///< the glove took the last command only in part
+  Parser parser_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_lucidgloves_by(const std::string& source, OpenPort open_port,
+                                                   std::uint16_t range, const HandWishes& hands) {
+  return open_stream_glove(source, std::move(open_port),
+                           std::make_unique<LucidGlovesProtocol>(range, hands),
+                           HostClock::now() + open_budget);
+}
+
+Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::optional<Side> side) {
+  if (auto allowed = allow_options(spec, {"baud", "hand", "range"}); !allowed)
+    return allowed.error();
+  const auto rate = number_option(spec, "baud", {baud, 57'600, 38'400, 19'200, 9'600});
+  if (!rate) return rate.error();
+  const auto range = number_option(spec, "range", {esp32_range, avr_range});
+  if (!range) return range.error();
+  const auto hand = hand_option(spec);
+  if (!hand) return hand.error();
+  if (auto named = require_port(spec, "lucidgloves:/dev/ttyUSB0"); !named) return named.error();
+  const auto open_port = [path = spec.target, bits = *rate] { return open_transport(path, bits); };
+  return open_lucidgloves_by(spec.text, open_port, static_cast<std::uint16_t>(*range),
+                             {*hand, side});
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,73 @@
+#pragma once
+// The text stream of a LucidGlove, taken apart into lines. Pure: no I/O, clock, log or allocation;
+// bytes are hostile. A piece of a line may look like a whole one, so a line counts only if its
+// beginning was seen: what comes before the first LF is skipped.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "lucidgloves/lucidgloves_protocol.hpp"
+#include "stream/stream_counters.hpp"
+
+namespace nendo::driver::lucidgloves {
+
+/// What one line says. Fingers go from thumb to pinky.
+struct Line {
+  using Value = std::optional<std::uint16_t>;
+  std::array<Value, fingers> curl;
+  std::array<Value, fingers> splay;
+  std::array<std::array<Value, joints>, fingers> joint; ///< of each finger, from the metacarpal out
+  std::optional<std::uint32_t> firmware;
+  std::optional<std::uint32_t> device;
+  std::optional<std::uint32_t> hand;
+  bool legacy = false;
+
+  bool measures() const noexcept; ///< has a value of a finger
+  bool informs() const noexcept;  ///< has a value of the glove itself
+};
+
+/// Judges one line, without its end. Nothing if it does not keep to the encoding, holds a number
+/// above `range`, tells a value twice (two lines that ran into one), or tells nothing of a hand.
+std::optional<Line> decode_line(std::string_view text, std::uint16_t range) noexcept;
+
+class Parser {
+public:
+  explicit Parser(std::uint16_t range) noexcept : range_(range) {}
+
+  /// Takes the next bytes of the stream, cut anywhere, and hands each good line to `sink(const
+  /// Line&)`. Those that measure count as records; replies do not.
+  template <class Sink>
+  void push(std::span<const std::byte> chunk, Sink&& sink) {
+    for (const std::byte byte : chunk) {
+      if (const auto line = push_byte(byte)) sink(*line);
+    }
+  }
+
+  /// Gives up the unfinished line; what follows is skipped up to the next line's beginning.
+  void reset() noexcept;
+  /// Counts bytes that somebody else read from the same stream and that were no records.
+  void count_discarded(std::uint64_t bytes) noexcept;
+
+  const StreamCounters& counters() const noexcept { return counters_; }
+  /// Bytes of the unfinished line; always less than most_line_bytes.
+  std::size_t pending() const noexcept { return held_; }
+
+private:
+  enum class State : std::uint8_t { in_line, begin_unseen, overlong };
+
+  std::optional<Line> push_byte(std::byte byte) noexcept;
+  std::optional<Line> end_line() noexcept;
+  void discard_held() noexcept;
+
+  const std::uint16_t range_;
+  State state_ = State::begin_unseen;
+  std::array<char, most_line_bytes> line_{};
+  std::size_t held_ = 0;
+  StreamCounters counters_;
+};
+
+} // namespace nendo::driver::lucidgloves

@@ -1,0 +1,20 @@
+#pragma once
+// Files with what a device sends, and with what is to be read from it: tests/driver/captures/.
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+namespace nendo::test {
+
+inline std::string read_capture(const std::string& name) {
+  const auto path =
+      std::filesystem::path(__FILE__).parent_path().parent_path() / "driver" / "captures" / name;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error("cannot read " + path.string());
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+} // namespace nendo::test

@@ -1,0 +1,192 @@
+#pragma once
+// What holds for every streamed glove, whatever its protocol: each function is the body of a test
+// case. `Kind` says how to make one and how to open it.
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include <nendo/driver/open_glove.hpp>
+
+#include "support/pty_unit.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace nendo::test {
+
+using namespace std::chrono_literals;
+
+struct Kind {
+  std::function<std::unique_ptr<driver::EmulatedUnit>(Side)> make;
+  std::function<std::string(const std::string& path)> spec;
+  std::uint64_t longest_record = 0; ///< bytes
+};
+
+/// Looks every millisecond, so that a test waits no longer than it must.
+template <class Condition>
+bool within(std::chrono::milliseconds time, Condition&& condition) {
+  for (const auto end = HostClock::now() + time; HostClock::now() < end;) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(1ms);
+  }
+  return condition();
+}
+
+inline void check_conservation(const driver::GloveStats& stats, std::uint64_t longest_record) {
+  CHECK(stats.bytes >= stats.record_bytes + stats.discarded_bytes);
+  CHECK(stats.bytes - stats.record_bytes - stats.discarded_bytes < longest_record);
+}
+
+inline void no_glove_is_an_error_that_says_so(const Kind& kind, std::string_view noise) {
+  struct Case {
+    std::string noise;
+    std::string said;
+  };
+  for (const Case& wrong : {Case{"", "switched on"}, Case{std::string(noise), "baud"}}) {
+    const PtyUnit port(std::make_unique<Stranger>(wrong.noise));
+    const std::string spec = kind.spec(port.path());
+    const auto start = HostClock::now();
+    const auto glove = driver::open_glove(spec);
+    CHECK(HostClock::now() - start < 5s);
+    REQUIRE_FALSE(glove);
+    CAPTURE(glove.error().message);
+    CHECK(glove.error().code == Errc::no_device);
+    CHECK(glove.error().message.find(wrong.said) != std::string::npos);
+    CHECK(glove.error().message.find(spec) == 0);
+    CHECK(glove.error().message.find('\n') == std::string::npos);
+  }
+  const auto missing = driver::open_glove(kind.spec("/dev/nendo-no-such-port"));
+  REQUIRE_FALSE(missing);
+  CHECK(missing.error().code == Errc::no_device);
+}
+
+inline void samples_are_in_order_and_add_up(const Kind& kind) {
+  const PtyUnit port(kind.make(Side::right));
+  SampleRing ring(4096);
+  auto glove = driver::open_glove(kind.spec(port.path()));
+  REQUIRE_MESSAGE(glove, glove.error().message);
+  const HostTime before = HostClock::now();
+  REQUIRE((*glove)->start(ring));
+  CHECK((*glove)->start(ring).error().code == Errc::failed);
+  CHECK(within(5s, [&] { return ring.size() >= 20; }));
+  (*glove)->stop();
+  std::uint64_t next = 0;
+  HostTime last = before;
+  ring.drain([&](const GloveSample& sample) {
+    CHECK(sample.sequence == next++);
+    CHECK(sample.arrival >= last);
+    CHECK(sample.measured == sample.arrival);
+    last = sample.arrival;
+    CHECK(sample.present == (*glove)->info().sensors);
+    CHECK(sample.side == (*glove)->info().side);
+    CHECK(sample.wrist_switch == WristSwitch::unknown);
+    for (const RawCount count : sample.raw)
+      CHECK(count.value <= (*glove)->info().counts.most);
+  });
+  CHECK(last <= HostClock::now());
+  const driver::GloveStats stats = (*glove)->stats();
+  CHECK(stats.records == next);
+  CHECK(stats.bad_records == 0);
+  check_conservation(stats, kind.longest_record);
+}
+
+inline void a_full_ring_refuses_and_counts(const Kind& kind) {
+  const PtyUnit port(kind.make(Side::right));
+  SampleRing ring(8);
+  auto glove = driver::open_glove(kind.spec(port.path()));
+  REQUIRE_MESSAGE(glove, glove.error().message);
+  REQUIRE((*glove)->start(ring));
+  CHECK(within(5s, [&] { return (*glove)->stats().ring_refused > 5; }));
+  (*glove)->stop();
+  const driver::GloveStats stats = (*glove)->stats();
+  CHECK(stats.records == stats.ring_refused + ring.size());
+  check_conservation(stats, kind.longest_record);
+}
+
+inline void stop_is_prompt_and_start_works_again(const Kind& kind) {
+  const PtyUnit port(kind.make(Side::right));
+  SampleRing ring(4096);
+  auto glove = driver::open_glove(kind.spec(port.path()));
+  REQUIRE_MESSAGE(glove, glove.error().message);
+  for (int round = 0; round < 2; ++round) {
+    REQUIRE((*glove)->start(ring));
+    CHECK(within(5s, [&] { return (*glove)->stats().records > 3; }));
+    const auto start = HostClock::now();
+    (*glove)->stop();
+    (*glove)->stop();
+    CHECK(HostClock::now() - start < 1s);
+  }
+}
+
+inline void a_silent_stream_is_started_again(const Kind& kind) {
+  PtyUnit port(kind.make(Side::right));
+  SampleRing ring(1U << 14U);
+  auto glove = driver::open_glove(kind.spec(port.path()));
+  REQUIRE_MESSAGE(glove, glove.error().message);
+  REQUIRE((*glove)->start(ring));
+  REQUIRE(within(5s, [&] { return (*glove)->stats().records > 3; }));
+  port.mute = true;
+  REQUIRE(within(5s, [&] { return (*glove)->stats().silences == 1; }));
+  const std::uint64_t before = (*glove)->stats().records;
+  port.mute = false;
+  CHECK(within(10s, [&] { return (*glove)->stats().records > before + 3; }));
+  (*glove)->stop();
+  const driver::GloveStats stats = (*glove)->stats();
+  CHECK(stats.silences == 1);
+  CHECK(stats.reopened == 0);
+  CHECK(stats.records == ring.size());
+  check_conservation(stats, kind.longest_record);
+}
+
+inline void stop_is_prompt_while_silent_or_away(const Kind& kind) {
+  for (const bool away : {false, true}) {
+    CAPTURE(away);
+    PtyUnit port(kind.make(Side::right));
+    SampleRing ring(1U << 14U);
+    auto glove = driver::open_glove(kind.spec(port.path()));
+    REQUIRE_MESSAGE(glove, glove.error().message);
+    REQUIRE((*glove)->start(ring));
+    REQUIRE(within(5s, [&] { return (*glove)->stats().records > 3; }));
+    port.mute = true;
+    if (away) {
+      port.unplug();
+      std::this_thread::sleep_for(200ms); // nothing tells that the loss was noticed
+    } else {
+      REQUIRE(within(5s, [&] { return (*glove)->stats().silences == 1; }));
+    }
+    const auto start = HostClock::now();
+    (*glove)->stop();
+    CHECK(HostClock::now() - start < 1s);
+  }
+}
+
+inline void a_glove_that_vanishes_is_found_again(const Kind& kind, bool tells_its_hand) {
+  const TemporaryFolder folder;
+  const auto link = folder.path() / "glove";
+  auto first = std::make_unique<PtyUnit>(kind.make(Side::right));
+  std::filesystem::create_symlink(first->path(), link);
+  SampleRing ring(1U << 14U);
+  auto glove = driver::open_glove(kind.spec(link.string()));
+  REQUIRE_MESSAGE(glove, glove.error().message);
+  REQUIRE((*glove)->start(ring));
+  REQUIRE(within(5s, [&] { return ring.size() > 3; }));
+
+  first.reset();
+  std::filesystem::remove(link);
+  const PtyUnit second(kind.make(Side::left));
+  std::filesystem::create_symlink(second.path(), link);
+  REQUIRE(within(10s, [&] { return (*glove)->stats().reopened == 1; }));
+  ring.drain([](const GloveSample&) {});
+  GloveSample sample;
+  REQUIRE(within(5s, [&] { return ring.try_pop(sample); }));
+  (*glove)->stop();
+  CHECK(sample.side == (tells_its_hand ? Side::left : Side::right));
+  CHECK((*glove)->info().side == Side::right);
+  check_conservation((*glove)->stats(), kind.longest_record);
+}
+
+} // namespace nendo::test
