@@ -9,6 +9,7 @@
 #include "fivedt/fivedt_driver.hpp"
 #include "lucidgloves/lucidgloves_driver.hpp"
 #include "simulated/simulated_driver.hpp"
+#include "usb/open_usb_glove.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -28,6 +29,8 @@ constexpr std::array drivers{
            open_lucidgloves},
     Driver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
            "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", open_fivedt},
+    Driver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
+           "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", open_usb_glove},
     Driver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",
            open_auto},
     Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",

@@ -1,0 +1,96 @@
+#include "fivedt_usb/fivedt_usb_driver.hpp"
+
+#include <cassert>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "fivedt_usb/fivedt_usb_parser.hpp"
+#include "glove_spec.hpp"
+#include "usb/await_report.hpp"
+#include "usb/open_usb_glove.hpp"
+
+namespace nendo::driver {
+namespace {
+
+using namespace fivedt_usb;
+
+std::string_view name_of_link(Link link) noexcept {
+  switch (link) {
+  case Link::wireless_a:
+    return "wireless, port A";
+  case Link::wireless_b:
+    return "wireless, port B";
+  default:
+    return "cable";
+  }
+}
+
+class FivedtUsbProtocol final : public GloveProtocol {
+public:
+  explicit FivedtUsbProtocol(const Model& model) noexcept
+      : model_(model), step_(model.five_sensors ? values_a_finger : 1) {}
+
+  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
+                             const Patience& patience) override {
+    std::uint64_t bytes = 0;
+    const auto alive = await_report(transport, source, patience, bytes,
+                                    [](auto report) { return decode_report(report).has_value(); });
+    parser_.count_discarded(bytes);
+    if (!alive) return alive.error();
+    GloveInfo info;
+    info.model = std::string("5DT Data Glove ") + (model_.five_sensors ? "5" : "14") + " Ultra";
+    info.side = model_.side;
+    info.sensors = sensors();
+    info.counts = {most_count, true};
+    info.facts = facts_of(static_cast<UsbTransport&>(transport).identity());
+    info.facts.push_back({"link", std::string(name_of_link(model_.link))});
+    return info;
+  }
+
+  // It streams whenever somebody reads.
+  Result<void> start_stream(Transport& /*transport*/, const std::string& /*source*/,
+                            const Patience& /*patience*/) override {
+    return {};
+  }
+  void end_stream(Transport& /*transport*/, const Patience& /*patience*/) noexcept override {}
+
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
+            SampleSink& sink) noexcept override {
+    const auto report = parser_.push(chunk);
+    if (!report) return;
+    GloveSample sample;
+    for (std::size_t k = 0; k < value_sensors.size(); k += step_)
+      sample.raw[static_cast<std::size_t>(value_sensors[k])] = RawCount{report->values[k]};
+    sample.present = sensors();
+    sample.side = model_.side;
+    sink.deliver(sample);
+  }
+
+  const StreamCounters& counters() const noexcept override { return parser_.counters(); }
+
+private:
+  SensorMask sensors() const noexcept {
+    SensorMask mask;
+    for (std::size_t k = 0; k < value_sensors.size(); k += step_)
+      mask.bits |= 1U << static_cast<unsigned>(value_sensors[k]);
+    return mask;
+  }
+
+  const Model model_;
+  const std::size_t step_; ///< from one measured value to the next
+  Parser parser_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbWanted& wanted,
+                                               HostTime deadline) {
+  if (auto allowed = allow_options(spec, {"serial"}); !allowed) return allowed.error();
+  const auto model = model_of(wanted.id.product);
+  assert(model);
+  return open_stream_glove(spec.text, usb_opener(wanted, {interface_number, report_bytes}),
+                           std::make_unique<FivedtUsbProtocol>(*model), deadline);
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,26 @@
+#pragma once
+// The 5DT Ultra's input report, taken apart. Pure: no I/O, clock, log or allocation; bytes are
+// hostile.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "fivedt_usb/fivedt_usb_protocol.hpp"
+#include "stream/report_parser.hpp"
+
+namespace nendo::driver::fivedt_usb {
+
+struct Report {
+  /// 0 to most_count, in the order of value_sensors; what lies outside is put to the nearer end.
+  std::array<std::uint16_t, value_sensors.size()> values{};
+};
+
+/// Nothing if it is of another length; the values cannot be told from damaged ones.
+std::optional<Report> decode_report(std::span<const std::byte> report) noexcept;
+
+using Parser = ReportParser<Report, decode_report>;
+
+} // namespace nendo::driver::fivedt_usb

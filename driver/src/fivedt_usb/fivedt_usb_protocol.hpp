@@ -1,0 +1,61 @@
+#pragma once
+// The 5DT Data Glove Ultra at USB, by cable or by its wireless kit's receiver: a HID device. Its
+// facts are those of VRPN's driver, which ran on gloves of 5 sensors; the maker publishes none.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::driver::fivedt_usb {
+
+inline constexpr std::uint16_t vendor_id = 0x5D70;
+inline constexpr int interface_number = 0;
+
+// The product number says everything.
+inline constexpr unsigned left_bit = 0x01;
+inline constexpr unsigned link_bits = 0x06; ///< none: cable; 0x02: wireless port A; 0x06: port B
+inline constexpr unsigned port_a = 0x02;
+inline constexpr unsigned port_b = 0x06;
+inline constexpr unsigned five_sensors_bit = 0x10; ///< else 14
+
+enum class Link : std::uint8_t { cable, wireless_a, wireless_b };
+
+struct Model {
+  Side side = Side::right;
+  Link link = Link::cable;
+  bool five_sensors = false;
+  friend constexpr bool operator==(const Model&, const Model&) = default;
+};
+
+/// Nothing if no glove has this number.
+constexpr std::optional<Model> model_of(std::uint16_t product_id) noexcept {
+  if ((product_id & ~(left_bit | link_bits | five_sensors_bit)) != 0) return std::nullopt;
+  const unsigned link = product_id & link_bits;
+  if (link != 0 && link != port_a && link != port_b) return std::nullopt;
+  return Model{(product_id & left_bit) != 0 ? Side::left : Side::right,
+               link == 0        ? Link::cable
+               : link == port_a ? Link::wireless_a
+                                : Link::wireless_b,
+               (product_id & five_sensors_bit) != 0};
+}
+
+// The input report: 16 values of two bytes, high byte first, signed; the rest is not known. It has
+// no number.
+inline constexpr std::size_t report_bytes = 64;
+inline constexpr std::uint16_t most_count = 4095;
+
+/// Value k of the report is this sensor's, in a glove of 14; the last two values are nobody's. A
+/// glove of 5 has one sensor a finger, along all of it, told as the knuckle's: values 0, 3, 6, 9
+/// and 12.
+inline constexpr std::array value_sensors{
+    Sensor::thumb_mcp,  Sensor::thumb_ip,   Sensor::thumb_abduction,
+    Sensor::index_mcp,  Sensor::index_pip,  Sensor::index_middle_abduction,
+    Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_ring_abduction,
+    Sensor::ring_mcp,   Sensor::ring_pip,   Sensor::ring_pinky_abduction,
+    Sensor::pinky_mcp,  Sensor::pinky_pip};
+inline constexpr std::size_t values_a_finger = 3;
+
+} // namespace nendo::driver::fivedt_usb

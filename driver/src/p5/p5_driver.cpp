@@ -1,0 +1,113 @@
+#include "p5/p5_driver.hpp"
+
+#include <array>
+#include <utility>
+
+#include "glove_spec.hpp"
+#include "p5/p5_parser.hpp"
+#include "usb/await_report.hpp"
+#include "usb/open_usb_glove.hpp"
+
+namespace nendo::driver {
+namespace {
+
+using namespace p5;
+using namespace std::chrono_literals;
+
+constexpr auto control_timeout = 100ms;
+
+class P5Protocol final : public GloveProtocol {
+public:
+  explicit P5Protocol(Side side) noexcept : side_(side) {}
+
+  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
+                             const Patience& patience) override {
+    std::uint64_t bytes = 0;
+    const auto alive = await_report(transport, source, patience, bytes,
+                                    [](auto report) { return decode_report(report).has_value(); });
+    parser_.count_discarded(bytes);
+    if (!alive) return alive.error();
+    GloveInfo info;
+    info.model = "Essential Reality P5, 5 sensors";
+    info.side = side_;
+    info.sensors = sensors();
+    info.counts = {most_bend, true};
+    info.abilities.wrist_switch = true;
+    info.facts = facts_of(usb(transport).identity());
+    return info;
+  }
+
+  Result<void> start_stream(Transport& transport, const std::string& source,
+                            const Patience& /*patience*/) override {
+    std::array mouse{mouse_report, std::byte{0}};
+    std::size_t received = 0;
+    auto status = usb(transport).get_feature(mouse, received, control_timeout);
+    // What cannot be read is left alone: it could not be put back.
+    if (status == ControlStatus::done && received == mouse.size() && mouse[1] == mouse_on) {
+      mouse_was_on_ = true; // and stays so if the stream is started again after a silence
+      status = set_mouse(transport, mouse_off);
+    }
+    if (status != ControlStatus::gone) return {};
+    return Error{Errc::no_device, source + " went away; is the cable loose?"};
+  }
+
+  void end_stream(Transport& transport, const Patience& /*patience*/) noexcept override {
+    if (std::exchange(mouse_was_on_, false)) set_mouse(transport, mouse_on);
+  }
+
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
+            SampleSink& sink) noexcept override {
+    const auto report = parser_.push(chunk);
+    if (!report) return;
+    GloveSample sample;
+    for (std::size_t k = 0; k < bend_sensors.size(); ++k)
+      sample.raw[static_cast<std::size_t>(bend_sensors[k])] = RawCount{report->bends[k]};
+    sample.present = sensors();
+    sample.wrist_switch = report->button_a ? WristSwitch::on : WristSwitch::off;
+    sample.side = side_;
+    sink.deliver(sample);
+  }
+
+  const StreamCounters& counters() const noexcept override { return parser_.counters(); }
+
+private:
+  /// open_p5() gives it no other.
+  static UsbTransport& usb(Transport& transport) noexcept {
+    return static_cast<UsbTransport&>(transport);
+  }
+  static constexpr SensorMask sensors() noexcept {
+    SensorMask mask;
+    for (const Sensor sensor : bend_sensors)
+      mask.bits |= 1U << static_cast<unsigned>(sensor);
+    return mask;
+  }
+  static ControlStatus set_mouse(Transport& transport, std::byte mode) noexcept {
+    return usb(transport).set_feature(std::array{mouse_report, mode}, control_timeout);
+  }
+
+  const Side side_;
+  Parser parser_;
+  bool mouse_was_on_ = false; ///< and was switched off here
+};
+
+Result<Side> hand_of(const GloveSpec& spec) {
+  const auto hand = spec.options.find("hand");
+  if (hand == spec.options.end()) return Side::right;
+  for (const Side side : {Side::left, Side::right}) {
+    if (hand->second == name_of(side)) return side;
+  }
+  return Error{Errc::usage, spec.text + ": hand is left or right, not " + hand->second};
+}
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
+                                       HostTime deadline) {
+  if (auto allowed = allow_options(spec, {"serial", "hand"}); !allowed) return allowed.error();
+  const auto side = hand_of(spec);
+  if (!side) return side.error();
+  return open_stream_glove(spec.text, usb_opener(wanted, {interface_number, report_bytes}),
+                           std::make_unique<P5Protocol>(*side), deadline);
+}
+
+} // namespace nendo::driver

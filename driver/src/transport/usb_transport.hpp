@@ -1,0 +1,65 @@
+#pragma once
+// A glove that is a USB device of its own, by libusb: the reports of one HID interface come in, and
+// its feature reports are asked for and set. Not hidraw, because usbhid makes a mouse of a P5.
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include <nendo/base/result.hpp>
+
+#include "transport/transport.hpp"
+#include "transport/usb_identity.hpp"
+
+namespace nendo::driver {
+
+/// Which device to open; what is empty does not matter.
+struct UsbWanted {
+  UsbId id;
+  std::string serial; ///< its serial number
+  std::string port;   ///< where it is plugged in, as the kernel names it: 1-4.2
+};
+
+/// The part of the device that sends reports.
+struct UsbInterface {
+  int number = 0;
+  std::size_t report_bytes = 0; ///< of its longest report
+};
+
+enum class ControlStatus : std::uint8_t {
+  done,
+  refused, ///< the device does not know the request, or did not answer in time
+  gone,
+};
+
+/// Reports are read by interrupt transfers, several of them under way, so that none is lost while
+/// the reader is busy; their events are handled inside read_some().
+class UsbTransport : public Transport {
+public:
+  /// Constant. Any thread.
+  virtual const UsbIdentity& identity() const noexcept = 0;
+  /// Asks for feature report `report[0]`. `received` of its bytes, the number among them, are then
+  /// in `report`.
+  virtual ControlStatus get_feature(std::span<std::byte> report, std::size_t& received,
+                                    std::chrono::milliseconds timeout) noexcept = 0;
+  /// Sets feature report `report[0]`.
+  virtual ControlStatus set_feature(std::span<const std::byte> report,
+                                    std::chrono::milliseconds timeout) noexcept = 0;
+  // read_some() returns one whole report in one call; its buffer has room for 1024 bytes, the
+  // longest that an interrupt endpoint sends. write_all() sends one report to the interrupt output;
+  // where there is none, it does nothing and says `timeout`.
+};
+
+/// The longest packet of an interrupt endpoint (USB 2.0, 5.7.3).
+inline constexpr std::size_t most_usb_report_bytes = 1024;
+
+/// Opens the first device that is `wanted` and not in use, and takes the interface from the
+/// kernel's driver until the transport is closed. May block for 0.3 s. Errors: no_device (absent,
+/// in use, no such interface), no_permission.
+Result<std::unique_ptr<UsbTransport>> open_usb(const UsbWanted& wanted,
+                                               const UsbInterface& interface);
+
+} // namespace nendo::driver

@@ -1,0 +1,46 @@
+#pragma once
+// Whether a glove is there at all: the receiver of a wireless one answers also when the glove is
+// switched off.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <nendo/base/result.hpp>
+#include <nendo/base/units.hpp>
+
+#include "stream/glove_protocol.hpp"
+#include "transport/usb_transport.hpp"
+
+namespace nendo::driver {
+
+/// Reads until a report is `good(report)`, for 2 s at most, and counts its bytes in `bytes`.
+/// Error: no_device.
+template <class Good>
+Result<void> await_report(Transport& transport, const std::string& source, const Patience& patience,
+                          std::uint64_t& bytes, Good&& good) {
+  using namespace std::chrono_literals;
+  std::array<std::byte, most_usb_report_bytes> buffer{};
+  const HostTime deadline = std::min(patience.deadline, HostClock::now() + 2s);
+  bool babbles = false;
+  while (HostClock::now() < deadline && !patience.cancelled.stop_requested()) {
+    const auto [status, count] = transport.read_some(buffer, 100ms);
+    if (status == IoStatus::gone) {
+      return Error{Errc::no_device, source + " went away; is the cable loose?"};
+    }
+    bytes += count;
+    if (status != IoStatus::done) continue;
+    if (good(std::span<const std::byte>(buffer).first(count))) return {};
+    babbles = true;
+  }
+  return Error{Errc::no_device,
+               source + (babbles ? " does not send what such a glove sends; is it another device?"
+                                 : " sends nothing; is the glove switched on, and plugged into its "
+                                   "receiver?")};
+}
+
+} // namespace nendo::driver

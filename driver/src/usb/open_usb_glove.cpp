@@ -1,0 +1,112 @@
+#include "usb/open_usb_glove.hpp"
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <system_error>
+#include <utility>
+
+#include "fivedt_usb/fivedt_usb_driver.hpp"
+#include "fivedt_usb/fivedt_usb_protocol.hpp"
+#include "p5/p5_driver.hpp"
+#include "p5/p5_protocol.hpp"
+
+namespace nendo::driver {
+namespace {
+
+struct UsbGlove {
+  std::string_view name;
+  std::string_view ids; ///< for messages
+  bool (*is)(UsbId id) noexcept;
+  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, const UsbWanted& wanted,
+                                         HostTime deadline);
+};
+
+constexpr std::array usb_gloves{
+    UsbGlove{"Essential Reality P5", "0d7f:0100",
+             [](UsbId id) noexcept { return id == p5::usb_id; }, open_p5},
+    UsbGlove{"5DT Data Glove Ultra", "5d70:0000 to 5d70:0017",
+             [](UsbId id) noexcept {
+               return id.vendor == fivedt_usb::vendor_id &&
+                      fivedt_usb::model_of(id.product).has_value();
+             },
+             open_fivedt_usb},
+};
+
+const UsbGlove* find(UsbId id) noexcept {
+  for (const UsbGlove& glove : usb_gloves) {
+    if (glove.is(id)) return &glove;
+  }
+  return nullptr;
+}
+
+/// Four hexadecimal digits.
+std::optional<std::uint16_t> read_number(std::string_view text) noexcept {
+  std::uint16_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number, 16);
+  if (text.size() != 4 || error != std::errc{} || stopped != end) return std::nullopt;
+  return number;
+}
+
+Result<UsbId> id_of(const GloveSpec& spec) {
+  const std::string_view target = spec.target;
+  const std::size_t colon = target.find(':');
+  const auto vendor = read_number(target.substr(0, colon));
+  const auto product =
+      colon == std::string_view::npos ? std::nullopt : read_number(target.substr(colon + 1));
+  if (vendor && product) return UsbId{*vendor, *product};
+  return Error{Errc::usage, spec.text + ": after usb: come the vendor's and the product's number, "
+                                        "four hexadecimal digits each, e.g. usb:0d7f:0100"};
+}
+
+Error unknown(const GloveSpec& spec) {
+  std::string known;
+  for (const UsbGlove& glove : usb_gloves)
+    known.append(known.empty() ? "" : ", ").append(glove.ids).append(" (").append(glove.name) +=
+        ')';
+  return {Errc::usage, spec.text + ": no driver for this USB device; known: " + known};
+}
+
+} // namespace
+
+std::string_view usb_glove_name(UsbId id) noexcept {
+  const UsbGlove* const glove = find(id);
+  return glove != nullptr ? glove->name : std::string_view{};
+}
+
+Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime deadline) {
+  const auto id = id_of(spec);
+  if (!id) return id.error();
+  const UsbGlove* const glove = find(*id);
+  if (glove == nullptr) return unknown(spec);
+  UsbWanted wanted{*id, {}, {}};
+  if (const auto serial = spec.options.find("serial"); serial != spec.options.end())
+    wanted.serial = serial->second;
+  return glove->open(spec, wanted, deadline);
+}
+
+Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> /*side*/) {
+  return open_usb_glove_by(spec, HostClock::now() + open_budget);
+}
+
+OpenPort usb_opener(UsbWanted wanted, const UsbInterface& interface) {
+  return [last = std::move(wanted), interface]() mutable -> Result<std::unique_ptr<Transport>> {
+    auto opened = open_usb(last, interface);
+    if (!opened) return opened.error();
+    const UsbIdentity& identity = (*opened)->identity();
+    last.serial = identity.serial;
+    last.port = identity.serial.empty() ? identity.port : std::string{};
+    return std::unique_ptr<Transport>(*std::move(opened));
+  };
+}
+
+std::vector<GloveFact> facts_of(const UsbIdentity& identity) {
+  std::vector<GloveFact> facts{{"usb_id", to_string(identity.id)}, {"usb_port", identity.port}};
+  if (!identity.manufacturer.empty()) facts.push_back({"manufacturer", identity.manufacturer});
+  if (!identity.product.empty()) facts.push_back({"product", identity.product});
+  if (!identity.serial.empty()) facts.push_back({"serial", identity.serial});
+  return facts;
+}
+
+} // namespace nendo::driver
