@@ -5,6 +5,7 @@
 #include <array>
 
 #include "cyberglove/cyberglove_driver.hpp"
+#include "cyberglove/cyberglove_options.hpp"
 #include "discovery/auto_glove.hpp"
 #include "fivedt/fivedt_driver.hpp"
 #include "lucidgloves/lucidgloves_driver.hpp"
@@ -22,7 +23,7 @@ struct Driver {
 };
 
 constexpr std::array drivers{
-    Driver{"serial", "serial:PATH[?baud=N]", "a CyberGlove at a serial, USB or Bluetooth port",
+    Driver{"serial", cyberglove::options_grammar, "a CyberGlove at a serial, USB or Bluetooth port",
            open_serial},
     Driver{"lucidgloves", "lucidgloves:PATH[?baud=N&range=4095|1023&hand=left|right]",
            "LucidGloves, or what else speaks OpenGloves' encoding, at a serial port",

@@ -8,41 +8,16 @@
 
 #include <doctest/doctest.h>
 
+#include "support/canned_transport.hpp"
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::driver::cyberglove;
+using nendo::test::CannedTransport;
 using namespace std::chrono_literals;
 using namespace std::string_view_literals;
 
 namespace {
-
-/// Answers whatever is written with fixed bytes, one at a time; then time is up at once.
-class CannedTransport final : public Transport {
-public:
-  explicit CannedTransport(std::string_view reply) : reply_(reply) {}
-  ReadResult read_some(std::span<std::byte> buffer, std::chrono::milliseconds) noexcept override {
-    if (gone) return {IoStatus::gone, 0};
-    if (unread_.empty()) return {IoStatus::timeout, 0};
-    buffer[0] = static_cast<std::byte>(unread_.front());
-    unread_.remove_prefix(1);
-    return {IoStatus::done, 1};
-  }
-  IoStatus write_all(std::span<const std::byte> bytes,
-                     std::chrono::milliseconds) noexcept override {
-    for (const std::byte byte : bytes)
-      written.push_back(std::to_integer<char>(byte));
-    unread_ = reply_;
-    return gone ? IoStatus::gone : IoStatus::done;
-  }
-  void discard_input() noexcept override { unread_ = {}; }
-
-  std::string written;
-  bool gone = false;
-
-private:
-  const std::string_view reply_;
-  std::string_view unread_;
-};
 
 struct Exchange {
   Answer answer;
@@ -93,21 +68,74 @@ TEST_SUITE("cyberglove_dialogue") {
     CHECK(ask_mask(std::string(100'000, 'x')).answer == Answer::nonsense);
   }
 
-  TEST_CASE("a setting is confirmed in two bytes or in three") {
-    for (const std::string_view reply : {"D\0"sv, "D\x01\0"sv, "\0D\0"sv}) {
-      CannedTransport transport(reply);
+  TEST_CASE("a command is confirmed in two bytes or in three, and by its own echo only") {
+    struct Case {
+      std::string_view echo, reply;
+      Answer answer;
+    };
+    for (const Case& one : {
+             Case{"D", "D\0"sv, Answer::good},
+             Case{"D", "D\x01\0"sv, Answer::good},
+             Case{"D", "\0D\0"sv, Answer::good},
+             Case{"D", "junk\0D\0"sv, Answer::good},
+             Case{"t", "t\r\n\0"sv, Answer::good},
+             Case{"D", ""sv, Answer::silent},
+             Case{"D", "D"sv, Answer::nonsense},
+             Case{"D", "D\x01\x02\0"sv, Answer::nonsense},
+             Case{"D", "S\0"sv, Answer::nonsense},
+             Case{"D", "e?\0"sv, Answer::unknown},
+             Case{"t", "en\0"sv, Answer::bad_number},
+             Case{"t", "tes\0"sv, Answer::bad_rate},
+             Case{"D", "eg\0"sv, Answer::no_glove},
+             Case{"y", "ey\0"sv, Answer::bad_sync_rate}, // not its echo
+             Case{"y", "y\0"sv, Answer::good},
+             Case{"1es", "1es\0"sv, Answer::good}, // no error, though it ends like one
+             Case{"1es", "es\0"sv, Answer::bad_rate},
+             Case{"CA", "CA\0"sv, Answer::good},
+             Case{"CA", "A\0"sv, Answer::nonsense},
+         }) {
+      CAPTURE(one.echo);
+      CAPTURE(one.reply);
+      CannedTransport transport(one.reply);
       Dialogue dialogue(transport, HostClock::now() + 20ms);
-      CHECK(dialogue.set('D', true, 1s) == Answer::good);
+      CHECK(dialogue.command(std::as_bytes(std::span("D\x01"sv)), one.echo, 1s) == one.answer);
       CHECK(transport.written == "D\x01");
     }
-    for (const std::string_view reply : {"D"sv, "D\x01\x02\0"sv, "S\0"sv}) {
+  }
+
+  TEST_CASE("a pause ends with the answer to it, not with a value that looks like it") {
+    const auto pause = [](std::string_view reply) {
       CannedTransport transport(reply);
-      Dialogue dialogue(transport, HostClock::now() + 20ms);
-      CHECK(dialogue.set('D', true, 1s) == Answer::nonsense);
-    }
-    CannedTransport transport("e?\0"sv);
-    Dialogue dialogue(transport, HostClock::now() + 20ms);
-    CHECK(dialogue.set('D', true, 1s) == Answer::unknown);
+      Dialogue dialogue(transport, HostClock::now() + 200ms);
+      const Answer answer = dialogue.pause_stream(100ms);
+      CHECK(transport.written == "\x03");
+      return std::pair(answer, dialogue.bytes_received());
+    };
+    CHECK(pause("\x03\0rest"sv) == std::pair(Answer::good, std::uint64_t{2}));
+    CHECK(pause("S\x11\x22\0\x03\0rest"sv) == std::pair(Answer::good, std::uint64_t{6}));
+    CHECK(pause("S\x11\x03\0\x03\0rest"sv) == std::pair(Answer::good, std::uint64_t{6}));
+    CHECK(pause("S\x11\x03\0"sv) == std::pair(Answer::good, std::uint64_t{4})); // broken off
+    CHECK(pause("S\x11\x22\0"sv).first == Answer::silent);
+    CHECK(pause("").first == Answer::silent);
+  }
+
+  TEST_CASE("a restart is over when its line has come, with NUL or without") {
+    const auto restart = [](std::string_view reply) {
+      CannedTransport transport(reply);
+      Dialogue dialogue(transport, HostClock::now() + 100ms);
+      const Answer answer = dialogue.restart(50ms);
+      CHECK(transport.written == "\x12");
+      return answer;
+    };
+    CHECK(restart("\x12\r\n\0"sv) == Answer::good);
+    CHECK(restart("\x12\r\n"sv) == Answer::good);
+    CHECK(restart("^R\r\n\0"sv) == Answer::good);
+    CHECK(restart("\x10\x20\0\x12\r\n\0"sv) == Answer::good);
+    CHECK(restart("\x12\r"sv) == Answer::nonsense);
+    CHECK(restart("\r\n\0"sv) == Answer::nonsense);
+    CHECK(restart("e?\0"sv) == Answer::unknown);
+    CHECK(restart("") == Answer::silent);
+    CHECK(restart(std::string(100'000, 'x')) == Answer::nonsense);
   }
 
   TEST_CASE("text ends at NUL and is bounded") {
@@ -127,7 +155,9 @@ TEST_SUITE("cyberglove_dialogue") {
     Dialogue lost(transport, HostClock::now() + 10s);
     std::array<std::byte, 1> data{};
     CHECK(lost.ask(ask_state, data, 10s) == Answer::gone);
-    CHECK(lost.set('D', true, 10s) == Answer::gone);
+    CHECK(lost.command(data, "D", 10s) == Answer::gone);
+    CHECK(lost.pause_stream(10s) == Answer::gone);
+    CHECK(lost.restart(10s) == Answer::gone);
     CHECK(lost.stop_stream() == Answer::gone);
 
     transport.gone = false;
@@ -136,6 +166,8 @@ TEST_SUITE("cyberglove_dialogue") {
     Dialogue cancelled(transport, HostClock::now() + 10s, source.get_token());
     const HostTime start = HostClock::now();
     CHECK(cancelled.ask(ask_state, data, 10s) == Answer::silent);
+    CHECK(cancelled.pause_stream(10s) == Answer::silent);
+    CHECK(cancelled.restart(10s) == Answer::silent);
     CHECK(HostClock::now() - start < 1s);
   }
 }

@@ -9,7 +9,6 @@
 
 #include <nendo/driver/emulator.hpp>
 
-#include "cyberglove/cyberglove_identity.hpp"
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -79,13 +78,16 @@ TEST_SUITE("cyberglove_driver") {
       std::uint64_t next = 0;
       HostTime last = before;
       ring.drain([&](const GloveSample& sample) {
+        const auto ticks = 0x00010002 + 1280 * static_cast<std::int64_t>(next);
+        CHECK(sample.device_time == std::chrono::nanoseconds(ticks * 78125 / 9));
+        CHECK(sample.measured <= sample.arrival);
+        CHECK(sample.wrist_switch == WristSwitch::on); // the status byte is 0x87
         CHECK(sample.sequence == next++);
         CHECK(sample.arrival >= last);
         last = sample.arrival;
         CHECK(sample.present == sensors);
         CHECK(sample.side == (*glove)->info().side);
         CHECK(sample.has_device_time);
-        CHECK(sample.device_time == std::chrono::nanoseconds(568906250));
         for (unsigned k = 0; k < script.sensors; ++k) {
           CHECK(sample.raw[slot_of(sensors, k)].value == 10 + k);
         }
@@ -120,8 +122,9 @@ TEST_SUITE("cyberglove_driver") {
       const char* said;
     };
     for (const Case& wrong :
-         {Case{Manner::silent, "switched on"}, Case{Manner::babbling, "like a CyberGlove"},
-          Case{Manner::modem, "like a CyberGlove"},
+         {Case{Manner::silent, "115200, 38400, 19200 or 9600 baud; is the glove's interface unit "
+                               "switched on"},
+          Case{Manner::babbling, "like a CyberGlove"}, Case{Manner::modem, "like a CyberGlove"},
           Case{Manner::no_glove, "no glove is plugged into it"}}) {
       Script script;
       script.manner = wrong.manner;
@@ -283,16 +286,151 @@ TEST_SUITE("cyberglove_driver") {
     }
   }
 
-  TEST_CASE("the period's byte order shows in its value") {
-    using cyberglove::rate_of_period;
-    const auto rate = [](std::array<unsigned char, 4> words) {
-      return rate_of_period(std::as_bytes(std::span(words)).first<4>());
+  TEST_CASE("options are set again after a silence and after the port went away") {
+    const TemporaryFolder folder;
+    const auto link = folder.path() / "glove";
+    Script script;
+    script.knows_all = true;
+    auto first = std::make_unique<ScriptedPort>(script);
+    std::filesystem::create_symlink(first->path(), link);
+    SampleRing ring(1U << 16U);
+    auto glove = open_glove("serial:" + link.string() + "?rate=100&filter=off&mask=0x00000F");
+    REQUIRE_MESSAGE(glove, glove.error().message);
+    CHECK((*glove)->info().rate_hz == 100.0);
+    CHECK((*glove)->info().sensors == SensorMask{0x0F});
+    REQUIRE((*glove)->start(ring));
+    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    const auto times = [](const ScriptedPort& port) {
+      const std::string heard = port.control.heard();
+      std::size_t filters = 0;
+      std::size_t periods = 0; // set after the filter
+      for (std::size_t at = 0; at < heard.size(); ++at) {
+        const std::string_view rest = std::string_view(heard).substr(at);
+        if (rest.starts_with(std::string_view("F\0", 2))) ++filters;
+        if (rest.starts_with("t 1152 1\r")) ++periods;
+      }
+      CHECK(filters >= periods);
+      return periods;
     };
-    CHECK(rate({0x80, 0x04, 0x01, 0x00}) == doctest::Approx(100.0)); // 1152, 1
-    CHECK(rate({0x04, 0x80, 0x00, 0x01}) == doctest::Approx(100.0));
-    CHECK(rate({0x00, 0xE1, 0x02, 0x00}) == doctest::Approx(1.0)); // 57600, 2
-    CHECK(rate({0xE1, 0x00, 0x00, 0x02}) == doctest::Approx(1.0));
-    CHECK(rate({0x80, 0x04, 0x00, 0x00}) == 0.0); // as fast as possible
-    CHECK(rate({0x00, 0x00, 0x00, 0x00}) == 0.0);
+    CHECK(times(*first) == 1);
+    first->control.power_cycle = true;
+    REQUIRE(within(6s, [&] { return times(*first) == 2; }));
+    const std::uint64_t before = (*glove)->stats().records;
+    CHECK(within(6s, [&] { return (*glove)->stats().records > before + 3; }));
+
+    first.reset();
+    std::filesystem::remove(link);
+    const ScriptedPort second(script);
+    std::filesystem::create_symlink(second.path(), link);
+    REQUIRE(within(6s, [&] { return times(second) == 1; }));
+    REQUIRE(within(6s, [&] { return (*glove)->stats().reopened == 1; }));
+    ring.drain([](const GloveSample& sample) { CHECK(sample.present == SensorMask{0x0F}); });
+    (*glove)->stop();
+    check_conservation((*glove)->stats());
+  }
+
+  TEST_CASE("a glove at another line rate is found there, and again after it came back") {
+    const TemporaryFolder folder;
+    const auto link = folder.path() / "glove";
+    Script script;
+    script.baud = 38400;
+    auto first = std::make_unique<ScriptedPort>(script);
+    std::filesystem::create_symlink(first->path(), link);
+    SampleRing ring(1U << 16U);
+    auto glove = open_glove("serial:" + link.string());
+    REQUIRE_MESSAGE(glove, glove.error().message);
+    REQUIRE((*glove)->start(ring));
+    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    first.reset();
+    std::filesystem::remove(link);
+    const ScriptedPort second(script);
+    std::filesystem::create_symlink(second.path(), link);
+    CHECK(within(6s, [&] { return (*glove)->stats().reopened == 1; }));
+    const std::uint64_t before = (*glove)->stats().records;
+    CHECK(within(3s, [&] { return (*glove)->stats().records > before + 3; }));
+  }
+
+  TEST_CASE("what a glove is to show pauses its stream, and is shown again after it came back") {
+    Script script;
+    script.knows_all = true;
+    script.cybertouch = true;
+    ScriptedPort port(script);
+    SampleRing ring(1U << 16U);
+    auto glove = open_port(port);
+    REQUIRE_MESSAGE(glove, glove.error().message);
+    CHECK((*glove)->info().abilities.light);
+    CHECK((*glove)->info().abilities.vibration);
+    REQUIRE((*glove)->start(ring));
+    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    Feedback feedback;
+    feedback.light = true;
+    feedback.vibration = {1, 2, 3, 4, 5, 6};
+    const std::string shown("\x03J\0L\x01"
+                            "A\xFF\x01\x02\x03\x04\x05\x06S",
+                            14);
+    const auto is_shown = [&] { return port.control.heard().ends_with(shown); };
+    (*glove)->give(feedback);
+    CHECK(within(2s, is_shown));
+    std::uint64_t before = (*glove)->stats().records;
+    CHECK(within(2s, [&] { return (*glove)->stats().records > before + 3; }));
+    CHECK((*glove)->stats().silences == 0);
+
+    port.control.power_cycle = true;
+    CHECK(within(6s, [&] { return (*glove)->stats().silences == 1; }));
+    CHECK(within(6s, is_shown));
+    before = (*glove)->stats().records;
+    CHECK(within(3s, [&] { return (*glove)->stats().records > before + 3; }));
+    (*glove)->stop();
+    check_conservation((*glove)->stats());
+  }
+
+  TEST_CASE("a glove that has nothing to show is not disturbed") {
+    const ScriptedPort port; // knows neither light nor vibrators
+    SampleRing ring(1U << 16U);
+    auto glove = open_port(port);
+    REQUIRE(glove);
+    CHECK_FALSE((*glove)->info().abilities.light);
+    REQUIRE((*glove)->start(ring));
+    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    const std::string heard = port.control.heard();
+    (*glove)->give({true, {}, {}});
+    const std::uint64_t before = (*glove)->stats().records;
+    CHECK(within(2s, [&] { return (*glove)->stats().records > before + 200; }));
+    CHECK(port.control.heard() == heard);
+  }
+
+  TEST_CASE("a glove that is pulled from its interface unit comes back when it is plugged in") {
+    ScriptedPort port;
+    SampleRing ring(1U << 16U);
+    auto glove = open_port(port);
+    REQUIRE(glove);
+    REQUIRE((*glove)->start(ring));
+    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    port.control.unplugged = true;
+    REQUIRE(within(4s, [&] { return (*glove)->stats().silences == 1; }));
+    const std::string heard = port.control.heard();
+    REQUIRE(within(4s, [&] { return port.control.heard().ends_with("?G"); }));
+    const std::uint64_t before = (*glove)->stats().records;
+    port.control.unplugged = false;
+    CHECK(within(6s, [&] { return (*glove)->stats().records > before + 3; }));
+    // Another one may have been plugged in: the unit was told to look.
+    CHECK(port.control.heard().find('\x09', heard.size()) != std::string::npos);
+    (*glove)->stop();
+    CHECK((*glove)->stats().silences == 1);
+    check_conservation((*glove)->stats());
+  }
+
+  TEST_CASE("external sync is switched on last, and off at the end") {
+    Script script;
+    script.knows_all = true;
+    const ScriptedPort port(script);
+    SampleRing ring(1024);
+    auto glove = open_glove("serial:" + port.path() + "?sync=on");
+    REQUIRE_MESSAGE(glove, glove.error().message);
+    CHECK((*glove)->info().rate_hz == 0.0);
+    REQUIRE((*glove)->start(ring));
+    CHECK(within(2s, [&] { return port.control.heard().ends_with("Y\x01S"); }));
+    (*glove)->stop();
+    CHECK(within(2s, [&] { return port.control.heard().ends_with(std::string("\x03Y\0", 3)); }));
   }
 }

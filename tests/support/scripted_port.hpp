@@ -1,12 +1,11 @@
 #pragma once
-// Something at the far end of a pseudo-terminal that behaves as a test wants it to: a CyberGlove's
-// interface unit with the few commands that a driver uses, or worse company. Knows nothing of the
-// code under test.
+// A ScriptedUnit, or worse company, at the far end of a pseudo-terminal.
 
 #include <atomic>
 #include <chrono>
-#include <cstdint>
 #include <cstdlib>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -17,118 +16,58 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "support/scripted_unit.hpp"
+
 namespace nendo::test {
 
-enum class Manner { good, silent, babbling, modem, no_glove };
+/// What a test changes and looks at while the unit works.
+struct ScriptControl {
+  std::atomic<bool> unplugged{false};   // the glove from its interface unit
+  std::atomic<bool> power_cycle{false}; // forgets everything, once
 
-struct Script {
-  Manner manner = Manner::good;
-  unsigned sensors = 22; // 22 or 18
-  bool right = true;
-  bool knows_options = true; // D and U
-  unsigned swap_after = 0;   // records after which it is a glove of 18 sensors; 0: never
-  bool long_replies = false; // set replies of three bytes, as the vendor's library expects them
-};
-
-/// What a unit sends for a command, and the records it streams. Value k of a record is 10 + k.
-class ScriptedUnit {
-public:
-  explicit ScriptedUnit(const Script& script) : script_(script), sensors_(script.sensors) {}
-
-  std::string answer(std::string_view& input) {
-    const char command = take(input);
-    if (command == '\x09') return {'\x09', '\0'};
-    if (command == '\x03') {
-      streaming = false;
-      return {'\x03', '\0'};
-    }
-    if (command == '?') return input.empty() ? hold(command) : query(take(input));
-    if (command == 'S') {
-      streaming = true;
-      return {};
-    }
-    if (command == 'D' || command == 'U') {
-      if (input.empty()) return hold(command);
-      const bool on = take(input) != '\0';
-      if (!script_.knows_options) return unknown();
-      (command == 'D' ? time_stamp_ : status_) = on;
-      return script_.long_replies ? std::string{command, '\x01', '\0'} : std::string{command, '\0'};
-    }
-    return unknown();
+  void hear(std::string_view commands) {
+    const std::lock_guard lock(mutex_);
+    heard_ += commands;
   }
-
-  std::string record() {
-    if (++records_ == script_.swap_after) sensors_ = 18;
-    std::string bytes = "S";
-    for (unsigned k = 0; k < sensors_; ++k)
-      bytes.push_back(static_cast<char>(10 + k));
-    if (time_stamp_) bytes += "\x8A\x02\x01\x01\x01"; // 0x00010002, as the manual sends it
-    if (status_) bytes += '\x87';
-    bytes.push_back('\0');
-    return bytes;
+  /// Every command so far, of the units before a power cycle too.
+  std::string heard() const {
+    const std::lock_guard lock(mutex_);
+    return heard_;
   }
-
-  bool streaming = false;
-  std::string held; // a command whose argument has not arrived
 
 private:
-  static char take(std::string_view& input) {
-    const char c = input.front();
-    input.remove_prefix(1);
-    return c;
-  }
-  std::string hold(char command) {
-    held = command;
-    return {};
-  }
-  static std::string unknown() { return {'e', '?', '\0'}; }
-  static std::string reply(char letter, std::string_view data) {
-    std::string bytes{'?', letter};
-    bytes += data;
-    bytes.push_back('\0');
-    return bytes;
-  }
-  std::string query(char letter) const {
-    using namespace std::string_view_literals;
-    const bool all = sensors_ == 22;
-    switch (letter) {
-    case 'G':
-      return reply(letter, script_.manner == Manner::no_glove ? "\x01"sv : "\x03"sv);
-    case 'S':
-      return reply(letter, all ? "\x16"sv : "\x12"sv);
-    case 'K':
-      return reply(letter, all ? "\x7F\xFF\x7F"sv : "\x3F\xBB\x7B"sv);
-    case 'M':
-      return reply(letter, "\xFF\xFF\xFF"sv);
-    case 'N':
-      return reply(letter, "\x18"sv);
-    case 'R':
-      return reply(letter, script_.right ? "\x01"sv : "\x00"sv);
-    case 'T':
-      return reply(letter, "\x00\x05\x01\x00"sv); // 1280, 1: 90 Hz
-    case 'i':
-      return reply(letter, " \r\nScripted\x1B CyberGlove \r\nsecond line\r\n"sv);
-    default:
-      return unknown();
-    }
-  }
-
-  const Script script_;
-  unsigned sensors_;
-  unsigned records_ = 0;
-  bool time_stamp_ = false;
-  bool status_ = false;
+  mutable std::mutex mutex_;
+  std::string heard_;
 };
 
+/// The speed to which the host has set a pseudo-terminal, in baud.
+inline unsigned host_baud(int fd) {
+  termios settings{};
+  ::tcgetattr(fd, &settings);
+  switch (::cfgetospeed(&settings)) {
+  case B115200:
+    return 115200;
+  case B38400:
+    return 38400;
+  case B19200:
+    return 19200;
+  case B9600:
+    return 9600;
+  default:
+    return 0;
+  }
+}
+
 /// Serves a ScriptedUnit on any file descriptor until told to stop; a record every 2 ms while it
-/// streams.
+/// streams, and none while it is mute.
 inline void serve_script(int fd, const Script& script, const std::atomic<bool>& stop,
-                         const std::atomic<bool>& mute) {
-  ScriptedUnit unit(script);
+                         const std::atomic<bool>& mute, ScriptControl& control) {
+  std::optional<ScriptedUnit> unit(std::in_place, script);
   const auto send = [fd](std::string_view bytes) {
     // A host that does not read loses bytes, as on a wire.
     [[maybe_unused]] const ssize_t sent = ::write(fd, bytes.data(), bytes.size());
   };
+  send(script.waiting);
   while (!stop) {
     pollfd entry{fd, POLLIN, 0};
     char buffer[256];
@@ -137,14 +76,25 @@ inline void serve_script(int fd, const Script& script, const std::atomic<bool>& 
     if (script.manner == Manner::babbling) send("x7 noise \x01\x02");
     if (script.manner == Manner::modem && count > 0) send("\r\nERROR\r\n");
     if (script.manner != Manner::good && script.manner != Manner::no_glove) continue;
+    if (control.power_cycle.exchange(false)) unit.emplace(script);
+    unit->unplugged = control.unplugged;
+    if (script.baud != 0 && host_baud(fd) != script.baud) continue;
     std::string input =
-        unit.held + std::string(buffer, static_cast<std::size_t>(count > 0 ? count : 0));
-    unit.held.clear();
+        unit->held + std::string(buffer, static_cast<std::size_t>(count > 0 ? count : 0));
+    unit->held.clear();
     for (std::string_view rest = input; !rest.empty();)
-      send(unit.answer(rest));
-    if (mute) unit.streaming = false;
-    if (unit.streaming) send(unit.record());
+      send(unit->answer(rest));
+    control.hear(unit->heard);
+    unit->heard.clear();
+    if (mute) unit->streaming = false;
+    if (unit->streaming) send(unit->record());
   }
+}
+
+inline void serve_script(int fd, const Script& script, const std::atomic<bool>& stop,
+                         const std::atomic<bool>& mute) {
+  ScriptControl control;
+  serve_script(fd, script, stop, mute, control);
 }
 
 class ScriptedPort {
@@ -162,7 +112,7 @@ public:
     ::tcgetattr(slave_, &settings);
     ::cfmakeraw(&settings);
     ::tcsetattr(slave_, TCSANOW, &settings);
-    thread_ = std::thread([this, script] { serve_script(master_, script, stop_, mute); });
+    thread_ = std::thread([this, script] { serve_script(master_, script, stop_, mute, control); });
   }
   ~ScriptedPort() { unplug(); }
   ScriptedPort(const ScriptedPort&) = delete;
@@ -179,6 +129,7 @@ public:
   }
 
   std::atomic<bool> mute{false}; // while true, streaming ends as soon as it is asked for
+  ScriptControl control;
 
 private:
   int master_ = -1;

@@ -1,6 +1,7 @@
 #include "cyberglove/cyberglove_dialogue.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace nendo::driver::cyberglove {
 namespace {
@@ -8,35 +9,52 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto quiet_line = 50ms;
-constexpr auto longest_drain = 500ms;
+constexpr auto quiet_end = 30ms; ///< after what may be the end of a reply, or not quite
 constexpr auto write_timeout = 200ms;
 constexpr auto longest_wait = 100ms; ///< between two looks at the stop token
 constexpr std::size_t most_junk_bytes = 4096;
 constexpr std::size_t most_text_bytes = 2048;
 
-constexpr std::byte byte_of(char letter) noexcept {
-  return static_cast<std::byte>(letter);
+/// The error that came last, if any; its NUL may not have come yet.
+std::optional<Answer> error_at_end(const Tail& tail) noexcept {
+  struct Known {
+    char letter;
+    Answer answer;
+  };
+  constexpr std::array all{
+      Known{error_unknown_command, Answer::unknown}, Known{error_number, Answer::bad_number},
+      Known{error_sync_rate, Answer::bad_sync_rate}, Known{error_no_glove, Answer::no_glove},
+      Known{error_sampling_rate, Answer::bad_rate},
+  };
+  for (const Known& error : all) {
+    const std::array pair{error_mark, error.letter};
+    if (tail.ends_with({pair.data(), pair.size()})) return error.answer;
+  }
+  return std::nullopt;
 }
 
-/// The error that `e` and `letter` stand for, if any.
-std::optional<Answer> error_answer(std::byte letter) noexcept {
-  switch (std::to_integer<char>(letter)) {
-  case error_unknown_command:
-    return Answer::unknown;
-  case error_number:
-    return Answer::bad_number;
-  case error_sync_rate:
-    return Answer::bad_sync_rate;
-  case error_no_glove:
-    return Answer::no_glove;
-  case error_sampling_rate:
-    return Answer::bad_rate;
-  default:
-    return std::nullopt;
+/// What a frame, of which `tail` is the end without NUL, says to a command.
+std::optional<Answer> judge_confirmation(const Tail& tail, std::string_view echo) noexcept {
+  // An echo like "1es" ends like an error; one like "y" is the end of an error.
+  if (echo.size() > 2 && tail.ends_with(echo)) return Answer::good;
+  if (const auto error = error_at_end(tail)) return error;
+  // Two bytes in most sources, three in the vendor's library; text commands may end their line.
+  for (const unsigned more : {0U, 1U, 2U}) {
+    if (more == 2 && !tail.ends_with("\r\n")) break;
+    if (tail.ends_with(echo, more)) return Answer::good;
   }
+  return std::nullopt;
 }
 
 } // namespace
+
+bool Tail::ends_with(std::string_view pattern, unsigned back) const noexcept {
+  std::uint64_t rest = bytes_ >> (8U * back);
+  for (auto letter = pattern.rbegin(); letter != pattern.rend(); ++letter, rest >>= 8U) {
+    if ((rest & 0xFFU) != static_cast<unsigned char>(*letter)) return false;
+  }
+  return true;
+}
 
 HostTime Dialogue::at_most(std::chrono::milliseconds timeout) const noexcept {
   return std::min(deadline_, HostClock::now() + timeout);
@@ -72,28 +90,26 @@ Answer Dialogue::next(std::byte& byte, HostTime until) noexcept {
   return Answer::good;
 }
 
-/// Reads up to and including the head of a reply: `mark`, if there is one, and `letter`.
-Answer Dialogue::find_reply(std::optional<char> mark, char letter, HostTime until) noexcept {
-  std::byte before_last{};
-  std::byte last{};
+/// Reads up to and including the head of a reply.
+Answer Dialogue::find_reply(std::string_view head, HostTime until) noexcept {
+  Tail tail;
   for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
     std::byte byte{};
     const Answer answer = next(byte, until);
     if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
     if (answer != Answer::good) return answer;
-    if (byte == byte_of(letter) && (!mark || last == byte_of(*mark))) return Answer::good;
-    if (byte == terminator && before_last == byte_of(error_mark)) {
-      if (const auto error = error_answer(last)) return *error;
+    if (byte == terminator) {
+      if (const auto error = error_at_end(tail)) return *error;
     }
-    before_last = last;
-    last = byte;
+    tail.push(byte);
+    if (tail.ends_with(head)) return Answer::good;
   }
   return Answer::nonsense;
 }
 
-Answer Dialogue::drain() noexcept {
+Answer Dialogue::drain(std::chrono::milliseconds longest) noexcept {
   unread_ = {};
-  const HostTime until = at_most(longest_drain);
+  const HostTime until = at_most(longest);
   for (;;) {
     std::byte ignored{};
     const HostTime quiet_at = HostClock::now() + quiet_line;
@@ -105,22 +121,41 @@ Answer Dialogue::drain() noexcept {
   }
 }
 
-Answer Dialogue::stop_stream() noexcept {
+Answer Dialogue::stop_stream(std::chrono::milliseconds longest) noexcept {
   const Answer sent = send(std::span(&interrupt, 1));
-  return sent == Answer::good ? drain() : sent;
+  return sent == Answer::good ? drain(longest) : sent;
 }
 
-Answer Dialogue::reread_glove() noexcept {
-  const Answer sent = send(std::span(&cyberglove::reread_glove, 1));
-  return sent == Answer::good ? drain() : sent;
+Answer Dialogue::pause_stream(std::chrono::milliseconds timeout) noexcept {
+  HostTime until = at_most(timeout);
+  if (const Answer sent = send(std::span(&interrupt, 1)); sent != Answer::good) return sent;
+  // 03 00 on its own is the answer. At the end of something longer it is the answer behind a record
+  // that was broken off, or a record whose last value is 3: then more follows, or it gets quiet.
+  bool perhaps = false;
+  std::byte last{};
+  for (std::size_t length = 1;; ++length) {
+    std::byte byte{};
+    const Answer answer = next(byte, until);
+    if (answer == Answer::silent && perhaps) return Answer::good;
+    if (answer != Answer::good) return answer;
+    if (byte == terminator) {
+      if (last == interrupt && length == 2) return Answer::good;
+      if (last == interrupt && !perhaps) {
+        perhaps = true;
+        until = std::min(until, HostClock::now() + quiet_end);
+      }
+      length = 0;
+    }
+    last = byte;
+  }
 }
 
 Answer Dialogue::ask(const Query& query, std::span<std::byte> data,
                      std::chrono::milliseconds timeout) noexcept {
   const HostTime until = at_most(timeout);
-  const std::array command{byte_of('?'), byte_of(query.letter)};
-  if (const Answer sent = send(command); sent != Answer::good) return sent;
-  Answer answer = find_reply('?', query.letter, until);
+  const std::array head{'?', query.letter};
+  if (const Answer sent = send(std::as_bytes(std::span(head))); sent != Answer::good) return sent;
+  Answer answer = find_reply({head.data(), head.size()}, until);
   for (std::size_t k = 0; k < data.size() && answer == Answer::good; ++k) {
     answer = next(data[k], until);
     if (answer == Answer::silent) return Answer::nonsense;
@@ -134,9 +169,9 @@ Answer Dialogue::ask(const Query& query, std::span<std::byte> data,
 
 Answer Dialogue::ask_text(char letter, std::string& text, std::chrono::milliseconds timeout) {
   const HostTime until = at_most(timeout);
-  const std::array command{byte_of('?'), byte_of(letter)};
-  if (const Answer sent = send(command); sent != Answer::good) return sent;
-  Answer answer = find_reply('?', letter, until);
+  const std::array head{'?', letter};
+  if (const Answer sent = send(std::as_bytes(std::span(head))); sent != Answer::good) return sent;
+  Answer answer = find_reply({head.data(), head.size()}, until);
   text.clear();
   for (std::byte byte{}; answer == Answer::good;) {
     answer = next(byte, until);
@@ -147,25 +182,76 @@ Answer Dialogue::ask_text(char letter, std::string& text, std::chrono::milliseco
   return answer;
 }
 
-Answer Dialogue::set(char letter, bool on, std::chrono::milliseconds timeout) noexcept {
+Answer Dialogue::command(std::span<const std::byte> bytes, std::string_view echo,
+                         std::chrono::milliseconds timeout) noexcept {
   const HostTime until = at_most(timeout);
-  const std::array command{byte_of(letter), std::byte{on}};
-  if (const Answer sent = send(command); sent != Answer::good) return sent;
-  Answer answer = find_reply(std::nullopt, letter, until);
-  if (answer != Answer::good) return answer;
-  // Two bytes in most sources, three in the vendor's library: read to NUL, but not far.
-  std::byte byte{};
-  for (int k = 0; k < 2; ++k) {
-    answer = next(byte, until);
-    if (answer == Answer::gone) return answer;
-    if (answer == Answer::good && byte == terminator) return Answer::good;
+  if (const Answer sent = send(bytes); sent != Answer::good) return sent;
+  Tail tail;
+  for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
+    std::byte byte{};
+    const Answer answer = next(byte, until);
+    if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
+    if (answer != Answer::good) return answer;
+    if (byte == terminator) {
+      if (const auto judged = judge_confirmation(tail, echo)) return *judged;
+    }
+    tail.push(byte);
   }
   return Answer::nonsense;
 }
 
-Answer Dialogue::start_stream() noexcept {
-  const std::array command{byte_of(stream_command)};
-  return send(command);
+Answer Dialogue::ask_record(std::size_t least, std::span<std::byte> record, std::size_t& size,
+                            std::chrono::milliseconds timeout) noexcept {
+  const HostTime until = at_most(timeout);
+  const std::array command{record_command};
+  if (const Answer sent = send(std::as_bytes(std::span(command))); sent != Answer::good) {
+    return sent;
+  }
+  Tail tail;
+  size = 0;
+  for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
+    std::byte byte{};
+    const Answer answer = next(byte, until);
+    if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
+    if (answer != Answer::good) return answer;
+    if (size < record.size()) record[size] = byte;
+    ++size; // beyond the record's room if the frame is too long to be one
+    if (byte != terminator) {
+      tail.push(byte);
+      continue;
+    }
+    const bool fits = size >= least && size <= record.size();
+    if (fits && std::to_integer<char>(record[0]) == record_command) return Answer::good;
+    if (const auto error = error_at_end(tail)) return *error;
+    size = 0;
+  }
+  return Answer::nonsense;
+}
+
+Answer Dialogue::restart(std::chrono::milliseconds timeout) noexcept {
+  const HostTime until = at_most(timeout);
+  if (const Answer sent = send(std::span(&restart_firmware, 1)); sent != Answer::good) return sent;
+  Tail tail;
+  for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
+    std::byte byte{};
+    const Answer answer = next(byte, until);
+    if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
+    if (answer != Answer::good) return answer;
+    if (byte == terminator) {
+      if (const auto error = error_at_end(tail)) return *error;
+    }
+    tail.push(byte);
+    // One driver expects the command as it would be printed.
+    if (tail.ends_with("\x12\r\n") || tail.ends_with("^R\r\n")) break;
+  }
+  if (!tail.ends_with("\r\n")) return Answer::nonsense;
+  // A left glove's answer may lack its NUL.
+  std::byte end{};
+  return next(end, at_most(quiet_end)) == Answer::gone ? Answer::gone : Answer::good;
+}
+
+Answer Dialogue::start_stream(std::string_view command) noexcept {
+  return send(std::as_bytes(std::span(command)));
 }
 
 } // namespace nendo::driver::cyberglove

@@ -11,6 +11,8 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <nendo/base/units.hpp>
 
@@ -28,7 +30,21 @@ enum class Answer : std::uint8_t {
   bad_sync_rate, ///< ey
   no_glove,      ///< eg : no glove is plugged into the unit
   bad_rate,      ///< es : it cannot sample as fast
+  other_value,   ///< it says that it did not do what it was told
   nonsense,      ///< something came that is no answer
+};
+
+/// The last bytes that came, to recognise short patterns in a stream of others.
+class Tail {
+public:
+  void push(std::byte byte) noexcept {
+    bytes_ = bytes_ << 8U | std::to_integer<std::uint64_t>(byte);
+  }
+  /// True if `pattern`, at most 8 bytes, came last, or stands before the last `back` bytes.
+  bool ends_with(std::string_view pattern, unsigned back = 0) const noexcept;
+
+private:
+  std::uint64_t bytes_ = 0;
 };
 
 class Dialogue {
@@ -38,28 +54,39 @@ public:
   Dialogue(Transport& transport, HostTime deadline, std::stop_token cancelled = {}) noexcept
       : transport_(transport), deadline_(deadline), cancelled_(std::move(cancelled)) {}
 
-  /// Ends a stream and reads until the line has been quiet for 50 ms; after 500 ms of babble it
+  /// Ends a stream and reads until the line has been quiet for 50 ms; after `longest` of babble it
   /// gives up (nonsense).
-  Answer stop_stream() noexcept;
-  /// Lets the unit read the memory of a glove that was swapped, whatever it answers.
-  Answer reread_glove() noexcept;
+  Answer stop_stream(std::chrono::milliseconds longest = longest_drain) noexcept;
+  /// Ends a stream and reads up to the answer, which is quicker for a line without noise.
+  Answer pause_stream(std::chrono::milliseconds timeout) noexcept;
   /// `data` has the size that the query states; it is filled if the answer is good.
   Answer ask(const Query& query, std::span<std::byte> data,
              std::chrono::milliseconds timeout) noexcept;
   /// Asks for text; cut at 2048 characters.
   Answer ask_text(char letter, std::string& text, std::chrono::milliseconds timeout);
-  Answer set(char letter, bool on, std::chrono::milliseconds timeout) noexcept;
-  /// Starts the stream; whatever arrives from now on is records.
-  Answer start_stream() noexcept;
+  /// Sends a command that is confirmed by `echo` and NUL, or with a byte between them; `echo` is 1
+  /// to 4 characters.
+  Answer command(std::span<const std::byte> bytes, std::string_view echo,
+                 std::chrono::milliseconds timeout) noexcept;
+  /// Asks for one record, of which the first `least` bytes are certain; `size` is its length with
+  /// header and NUL.
+  Answer ask_record(std::size_t least, std::span<std::byte> record, std::size_t& size,
+                    std::chrono::milliseconds timeout) noexcept;
+  /// Restarts the firmware; all settings are then as after power-up.
+  Answer restart(std::chrono::milliseconds timeout) noexcept;
+  /// Sends a command that begins a stream; whatever arrives from now on is records.
+  Answer start_stream(std::string_view command) noexcept;
 
   /// Bytes read from the transport so far.
   std::uint64_t bytes_received() const noexcept { return bytes_received_; }
 
+  static constexpr std::chrono::milliseconds longest_drain{500};
+
 private:
   Answer send(std::span<const std::byte> command) noexcept;
-  Answer drain() noexcept;
+  Answer drain(std::chrono::milliseconds longest) noexcept;
   Answer next(std::byte& byte, HostTime until) noexcept;
-  Answer find_reply(std::optional<char> mark, char letter, HostTime until) noexcept;
+  Answer find_reply(std::string_view head, HostTime until) noexcept;
   HostTime at_most(std::chrono::milliseconds timeout) const noexcept;
 
   Transport& transport_;

@@ -1,37 +1,58 @@
 #include "cyberglove/cyberglove_driver.hpp"
 
-#include <array>
+#include <cmath>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
+#include "cyberglove/cyberglove_commands.hpp"
 #include "cyberglove/cyberglove_dialogue.hpp"
+#include "cyberglove/cyberglove_greeting.hpp"
 #include "cyberglove/cyberglove_identity.hpp"
+#include "cyberglove/cyberglove_line.hpp"
+#include "cyberglove/cyberglove_options.hpp"
+#include "cyberglove/cyberglove_parameters.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
-#include "glove_spec.hpp"
+#include "cyberglove/record_check.hpp"
+#include "stream/device_clock.hpp"
 #include "transport/open_transport.hpp"
 
 namespace nendo::driver {
 namespace {
 
 using namespace cyberglove;
+using namespace std::chrono_literals;
+
+constexpr auto state_answer = 300ms; ///< of a unit that has just answered all else
+constexpr std::uint16_t most_hires_count = 4095;
+constexpr auto pause_answer = 150ms;
+constexpr auto control_answer = 100ms; ///< while the stream waits
 
 class CyberGloveProtocol final : public GloveProtocol {
 public:
+  explicit CyberGloveProtocol(const Options& options)
+      : options_(options), baud_(options.baud.value_or(usual_bauds.front())) {}
+
   Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion occasion,
                              const Patience& patience) override {
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
-    if (occasion == Occasion::damaged && dialogue.stop_stream() != Answer::gone) {
-      dialogue.reread_glove();
-    }
-    auto identity = cyberglove::identify(dialogue, source);
+    auto identity = ask(transport, dialogue, source, occasion);
     parser_.count_discarded(dialogue.bytes_received());
     if (identity) identity_ = *std::move(identity);
-    parser_.reset(identity_.shape);
+    begin_records();
     if (!identity) return identity.error();
+    if (occasion == Occasion::opening) {
+      for (const std::string& note : identity_.notes)
+        spdlog::warn("device: {}: {}", source, note);
+    }
     GloveInfo info;
     info.model = identity_.model;
     info.side = identity_.side;
     info.sensors = identity_.channels.sensors();
     info.rate_hz = identity_.rate_hz;
+    if (identity_.hires) info.counts.most = most_hires_count;
+    info.abilities = identity_.abilities;
+    info.facts = identity_.facts;
     return info;
   }
 
@@ -39,10 +60,13 @@ public:
                             const Patience& patience) override {
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
     dialogue.stop_stream();
-    const auto ready = check_state(dialogue, source);
-    const Answer answer = ready ? dialogue.start_stream() : Answer::silent;
+    Commands commands(dialogue, state_answer);
+    Reply<GloveState> state = commands.state();
+    if (!state && state.answer != Answer::gone) state = commands.state(); // noise on the line
+    const auto ready = judge_state(source, state, "?G");
+    const Answer answer = ready ? begin(dialogue) : Answer::silent;
     parser_.count_discarded(dialogue.bytes_received());
-    parser_.reset(identity_.shape);
+    begin_records();
     if (!ready) return ready.error();
     if (answer != Answer::good) {
       return Error{Errc::no_device, source + " went away; is the cable loose?"};
@@ -53,63 +77,150 @@ public:
   void end_stream(Transport& transport, const Patience& patience) noexcept override {
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
     dialogue.stop_stream();
+    if (identity_.sync) Commands(dialogue, control_answer).set_sync(false);
     parser_.count_discarded(dialogue.bytes_received());
   }
 
-  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
+  void give(Transport& transport, const Feedback& feedback,
+            const Patience& patience) noexcept override {
+    const Abilities& can = identity_.abilities;
+    if (!can.light && !can.vibration) return;
+    Dialogue dialogue(transport, patience.deadline, patience.cancelled);
+    Commands commands(dialogue, control_answer);
+    dialogue.pause_stream(pause_answer);
+    // From now on the light is the program's: the switch would turn it against what it was told.
+    if (std::exchange(identity_.switch_drives_light, false))
+      commands.set(Setting::switch_drives_light, false);
+    if (can.light) commands.set(Setting::light, feedback.light);
+    if (can.vibration) commands.set_vibration(feedback.vibration);
+    begin(dialogue);
+    parser_.count_discarded(dialogue.bytes_received());
+    begin_records();
+    same_clock_ = true;
+  }
+
+  void push(std::span<const std::byte> chunk, HostTime arrival,
             SampleSink& sink) noexcept override {
-    parser_.push(chunk, [&](const Record& record) { deliver(record, sink); });
+    const auto judge = [&](Record& record) {
+      look_for_glove();
+      return pulled_ ? Verdict{false, 0} : check_(record);
+    };
+    parser_.push(chunk, judge, [&](const Record& record) { deliver(record, arrival, sink); });
+    look_for_glove();
+  }
+
+  bool is_doubtful() const noexcept override {
+    return pulled_ && parser_.counters().implausible != implausible_when_pulled_;
   }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
 private:
-  void deliver(const Record& record, SampleSink& sink) const noexcept {
+  /// Greets the unit, at another line rate if need be, asks and sets up.
+  Result<Identity> ask(Transport& transport, Dialogue& dialogue, const std::string& source,
+                       Occasion occasion) {
+    if (occasion == Occasion::damaged || unplugged_ || pulled_) {
+      transport.set_baud(baud_);
+      if (dialogue.stop_stream() != Answer::gone)
+        Commands(dialogue, control_answer).reread_glove(); // it may be another one
+    }
+    const Greeting greeting =
+        greet(transport, dialogue, bauds_to_try(baud_, !options_.baud.has_value()));
+    if (auto state = judge_state(source, greeting.reply, greeting.asked); !state) {
+      const Reply<GloveState>& reply = greeting.reply;
+      const bool pulled = reply.answer == Answer::no_glove || (reply && !reply.value.connected);
+      if (pulled && occasion != Occasion::opening && !std::exchange(unplugged_, true))
+        spdlog::warn("device: {}; it goes on when one is", state.error().message);
+      return state.error();
+    }
+    unplugged_ = pulled_ = false;
+    baud_ = greeting.baud;
+    return cyberglove::identify(dialogue, source, {options_, baud_, identity_.word_order});
+  }
+
+  /// The last step: sync mode may send records at once.
+  Answer begin(Dialogue& dialogue) const noexcept {
+    if (identity_.sync) {
+      const Answer answer = Commands(dialogue, control_answer).set_sync(true);
+      if (answer == Answer::gone) return answer;
+    }
+    return dialogue.start_stream(identity_.hires ? third_stream : stream_command);
+  }
+
+  /// Whatever comes from now on has nothing to do with the records before.
+  void begin_records() noexcept {
+    parser_.reset(identity_.shape);
+    const bool keeps_period = identity_.rate_hz > 0.0 && !identity_.sync;
+    const double period = keeps_period ? clock_hz / identity_.rate_hz : 0.0;
+    check_ = RecordCheck(static_cast<std::uint64_t>(std::llround(period)));
+    same_clock_ = false;
+    unplugged_records_ = parser_.counters().unplugged;
+  }
+
+  /// After eg there may be another glove in the unit: what it measures is not known until it was
+  /// asked.
+  void look_for_glove() noexcept {
+    const StreamCounters& counters = parser_.counters();
+    if (std::exchange(unplugged_records_, counters.unplugged) == counters.unplugged) return;
+    if (!std::exchange(pulled_, true)) implausible_when_pulled_ = counters.implausible;
+  }
+
+  void tell_time(const Record& record, HostTime arrival, GloveSample& sample) noexcept {
+    if (record.stamp == Stamp::none) return;
+    if (record.stamp == Stamp::begins && !std::exchange(same_clock_, false)) {
+      ticks_.reset();
+      clock_.reset();
+    }
+    sample.has_device_time = true;
+    sample.device_time = ticks_.unwrap(record.ticks);
+    sample.measured = clock_.to_host(sample.device_time, arrival);
+  }
+
+  void deliver(const Record& record, HostTime arrival, SampleSink& sink) noexcept {
     GloveSample sample;
     const ChannelMap& channels = identity_.channels;
     for (std::size_t k = 0; k < channels.count; ++k) {
       sample.raw[channels.slot[k]] = RawCount{record.values[k]};
     }
     sample.present = channels.sensors();
-    sample.device_time = std::chrono::nanoseconds(record.ticks * std::uint64_t{78125} / 9);
+    tell_time(record, arrival, sample);
     sample.sampled_too_fast = record.sampled_too_fast;
-    sample.has_device_time = identity_.shape.time_stamp;
+    sample.wrist_switch = wrist_switch_of(record.status);
     sample.side = identity_.side;
     sink.deliver(sample);
   }
 
+  const Options options_;
+  int baud_;               ///< at which the unit answered last
+  bool unplugged_ = false; ///< the unit answers, but has lost its glove
   Identity identity_;
   Parser parser_{RecordShape{}};
+  RecordCheck check_;
+  TickUnwrapper ticks_;
+  DeviceClock clock_;
+  bool same_clock_ = false; ///< the stream paused, but the glove's clock went on
+  bool pulled_ = false;     ///< records said so; who is there now has not been asked
+  std::uint64_t unplugged_records_ = 0;
+  std::uint64_t implausible_when_pulled_ = 0;
 };
-
-Result<int> baud_of(const GloveSpec& spec) {
-  constexpr std::array known{115'200, 57'600, 38'400, 19'200, 9'600};
-  const auto option = spec.options.find("baud");
-  if (option == spec.options.end()) return known.front();
-  for (const int baud : known) {
-    if (option->second == std::to_string(baud)) return baud;
-  }
-  return Error{Errc::usage, spec.text + ": baud=" + option->second +
-                                " is none of 115200, 57600, 38400, 19200, 9600"};
-}
 
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPort open_port,
-                                               HostTime deadline) {
-  return open_stream_glove(source, std::move(open_port), std::make_unique<CyberGloveProtocol>(),
-                           deadline);
+                                               const Options& options, HostTime deadline) {
+  return open_stream_glove(source, std::move(open_port),
+                           std::make_unique<CyberGloveProtocol>(options), deadline);
 }
 
 Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline) {
-  if (auto allowed = allow_options(spec, {"baud"}); !allowed) return allowed.error();
-  const auto baud = baud_of(spec);
-  if (!baud) return baud.error();
+  const auto options = read_options(spec);
+  if (!options) return options.error();
   if (spec.target.empty()) {
     return Error{Errc::usage, spec.text + ": name the port, e.g. serial:/dev/ttyUSB0"};
   }
-  const auto open_port = [path = spec.target, rate = *baud] { return open_transport(path, rate); };
-  return open_cyberglove(spec.text, open_port, deadline);
+  const int baud = options->baud.value_or(usual_bauds.front());
+  const auto open_port = [path = spec.target, baud] { return open_transport(path, baud); };
+  return open_cyberglove(spec.text, open_port, *options, deadline);
 }
 
 Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> /*side*/) {

@@ -10,18 +10,21 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/open_glove.hpp>
 
+#include "cyberglove/cyberglove_options.hpp"
 #include "stream/stream_glove.hpp"
 
 namespace nendo::driver {
 
-/// The table's entry for `serial:PATH?baud=N`. `side` is not needed: the glove says which hand it
-/// is.
+/// The table's entry for `serial:PATH`. `side` is not needed: the glove says which hand it is.
 Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> side);
-/// The same for the path and rate of a port, done by `deadline`.
+/// The same, done by `deadline`.
 Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline);
 
-/// Opens, identifies and sets up the glove. Errors: those of `open_port`, no_device.
+/// Opens, finds the line rate unless `options` name it, identifies and sets up the glove; the
+/// options are set again after every interruption. Errors: those of `open_port`, no_device; usage,
+/// if the glove or its line cannot do what an option asks for.
 Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPort open_port,
+                                               const cyberglove::Options& options,
                                                HostTime deadline);
 
 } // namespace nendo::driver

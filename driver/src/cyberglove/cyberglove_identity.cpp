@@ -1,18 +1,23 @@
 #include "cyberglove/cyberglove_identity.hpp"
 
-#include <algorithm>
+#include <bit>
+#include <utility>
 
-#include <nendo/base/byte_reader.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "cyberglove/cyberglove_facts.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto first_answer =
-    1000ms; ///< what the drivers with the manual at hand allow for a command
-constexpr auto next_answer = 400ms;
-constexpr int tries = 2;
+constexpr auto needed_answer = 400ms;
+constexpr int tries = 2; ///< for anything that noise on the line explains
+
+bool is_final(Answer answer) noexcept {
+  return answer == Answer::good || answer == Answer::gone || answer == Answer::no_glove;
+}
 
 Error no_device(const std::string& source, const std::string& what) {
   return {Errc::no_device, source + ": " + what};
@@ -34,137 +39,268 @@ Error bad_answer(const std::string& source, Answer answer, const std::string& qu
   }
 }
 
-/// Tries again after anything that noise on the line explains.
-Answer ask_again(Dialogue& dialogue, const Query& query, std::span<std::byte> data,
-                 std::chrono::milliseconds timeout) {
-  Answer answer = Answer::silent;
-  for (int k = 0; k < tries; ++k) {
-    answer = dialogue.ask(query, data, timeout);
-    if (answer == Answer::good || answer == Answer::gone || answer == Answer::no_glove) break;
+/// What the unit's refusal of an option means; for answers that are errors of the unit.
+const char* refusal(Answer answer) noexcept {
+  switch (answer) {
+  case Answer::unknown:
+    return "the interface unit does not know this (e?); leave the option out";
+  case Answer::bad_number:
+    return "the interface unit refuses the number (en); choose another";
+  case Answer::bad_rate:
+    return "the interface unit cannot sample as fast (es); lower the rate, or say filter=off";
+  case Answer::other_value:
+    return "the interface unit took another value; leave the option out";
+  default:
+    return nullptr;
   }
-  return answer;
 }
 
-std::string question(const Query& query) {
-  return std::string("?") + query.letter;
+std::string hexadecimal(SensorMask mask) {
+  return fmt::format("0x{:06X}", mask.bits);
 }
 
-/// The number that the unit answers; `otherwise` if it does not know the question.
-Result<std::uint32_t> number(Dialogue& dialogue, const std::string& source, const Query& query,
-                             std::optional<std::uint32_t> otherwise) {
-  std::array<std::byte, 4> data{};
-  const auto used = std::span(data).first(query.data_bytes);
-  const Answer answer = ask_again(dialogue, query, used, next_answer);
-  if (answer == Answer::unknown && otherwise) return *otherwise;
-  if (answer != Answer::good) return bad_answer(source, answer, question(query));
-  return ByteReader(data).u32_le();
+std::string text_of(double number) {
+  return fmt::format("{:.6g}", number);
 }
 
-/// True if the unit accepted the setting, false if it does not know it.
-Result<bool> switch_on(Dialogue& dialogue, const std::string& source, char letter) {
-  Answer answer = Answer::silent;
-  for (int k = 0; k < tries && answer != Answer::good && answer != Answer::gone; ++k) {
-    answer = dialogue.set(letter, true, next_answer);
+/// The way from a greeted unit to an Identity, in the order of its functions.
+class SetUp {
+public:
+  SetUp(Dialogue& dialogue, const std::string& source, const Request& request)
+      : commands_(dialogue, needed_answer), dialogue_(dialogue), source_(source), request_(request),
+        options_(request.options) {}
+
+  Result<Identity> run() {
+    for (const auto step :
+         {&SetUp::ask_channels, &SetUp::ask_hand, &SetUp::set_switches, &SetUp::set_records}) {
+      if (auto done = (this->*step)(); !done) return done.error();
+    }
+    ask_facts(dialogue_, request_, identity_);
+    return std::move(identity_);
   }
-  if (answer == Answer::good) return true;
-  if (answer == Answer::unknown || answer == Answer::bad_number) return false;
-  return bad_answer(source, answer, std::string("the setting ") + letter);
+
+private:
+  Result<void> set_mask(SensorMask hardware);
+  Result<void> ask_channels();
+  Result<void> ask_hand();
+  Result<void> set_switches();
+  Result<void> set_records();
+  Result<void> set_hires();
+  Result<void> set_period(Period period);
+  Result<bool> set_stamp(Setting setting, bool on);
+  double ask_present_rate();
+
+  void add(const char* name, std::string value) {
+    identity_.facts.push_back({name, std::move(value)});
+  }
+
+  /// What `ask` replies; `otherwise`, if the unit does not know the question.
+  template <class T, class Ask>
+  Result<T> needed(const char* question, std::optional<T> otherwise, Ask&& ask) {
+    Reply<T> reply;
+    for (int k = 0; k < tries && !is_final(reply.answer); ++k)
+      reply = ask();
+    if (reply.answer == Answer::unknown && otherwise) return *otherwise;
+    if (!reply) return bad_answer(source_, reply.answer, question);
+    return reply.value;
+  }
+
+  /// Does what an option asks for; `text` is the option.
+  template <class Set>
+  Result<void> apply(const std::string& text, Set&& set) {
+    Answer answer = Answer::silent;
+    for (int k = 0; k < tries && !is_final(answer); ++k)
+      answer = set();
+    if (answer == Answer::good) return {};
+    if (const char* why = refusal(answer); why != nullptr)
+      return Error{Errc::usage, source_ + ": " + text + ": " + why};
+    return bad_answer(source_, answer, text);
+  }
+
+  Commands commands_;
+  Dialogue& dialogue_;
+  const std::string& source_;
+  const Request& request_;
+  const Options& options_;
+  Identity identity_;
+};
+
+Result<void> SetUp::set_mask(SensorMask hardware) {
+  if (!options_.mask) return {};
+  const std::string text = "mask=" + hexadecimal(*options_.mask);
+  const unsigned sent = hardware.bits & options_.mask->bits;
+  if (sent == 0) {
+    return Error{Errc::usage, source_ + ": " + text +
+                                  ": the glove has none of these sensors; it has " +
+                                  hexadecimal(hardware)};
+  }
+  if (auto done = apply(text, [&] { return commands_.set_software_mask(*options_.mask); }); !done)
+    return done;
+  // Otherwise the count of an earlier, smaller mask would cut this one. What it is then, ?N tells.
+  const auto count = static_cast<std::uint8_t>(std::popcount(sent));
+  const Answer answer = commands_.set_value_count(count);
+  return answer == Answer::gone ? Result<void>(bad_answer(source_, answer, text)) : Result<void>();
 }
 
-Result<ChannelMap> ask_channels(Dialogue& dialogue, const std::string& source) {
-  const auto count = number(dialogue, source, ask_sensor_count, std::nullopt);
+Result<void> SetUp::ask_channels() {
+  using Count = std::uint8_t;
+  const auto count = needed<Count>("?S", {}, [&] { return commands_.sensor_count(); });
   if (!count) return count.error();
   if (*count == 0 || *count > sensor_slots) {
-    return no_device(source,
+    return no_device(source_,
                      "says that it has " + std::to_string(*count) + " sensors; no CyberGlove has");
   }
-  const std::uint32_t usual = (*count == 18 ? sensors_18 : sensors_22).bits;
-  const auto hardware = number(dialogue, source, ask_hardware_mask, usual);
+  const auto hardware = needed<SensorMask>("?K", *count == 18 ? sensors_18 : sensors_22,
+                                           [&] { return commands_.hardware_mask(); });
   if (!hardware) return hardware.error();
-  const auto software = number(dialogue, source, ask_software_mask, 0xFFFFFFU);
+  if (auto done = set_mask(*hardware); !done) return done;
+  const auto software =
+      needed<SensorMask>("?M", SensorMask{0xFFFFFF}, [&] { return commands_.software_mask(); });
   if (!software) return software.error();
-  const auto values = number(dialogue, source, ask_value_count, sensor_slots);
+  const auto values =
+      needed<Count>("?N", Count{sensor_slots}, [&] { return commands_.value_count(); });
   if (!values) return values.error();
-  const ChannelMap map = make_channel_map({*hardware}, {*software}, *values);
+  const ChannelMap map = make_channel_map(*hardware, *software, *values);
   if (map.count == 0) {
-    return no_device(source,
+    return no_device(source_,
                      "all its sensors are masked off; switch its interface unit off and on");
   }
-  return map;
+  identity_.sensors = *count;
+  identity_.channels = map;
+  add("sensors", std::to_string(*count));
+  add("hardware_mask", hexadecimal(*hardware));
+  add("software_mask", hexadecimal(*software));
+  add("values", std::to_string(map.count));
+  return {};
 }
 
-/// The first line that has something to say, without what could disturb a terminal.
-std::string model_line(const std::string& text) {
-  constexpr std::size_t most_characters = 60;
-  std::string line;
-  for (const char c : text) {
-    const bool printable = c >= 0x20 && c < 0x7F;
-    if (c == '\n' && !line.empty()) break;
-    if (printable && (c != ' ' || !line.empty())) line.push_back(c);
-    if (line.size() == most_characters) break;
+Result<void> SetUp::ask_hand() {
+  const auto side = needed<Side>("?R", Side::right, [&] { return commands_.side(); });
+  if (!side) return side.error();
+  identity_.side = *side;
+  add("hand", std::string(name_of(*side)));
+  return {};
+}
+
+Result<void> SetUp::set_switches() {
+  struct Switch {
+    const char* name;
+    Setting setting;
+    const std::optional<bool>& wanted;
+  };
+  for (const Switch& one : {Switch{"filter=", Setting::filter, options_.filter},
+                            Switch{"quantised=", Setting::quantised, options_.quantised}}) {
+    if (!one.wanted) continue;
+    const bool on = *one.wanted;
+    if (auto done = apply(std::string(one.name) + (on ? "on" : "off"),
+                          [&] { return commands_.set(one.setting, on); });
+        !done) {
+      return done;
+    }
   }
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line.empty() ? "CyberGlove" : line;
+  return {};
 }
 
-double plausible_rate(unsigned count, unsigned times) {
-  constexpr double most_hz = 1000.0;
-  if (count == 0 || times == 0) return 0.0;
-  const double rate_hz = clock_hz / (static_cast<double>(count) * times);
-  return rate_hz <= most_hz ? rate_hz : 0.0;
+/// True if records carry it now. A unit that does not know it sends records without.
+Result<bool> SetUp::set_stamp(Setting setting, bool on) {
+  Answer answer = Answer::silent;
+  for (int k = 0; k < tries && !is_final(answer); ++k)
+    answer = commands_.set(setting, on);
+  if (answer == Answer::good) return on;
+  if (answer == Answer::unknown || answer == Answer::bad_number) return false;
+  return bad_answer(source_, answer, std::string("the setting ") + static_cast<char>(setting));
 }
 
-/// What is good to know, but not needed to understand the records.
-void ask_details(Dialogue& dialogue, Identity& identity) {
-  std::array<std::byte, 4> words{};
-  if (dialogue.ask(ask_period, words, next_answer) == Answer::good) {
-    identity.rate_hz = rate_of_period(words);
+/// Records a second as the unit is set up already; 0: as fast as it can, or unknown.
+double SetUp::ask_present_rate() {
+  const auto bytes = commands_.period_bytes();
+  if (!bytes) return 0.0;
+  const auto period = request_.word_order ? decode_period(bytes.value, *request_.word_order)
+                                          : guess_period(bytes.value);
+  if (!period) return 0.0;
+  add("period_ticks", std::to_string(period->ticks) + " " + std::to_string(period->times));
+  return rate_of(*period);
+}
+
+Result<void> SetUp::set_period(Period period) {
+  Reply<std::optional<WordOrder>> reply;
+  const std::string text = "rate=" + text_of(*options_.rate_hz);
+  auto done = apply(text, [&] { return (reply = commands_.set_period(period)).answer; });
+  if (!done) return done;
+  if (reply.value) identity_.word_order = reply.value;
+  identity_.rate_hz = rate_of(period);
+  add("period_ticks", std::to_string(period.ticks) + " " + std::to_string(period.times));
+  return {};
+}
+
+Result<void> SetUp::set_records() {
+  identity_.word_order = request_.word_order;
+  identity_.sync = options_.sync;
+  if (options_.hires) return set_hires();
+  if (!options_.rate_hz) identity_.rate_hz = ask_present_rate();
+  const auto plan =
+      plan_records(options_, identity_.channels.count, request_.baud, identity_.rate_hz);
+  if (!plan) return Error{plan.error().code, source_ + ": " + plan.error().message};
+  if (plan->stamps_dropped) {
+    identity_.notes.push_back("records come without time stamp and status byte, with which the "
+                              "line at " +
+                              std::to_string(request_.baud) + " baud would be too slow");
   }
-  std::string text;
-  if (dialogue.ask_text(ask_information, text, first_answer) != Answer::good) text.clear();
-  identity.model = model_line(text) + ", " + std::to_string(identity.channels.count) + " sensors";
+  const auto time_stamp = set_stamp(Setting::time_stamp, plan->stamps);
+  if (!time_stamp) return time_stamp.error();
+  const auto status = set_stamp(Setting::status_byte, plan->stamps);
+  if (!status) return status.error();
+  identity_.shape.values = identity_.channels.count;
+  identity_.shape.time_stamp = *time_stamp;
+  identity_.shape.status = *status;
+  if (plan->period) {
+    if (auto done = set_period(*plan->period); !done) return done;
+  }
+  if (options_.sync) identity_.rate_hz = 0.0; // the pulses make it
+  add("rate_hz", text_of(identity_.rate_hz));
+  return {};
+}
+
+Result<void> SetUp::set_hires() {
+  if (identity_.sensors != hi_res_values) {
+    return Error{Errc::usage, source_ +
+                                  ": hires=on: these records carry 22 sensors, the glove has " +
+                                  std::to_string(identity_.sensors) + "; leave the option out"};
+  }
+  const auto steps = plan_hires(options_, request_.baud);
+  if (!steps) return Error{steps.error().code, source_ + ": " + steps.error().message};
+  if (auto done = apply("hires=on", [&] { return commands_.set_sink(Sink::usb, true); }); !done)
+    return done;
+  if (*steps) {
+    identity_.rate_hz = **steps * third_frame_step_hz;
+    if (auto done = apply("rate=" + text_of(identity_.rate_hz),
+                          [&] { return commands_.set_frame_rate(**steps); });
+        !done) {
+      return done;
+    }
+    add("rate_hz", text_of(identity_.rate_hz));
+  }
+  identity_.hires = true;
+  identity_.channels = hi_res_channels;
+  identity_.shape = {hi_res_values, false, false, RecordForm::hi_res};
+  return {};
 }
 
 } // namespace
 
-double rate_of_period(std::span<const std::byte, 4> words) noexcept {
-  const auto byte = [&](std::size_t k) { return std::to_integer<unsigned>(words[k]); };
-  return std::max(plausible_rate(byte(0) | byte(1) << 8U, byte(2) | byte(3) << 8U),
-                  plausible_rate(byte(1) | byte(0) << 8U, byte(3) | byte(2) << 8U));
-}
-
-Result<void> check_state(Dialogue& dialogue, const std::string& source) {
-  std::array<std::byte, 1> data{};
-  const Answer answer = ask_again(dialogue, ask_state, data, first_answer);
-  if (answer != Answer::good) return bad_answer(source, answer, "?G within 2 s");
-  const auto state = std::to_integer<unsigned>(data[0]);
-  if ((state & state_connected) == 0) return bad_answer(source, Answer::no_glove, "?G");
-  if ((state & state_initialised) == 0) {
+Result<void> judge_state(const std::string& source, const Reply<GloveState>& reply,
+                         const std::string& asked) {
+  if (!reply) return bad_answer(source, reply.answer, asked);
+  if (!reply.value.connected) return bad_answer(source, Answer::no_glove, asked);
+  if (!reply.value.initialised) {
     return no_device(source,
                      "the glove is plugged in but not ready; switch its interface unit off and on");
   }
   return {};
 }
 
-Result<Identity> identify(Dialogue& dialogue, const std::string& source) {
-  // A babbling line is not yet a reason to give up: what is asked for may be among the babble.
-  if (dialogue.stop_stream() == Answer::gone) return bad_answer(source, Answer::gone, "the start");
-  if (auto state = check_state(dialogue, source); !state) return state.error();
-  auto channels = ask_channels(dialogue, source);
-  if (!channels) return channels.error();
-  const auto right = number(dialogue, source, ask_right_hand, 1U);
-  if (!right) return right.error();
-  const auto time_stamp = switch_on(dialogue, source, set_time_stamp);
-  if (!time_stamp) return time_stamp.error();
-  const auto status = switch_on(dialogue, source, set_status);
-  if (!status) return status.error();
-
-  Identity identity;
-  identity.side = *right == 0 ? Side::left : Side::right;
-  identity.channels = *channels;
-  identity.shape = {channels->count, *time_stamp, *status};
-  ask_details(dialogue, identity);
-  return identity;
+Result<Identity> identify(Dialogue& dialogue, const std::string& source, const Request& request) {
+  return SetUp(dialogue, source, request).run();
 }
 
 } // namespace nendo::driver::cyberglove

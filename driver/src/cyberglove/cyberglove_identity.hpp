@@ -1,36 +1,55 @@
 #pragma once
 // Who is there: asks an interface unit everything that is needed to understand its records, and
-// makes them as redundant as it can (time stamp, status byte).
+// sets it up as the user wants it, with records as redundant as the line allows (time stamp, status
+// byte).
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/driver/glove.hpp>
 #include <nendo/driver/sample.hpp>
 
 #include "cyberglove/channel_map.hpp"
+#include "cyberglove/cyberglove_commands.hpp"
 #include "cyberglove/cyberglove_dialogue.hpp"
+#include "cyberglove/cyberglove_options.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
 
 namespace nendo::driver::cyberglove {
 
 struct Identity {
-  std::string model; ///< printable ASCII, one line
+  std::string model = "CyberGlove"; ///< printable ASCII, one line
   Side side = Side::right;
-  ChannelMap channels;
+  std::size_t sensors = 0; ///< built in
+  ChannelMap channels;     ///< of those, the ones that records carry
   RecordShape shape;
   double rate_hz = 0.0; ///< 0: as fast as the glove can, or unknown
+  bool hires = false;   ///< records of 12-bit values
+  bool sync = false;    ///< records at external pulses
+  bool switch_drives_light = false;
+  std::optional<WordOrder> word_order; ///< of ?T, once it showed
+  Abilities abilities;
+  std::vector<GloveFact> facts;
+  std::vector<std::string> notes; ///< what was decided for the user, a line each
 };
 
-/// Ends a stream that runs, asks and sets. Blocks until done or until the dialogue's deadline.
-/// Error: no_device; its message begins with `source`.
-Result<Identity> identify(Dialogue& dialogue, const std::string& source);
+/// What is to be set up, and what is known already.
+struct Request {
+  Options options;
+  int baud = 0;                        ///< at which the unit answered
+  std::optional<WordOrder> word_order; ///< of ?T, as an earlier identity had it
+};
 
-/// Is a working glove plugged in and answering? Error: no_device, as above.
-Result<void> check_state(Dialogue& dialogue, const std::string& source);
+/// Asks and sets; the unit has been greeted. Blocks until done or until the dialogue's deadline.
+/// Errors: no_device; usage, if the unit or its line cannot do what an option asks for. The message
+/// begins with `source`.
+Result<Identity> identify(Dialogue& dialogue, const std::string& source, const Request& request);
 
-/// Records a second from the two words that ?T tells. Sources disagree on their byte order; the
-/// wrong one yields an absurdly slow rate, so the faster plausible reading is taken. 0: unknown or
-/// unlimited.
-double rate_of_period(std::span<const std::byte, 4> words) noexcept;
+/// What `reply` to ?G means to the user: nothing, or why there is no working glove. `asked` says
+/// how it was asked. Error: no_device, as above.
+Result<void> judge_state(const std::string& source, const Reply<GloveState>& reply,
+                         const std::string& asked);
 
 } // namespace nendo::driver::cyberglove

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include <nendo/driver/sample.hpp>
 
@@ -20,13 +21,38 @@ inline constexpr std::byte terminator{0x00};
 inline constexpr std::byte interrupt{0x03}; ///< ^C: ends a stream; answered 03 00 [V, D]
 inline constexpr std::byte reread_glove{
     0x09}; ///< ^I: read the glove's memory anew, after a swap [V]
+inline constexpr std::byte restart_firmware{
+    0x12}; ///< ^R: answered 12 0D 0A 00 after about 1.75 s [V, p.45]; a left glove's ends at LF [D]
 
-inline constexpr char stream_command = 'S'; ///< one record after the other until `interrupt` [D]
+inline constexpr std::string_view stream_command =
+    "S";                                    ///< one record after the other until `interrupt` [D]
+inline constexpr char record_command = 'G'; ///< one record [D]
 
 // Settings: the letter and raw bytes; answered by the letter and NUL [D], or with a byte between
-// them [V].
-inline constexpr char set_time_stamp = 'D'; ///< bool: append the time stamp [p.28]
-inline constexpr char set_status = 'U';     ///< bool: append the status byte [p.50]
+// them [V]. The same in text: the small letter, decimal numbers, CR.
+inline constexpr std::string_view set_software_mask = "M"; ///< 3 bytes, LSB first [V, D]
+inline constexpr std::string_view set_value_count = "N";   ///< 1 byte [V, D]
+inline constexpr std::string_view set_parameters = "P";    ///< 3 bytes, LSB first [V]
+inline constexpr std::string_view set_baud = "B";          ///< 1 byte, see cyberglove_line.hpp [V]
+inline constexpr std::string_view set_sync = "Y";          ///< bool: records at external pulses [V]
+inline constexpr std::string_view set_sync_text = "y";     ///< the same for records in text
+inline constexpr std::string_view set_period_text = "t";   ///< two numbers; T's order is disputed
+inline constexpr std::string_view set_vibration = "A";    ///< count, so many pairs index, value [D]
+inline constexpr std::uint8_t all_vibrators = 0xFF;       ///< a count: then 6 values follow [D]
+inline constexpr std::string_view set_calibration = "CA"; ///< all offsets, all gains [D]
+inline constexpr std::string_view set_offset = "CO";      ///< index, value [D]
+inline constexpr std::string_view set_gain = "CG";        ///< index, value [D]
+
+/// On-off settings: the letter and a byte 0 or 1 sets, '?' and the letter asks.
+enum class Setting : char {
+  time_stamp = 'D',          ///< append the time stamp [V, p.28]
+  filter = 'F',              ///< digital filter, on at power-up; slows the sampling [V, p.29]
+  switch_drives_light = 'J', ///< on at power-up [V, p.35]
+  light = 'L',               ///< at the wrist [V]
+  quantised = 'Q',           ///< send values calibrated by what 'C' has set [D]
+  status_byte = 'U',         ///< append the status byte [V, p.50]
+  wrist_switch = 'W',        ///< as the software sees it [V, p.52]
+};
 
 // Queries: '?' and the letter; answered by both, data of fixed length, NUL [V, D].
 struct Query {
@@ -40,7 +66,23 @@ inline constexpr Query ask_software_mask{'M', 3}; ///< sensors wanted, LSB first
 inline constexpr Query ask_value_count{'N', 1};   ///< only the first so many are sent [V]
 inline constexpr Query ask_right_hand{'R', 1};    ///< 1: right [V]
 inline constexpr Query ask_period{'T', 4};        ///< two 16-bit words, byte order disputed [p.47]
+inline constexpr Query ask_parameters{'P', 3};    ///< see cyberglove_parameters.hpp [V]
+inline constexpr Query ask_firmware{'V', 4};      ///< two 16-bit words, meaning unknown [D]
+inline constexpr Query ask_baud{'B', 1};          ///< as 'B' sets it [V]
+inline constexpr Query ask_vibration{'A', 6};     ///< thumb to pinky, palm [D]
+inline constexpr char ask_calibration = 'C';      ///< an offset a sensor, then a gain a sensor [D]
 inline constexpr char ask_information = 'i';      ///< text of several lines; NUL ends it [V, D]
+inline constexpr char ask_firmware_text = 'v';    ///< text [V]
+inline constexpr char ask_help = '?';             ///< text: the commands and errors [D]
+
+// A CyberGlove III's own commands; answered by the same and NUL [D]. Sinks: u, w, s.
+inline constexpr std::string_view third_enable = "1e";     ///< and a sink
+inline constexpr std::string_view third_disable = "1d";    ///< and a sink
+inline constexpr std::string_view third_frame_rate = "1m"; ///< a byte: so many times 30 Hz
+inline constexpr std::string_view third_divider = "1";     ///< a sink, a byte
+inline constexpr std::string_view third_stream = "1S";     ///< 12-bit records until `interrupt`
+inline constexpr double third_frame_step_hz = 30.0;
+inline constexpr std::size_t third_record_bytes = 61;
 
 inline constexpr std::uint8_t state_initialised = 0x01; ///< of ?G [V, p.31]
 inline constexpr std::uint8_t state_connected = 0x02;   ///< of ?G [V, p.31]
@@ -61,6 +103,8 @@ inline constexpr char synced_header = 'Y'; ///< at the pace of an external signa
 inline constexpr std::size_t most_values = sensor_slots;
 inline constexpr std::size_t time_stamp_bytes = 5; ///< flags, then the ticks LSB first [V, p.28]
 inline constexpr std::size_t most_error_bytes = 4; ///< one pair of each kind [V]
+inline constexpr std::size_t most_plain_bytes =
+    1 + most_values + time_stamp_bytes + 1 + most_error_bytes + 1;
 
 // The status byte [p.41].
 inline constexpr std::uint8_t status_plugged_in = 0x01;

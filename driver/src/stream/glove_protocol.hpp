@@ -60,6 +60,9 @@ public:
   /// Takes the next bytes of the stream, cut anywhere; the last of them arrived at `arrival`.
   virtual void push(std::span<const std::byte> chunk, HostTime arrival,
                     SampleSink& sink) noexcept = 0;
+  /// True once the device may be another one than it was: identify() has to tell before more of its
+  /// records can be believed.
+  virtual bool is_doubtful() const noexcept { return false; }
   /// Shows `feedback`, while it streams. A device that went away shows itself at the next read.
   virtual void give(Transport& transport, const Feedback& feedback,
                     const Patience& patience) noexcept {

@@ -84,7 +84,7 @@ public:
   void give(const Feedback& feedback) noexcept override;
 
 private:
-  enum class StreamEnd { stopped, silent, gone };
+  enum class StreamEnd { stopped, silent, doubtful, gone };
 
   void run(const std::stop_token& token);
   StreamEnd stream(const std::stop_token& token);
@@ -117,7 +117,8 @@ private:
   std::uint64_t sequence_ = 0;
   std::uint64_t bad_before_ = 0; ///< bad records at the time of the last good one
   double rate_reported_hz_ = 0.0;
-  bool outage_ = false; ///< no record since the stream broke off
+  bool outage_ = false;     ///< no record since the stream broke off
+  bool unanswered_ = false; ///< the last question who is there had no good answer
 
   std::jthread reader_; // last: joined before what it uses is gone
 };
@@ -134,7 +135,7 @@ Result<void> StreamGlove::start(SampleRing& ring) {
   ring_ = &ring;
   sequence_ = 0;
   bad_before_ = at_start_.bad_records;
-  outage_ = false;
+  outage_ = unanswered_ = false;
   window_begin_ = HostClock::now();
   window_records_ = at_start_.records;
   reader_ = std::jthread([this](const std::stop_token& token) { run(token); });
@@ -163,6 +164,10 @@ void StreamGlove::run(const std::stop_token& token) {
     case StreamEnd::silent:
       revive(token);
       break;
+    case StreamEnd::doubtful:
+      outage_ = true;
+      unanswered_ = !restart(token, Occasion::damaged);
+      break;
     case StreamEnd::gone:
       reopen(token);
       break;
@@ -176,7 +181,10 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
       info_.rate_hz > 0.0 ? std::chrono::duration_cast<HostClock::duration>(
                                 std::chrono::duration<double>(std::min(3.0 / info_.rate_hz, 60.0)))
                           : HostClock::duration{};
-  const auto longest_silence = std::max<HostClock::duration>(shortest_silence, three_periods);
+  // Who did not answer is asked again soon; meanwhile it may have begun to stream by itself.
+  const auto longest_silence = unanswered_
+                                   ? HostClock::duration(retry_interval)
+                                   : std::max<HostClock::duration>(shortest_silence, three_periods);
   last_record_ = HostClock::now();
   while (!token.stop_requested()) {
     if (!transport_) return StreamEnd::gone;
@@ -186,6 +194,7 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
     protocol_->push(std::span(buffer).first(count), arrival_, *this);
     stats_.store(protocol_->counters(), at_start_);
     measure_rate(arrival_);
+    if (protocol_->is_doubtful()) return StreamEnd::doubtful;
     if (arrival_ - last_record_ > longest_silence) return StreamEnd::silent;
     if (feedback_changed_) show_feedback(token);
   }
@@ -239,9 +248,7 @@ void StreamGlove::revive(const std::stop_token& token) {
                  info_.source, to_seconds(HostClock::now() - last_record_));
   }
   const bool damaged = protocol_->counters().bad_records != bad_before_;
-  if (!restart(token, damaged ? Occasion::damaged : Occasion::reviving)) {
-    wait(token, retry_interval);
-  }
+  unanswered_ = !restart(token, damaged ? Occasion::damaged : Occasion::reviving);
 }
 
 void StreamGlove::reopen(const std::stop_token& token) {
@@ -258,6 +265,7 @@ void StreamGlove::reopen(const std::stop_token& token) {
     transport_ = *std::move(transport);
     if (restart(token, Occasion::reviving)) {
       ++stats_.reopened;
+      unanswered_ = false;
       return;
     }
     transport_.reset();

@@ -13,7 +13,7 @@
 namespace nendo::driver {
 
 /// Opens a terminal as 8N1, raw, without flow control, for this program alone. Follows symbolic
-/// links. `baud` has no meaning for a pseudo-terminal. Errors: no_device (missing, not a terminal,
+/// links. `baud` is not set at a pseudo-terminal, where it has no meaning. Errors: no_device (missing, not a terminal,
 /// in use), no_permission.
 Result<std::unique_ptr<Transport>> open_transport(const std::string& path, int baud);
 

@@ -57,6 +57,8 @@ public:
 
   void discard_input() noexcept override { sp_flush(port_.get(), SP_BUF_INPUT); }
 
+  bool set_baud(int baud) noexcept override { return sp_set_baudrate(port_.get(), baud) == SP_OK; }
+
 private:
   const PortHandle port_;
   const int fd_;

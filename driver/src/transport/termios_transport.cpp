@@ -1,6 +1,8 @@
 #include "transport/open_transport.hpp"
 
+#include <array>
 #include <cerrno>
+#include <optional>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -11,6 +13,20 @@
 
 namespace nendo::driver {
 namespace {
+
+/// A pseudo-terminal carries bytes at any speed, but whoever is at its other end sees which is set.
+std::optional<speed_t> speed_of(int baud) noexcept {
+  struct Known {
+    int baud;
+    speed_t speed;
+  };
+  constexpr std::array all{Known{115'200, B115200}, Known{57'600, B57600}, Known{38'400, B38400},
+                           Known{19'200, B19200}, Known{9'600, B9600}};
+  for (const Known& known : all) {
+    if (known.baud == baud) return known.speed;
+  }
+  return std::nullopt;
+}
 
 class TermiosTransport final : public Transport {
 public:
@@ -36,6 +52,13 @@ public:
   }
 
   void discard_input() noexcept override { ::tcflush(fd_, TCIFLUSH); }
+
+  bool set_baud(int baud) noexcept override {
+    const auto speed = speed_of(baud);
+    termios settings{};
+    return speed && ::tcgetattr(fd_, &settings) == 0 && ::cfsetspeed(&settings, *speed) == 0 &&
+           ::tcsetattr(fd_, TCSANOW, &settings) == 0;
+  }
 
 private:
   const int fd_;

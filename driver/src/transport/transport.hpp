@@ -36,6 +36,8 @@ public:
                              std::chrono::milliseconds timeout) noexcept = 0;
   /// Throws away what has arrived and was not read.
   virtual void discard_input() noexcept = 0;
+  /// Changes the line's rate. False: it has none, or not this one.
+  virtual bool set_baud(int /*baud*/) noexcept { return false; }
 };
 
 } // namespace nendo::driver

@@ -1,0 +1,124 @@
+#pragma once
+// Every command and query of the interface unit, typed; the bytes are cyberglove_protocol.hpp's.
+// Not while the glove streams. Each call waits for its reply, at most as long as the constructor
+// says where nothing else is stated; Answer tells the unit's errors apart.
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <nendo/driver/sample.hpp>
+
+#include "cyberglove/cyberglove_dialogue.hpp"
+#include "cyberglove/cyberglove_parameters.hpp"
+#include "cyberglove/cyberglove_period.hpp"
+
+namespace nendo::driver::cyberglove {
+
+/// `value` counts only if the answer is good.
+template <class T>
+struct Reply {
+  Answer answer = Answer::silent;
+  T value{};
+  explicit operator bool() const noexcept { return answer == Answer::good; }
+};
+
+struct GloveState {
+  bool initialised = false;
+  bool connected = false; ///< a glove is plugged into the unit
+};
+
+/// What quantised values are made with, a pair a sensor; the first `sensors` of each count.
+struct HardwareCalibration {
+  std::size_t sensors = 0;
+  std::array<std::uint8_t, sensor_slots> offset{};
+  std::array<std::uint8_t, sensor_slots> gain{};
+  friend bool operator==(const HardwareCalibration&, const HardwareCalibration&) = default;
+};
+
+using Vibration = std::array<std::uint8_t, 6>; ///< thumb to pinky, palm
+struct Vibrator {
+  std::uint8_t index = 0; ///< into Vibration
+  std::uint8_t strength = 0;
+};
+
+struct RecordBytes {
+  std::array<std::byte, most_plain_bytes> bytes{};
+  std::size_t size = 0; ///< with header and NUL
+};
+
+/// Where a CyberGlove III can send its records to.
+enum class Sink : char { usb = 'u', wifi = 'w', card = 's' };
+
+class Commands {
+public:
+  explicit Commands(Dialogue& dialogue, std::chrono::milliseconds timeout) noexcept
+      : dialogue_(dialogue), timeout_(timeout) {}
+
+  // Who is there.
+  Reply<std::string> information(); ///< several lines; up to 1 s
+  Reply<std::string> help();        ///< the unit's own list of commands and errors; up to 1 s
+  Reply<std::string> firmware_text();
+  Reply<std::array<std::uint8_t, 4>> firmware() noexcept;
+  Reply<GloveState> state() noexcept;
+  Reply<std::uint8_t> sensor_count() noexcept;
+  Reply<SensorMask> hardware_mask() noexcept;
+  Reply<Side> side() noexcept;
+
+  // Settings. The unit forgets them when it is switched off.
+  Reply<bool> get(Setting setting) noexcept;
+  Answer set(Setting setting, bool on) noexcept;
+  Reply<SensorMask> software_mask() noexcept;
+  Answer set_software_mask(SensorMask mask) noexcept;
+  Reply<std::uint8_t> value_count() noexcept;
+  Answer set_value_count(std::uint8_t count) noexcept;
+  Reply<Parameters> parameters() noexcept;
+  Answer set_parameters(const Parameters& parameters) noexcept;
+  /// Records begin with Y and come at the pulses of the sync input; too fast ones: bad_sync_rate.
+  Answer set_sync(bool on) noexcept;
+  Answer set_text_sync(bool on) noexcept; ///< the same for records in text, which begin with y
+  Reply<std::array<std::byte, 4>> period_bytes() noexcept; ///< see decode_period()
+  /// Sets it in text, whose byte order nobody disputes, and asks in bytes: the value is the order
+  /// that the reply shows, if the unit knows the question. bad_rate, bad_number: the unit refuses;
+  /// other_value: it says that it did something else.
+  Reply<std::optional<WordOrder>> set_period(Period period) noexcept;
+  Reply<HardwareCalibration> hardware_calibration(std::size_t sensors) noexcept;
+  Answer set_hardware_calibration(const HardwareCalibration& calibration) noexcept;
+  Answer set_offset(std::uint8_t sensor, std::uint8_t offset) noexcept;
+  Answer set_gain(std::uint8_t sensor, std::uint8_t gain) noexcept;
+  Reply<std::uint8_t> baud_register() noexcept; ///< see baud_of_register()
+  /// Nobody documents at which of the two rates the reply comes: any answer but an error may mean
+  /// that it was done. Set the transport's rate afterwards and ask for the state.
+  Answer set_baud_register(std::uint8_t byte) noexcept;
+  Reply<Vibration> vibration() noexcept;
+  Answer set_vibration(const Vibration& strength) noexcept;
+  Answer set_vibrators(std::span<const Vibrator> some) noexcept; ///< at most 6
+
+  // Control.
+  Answer stop() noexcept;         ///< ends a stream, or a command that waits for its argument
+  Answer restart() noexcept;      ///< up to 2.5 s; settings are then as after power-up
+  Answer reread_glove() noexcept; ///< reads the memory of a glove that was swapped
+  Reply<RecordBytes> record(std::size_t least_bytes) noexcept;
+
+  // CyberGlove III only.
+  Answer set_sink(Sink sink, bool on) noexcept;
+  Answer set_frame_rate(std::uint8_t thirties) noexcept; ///< in steps of 30 Hz
+  Answer set_divider(Sink sink, std::uint8_t divider) noexcept;
+
+private:
+  template <std::size_t size>
+  Reply<std::array<std::byte, size>> ask(const Query& query) noexcept;
+  Reply<std::string> ask_text(char letter, std::chrono::milliseconds timeout);
+  Answer set(std::string_view head, std::span<const std::uint8_t> arguments) noexcept;
+  Answer set(std::string_view head, std::uint8_t argument) noexcept;
+
+  Dialogue& dialogue_;
+  const std::chrono::milliseconds timeout_;
+};
+
+} // namespace nendo::driver::cyberglove

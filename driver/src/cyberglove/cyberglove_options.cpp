@@ -1,0 +1,157 @@
+#include "cyberglove/cyberglove_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "cyberglove/cyberglove_line.hpp"
+#include "cyberglove/cyberglove_parser.hpp"
+#include "glove_spec.hpp"
+
+namespace nendo::driver::cyberglove {
+namespace {
+
+constexpr double least_rate_hz = 0.1;
+constexpr double most_rate_hz = 1000.0;
+
+Error wrong(const GloveSpec& spec, const std::string& key, const std::string& known) {
+  return {Errc::usage, spec.text + ": " + key + "=" + spec.options.at(key) + " is not " + known};
+}
+
+/// Reads the whole of `text`, or nothing.
+template <class T, class... Form>
+std::optional<T> number(std::string_view text, Form... form) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, form...);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// Sets `option` from the text of `key`, as `read` understands it.
+template <class T, class Read>
+Result<void> take(const GloveSpec& spec, const std::string& key, const std::string& known,
+                  T& option, Read&& read) {
+  const auto found = spec.options.find(key);
+  if (found == spec.options.end()) return {};
+  const auto value = read(found->second);
+  if (!value) return wrong(spec, key, known);
+  option = *value;
+  return {};
+}
+
+std::optional<bool> read_switch(std::string_view text) {
+  if (text == "on") return true;
+  if (text == "off") return false;
+  return std::nullopt;
+}
+
+std::optional<int> read_baud(std::string_view text) {
+  constexpr std::array known{115'200, 57'600, 38'400, 19'200, 9'600};
+  const auto baud = number<int>(text);
+  if (!baud || std::find(known.begin(), known.end(), *baud) == known.end()) return std::nullopt;
+  return baud;
+}
+
+std::optional<double> read_rate(std::string_view text) {
+  const auto rate_hz = number<double>(text);
+  if (!rate_hz || !(*rate_hz >= least_rate_hz && *rate_hz <= most_rate_hz)) return std::nullopt;
+  return rate_hz;
+}
+
+std::optional<SensorMask> read_mask(std::string_view text) {
+  constexpr std::uint32_t all = (1U << sensor_slots) - 1;
+  if (!text.starts_with("0x")) return std::nullopt;
+  const auto bits = number<std::uint32_t>(text.substr(2), 16);
+  if (!bits || *bits == 0 || *bits > all) return std::nullopt;
+  return SensorMask{*bits};
+}
+
+/// Options that exclude each other.
+Result<void> judge(const GloveSpec& spec, const Options& options) {
+  const auto usage = [&](const char* what) { return Error{Errc::usage, spec.text + ": " + what}; };
+  if (options.sync && options.rate_hz)
+    return usage("sync=on: the pulses make the rate; leave out rate=");
+  if (options.sync && options.hires) return usage("sync=on and hires=on exclude each other");
+  if (options.hires && options.mask) return usage("hires=on sends all sensors; leave out mask=");
+  if (options.hires && options.stamps.value_or(false))
+    return usage("hires=on: its records have a time of their own; leave out stamps=");
+  return {};
+}
+
+/// Cut, not rounded: what is said to fit must fit.
+int whole(double limit_hz) {
+  return static_cast<int>(limit_hz);
+}
+
+Error too_fast(double rate_hz, std::size_t record_bytes, int baud, const std::string& remedy) {
+  const double limit_hz = line_limit_hz(baud, record_bytes);
+  return {Errc::usage,
+          fmt::format("rate={:g}: a record of {} bytes at {} baud takes {:.1f} ms; at "
+                      "most {} records a second; {}",
+                      rate_hz, record_bytes, baud, 1e3 / limit_hz, whole(limit_hz), remedy)};
+}
+
+} // namespace
+
+Result<Options> read_options(const GloveSpec& spec) {
+  auto good = allow_options(
+      spec, {"baud", "rate", "mask", "stamps", "filter", "quantised", "sync", "hires"});
+  Options options;
+  const auto also = [&](const char* key, const char* known, auto& option, auto read) {
+    if (good) good = take(spec, key, known, option, read);
+  };
+  also("baud", "one of 115200, 57600, 38400, 19200, 9600", options.baud, read_baud);
+  also("rate", "a number of records a second from 0.1 to 1000", options.rate_hz, read_rate);
+  also("mask", "a sensor mask from 0x1 to 0xFFFFFF", options.mask, read_mask);
+  also("stamps", "on or off", options.stamps, read_switch);
+  also("filter", "on or off", options.filter, read_switch);
+  also("quantised", "on or off", options.quantised, read_switch);
+  also("sync", "on or off", options.sync, read_switch);
+  also("hires", "on or off", options.hires, read_switch);
+  if (good) good = judge(spec, options);
+  if (!good) return good.error();
+  return options;
+}
+
+Result<RecordPlan> plan_records(const Options& options, std::size_t values, int baud,
+                                double present_hz) {
+  const double wanted_hz = options.rate_hz.value_or(present_hz);
+  const auto bytes_of = [&](bool stamps) {
+    RecordShape shape;
+    shape.values = values;
+    shape.time_stamp = shape.status = stamps;
+    return shape.bytes();
+  };
+  const auto fits = [&](bool stamps) { return wanted_hz <= line_limit_hz(baud, bytes_of(stamps)); };
+  RecordPlan plan;
+  plan.stamps = options.stamps.value_or(fits(true));
+  plan.stamps_dropped = !plan.stamps && !options.stamps;
+  plan.record_bytes = bytes_of(plan.stamps);
+  if (options.rate_hz && !fits(plan.stamps)) {
+    const bool helps = plan.stamps && fits(false);
+    return too_fast(wanted_hz, plan.record_bytes, baud,
+                    helps ? fmt::format("lower the rate or say stamps=off (at most {})",
+                                        whole(line_limit_hz(baud, bytes_of(false))))
+                          : std::string("lower the rate or mask sensors off"));
+  }
+  if (options.rate_hz) plan.period = choose_period(wanted_hz);
+  return plan;
+}
+
+Result<std::optional<std::uint8_t>> plan_hires(const Options& options, int baud) {
+  constexpr double most_steps = 4; // 120 records a second, what the maker states
+  if (!options.rate_hz) return std::optional<std::uint8_t>{};
+  const double steps = *options.rate_hz / third_frame_step_hz;
+  if (steps != std::floor(steps) || steps < 1 || steps > most_steps) {
+    return Error{Errc::usage, fmt::format("rate={:g}: with hires=on it is one of 30, 60, 90, 120",
+                                          *options.rate_hz)};
+  }
+  if (*options.rate_hz > line_limit_hz(baud, third_record_bytes))
+    return too_fast(*options.rate_hz, third_record_bytes, baud, "lower the rate");
+  return std::optional(static_cast<std::uint8_t>(steps));
+}
+
+} // namespace nendo::driver::cyberglove
