@@ -31,6 +31,7 @@ void on_chosen(CLI::App& subcommand, int& exit_code, std::function<int()> comman
 void add_bench(CLI::App& app, int& exit_code);
 void add_deform(CLI::App& app, int& exit_code);
 void add_devices(CLI::App& app, int& exit_code);
+void add_doctor(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
 void add_monitor(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);

@@ -46,6 +46,7 @@ int run(int argc, char** argv) {
   add_run(app, exit_code);
   add_monitor(app, exit_code);
   add_devices(app, exit_code);
+  add_doctor(app, exit_code);
   add_deform(app, exit_code);
   add_emulate(app, exit_code);
   add_bench(app, exit_code);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/driver/devices.hpp>
 #include <nendo/flow/tick_grid.hpp>
 
 #include "cli.hpp"

@@ -4,18 +4,16 @@
 
 #include <array>
 #include <atomic>
-#include <cstring>
-#include <filesystem>
-#include <memory>
 #include <string>
 #include <thread>
 
 #include <doctest/doctest.h>
 #include <sys/ioctl.h>
-#include <umockdev.h>
 
+#include <nendo/driver/devices.hpp>
 #include <nendo/driver/open_glove.hpp>
 
+#include "support/mocked_machine.hpp"
 #include "support/scripted_port.hpp"
 #include "transport/open_transport.hpp"
 
@@ -26,129 +24,36 @@ using namespace std::chrono_literals;
 
 namespace {
 
-std::atomic<int> modem_lines{0};
-
-constexpr int not_handled = -100; // umockdev: run it on the pseudo-terminal behind the mock
-
-/// The modem lines, which pseudo-terminals lack; everything else is theirs.
-gboolean handle_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer) {
-  const auto request = umockdev_ioctl_client_get_request(client);
-  if (request != TIOCMGET && request != TIOCMSET && request != TIOCMBIS && request != TIOCMBIC) {
-    umockdev_ioctl_client_complete(client, not_handled, 0);
-    return TRUE;
-  }
-  UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
-  UMockdevIoctlData* value = umockdev_ioctl_data_resolve(argument, 0, sizeof(int), nullptr);
-  int lines = 0;
-  std::memcpy(&lines, value->data, sizeof lines);
-  if (request == TIOCMSET) modem_lines = lines;
-  if (request == TIOCMBIS) modem_lines |= lines;
-  if (request == TIOCMBIC) modem_lines &= ~lines;
-  if (request == TIOCMGET) {
-    lines = modem_lines;
-    std::memcpy(value->data, &lines, sizeof lines);
-  }
-  umockdev_ioctl_client_complete(client, 0, 0);
-  return TRUE;
-}
-
-/// An FTDI adapter as the kernel and udev describe it, as far as libudev and its users look.
-std::string adapter_description(const std::string& product) {
-  return R"(P: /devices/pci0000:00/0000:00:14.0/usb1/1-2
-N: bus/usb/001/005
-E: DEVNAME=/dev/bus/usb/001/005
-E: DEVTYPE=usb_device
-E: DRIVER=usb
-E: SUBSYSTEM=usb
-E: BUSNUM=001
-E: DEVNUM=005
-E: MAJOR=189
-E: MINOR=4
-A: busnum=1\n
-A: devnum=5\n
-A: speed=12\n
-A: idVendor=0403\n
-A: idProduct=6001\n
-A: manufacturer=FTDI\n
-A: serial=A1\n
-A: product=)" +
-         product + R"(\n
-
-P: /devices/pci0000:00/0000:00:14.0/usb1/1-2/1-2:1.0
-E: DEVTYPE=usb_interface
-E: DRIVER=ftdi_sio
-E: SUBSYSTEM=usb
-
-P: /devices/pci0000:00/0000:00:14.0/usb1/1-2/1-2:1.0/ttyUSB0
-E: DRIVER=ftdi_sio
-E: SUBSYSTEM=usb-serial
-
-P: /devices/pci0000:00/0000:00:14.0/usb1/1-2/1-2:1.0/ttyUSB0/tty/ttyUSB0
-N: ttyUSB0
-E: DEVNAME=/dev/ttyUSB0
-E: MAJOR=188
-E: MINOR=0
-E: SUBSYSTEM=tty
-A: dev=188:0\n
-L: device=../../../ttyUSB0
-)";
-}
-
-struct Unref {
-  void operator()(gpointer object) const { g_object_unref(object); }
-};
-
 /// An adapter at /dev/ttyUSB0 with a scripted glove behind it.
 class MockedAdapter {
 public:
   explicit MockedAdapter(const std::string& product, const std::string& link = "",
-                         const Script& script = {})
-      : testbed_(umockdev_testbed_new()) {
-    REQUIRE_MESSAGE(umockdev_in_mock_environment(), "run this program under umockdev-wrapper");
-    GError* error = nullptr;
-    const std::string description = adapter_description(product);
-    REQUIRE(umockdev_testbed_add_from_string(testbed_.get(), description.c_str(), &error));
-    if (!link.empty()) make_link(link);
-    ioctls_.reset(umockdev_ioctl_base_new());
-    g_signal_connect(ioctls_.get(), "handle-ioctl", G_CALLBACK(handle_ioctl), nullptr);
-    REQUIRE(umockdev_testbed_attach_ioctl(testbed_.get(), "/dev/ttyUSB0", ioctls_.get(), &error));
-    master_ = umockdev_testbed_get_dev_fd(testbed_.get(), "/dev/ttyUSB0");
-    REQUIRE(master_ >= 0);
-    unit_ = std::thread([this, script] { serve_script(master_, script, stop_, mute_); });
+                         const Script& script = {}) {
+    MockedUsb usb;
+    usb.product = product;
+    machine.plug(usb);
+    if (!link.empty()) machine.link(link, usb.port);
+    unit_ = std::thread([this, script, master = machine.master(usb.port)] {
+      serve_script(master, script, stop_, mute_);
+    });
   }
-  ~MockedAdapter() {
-    stop_unit();
-    umockdev_testbed_detach_ioctl(testbed_.get(), "/dev/ttyUSB0", nullptr);
-  }
+  ~MockedAdapter() { stop_unit(); }
   MockedAdapter(const MockedAdapter&) = delete;
   MockedAdapter& operator=(const MockedAdapter&) = delete;
 
-  /// Hangs up. Another file takes the master's number, which is umockdev's to close.
   void unplug() {
     stop_unit();
-    const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-    ::dup3(nothing, master_, O_CLOEXEC);
-    ::close(nothing);
+    machine.hang_up("ttyUSB0");
   }
+
+  MockedMachine machine;
 
 private:
   void stop_unit() {
     stop_ = true;
     if (unit_.joinable()) unit_.join();
   }
-  /// As udev does it, relative; umockdev's own links lead out of its mocked /dev.
-  void make_link(const std::filesystem::path& link) {
-    const std::unique_ptr<gchar, decltype(&g_free)> root(
-        umockdev_testbed_get_root_dir(testbed_.get()), g_free);
-    const auto dev = std::filesystem::path(root.get()) / "dev";
-    const auto folder = (dev / link).parent_path();
-    std::filesystem::create_directories(folder);
-    std::filesystem::create_symlink(std::filesystem::relative(dev, folder) / "ttyUSB0", dev / link);
-  }
 
-  std::unique_ptr<UMockdevTestbed, Unref> testbed_;
-  std::unique_ptr<UMockdevIoctlBase, Unref> ioctls_;
-  int master_ = -1;
   std::atomic<bool> stop_{false};
   std::atomic<bool> mute_{false};
   std::thread unit_;
@@ -158,8 +63,8 @@ private:
 
 TEST_SUITE("serialport") {
   TEST_CASE("a port is opened by libserialport, with both modem lines asserted, for one program") {
-    const MockedAdapter adapter("FT232R USB UART");
-    modem_lines = 0;
+    MockedAdapter adapter("FT232R USB UART");
+    std::atomic<int>& modem_lines = adapter.machine.modem_lines;
     REQUIRE(is_serial_port("/dev/ttyUSB0"));
     auto transport = open_transport("/dev/ttyUSB0", 115'200);
     REQUIRE_MESSAGE(transport, transport.error().message);
@@ -219,9 +124,9 @@ TEST_SUITE("serialport") {
     CHECK_FALSE(found[0].identified);
     CHECK(found[0].reason.find("may be a glove") != std::string::npos);
     CHECK(found[0].may_open);
-    modem_lines = 0;
     const auto glove = open_glove("auto");
-    CHECK(modem_lines == 0); // not even opened, for that would have asserted DTR and RTS
+    CHECK(adapter.machine.modem_lines ==
+          0); // not even opened, for that would have asserted DTR and RTS
     REQUIRE_FALSE(glove);
     CHECK(glove.error().code == Errc::no_device);
     CHECK(glove.error().message.find("serial:/dev/ttyUSB0") != std::string::npos);

@@ -15,7 +15,7 @@
 #include "cyberglove/cyberglove_parser.hpp"
 #include "cyberglove/record_check.hpp"
 #include "stream/device_clock.hpp"
-#include "transport/open_transport.hpp"
+#include "transport/follow_port.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -219,8 +219,7 @@ Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime de
     return Error{Errc::usage, spec.text + ": name the port, e.g. serial:/dev/ttyUSB0"};
   }
   const int baud = options->baud.value_or(usual_bauds.front());
-  const auto open_port = [path = spec.target, baud] { return open_transport(path, baud); };
-  return open_cyberglove(spec.text, open_port, *options, deadline);
+  return open_cyberglove(spec.text, follow_port(spec.target, baud), *options, deadline);
 }
 
 Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> /*side*/) {

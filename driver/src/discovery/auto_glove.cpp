@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cyberglove/cyberglove_driver.hpp"
+#include "discovery/candidates.hpp"
 #include "glove_spec.hpp"
 
 namespace nendo::driver {
@@ -28,11 +29,12 @@ Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Si
   const HostTime deadline = HostClock::now() + 4500ms;
   std::string why;
   Errc code = Errc::no_device;
-  for (const GloveCandidate& candidate : find_gloves()) {
+  for (const GloveCandidate& candidate : list_candidates(UsbBus())) {
     if (!candidate.identified || candidate.spec.empty()) continue;
     const auto parsed = parse_glove_spec(candidate.spec);
     if (!parsed || HostClock::now() >= deadline) continue;
-    auto glove = open_serial_by(*parsed, deadline);
+    auto glove = candidate.kind == DeviceKind::serial_port ? open_serial_by(*parsed, deadline)
+                                                           : open_glove(candidate.spec);
     if (glove && (!*wanted || (*glove)->info().side == **wanted)) return glove;
     if (!glove && glove.error().code == Errc::no_permission) code = Errc::no_permission;
     why += glove ? candidate.spec + " is a " + std::string(name_of((*glove)->info().side)) + " hand"

@@ -1,96 +1,206 @@
-#include <nendo/driver/open_glove.hpp>
+#include "discovery/candidates.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
-#include <optional>
+#include <set>
 #include <system_error>
+#include <utility>
 
-#include <unistd.h>
+#include <nendo/driver/open_glove.hpp>
 
-#include "discovery/usb_gloves.hpp"
-#include "transport/open_transport.hpp"
+#include "discovery/programs.hpp"
+#include "discovery/stable_names.hpp"
+#include "discovery/udev_records.hpp"
+#include "discovery/usb_adapters.hpp"
+#include "transport/ftdi_latency.hpp"
+#include "transport/port_access.hpp"
 #include "transport/serial_ports.hpp"
+#include "transport/sysfs.hpp"
+#include "transport/usb_device.hpp"
+#include "transport/usb_identity.hpp"
+#include "usb/open_usb_glove.hpp"
 
 namespace nendo::driver {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that only a glove's maker puts into a device's own description.
-constexpr std::array<std::string_view, 3> maker_names{"cyberglove", "virtual technologies",
-                                                      "immersion"};
+/// Names that only a glove has in its own description. Not the maker Immersion, which also made
+/// digitisers that hang on a serial port.
+constexpr std::array<std::string_view, 2> glove_names{"cyberglove", "cybertouch"};
 
-/// Adapters that anything may hang on, so that nothing may be written to them unasked.
-struct Adapter {
-  int vendor_id;
-  int product_id;
-  std::string_view name;
-};
-constexpr std::array adapters{
-    Adapter{0x0403, 0x6001, "FTDI"},
-    Adapter{0x067B, 0x2303, "Prolific"},
-    Adapter{0x10C4, 0xEA60, "Silicon Labs"},
-    Adapter{0x1A86, 0x7523, "WCH"},
-};
-
-bool names_a_maker(std::string text) {
+bool names_a_glove(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::any_of(maker_names.begin(), maker_names.end(),
+  return std::any_of(glove_names.begin(), glove_names.end(),
                      [&](std::string_view name) { return text.find(name) != std::string::npos; });
 }
 
-/// The link in /dev/nendo that udev rules made to `port`, if any.
-std::optional<std::string> udev_link(const std::string& port) {
-  std::error_code no_such_folder;
-  for (const fs::directory_entry& entry : fs::directory_iterator("/dev/nendo", no_such_folder)) {
-    if (resolve_port(entry.path().string()) == port) return entry.path().string();
-  }
-  return std::nullopt;
+std::string join(std::string_view first, std::string_view second) {
+  return std::string(first) + (first.empty() || second.empty() ? "" : " ") + std::string(second);
 }
 
+std::string describe(const UsbIdentity& usb) {
+  const std::string name = join(usb.manufacturer, usb.product);
+  return join(name.empty() ? "USB device without a name" : name,
+              usb.serial.empty() ? "" : "(serial number " + usb.serial + ")");
+}
+
+void judge_access(GloveCandidate& candidate) {
+  PortAccess access = port_access(candidate.device);
+  candidate.may_open = access.granted;
+  candidate.access = std::move(access.who);
+  candidate.remedy = std::move(access.remedy);
+}
+
+/// A serial number that two adapters share names neither: udev's link goes to the one that came
+/// last.
+bool has_own_serial(const UsbIdentity& usb, const std::vector<SerialPortInfo>& ports) {
+  return !usb.serial.empty() &&
+         std::none_of(ports.begin(), ports.end(), [&](const SerialPortInfo& other) {
+           return other.usb && other.usb->serial == usb.serial && other.usb->place != usb.place;
+         });
+}
+
+/// `serial:` with the name, or nothing if the grammar cannot express it.
+std::string serial_spec(const std::string& name) {
+  const auto spec = parse_glove_spec("serial:" + name);
+  return spec && spec->target == name ? spec->text : std::string{};
+}
+
+/// Why a port may be a glove's, where nothing names it one.
 std::string why_maybe(const SerialPortInfo& port) {
-  if (port.path.starts_with("/dev/rfcomm")) return "may be a glove: Bluetooth serial port";
-  if (!port.is_usb) return "may be a glove: serial port";
-  for (const Adapter& adapter : adapters) {
-    if (adapter.vendor_id == port.vendor_id && adapter.product_id == port.product_id) {
-      return "may be a glove: USB-serial adapter (" + std::string(adapter.name) + ")";
-    }
-  }
-  return "may be a glove: USB serial device";
+  if (port.bluetooth) return "may be a glove: Bluetooth serial port";
+  if (!port.usb) return "may be a glove: serial port";
+  const UsbAdapter* const adapter = find_usb_adapter(port.usb->vendor_id, port.usb->product_id);
+  return adapter != nullptr
+             ? "may be a glove: USB-serial adapter (" + std::string(adapter->maker) + ")"
+             : "may be a glove: USB serial device";
 }
 
-GloveCandidate judge(const SerialPortInfo& port) {
+GloveCandidate judge_port(const SerialPortInfo& port, const PortLinks& links, bool own_serial) {
   GloveCandidate candidate;
   candidate.device = port.path;
-  candidate.spec = "serial:" + port.path;
-  candidate.description = port.description;
-  candidate.may_open = ::access(port.path.c_str(), R_OK | W_OK) == 0;
-  if (const auto link = udev_link(port.path)) {
-    candidate.spec = "serial:" + *link;
-    candidate.reason = "a udev rule names it " + *link;
+  candidate.usb = port.usb;
+  candidate.description = port.usb         ? describe(*port.usb)
+                          : port.bluetooth ? "Bluetooth serial port"
+                                           : "serial port of the computer";
+  candidate.stable_name = !links.nendo.empty()                 ? links.nendo
+                          : own_serial && !links.by_id.empty() ? links.by_id
+                                                               : links.by_path;
+  candidate.spec = serial_spec(candidate.stable_name);
+  if (candidate.stable_name.empty() || candidate.spec.empty()) {
+    candidate.stable_name.clear();
+    candidate.spec = serial_spec(port.path);
+  }
+  if (!links.nendo.empty()) {
+    candidate.reason = "a udev rule names it " + links.nendo;
     candidate.identified = true;
-  } else if (names_a_maker(port.manufacturer + " " + port.product)) {
-    candidate.reason = "calls itself " + port.manufacturer + " " + port.product;
+  } else if (port.usb && names_a_glove(join(port.usb->manufacturer, port.usb->product))) {
+    candidate.reason = "calls itself " + join(port.usb->manufacturer, port.usb->product);
     candidate.identified = true;
   } else {
     candidate.reason = why_maybe(port);
   }
+  candidate.latency_timer = ftdi_latency_timer(port.path);
+  candidate.left_alone = tells_to_leave_alone(udev_record(port.device_number));
+  judge_access(candidate);
+  return candidate;
+}
+
+std::string node_of(const UsbDevice& device) {
+  std::array<char, 48> path{};
+  std::snprintf(path.data(), path.size(), "/dev/bus/usb/%03u/%03u", device.bus, device.address);
+  return path.data();
+}
+
+GloveCandidate start_usb(const UsbDevice& device, DeviceKind kind) {
+  GloveCandidate candidate;
+  candidate.kind = kind;
+  candidate.device = node_of(device);
+  candidate.usb = usb_identity_at(device.bus, device.address);
+  if (!candidate.usb) {
+    candidate.usb.emplace();
+    candidate.usb->vendor_id = device.vendor_id;
+    candidate.usb->product_id = device.product_id;
+    candidate.usb->bus = device.bus;
+    candidate.usb->address = device.address;
+  }
+  judge_access(candidate);
+  return candidate;
+}
+
+GloveCandidate judge_usb_glove(const UsbDevice& device, std::string_view name) {
+  GloveCandidate candidate = start_usb(device, DeviceKind::usb_glove);
+  candidate.description = name;
+  candidate.reason = "its USB number is that of a glove";
+  candidate.identified = true;
+  candidate.spec = "usb:" + to_string(UsbId{device.vendor_id, device.product_id});
+  return candidate;
+}
+
+GloveCandidate judge_portless(const UsbDevice& device, const UsbAdapter& adapter) {
+  GloveCandidate candidate = start_usb(device, DeviceKind::portless_adapter);
+  candidate.description = describe(*candidate.usb);
+  candidate.reason = "a USB-serial adapter (" + std::string(adapter.maker) +
+                     ") without a serial port: its kernel driver is missing, or brltty took it";
+  candidate.remedy = "sudo modprobe " + std::string(adapter.module) + ", then plug it in again";
   return candidate;
 }
 
 } // namespace
 
-std::vector<GloveCandidate> find_gloves() {
+std::vector<GloveCandidate> list_candidates(const UsbBus& usb) {
   std::vector<GloveCandidate> found;
-  for (const SerialPortInfo& port : list_serial_ports())
-    found.push_back(judge(port));
-  for (GloveCandidate& glove : find_usb_gloves())
-    found.push_back(std::move(glove));
+  const std::vector<SerialPortInfo> ports = list_serial_ports();
+  const auto links = find_port_links();
+  std::set<std::pair<unsigned, unsigned>> with_port;
+  for (const SerialPortInfo& port : ports) {
+    const auto own_links = links.find(port.path);
+    found.push_back(judge_port(port, own_links != links.end() ? own_links->second : PortLinks{},
+                               port.usb && has_own_serial(*port.usb, ports)));
+    if (port.usb) with_port.emplace(port.usb->bus, port.usb->address);
+  }
+  for (const UsbDevice& device : usb.devices()) {
+    if (with_port.contains({device.bus, device.address})) continue;
+    const std::string_view glove = usb_glove_name({device.vendor_id, device.product_id});
+    if (!glove.empty()) {
+      found.push_back(judge_usb_glove(device, glove));
+    } else if (const auto* adapter = find_usb_adapter(device.vendor_id, device.product_id)) {
+      found.push_back(judge_portless(device, *adapter));
+    }
+  }
   std::stable_partition(found.begin(), found.end(),
                         [](const GloveCandidate& candidate) { return candidate.identified; });
+  return found;
+}
+
+void add_holders(std::vector<GloveCandidate>& candidates) {
+  std::set<std::string> devices;
+  for (const GloveCandidate& candidate : candidates)
+    devices.insert(candidate.device);
+  Holders holders = find_holders(devices);
+  for (GloveCandidate& candidate : candidates) {
+    candidate.holders = std::move(holders.of[candidate.device]);
+    candidate.holders_complete = holders.complete;
+  }
+}
+
+bool is_settled(const GloveCandidate& candidate) {
+  std::error_code failed;
+  if (candidate.kind == DeviceKind::portless_adapter) return false; // its port may yet come
+  if (!fs::exists(candidate.device, failed)) return false;
+  if (candidate.kind == DeviceKind::usb_glove) return true;
+  const fs::path entry = "/sys/class/tty" / fs::path(candidate.device).filename();
+  return udev_is_done_with(read_line(entry / "dev"));
+}
+
+std::vector<GloveCandidate> find_gloves() {
+  std::vector<GloveCandidate> found = list_candidates(UsbBus());
+  add_holders(found);
   return found;
 }
 

@@ -10,7 +10,7 @@
 #include "serial_options.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
-#include "transport/open_transport.hpp"
+#include "transport/follow_port.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -200,8 +200,7 @@ Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<
   if (!hand) return hand.error();
   if (auto named = require_port(spec, "5dt:/dev/ttyUSB0"); !named) return named.error();
   auto protocol = std::make_unique<FiveDtProtocol>(*baud == wireless_baud, HandWishes{*hand, side});
-  const auto open_port = [path = spec.target, rate = *baud] { return open_transport(path, rate); };
-  return open_stream_glove(spec.text, open_port, std::move(protocol),
+  return open_stream_glove(spec.text, follow_port(spec.target, *baud), std::move(protocol),
                            HostClock::now() + open_budget);
 }
 

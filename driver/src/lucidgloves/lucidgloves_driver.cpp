@@ -14,7 +14,7 @@
 #include "serial_options.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
-#include "transport/open_transport.hpp"
+#include "transport/follow_port.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -182,9 +182,8 @@ Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::opti
   const auto hand = hand_option(spec);
   if (!hand) return hand.error();
   if (auto named = require_port(spec, "lucidgloves:/dev/ttyUSB0"); !named) return named.error();
-  const auto open_port = [path = spec.target, bits = *rate] { return open_transport(path, bits); };
-  return open_lucidgloves_by(spec.text, open_port, static_cast<std::uint16_t>(*range),
-                             {*hand, side});
+  return open_lucidgloves_by(spec.text, follow_port(spec.target, *rate),
+                             static_cast<std::uint16_t>(*range), {*hand, side});
 }
 
 } // namespace nendo::driver

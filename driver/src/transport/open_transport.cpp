@@ -1,52 +1,24 @@
 #include "transport/open_transport.hpp"
 
-#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 
-#include <grp.h>
 #include <sys/stat.h>
 
+#include "transport/port_access.hpp"
+
 namespace nendo::driver {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// The group whose members may read and write it; empty if there is none but root's.
-std::string group_with_access(const std::string& path) {
-  struct stat status {};
-  constexpr mode_t group_access = S_IRGRP | S_IWGRP;
-  if (::stat(path.c_str(), &status) != 0 || (status.st_mode & group_access) != group_access)
-    return {};
-  std::array<char, 4096> text{};
-  group entry{};
-  group* found = nullptr;
-  ::getgrgid_r(status.st_gid, &entry, text.data(), text.size(), &found);
-  return found != nullptr && found->gr_gid != 0 ? found->gr_name : std::string{};
-}
-
-Error permission_error(const std::string& path) {
-  const std::string name = group_with_access(path);
-  if (name.empty()) {
-    return {Errc::no_permission,
-            path +
-                ": no permission to open it; until it is plugged in again this helps: "
-                "sudo chown $USER " +
-                path};
-  }
-  return {Errc::no_permission, path + ": only group " + name +
-                                   " may open it; add yourself to it: sudo usermod -aG " + name +
-                                   " $USER, then log in again"};
-}
-
-} // namespace
 
 Error open_error(const std::string& path, int error_number) {
   switch (error_number) {
   case EACCES:
-  case EPERM:
-    return permission_error(path);
+  case EPERM: {
+    const PortAccess access = refused_access(path);
+    return {Errc::no_permission, path + ": only " + access.who + " may open it; " + access.remedy};
+  }
   case EBUSY:
   case EWOULDBLOCK:
     return {Errc::no_device, path + " is in use by another program; close that one first"};

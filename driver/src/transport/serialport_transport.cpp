@@ -7,7 +7,6 @@
 #include <sys/file.h>
 #include <sys/ioctl.h>
 
-#include "transport/serial_ports.hpp"
 #include "transport/wait_fd.hpp"
 
 namespace nendo::driver {
@@ -102,10 +101,6 @@ int open_port(sp_port* port, int baud, int& fd) {
   return 0;
 }
 
-std::string text_or_empty(const char* text) {
-  return text != nullptr ? text : "";
-}
-
 } // namespace
 
 Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int baud) {
@@ -115,26 +110,6 @@ Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int 
   int fd = -1;
   if (const int e = open_port(raw, baud, fd); e != 0) return open_error(path, e);
   return std::unique_ptr<Transport>(std::make_unique<SerialportTransport>(std::move(port), fd));
-}
-
-std::vector<SerialPortInfo> list_serial_ports() {
-  std::vector<SerialPortInfo> found;
-  sp_port** ports = nullptr;
-  if (sp_list_ports(&ports) != SP_OK) return found;
-  for (sp_port** at = ports; *at != nullptr; ++at) {
-    SerialPortInfo info;
-    info.path = text_or_empty(sp_get_port_name(*at));
-    info.description = text_or_empty(sp_get_port_description(*at));
-    info.is_usb = sp_get_port_transport(*at) == SP_TRANSPORT_USB;
-    if (info.is_usb) {
-      info.manufacturer = text_or_empty(sp_get_port_usb_manufacturer(*at));
-      info.product = text_or_empty(sp_get_port_usb_product(*at));
-      sp_get_port_usb_vid_pid(*at, &info.vendor_id, &info.product_id);
-    }
-    found.push_back(std::move(info));
-  }
-  sp_free_port_list(ports);
-  return found;
 }
 
 } // namespace nendo::driver

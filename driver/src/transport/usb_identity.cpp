@@ -1,58 +1,63 @@
 #include "transport/usb_identity.hpp"
 
-#include <array>
-#include <cstdio>
-#include <fstream>
+#include <filesystem>
+#include <system_error>
+
+#include "transport/sysfs.hpp"
 
 namespace nendo::driver {
 namespace {
 
-std::string kernel_text(const std::string& port, const char* name) {
-  constexpr std::size_t most_characters = 126; // of a USB string
-  std::ifstream file("/sys/bus/usb/devices/" + port + "/" + name);
-  std::string text;
-  for (char c = 0; text.size() < most_characters && file.get(c) && c != '\n';) {
-    if (c >= 0x20 && c < 0x7F) text.push_back(c);
-  }
-  return text;
+namespace fs = std::filesystem;
+
+/// nullopt if the folder is not that of a USB device.
+std::optional<UsbIdentity> read_identity(const fs::path& folder) {
+  const auto vendor_id = read_number(folder / "idVendor", 16);
+  const auto product_id = read_number(folder / "idProduct", 16);
+  if (!vendor_id || !product_id || *vendor_id > 0xFFFF || *product_id > 0xFFFF) return std::nullopt;
+  UsbIdentity usb;
+  usb.vendor_id = static_cast<std::uint16_t>(*vendor_id);
+  usb.product_id = static_cast<std::uint16_t>(*product_id);
+  usb.manufacturer = read_line(folder / "manufacturer");
+  usb.product = read_line(folder / "product");
+  usb.serial = read_line(folder / "serial");
+  usb.place = printable(folder.filename().string());
+  usb.bus = read_number(folder / "busnum").value_or(0);
+  usb.address = read_number(folder / "devnum").value_or(0);
+  return usb;
 }
 
 } // namespace
 
-std::string to_string(UsbId id) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "%04x:%04x", unsigned{id.vendor}, unsigned{id.product});
-  return text.data();
-}
-
-UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
-                         std::span<const std::uint8_t> ports) {
-  std::array<char, 32> node{};
-  std::snprintf(node.data(), node.size(), "/dev/bus/usb/%03u/%03u", bus, address);
-  UsbIdentity identity;
-  identity.id = id;
-  identity.node = node.data();
-  identity.port = std::to_string(bus);
-  char separator = '-';
-  for (const std::uint8_t port : ports) {
-    identity.port += separator + std::to_string(port);
-    separator = '.';
+std::optional<UsbIdentity> usb_identity_of_port(const std::string& port) {
+  const std::string name = fs::path(port).filename().string();
+  // A connected rfcomm port hangs below the computer's own Bluetooth dongle.
+  if (name.starts_with("rfcomm")) return std::nullopt;
+  auto folder = link_target(fs::path("/sys/class/tty") / name);
+  if (!folder) return std::nullopt;
+  std::optional<unsigned> interface_number;
+  std::optional<unsigned> port_number;
+  // The path is the chain of the devices that the port hangs on.
+  for (; folder->has_relative_path(); folder = folder->parent_path()) {
+    if (!interface_number) interface_number = read_number(*folder / "bInterfaceNumber", 16);
+    if (!port_number) port_number = read_number(*folder / "port_number");
+    if (auto usb = read_identity(*folder)) {
+      if (interface_number) usb->interface_number = static_cast<int>(*interface_number & 0xFFU);
+      usb->port_number = static_cast<int>(port_number.value_or(0) & 0xFFU);
+      return usb;
+    }
   }
-  identity.manufacturer = kernel_text(identity.port, "manufacturer");
-  identity.product = kernel_text(identity.port, "product");
-  identity.serial = kernel_text(identity.port, "serial");
-  return identity;
+  return std::nullopt;
 }
 
-Error usb_permission_error(const UsbIdentity& identity) {
-  std::array<char, 96> rule{};
-  std::snprintf(rule.data(), rule.size(),
-                R"(ATTR{idVendor}=="%04x", ATTR{idProduct}=="%04x", TAG+="uaccess")",
-                unsigned{identity.id.vendor}, unsigned{identity.id.product});
-  return {Errc::no_permission, "USB device " + to_string(identity.id) + " at " + identity.node +
-                                   ": no permission to open it; a udev rule with " + rule.data() +
-                                   " mends it for good, sudo chown $USER " + identity.node +
-                                   " until it is plugged in again"};
+std::optional<UsbIdentity> usb_identity_at(unsigned bus, unsigned address) {
+  const fs::path devices = "/sys/bus/usb/devices";
+  for (const std::string& name : names_in(devices)) {
+    if (read_number(devices / name / "devnum") != address) continue;
+    if (read_number(devices / name / "busnum") != bus) continue;
+    return read_identity(devices / name);
+  }
+  return std::nullopt;
 }
 
 } // namespace nendo::driver

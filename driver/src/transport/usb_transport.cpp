@@ -290,7 +290,7 @@ UsbIdentity identify(libusb_device* device, UsbId id) {
 }
 
 Error open_failure(const UsbIdentity& identity, int result) {
-  const std::string who = "USB device " + to_string(identity.id) + " at " + identity.node;
+  const std::string who = "USB device " + to_string(id_of(identity)) + " at " + node_of(identity);
   switch (result) {
   case LIBUSB_ERROR_ACCESS:
     return usb_permission_error(identity);
@@ -382,7 +382,7 @@ Result<std::unique_ptr<UsbTransport>> open_usb(const UsbWanted& wanted,
     if (UsbId{descriptor.idVendor, descriptor.idProduct} != wanted.id) continue;
     const UsbIdentity identity = identify(list[k], wanted.id);
     if (!wanted.serial.empty() && wanted.serial != identity.serial) continue;
-    if (!wanted.port.empty() && wanted.port != identity.port) continue;
+    if (!wanted.port.empty() && wanted.port != identity.place) continue;
     auto opened = open_device(context, list[k], identity, interface);
     if (opened) return opened;
     if (!first_error) first_error = opened.error(); // another one of the kind may be free

@@ -12,7 +12,7 @@
 #include <nendo/base/result.hpp>
 
 #include "transport/transport.hpp"
-#include "transport/usb_identity.hpp"
+#include "transport/usb_device.hpp"
 
 namespace nendo::driver {
 

@@ -40,18 +40,4 @@ struct DriverSummary {
 };
 std::vector<DriverSummary> driver_summaries();
 
-/// A port or USB device that may be a glove. Listing writes nothing to any device.
-struct GloveCandidate {
-  std::string spec;        ///< what to give to open_glove(); empty if nendo has no driver for it
-  std::string device;      ///< path or bus address
-  std::string description; ///< what the device says of itself
-  std::string reason;      ///< why it may be a glove
-  bool identified = false; ///< the device or a udev rule names it a glove; `auto` opens only these
-  bool may_open = false;   ///< this user has the permission
-};
-
-/// Serial ports (libserialport) and known USB gloves (libusb), identified ones first. May block
-/// briefly.
-std::vector<GloveCandidate> find_gloves();
-
 } // namespace nendo::driver

@@ -1,0 +1,78 @@
+#pragma once
+// What is plugged in that may be a glove, and what stands between it and this user. Looking opens
+// no device and writes to none: it reads /sys, /dev, /proc, udev's records and libusb's list.
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nendo::driver {
+
+/// A USB device as the kernel describes it. Strings are printable ASCII; other bytes became '?'.
+struct UsbIdentity {
+  std::uint16_t vendor_id = 0;
+  std::uint16_t product_id = 0;
+  std::string manufacturer;
+  std::string product;
+  std::string serial;
+  std::string place;         ///< bus and hub ports, e.g. "1-2.4": where it is plugged in
+  unsigned bus = 0;          ///< as in /dev/bus/usb/BUS/ADDRESS
+  unsigned address = 0;      ///< another one whenever it is plugged in
+  int interface_number = -1; ///< of the port, at adapters that have several; -1 if unknown
+  int port_number = 0;       ///< of the port, at interfaces that have several
+  friend bool operator==(const UsbIdentity&, const UsbIdentity&) = default;
+};
+
+/// A program that holds a device open or locked.
+struct DeviceHolder {
+  int pid = 0;
+  std::string name; ///< of the program; "another user's program" where it is not to be seen
+};
+
+enum class DeviceKind : std::uint8_t {
+  serial_port,
+  usb_glove,        ///< a glove that is a USB device of its own
+  portless_adapter, ///< a USB-serial adapter for which the kernel made no port
+};
+
+constexpr std::string_view name_of(DeviceKind kind) noexcept {
+  constexpr std::string_view names[]{"serial_port", "usb_glove", "portless_adapter"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+/// A port or USB device that may be a glove.
+struct GloveCandidate {
+  DeviceKind kind = DeviceKind::serial_port;
+  std::string device; ///< e.g. /dev/ttyUSB0 or /dev/bus/usb/001/005
+  std::string
+      stable_name;  ///< udev's link, which survives plugging in again; empty if there is none
+  std::string spec; ///< what to give to open_glove(), the stable name preferred; empty if nothing
+  std::string description; ///< what the device says of itself
+  std::string reason;      ///< why it may be a glove
+  bool identified = false; ///< the device or a udev rule names it a glove; `auto` opens only these
+  bool may_open = false;   ///< this user has the permission
+  std::string access;      ///< who has: "you", "group dialout", "user anna", "root"
+  std::string remedy;      ///< command or deed that makes it usable; empty if may_open
+  std::optional<UsbIdentity> usb;
+  /// How long an FTDI adapter keeps short replies back. 16 ms unless somebody changed it.
+  std::optional<std::chrono::milliseconds> latency_timer;
+  bool left_alone = false; ///< udev tells ModemManager to leave it alone
+  std::vector<DeviceHolder> holders;
+  bool holders_complete = false; ///< false: other users' programs could not all be looked into
+};
+
+/// Serial ports and USB gloves, a device being one entry, identified ones first. What vanishes
+/// meanwhile is left out. Blocks for less than a second.
+std::vector<GloveCandidate> find_gloves();
+
+/// The command that sets the latency timer of this port to 1 ms.
+std::string latency_timer_remedy(const std::string& port);
+
+/// Programs that run now and are known to open serial adapters that nobody offered them:
+/// "ModemManager", "brltty". Reads /proc; blocks briefly.
+std::vector<std::string> running_port_grabbers();
+
+} // namespace nendo::driver

@@ -1,0 +1,36 @@
+#pragma once
+// Which programs hold a device, as far as /proc tells without opening the device.
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/driver/devices.hpp>
+
+namespace nendo::driver {
+
+struct Holders {
+  std::map<std::string, std::vector<DeviceHolder>> of; ///< by device
+  bool complete = true; ///< every program could be looked into, in the time given
+};
+
+/// Looks through all programs' open files for these device nodes, for 0.5 s at most, and through
+/// the kernel's list of file locks, which also tells of other users' programs.
+Holders find_holders(const std::set<std::string>& devices);
+
+/// A line of /proc/locks: who locked which file.
+struct FileLock {
+  int pid = 0; ///< 0 or below: a program in another container
+  unsigned major = 0;
+  unsigned minor = 0;
+  std::uint64_t inode = 0;
+  friend bool operator==(const FileLock&, const FileLock&) = default;
+};
+
+/// Lines that are not understood, and those that wait for a lock, are left out.
+std::vector<FileLock> parse_locks(std::string_view text);
+
+} // namespace nendo::driver

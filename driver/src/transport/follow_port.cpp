@@ -1,0 +1,96 @@
+#include "transport/follow_port.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "transport/ftdi_latency.hpp"
+#include "transport/open_transport.hpp"
+#include "transport/serial_ports.hpp"
+#include "transport/usb_identity.hpp"
+
+namespace nendo::driver {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The same model with the same serial number, and the same one of its ports.
+bool same_make(const UsbIdentity& a, const UsbIdentity& b) {
+  return a.vendor_id == b.vendor_id && a.product_id == b.product_id && a.serial == b.serial &&
+         a.interface_number == b.interface_number && a.port_number == b.port_number;
+}
+
+/// The ports of this machine that could be `adapter`'s, as far as serial numbers tell.
+std::vector<SerialPortInfo> ports_like(const UsbIdentity& adapter) {
+  std::vector<SerialPortInfo> ports = list_serial_ports();
+  std::erase_if(ports, [&](const SerialPortInfo& port) {
+    return !port.usb || !same_make(*port.usb, adapter);
+  });
+  return ports;
+}
+
+class PortFollower {
+public:
+  PortFollower(std::string path, int baud) : path_(std::move(path)), baud_(baud) {}
+
+  Result<std::unique_ptr<Transport>> open() {
+    const std::optional<std::string> port = adapter_ ? find_adapter() : resolve_port(path_);
+    if (!port) return Error{Errc::no_device, gone()};
+    auto transport = open_transport(adapter_ ? *port : path_, baud_);
+    if (!transport) return transport;
+    // While it is open the kernel gives its name to no other, so this is who was opened.
+    const auto opened = usb_identity_of_port(*port);
+    if (adapter_ && !(opened && is_adapter(*opened))) return Error{Errc::no_device, gone()};
+    if (!adapter_ && opened) remember(*opened);
+    shorten_latency(*port);
+    return transport;
+  }
+
+private:
+  void remember(const UsbIdentity& adapter) {
+    adapter_ = adapter;
+    // Some makers give all their adapters one serial number.
+    by_place_ = adapter.serial.empty() || ports_like(adapter).size() > 1;
+  }
+  bool is_adapter(const UsbIdentity& usb) const {
+    return same_make(usb, *adapter_) && (!by_place_ || usb.place == adapter_->place);
+  }
+  std::optional<std::string> find_adapter() const {
+    for (const SerialPortInfo& port : ports_like(*adapter_)) {
+      if (is_adapter(*port.usb)) return port.path;
+    }
+    return std::nullopt;
+  }
+  std::string gone() const {
+    return path_ + ": its adapter (" +
+           (by_place_ ? "USB place " + adapter_->place : "serial number " + adapter_->serial) +
+           ") is not plugged in; another one under its name is not used";
+  }
+  void shorten_latency(const std::string& port) {
+    const auto latency = shorten_ftdi_latency(port);
+    if (!latency || *latency <= 1ms || std::exchange(told_, true)) return;
+    spdlog::warn("host: {} holds replies back for {} ms (FTDI latency timer); shorten it: {}", port,
+                 latency->count(), latency_timer_remedy(port));
+  }
+
+  const std::string path_;
+  const int baud_;
+  std::optional<UsbIdentity> adapter_; ///< once it was opened, if it is one
+  bool by_place_ = false;
+  bool told_ = false;
+};
+
+} // namespace
+
+std::function<Result<std::unique_ptr<Transport>>()> follow_port(std::string path, int baud) {
+  // Shared, because a std::function may be copied.
+  return [follower = std::make_shared<PortFollower>(std::move(path), baud)] {
+    return follower->open();
+  };
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,19 @@
+#pragma once
+// Who may open a device node, and what this user must do to be among them.
+
+#include <string>
+
+namespace nendo::driver {
+
+struct PortAccess {
+  bool granted = false; ///< this user may read and write it
+  std::string who;      ///< "you", "group dialout", "user anna", "root"
+  std::string remedy;   ///< empty if granted
+};
+
+/// Asks the file system; does not open it. A node that is gone is nobody's: `who` is empty.
+PortAccess port_access(const std::string& path);
+/// The same where an attempt to open it was refused, whatever the file system thinks.
+PortAccess refused_access(const std::string& path);
+
+} // namespace nendo::driver

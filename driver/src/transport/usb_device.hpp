@@ -1,0 +1,41 @@
+#pragma once
+// What a USB device is called while it is plugged in. Nothing is asked of the device: the kernel
+// has read all of it when the device was plugged in, and gives it to everybody.
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <nendo/base/result.hpp>
+#include <nendo/driver/devices.hpp>
+
+namespace nendo::driver {
+
+struct UsbId {
+  std::uint16_t vendor = 0;
+  std::uint16_t product = 0;
+  friend constexpr auto operator<=>(UsbId, UsbId) = default;
+};
+
+constexpr UsbId id_of(const UsbIdentity& identity) noexcept {
+  return {identity.vendor_id, identity.product_id};
+}
+
+/// As `lsusb` shows it: 0d7f:0100.
+std::string to_string(UsbId id);
+/// e.g. /dev/bus/usb/001/007.
+std::string node_of(const UsbIdentity& identity);
+
+inline constexpr std::size_t most_usb_ports = 7; ///< on the way to a device (USB 2.0, 4.1.1)
+
+/// `ports` lead from the bus's root to the device. Where the kernel says nothing of it (a container
+/// without /sys), texts stay empty.
+UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
+                         std::span<const std::uint8_t> ports);
+
+/// no_permission, with the rule that grants it.
+Error usb_permission_error(const UsbIdentity& identity);
+
+} // namespace nendo::driver

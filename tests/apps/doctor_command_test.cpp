@@ -1,0 +1,142 @@
+// What the doctor makes of a machine's facts, and what the command says of this one.
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "doctor.hpp"
+#include "support/program.hpp"
+
+using namespace nendo::app;
+using nendo::driver::DeviceKind;
+using nendo::driver::GloveCandidate;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A port that nothing is wrong with.
+GloveCandidate good_adapter() {
+  GloveCandidate candidate;
+  candidate.device = "/dev/ttyUSB0";
+  candidate.spec = "serial:/dev/ttyUSB0";
+  candidate.may_open = true;
+  candidate.access = "you";
+  candidate.usb.emplace();
+  candidate.latency_timer = 1ms;
+  candidate.left_alone = true;
+  candidate.holders_complete = true;
+  return candidate;
+}
+
+/// The only finding about a machine with this one device.
+Finding only_finding(const GloveCandidate& candidate, std::vector<std::string> grabbers = {}) {
+  const auto found = judge_ports({{candidate}, std::move(grabbers)});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].subject == candidate.device);
+  CHECK_FALSE(found[0].remedy.empty());
+  return found[0];
+}
+
+} // namespace
+
+TEST_SUITE("doctor") {
+  TEST_CASE("of a machine on which all is well nothing is said") {
+    CHECK(judge_ports({{good_adapter()}, {}}).empty());
+    CHECK(judge_ports({{good_adapter()}, {"ModemManager"}}).empty()); // it was told to keep off
+  }
+
+  TEST_CASE("a machine without ports is a warning, for simulated gloves need none") {
+    const auto found = judge_ports({});
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].weight == Weight::warning);
+    CHECK(found[0].check == "presence");
+  }
+
+  TEST_CASE("a port that this user may not open is a failure, an on-board one a warning") {
+    GloveCandidate port = good_adapter();
+    port.may_open = false;
+    port.access = "group dialout";
+    port.remedy = "sudo usermod -aG dialout $USER, then log in again";
+    Finding finding = only_finding(port);
+    CHECK(finding.weight == Weight::failure);
+    CHECK(finding.check == "permission");
+    CHECK(finding.what.find("group dialout") != std::string::npos);
+    CHECK(finding.remedy == port.remedy);
+    port.usb.reset();
+    CHECK(only_finding(port).weight == Weight::warning);
+    port.identified = true;
+    CHECK(only_finding(port).weight == Weight::failure);
+  }
+
+  TEST_CASE("a port that vanished meanwhile is no finding") {
+    GloveCandidate port = good_adapter();
+    port.may_open = false;
+    port.access = "";
+    CHECK(judge_ports({{port}, {}}).empty());
+  }
+
+  TEST_CASE("programs that open what they should not are named while an adapter is unmarked") {
+    GloveCandidate port = good_adapter();
+    port.left_alone = false;
+    CHECK(judge_ports({{port}, {}}).empty());
+    for (const std::string program : {"ModemManager", "brltty"}) {
+      const Finding finding = only_finding(port, {program});
+      CHECK(finding.weight == Weight::warning);
+      CHECK(finding.check == "grabber");
+      CHECK(finding.what.starts_with(program));
+      CHECK(finding.remedy.find(program) != std::string::npos);
+    }
+    port.usb.reset(); // an on-board port does not arrive, so nobody jumps at it
+    CHECK(judge_ports({{port}, {"ModemManager", "brltty"}}).empty());
+  }
+
+  TEST_CASE("a long latency timer is a warning with the command that shortens it") {
+    GloveCandidate port = good_adapter();
+    port.latency_timer = 16ms;
+    const Finding finding = only_finding(port);
+    CHECK(finding.weight == Weight::warning);
+    CHECK(finding.what.find("16 ms") != std::string::npos);
+    CHECK(finding.remedy == "echo 1 | sudo tee /sys/bus/usb-serial/devices/ttyUSB0/latency_timer");
+  }
+
+  TEST_CASE("a program that holds a port is named, and weighs more on a known glove") {
+    GloveCandidate port = good_adapter();
+    port.holders = {{812, "gpsd"}};
+    CHECK(only_finding(port).weight == Weight::warning);
+    port.identified = true;
+    const Finding finding = only_finding(port);
+    CHECK(finding.weight == Weight::failure);
+    CHECK(finding.what == "held by gpsd (pid 812)");
+    port.holders = {{0, "another user's program"}};
+    CHECK(only_finding(port).what == "held by another user's program");
+  }
+
+  TEST_CASE("an adapter without a port is a failure, and brltty's if that runs") {
+    GloveCandidate adapter = good_adapter();
+    adapter.kind = DeviceKind::portless_adapter;
+    adapter.device = "/dev/bus/usb/001/005";
+    adapter.may_open = false;
+    adapter.access = "root";
+    adapter.remedy = "sudo modprobe ftdi_sio, then plug it in again";
+    CHECK(only_finding(adapter).weight == Weight::failure);
+    CHECK(only_finding(adapter).remedy == adapter.remedy);
+    const Finding finding = only_finding(adapter, {"brltty"});
+    CHECK(finding.check == "portless");
+    CHECK(finding.remedy.find("brltty") != std::string::npos);
+  }
+
+  TEST_CASE("the command's exit code says whether something will not work") {
+    const auto done = nendo::test::nendo({"doctor", "--json"});
+    CHECK(done.err.empty());
+    bool fails = false;
+    for (const auto& line : nendo::test::lines_of(done.out)) {
+      const auto finding = nlohmann::json::parse(line);
+      fails |= finding["weight"] == "failure";
+      for (const char* const key : {"check", "subject", "what", "remedy"})
+        CHECK(finding[key].is_string());
+    }
+    CHECK(done.exit_code == (fails ? 1 : 0));
+    const auto text = nendo::test::nendo({"doctor"});
+    CHECK(text.exit_code == done.exit_code);
+    CHECK_FALSE(text.out.empty());
+  }
+}
