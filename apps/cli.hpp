@@ -33,6 +33,7 @@ void add_deform(CLI::App& app, int& exit_code);
 void add_devices(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
+void add_info(CLI::App& app, int& exit_code);
 void add_monitor(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 

@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   add_monitor(app, exit_code);
   add_devices(app, exit_code);
   add_doctor(app, exit_code);
+  add_info(app, exit_code);
   add_deform(app, exit_code);
   add_emulate(app, exit_code);
   add_bench(app, exit_code);

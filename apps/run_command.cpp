@@ -21,6 +21,7 @@ namespace {
 struct CommandOptions {
   RunOptions run;
   std::string mode = "type1";
+  std::string switch_action = "none";
   KernelOptions kernel;
 };
 
@@ -58,6 +59,12 @@ Result<void> check(CommandOptions& options) {
   const auto mode = flow::mode_named(options.mode);
   if (!mode) return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
   run.loop.sculptor.mode = *mode;
+  const auto action = flow::switch_action_named(options.switch_action);
+  if (!action) {
+    return Error{Errc::usage, "--switch " + options.switch_action +
+                                  ": unknown; use none, grab, commit or toggle"};
+  }
+  run.loop.switch_action = *action;
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
   run.loop.sculptor.csrbf = *csrbf;
@@ -116,6 +123,11 @@ void add_run(CLI::App& app, int& exit_code) {
       "Radius of a fingertip's influence, in the mesh's units; 0: 0.2 of its longest side");
   add_kernel_options(command, options->kernel);
   command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000")
+      ->capture_default_str();
+  command
+      .add_option("--switch", options->switch_action,
+                  "What the wrist switch does. grab: the hands hold the model while it is on; "
+                  "commit: keeps the shape so far; toggle: lets go, takes hold again")
       ->capture_default_str();
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--out", run_options.out,

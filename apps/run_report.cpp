@@ -1,7 +1,9 @@
 #include "run_report.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <numeric>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -49,7 +51,8 @@ void print_progress_json(const flow::Frame& frame, double elapsed_s) {
   ordered_json line{{"event", "progress"},
                     {"elapsed_s", elapsed_s},
                     {"ticks", frame.ticks},
-                    {"missed", frame.missed}};
+                    {"missed", frame.missed},
+                    {"held", frame.held}};
   for (std::size_t slot = 0; slot < sides.size(); ++slot) {
     if (!frame.hands[slot].present) continue;
     line[std::string(name_of(sides[slot]))] = {{"samples", frame.hands[slot].samples},
@@ -77,7 +80,39 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
     line += "  " + std::string(name_of(sides[slot])) + ": ";
     line += hand.silent ? "silent" : std::to_string(hand.samples) + " samples";
   }
+  if (!frame.held) line += "  let go";
   return line;
+}
+
+using Spikes = std::array<std::uint64_t, sensor_slots>;
+
+// Only the sensors that had any.
+ordered_json spikes_json(const Spikes& spikes) {
+  ordered_json by_sensor = ordered_json::object();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (spikes[slot] > 0) by_sensor[std::string(sensor_names[slot])] = spikes[slot];
+  }
+  return by_sensor;
+}
+
+// What the velocity gate kept out, and where most of it came from.
+void print_spikes(const Spikes& spikes) {
+  const auto worst = std::max_element(spikes.begin(), spikes.end());
+  if (*worst == 0) return;
+  const auto all = std::accumulate(spikes.begin(), spikes.end(), std::uint64_t{0});
+  std::printf("  %-14s %s spikes kept out, most of them %s's (%s): see to its cable or sensor\n",
+              "", thousands(static_cast<double>(all)).c_str(),
+              std::string(sensor_names[static_cast<std::size_t>(worst - spikes.begin())]).c_str(),
+              thousands(static_cast<double>(*worst)).c_str());
+}
+
+void print_switch(const RunOptions& options, const flow::LoopStats& stats) {
+  if (options.loop.switch_action == flow::SwitchAction::none) return;
+  std::printf("  %-14s %s; turned on %llu times, %llu commits, %llu grabs\n", "wrist switch",
+              std::string(flow::name_of(options.loop.switch_action)).c_str(),
+              static_cast<unsigned long long>(stats.switch_uses[0] + stats.switch_uses[1]),
+              static_cast<unsigned long long>(stats.commits),
+              static_cast<unsigned long long>(stats.grabs));
 }
 
 void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
@@ -92,7 +127,10 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
                     {"ticks", stats.ticks},
                     {"overruns", stats.overruns},
                     {"missed", stats.missed},
-                    {"failed", stats.failed}};
+                    {"failed", stats.failed},
+                    {"switch", flow::name_of(options.loop.switch_action)},
+                    {"grabs", stats.grabs},
+                    {"commits", stats.commits}};
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
     const auto glove = hand.glove->stats();
@@ -102,6 +140,8 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
         {"samples", stats.samples[slot]},
         {"samples_per_s", static_cast<double>(stats.samples[slot]) / outcome.elapsed_s},
         {"silences", stats.silences[slot]},
+        {"spikes", spikes_json(stats.spikes[slot])},
+        {"switch_uses", stats.switch_uses[slot]},
         {"bad_records", glove.bad_records},
         {"ring_refused", glove.ring_refused},
         {"reopened", glove.reopened}};
@@ -134,7 +174,9 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
                 static_cast<unsigned long long>(glove.ring_refused),
                 static_cast<unsigned long long>(stats.silences[slot]),
                 hand.glove->info().source.c_str());
+    print_spikes(stats.spikes[slot]);
   }
+  print_switch(options, stats);
   std::printf("  %-14s %s at %g Hz, %llu overruns, %llu missed\n", "ticks",
               thousands(static_cast<double>(stats.ticks)).c_str(), options.loop.rate_hz,
               static_cast<unsigned long long>(stats.overruns),

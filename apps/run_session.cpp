@@ -11,6 +11,7 @@
 #include <nendo/flow/tick_grid.hpp>
 
 #include "cli.hpp"
+#include "glove_light.hpp"
 
 namespace nendo::app {
 namespace {
@@ -101,10 +102,14 @@ Result<void> wait_for_first_sample(OpenHand& hand) {
                    "its interface unit?"};
 }
 
+hand::Calibration calibration_of(const OpenHand& hand) {
+  return hand::default_calibration(hand.glove->info().counts);
+}
+
 flow::Placement placement_for(const std::vector<OpenHand>& hands, const deform::Mesh& model) {
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : hands) {
-    const auto angles = hand::joint_angles(hand.first, hand::default_calibration());
+    const auto angles = hand::joint_angles(hand.first, calibration_of(hand));
     tips[flow::Placement::index_of(hand.side)] = hand::HandSkeleton(hand.side)
                                                      .pose(angles, Eigen::Isometry3d::Identity())
                                                      .fingertip_positions();
@@ -130,6 +135,57 @@ Result<void> keep(const std::string& out, const deform::Mesh& shape) {
                written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
 }
 
+Result<void> check_switch(flow::SwitchAction action, const std::vector<OpenHand>& hands) {
+  const bool any = std::any_of(hands.begin(), hands.end(), [](const OpenHand& hand) {
+    return hand.glove->info().abilities.wrist_switch;
+  });
+  if (any || action == flow::SwitchAction::none) return {};
+  return Error{Errc::usage, "--switch " + std::string(name_of(action)) + ": " +
+                                hands.front().glove->info().source +
+                                (hands.size() > 1 ? " and the other glove have" : " has") +
+                                " no wrist switch that nendo can read; leave --switch out"};
+}
+
+// The lights of the gloves whose switches do something: lit while the hands hold the model. Given
+// from here, because Glove::give takes a lock, which is nothing for the loop.
+class HoldLights {
+public:
+  HoldLights(flow::SwitchAction action, const std::vector<OpenHand>& hands) {
+    if (action == flow::SwitchAction::none) return;
+    for (const auto& hand : hands)
+      lights_.push_back(std::make_unique<GloveLight>(*hand.glove));
+  }
+  void show(bool held) noexcept {
+    for (const auto& light : lights_)
+      light->show(held);
+  }
+  void put_out() noexcept {
+    for (const auto& light : lights_)
+      light->put_out();
+  }
+
+private:
+  std::vector<std::unique_ptr<GloveLight>> lights_;
+};
+
+// Follows the loop from the main thread until it ends or is to end.
+void watch(flow::DeformLoop& loop, const std::atomic<bool>& ended, HostTime start,
+           HoldLights& lights, const Progress& progress) {
+  HostTime next_report = start;
+  bool unreported = false;
+  while (!ended && !stop_requested()) {
+    std::this_thread::sleep_for(milliseconds(20));
+    if (loop.frames().update()) {
+      unreported = true;
+      lights.show(loop.frames().front().held);
+    }
+    if (HostClock::now() < next_report) continue;
+    if (unreported) progress(loop.frames().front(), to_seconds(HostClock::now() - start));
+    unreported = false;
+    next_report += milliseconds(250);
+  }
+}
+
 std::uint64_t ticks_for(const RunOptions& options) {
   if (options.duration_s <= 0.0) return std::numeric_limits<std::uint64_t>::max();
   return static_cast<std::uint64_t>(
@@ -142,6 +198,8 @@ Result<std::vector<OpenHand>> open_hands(const RunOptions& options) {
   const bool named = !options.left.empty() || !options.right.empty();
   auto hands = named ? open_named(options) : open_any();
   if (!hands) return hands;
+  if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
+    return fine.error();
   for (auto& hand : *hands) {
     if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
   }
@@ -167,7 +225,7 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
     inputs.push_back(
-        {hand.ring.get(), hand::HandSkeleton(hand.side), hand::default_calibration(), hand.first});
+        {hand.ring.get(), hand::HandSkeleton(hand.side), calibration_of(hand), hand.first});
   }
   flow::DeformLoop loop(model, placement_for(hands, model), std::move(inputs), loop_options);
   if (!is_solved(loop.grab_status())) {
@@ -182,17 +240,12 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
     loop.run(over, ticks_for(options));
     ended = true;
   });
-  HostTime next_report = start;
-  while (!ended && !stop_requested()) {
-    std::this_thread::sleep_for(milliseconds(20));
-    if (HostClock::now() < next_report) continue;
-    if (loop.frames().update())
-      progress(loop.frames().front(), to_seconds(HostClock::now() - start));
-    next_report += milliseconds(250);
-  }
+  HoldLights lights(options.loop.switch_action, hands);
+  watch(loop, ended, start, lights, progress);
   over = true;
   loop_thread.join();
   const double elapsed_s = to_seconds(HostClock::now() - start);
+  lights.put_out();
   for (const auto& hand : hands)
     hand.glove->stop();
 

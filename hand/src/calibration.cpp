@@ -1,39 +1,78 @@
 #include <nendo/hand/calibration.hpp>
 
+#include <numbers>
+
 namespace nendo::hand {
+namespace {
+
+// A glove's 24 slots, in their order; all zero where no glove has a sensor.
+struct TypicalSensor {
+  double offset_counts; ///< of 255, in a CyberGlove
+  double gain_rad;      ///< a count of 255, in a CyberGlove
+  double low_deg;       ///< where a whole range begins
+  double high_deg;      ///< where a whole range ends
+};
 
 // Gains of published CyberGlove calibrations lie between 0.010 and 0.016 rad a count, and the raw
 // ranges that users report run from about 60 to 200 of 255. A flat hand near the low end and 0.0125
 // rad a count cover the range of motion of each flexion joint inside those counts. Wrist sensors
 // are centred, because they turn both ways.
-Calibration default_calibration() noexcept {
+// Whole ranges are the means of the American Academy of Orthopaedic Surgeons where it has one
+// (finger MCP 90, PIP 100, DIP 80, thumb MCP 50 to 55 and IP 80, wrist 70 to 80 and 20 to 30), and
+// for the others what a spread or cupped hand shows.
+constexpr TypicalSensor mcp{60, 0.0125, 0, 90};
+constexpr TypicalSensor pip{60, 0.0125, 0, 100};
+constexpr TypicalSensor dip{50, 0.0125, 0, 80};
+constexpr TypicalSensor pair{100, 0.0100, 0, 25};
+constexpr TypicalSensor none{0, 0, 0, 0};
+constexpr std::array<TypicalSensor, sensor_slots> typical{{
+    {90, 0.0105, 0, 75},  // thumb_roll
+    {100, 0.0125, 0, 55}, // thumb_mcp
+    {85, 0.0125, 0, 80},  // thumb_ip
+    {100, 0.0125, 0, 50}, // thumb_abduction
+    mcp,
+    pip,
+    dip,
+    none, // index
+    mcp,
+    pip,
+    dip,
+    pair, // middle, and its gap to the index finger
+    mcp,
+    pip,
+    dip,
+    pair, // ring
+    mcp,
+    pip,
+    dip,
+    pair,                   // pinky
+    {80, 0.0100, 0, 25},    // palm_arch
+    {128, 0.0125, -70, 80}, // wrist_pitch
+    {128, 0.0125, -30, 20}, // wrist_yaw
+    none,
+}};
+
+SensorCalibration spread_over(const TypicalSensor& sensor, double most) noexcept {
+  const double range_deg = sensor.high_deg - sensor.low_deg;
+  if (range_deg == 0.0) return {};
+  return {range_deg * std::numbers::pi / 180.0 / most, -sensor.low_deg / range_deg * most};
+}
+
+SensorCalibration scaled(const TypicalSensor& sensor, double most) noexcept {
+  const double scale = most / 255.0;
+  return {sensor.gain_rad / scale, sensor.offset_counts * scale};
+}
+
+} // namespace
+
+Calibration default_calibration(CountScale scale) noexcept {
   Calibration calibration;
-  const auto set = [&](Sensor sensor, double offset_counts, double gain_rad_per_count) {
-    calibration.sensors[static_cast<std::size_t>(sensor)] = {gain_rad_per_count, offset_counts};
-  };
-  set(Sensor::thumb_roll, 90, 0.0105);
-  set(Sensor::thumb_mcp, 100, 0.0125);
-  set(Sensor::thumb_ip, 85, 0.0125);
-  set(Sensor::thumb_abduction, 100, 0.0125);
-  for (const auto mcp :
-       {Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::pinky_mcp}) {
-    set(mcp, 60, 0.0125);
+  if (scale.most == 0) return calibration;
+  const double most = scale.most;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    calibration.sensors[slot] =
+        scale.whole_range ? spread_over(typical[slot], most) : scaled(typical[slot], most);
   }
-  for (const auto pip :
-       {Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::pinky_pip}) {
-    set(pip, 60, 0.0125);
-  }
-  for (const auto dip :
-       {Sensor::index_dip, Sensor::middle_dip, Sensor::ring_dip, Sensor::pinky_dip}) {
-    set(dip, 50, 0.0125);
-  }
-  for (const auto pair : {Sensor::index_middle_abduction, Sensor::middle_ring_abduction,
-                          Sensor::ring_pinky_abduction}) {
-    set(pair, 100, 0.0100);
-  }
-  set(Sensor::palm_arch, 80, 0.0100);
-  set(Sensor::wrist_pitch, 128, 0.0125);
-  set(Sensor::wrist_yaw, 128, 0.0125);
   return calibration;
 }
 

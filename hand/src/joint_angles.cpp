@@ -35,45 +35,94 @@ constexpr Range palm_arch{degrees(-5), degrees(35)};
 constexpr Range wrist_pitch{degrees(-75), degrees(85)};
 constexpr Range wrist_yaw{degrees(-40), degrees(30)};
 
+// The rules of the header. The thumb's were chosen with this skeleton: of the ends from 50 to 70
+// degrees, and ratios of 0.3 to 1, these bring the tips together.
+constexpr double pip_of_mcp = 1.1;
+constexpr double thumb_ip_of_mcp = 0.5;
+constexpr double resting_opposition = degrees(20);
+constexpr double full_opposition = degrees(60);
+constexpr double fully_bent_thumb_mcp = degrees(55);
+
+constexpr double bent(double angle_rad) noexcept {
+  return std::max(angle_rad, 0.0);
+}
+
 constexpr double estimated_dip(double pip_rad) noexcept {
-  return pip_rad > 0.0 ? 0.32 * pip_rad * pip_rad + 0.17 * pip_rad : 0.0;
+  return 0.32 * bent(pip_rad) * bent(pip_rad) + 0.17 * bent(pip_rad);
+}
+
+constexpr double estimated_opposition(double thumb_mcp_rad) noexcept {
+  const double part = std::min(bent(thumb_mcp_rad) / fully_bent_thumb_mcp, 1.0);
+  return resting_opposition + part * (full_opposition - resting_opposition);
+}
+
+/// A sample seen through a calibration.
+struct Measured {
+  const GloveSample& sample;
+  const Calibration& calibration;
+
+  bool has(Sensor sensor) const noexcept { return sample.present.has(sensor); }
+  double angle(Sensor sensor, Range range) const noexcept {
+    return range.clamp(calibration[sensor].angle_rad(sample[sensor]));
+  }
+  /// `estimate` where there is no such sensor.
+  double angle_or(Sensor sensor, Range range, double estimate) const noexcept {
+    return has(sensor) ? angle(sensor, range) : range.clamp(estimate);
+  }
+};
+
+FingerAngles finger_angles(const Measured& measured, Sensor mcp, Sensor pip, Sensor dip,
+                           double abduction_rad) noexcept {
+  FingerAngles angles;
+  const double mcp_guess = measured.has(pip) ? measured.angle(pip, pip_flexion) / pip_of_mcp : 0.0;
+  angles.mcp_flexion_rad = measured.angle_or(mcp, mcp_flexion, mcp_guess);
+  angles.mcp_abduction_rad = abduction_rad;
+  angles.pip_flexion_rad =
+      measured.angle_or(pip, pip_flexion, pip_of_mcp * bent(angles.mcp_flexion_rad));
+  angles.dip_flexion_rad =
+      measured.angle_or(dip, dip_flexion, estimated_dip(angles.pip_flexion_rad));
+  return angles;
+}
+
+void set_thumb(JointAngles& angles, const Measured& measured) noexcept {
+  const bool bends = measured.has(Sensor::thumb_mcp) || measured.has(Sensor::thumb_ip);
+  const double mcp_guess = measured.has(Sensor::thumb_ip)
+                               ? measured.angle(Sensor::thumb_ip, thumb_ip) / thumb_ip_of_mcp
+                               : 0.0;
+  const double mcp = measured.angle_or(Sensor::thumb_mcp, thumb_mcp, mcp_guess);
+  const double opposition = bends ? estimated_opposition(mcp) : 0.0;
+  angles.thumb_roll_rad = measured.angle_or(Sensor::thumb_roll, thumb_roll, opposition);
+  angles.thumb_abduction_rad =
+      measured.angle_or(Sensor::thumb_abduction, thumb_abduction, opposition);
+  angles.thumb_mcp_flexion_rad = mcp;
+  angles.thumb_ip_flexion_rad =
+      measured.angle_or(Sensor::thumb_ip, thumb_ip, thumb_ip_of_mcp * bent(mcp));
 }
 
 } // namespace
 
 JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration) noexcept {
-  const auto measured = [&](Sensor sensor, Range range) {
-    return sample.present.has(sensor) ? range.clamp(calibration[sensor].angle_rad(sample[sensor]))
-                                      : 0.0;
+  const Measured measured{sample, calibration};
+  const auto or_zero = [&](Sensor sensor, Range range) {
+    return measured.angle_or(sensor, range, 0.0);
   };
-  const auto finger = [&](Sensor mcp, Sensor pip, Sensor dip, double abduction_rad) {
-    FingerAngles angles;
-    angles.mcp_flexion_rad = measured(mcp, mcp_flexion);
-    angles.mcp_abduction_rad = abduction_rad;
-    angles.pip_flexion_rad = measured(pip, pip_flexion);
-    angles.dip_flexion_rad = sample.present.has(dip)
-                                 ? measured(dip, dip_flexion)
-                                 : dip_flexion.clamp(estimated_dip(angles.pip_flexion_rad));
-    return angles;
-  };
-  const double index_middle = measured(Sensor::index_middle_abduction, pair_abduction);
-  const double middle_ring = measured(Sensor::middle_ring_abduction, pair_abduction);
-  const double ring_pinky = measured(Sensor::ring_pinky_abduction, pair_abduction);
+  const double index_middle = or_zero(Sensor::index_middle_abduction, pair_abduction);
+  const double middle_ring = or_zero(Sensor::middle_ring_abduction, pair_abduction);
+  const double ring_pinky = or_zero(Sensor::ring_pinky_abduction, pair_abduction);
 
   JointAngles angles;
-  angles.thumb_roll_rad = measured(Sensor::thumb_roll, thumb_roll);
-  angles.thumb_abduction_rad = measured(Sensor::thumb_abduction, thumb_abduction);
-  angles.thumb_mcp_flexion_rad = measured(Sensor::thumb_mcp, thumb_mcp);
-  angles.thumb_ip_flexion_rad = measured(Sensor::thumb_ip, thumb_ip);
-  angles[Finger::index] =
-      finger(Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip, index_middle);
-  angles[Finger::middle] = finger(Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip, 0.0);
-  angles[Finger::ring] = finger(Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip, -middle_ring);
-  angles[Finger::little] =
-      finger(Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip, -(middle_ring + ring_pinky));
-  angles.palm_arch_rad = measured(Sensor::palm_arch, palm_arch);
-  angles.wrist_pitch_rad = measured(Sensor::wrist_pitch, wrist_pitch);
-  angles.wrist_yaw_rad = measured(Sensor::wrist_yaw, wrist_yaw);
+  set_thumb(angles, measured);
+  angles[Finger::index] = finger_angles(measured, Sensor::index_mcp, Sensor::index_pip,
+                                        Sensor::index_dip, index_middle);
+  angles[Finger::middle] =
+      finger_angles(measured, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip, 0.0);
+  angles[Finger::ring] =
+      finger_angles(measured, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip, -middle_ring);
+  angles[Finger::little] = finger_angles(measured, Sensor::pinky_mcp, Sensor::pinky_pip,
+                                         Sensor::pinky_dip, -(middle_ring + ring_pinky));
+  angles.palm_arch_rad = or_zero(Sensor::palm_arch, palm_arch);
+  angles.wrist_pitch_rad = or_zero(Sensor::wrist_pitch, wrist_pitch);
+  angles.wrist_yaw_rad = or_zero(Sensor::wrist_yaw, wrist_yaw);
   return angles;
 }
 

@@ -96,7 +96,8 @@ TEST_SUITE("devices") {
   }
 
   TEST_CASE("help and version go to standard output") {
-    for (const std::string command : {"run", "monitor", "deform", "emulate", "devices", "doctor"}) {
+    for (const std::string command :
+         {"run", "monitor", "info", "deform", "emulate", "devices", "doctor", "bench"}) {
       const auto help = nendo::test::nendo({command, "--help"});
       CHECK(help.exit_code == 0);
       CHECK(help.out.find("--help") != std::string::npos);

@@ -1,3 +1,5 @@
+#include <chrono>
+#include <functional>
 #include <set>
 
 #include <doctest/doctest.h>
@@ -6,10 +8,13 @@
 #include <nendo/driver/sample.hpp>
 
 #include "support/program.hpp"
+#include "support/terminal_program.hpp"
 
 using nendo::test::EmulatedGlove;
 using nendo::test::is_one_line_about;
 using nendo::test::lines_of;
+using nendo::test::TerminalProgram;
+using nendo::test::VtScreen;
 using nlohmann::json;
 
 namespace {
@@ -53,6 +58,8 @@ TEST_SUITE("monitor") {
         CHECK(line["hand"] == "left");
         CHECK(line["sequence"] == n + json::parse(lines[0])["sequence"].get<std::size_t>());
         CHECK(line["time_s"].get<double>() >= last_time_s);
+        CHECK(line["measured_s"].get<double>() <= line["time_s"].get<double>() + 0.05);
+        CHECK(line.contains("switch"));
         last_time_s = line["time_s"];
         for (const auto& [name, count] : line["raw"].items()) {
           CHECK(count.get<int>() >= 1);
@@ -70,6 +77,115 @@ TEST_SUITE("monitor") {
     CHECK(line["hand"] == "right");
     CHECK(line["angle_rad"]["index_mcp"].get<double>() > 0.2); // a relaxed finger is bent
     CHECK(line["angle_rad"]["index_mcp"].get<double>() < 0.8);
+  }
+
+  TEST_CASE("in a terminal of 80 by 24 there is a line a sensor, and not a character too many") {
+    const nendo::test::TemporaryFolder folder;
+    const auto link = folder.path() / "glove";
+    const EmulatedGlove glove(link, "left", "22");
+    TerminalProgram program({"monitor", "serial:" + link.string()}, 80, 24);
+    REQUIRE(program.sees("wrist_yaw"));
+    CHECK(program.is_raw());
+    CHECK(program.screen().on_page());
+    CHECK_FALSE(program.screen().cursor_shown());
+    CHECK(program.screen().shows("left hand"));
+    CHECK(program.screen().shows("q quit"));
+    for (const auto& name : names_in(nendo::sensors_22)) {
+      const std::string line = program.screen().line_of(name + " ");
+      CAPTURE(name);
+      REQUIRE(line.size() == 80);
+      CHECK(line.find_first_of("[|") != std::string::npos);
+      CHECK(line.find(" deg") != std::string::npos);
+      CHECK(std::stoi(line.substr(22)) >= 1);
+      CHECK(std::stoi(line.substr(22)) <= 255);
+    }
+    CHECK(program.screen().faults().empty());
+    CHECK(program.press('q'));
+    CHECK(program.wait() == 0);
+    CHECK(program.is_restored());
+    CHECK(program.screen().transcript().find("wrist_yaw") != std::string::npos); // it stays
+    CHECK(program.screen().faults().empty());
+  }
+
+  TEST_CASE("the picture follows the window's size, and is drawn thirty times a second at most") {
+    const auto start = std::chrono::steady_clock::now();
+    TerminalProgram program({"monitor", "sim:wave"}, 80, 24);
+    REQUIRE(program.sees("wrist_yaw"));
+    program.resize(100, 30);
+    REQUIRE(program.sees([](const VtScreen& s) {
+      const auto line = s.line_of("wrist_yaw");
+      return line.size() == 100 && line.ends_with(" deg");
+    }));
+    program.resize(80, 13);
+    REQUIRE(program.sees([](const VtScreen& s) {
+      return s.line_of("thumb_roll").find("ring_mcp") == 41; // two columns
+    }));
+    CHECK(program.screen().shows("wrist_yaw"));
+    program.resize(40, 10);
+    REQUIRE(program.sees("and 15 more"));
+    program.resize(1, 1);
+    program.resize(20, 3);
+    REQUIRE(program.sees("and 22 more: make t~"));
+    CHECK(program.screen().faults().empty());
+    program.press('q');
+    CHECK(program.wait() == 0);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    CHECK(program.screen().pages() <= 30.0 * elapsed.count() + 1.0);
+  }
+
+  TEST_CASE("a bar shows how far the sensor has gone, until r is pressed") {
+    const auto range_width = [](const VtScreen& screen) {
+      const auto line = screen.line_of("index_pip ");
+      const auto from = line.find('[');
+      const auto to = line.find(']');
+      if (line.find('|') != std::string::npos) return 0;
+      return from == std::string::npos ? -1 : static_cast<int>(to - from);
+    };
+    TerminalProgram program({"monitor", "sim:wave?rate=30", "--raw"}, 80, 24);
+    REQUIRE(program.sees([&](const VtScreen& s) { return range_width(s) > 12; }));
+    CHECK_FALSE(program.screen().shows(" deg"));
+    program.press('r');
+    CHECK(
+        program.sees([&](const VtScreen& s) { return range_width(s) >= 0 && range_width(s) < 6; }));
+    program.press('x'); // nothing
+    program.press('l'); // it has no light
+    CHECK(program.sees([&](const VtScreen& s) { return range_width(s) > 12; }));
+    program.press('q');
+    CHECK(program.wait() == 0);
+  }
+
+  TEST_CASE("however it ends, the terminal is as it was") {
+    struct Case {
+      const char* how;
+      std::function<void(TerminalProgram&)> end;
+    };
+    for (const Case& c : {Case{"Ctrl-C", [](TerminalProgram& p) { p.press('\x03'); }},
+                          Case{"SIGTERM", [](TerminalProgram& p) { p.signal(SIGTERM); }},
+                          Case{"SIGHUP", [](TerminalProgram& p) { p.signal(SIGHUP); }},
+                          Case{"q", [](TerminalProgram& p) { p.press('q'); }}}) {
+      CAPTURE(c.how);
+      TerminalProgram program({"monitor", "sim"}, 80, 24);
+      REQUIRE(program.sees("wrist_yaw"));
+      CHECK_FALSE(program.is_restored());
+      c.end(program);
+      CHECK(program.wait() == 0);
+      CHECK(program.is_restored());
+    }
+    TerminalProgram counted({"monitor", "sim", "--count", "20"}, 80, 24);
+    CHECK(counted.wait() == 0);
+    CHECK(counted.is_restored());
+    TerminalProgram failed({"monitor", "serial:/dev/no-such-port"}, 80, 24);
+    CHECK(failed.wait() == 3);
+    CHECK(failed.is_restored());
+  }
+
+  TEST_CASE("--json prints lines in a terminal too") {
+    TerminalProgram program({"monitor", "sim", "--json", "--count", "3"}, 80, 24);
+    CHECK(program.wait() == 0);
+    const auto lines = lines_of(program.screen().transcript());
+    REQUIRE(lines.size() == 3);
+    CHECK(json::parse(lines[2])["raw"].size() == 22);
+    CHECK(program.is_restored());
   }
 
   TEST_CASE("what is no glove gets one clear line, the right exit code, and no long wait") {

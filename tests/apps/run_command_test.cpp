@@ -51,6 +51,10 @@ TEST_SUITE("run") {
       CHECK(summary["left"]["samples"].get<int>() > 100);
       CHECK(summary["right"]["samples"].get<int>() > 100);
       CHECK(summary["left"]["ring_refused"] == 0);
+      CHECK(summary["left"]["spikes"].empty()); // nothing that the emulator's hand does is one
+      CHECK(summary["right"]["spikes"].empty());
+      CHECK(summary["left"]["switch_uses"] == 0);
+      CHECK(summary["switch"] == "none");
       CHECK(summary["end_to_end_ms"]["p50"].get<double>() > 0.0);
       CHECK(summary["vertices"] == before.vertices.cols());
       const auto after = deform::read_mesh(out);
@@ -113,6 +117,16 @@ TEST_SUITE("run") {
     CHECK(deform::read_mesh(out));
   }
 
+  TEST_CASE("a switch that no glove has cannot do anything, and that is said") {
+    const TemporaryFolder folder;
+    const auto out = (folder.path() / "shape.obj").string();
+    const auto done =
+        nendo::test::nendo({"run", "--right", "sim", "--switch", "grab", "--out", out});
+    CHECK(done.exit_code == 2);
+    CHECK(is_one_line_about(done.err, "--switch grab"));
+    CHECK_FALSE(std::filesystem::exists(out));
+  }
+
   TEST_CASE("asking for a glove that is not there is an error, not a fall-back") {
     const TemporaryFolder folder;
     const auto out = (folder.path() / "shape.obj").string();
@@ -139,7 +153,7 @@ TEST_SUITE("run") {
          {Case{{"--mode", "type3"}, 2, "type3"}, Case{{"--rate", "0"}, 2, "--rate"},
           Case{{"--rate", "nan"}, 2, "--rate"}, Case{{"--rate", "1e9"}, 2, "--rate"},
           Case{{"--duration", "-1"}, 2, "--duration"}, Case{{"--radius", "-1"}, 2, "--radius"},
-          Case{{"--kernel", "gauss"}, 2, "gauss"},
+          Case{{"--kernel", "gauss"}, 2, "gauss"}, Case{{"--switch", "press"}, 2, "press"},
           Case{{"--mesh", "/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"}}) {
       std::vector<std::string> arguments{"run", "--right", "sim", "--out", out};
       arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());

@@ -76,6 +76,23 @@ TEST_SUITE("deform_loop") {
     CHECK(test.loop->stats().silences[0] == 1);
   }
 
+  TEST_CASE("a damaged count in one sample does not reach the shape, and is reported") {
+    for (const bool gated : {true, false}) {
+      LoopUnderTest test(Mode::type1, 24, 1000.0, SwitchAction::none, gated);
+      const HostTime now = HostClock::now();
+      test.bend(10, now);
+      const deform::Points shape = test.frame_after_tick(0).vertices;
+      GloveSample damaged = test::bent_sample(Side::right, 10, now + 11ms);
+      damaged.raw[static_cast<std::size_t>(Sensor::index_mcp)].value ^= 128U;
+      test.rings[1]->try_push(damaged);
+      CHECK((test.frame_after_tick(1).vertices == shape) == gated);
+      test.bend(10, now + 22ms);
+      CHECK(test.frame_after_tick(2).vertices == shape);
+      const auto& spikes = test.loop->stats().spikes[1];
+      CHECK(spikes[static_cast<std::size_t>(Sensor::index_mcp)] == (gated ? 1 : 0));
+    }
+  }
+
   TEST_CASE("every sample is counted, and only the newest of a tick is shown") {
     LoopUnderTest test(Mode::type1);
     const HostTime now = HostClock::now();

@@ -1,5 +1,6 @@
 #include <nendo/hand/calibration.hpp>
 
+#include <initializer_list>
 #include <numbers>
 
 #include <doctest/doctest.h>
@@ -38,6 +39,48 @@ TEST_SUITE("calibration") {
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       const auto sensor = static_cast<Sensor>(slot);
       CHECK((calibration[sensor].gain_rad_per_count > 0.0) == sensors_22.has(sensor));
+    }
+  }
+
+  TEST_CASE(
+      "a whole range runs from the straight joint to the fully bent one, whatever its counts") {
+    constexpr double rad = std::numbers::pi / 180.0;
+    for (const std::uint16_t most :
+         std::initializer_list<std::uint16_t>{1, 255, 1000, 1023, 4095, 65535}) {
+      const Calibration calibration = default_calibration({most, true});
+      const auto spans = [&](Sensor sensor, double low_deg, double high_deg) {
+        CAPTURE(name_of(sensor));
+        CHECK(calibration[sensor].angle_rad(RawCount{0}) == doctest::Approx(low_deg * rad));
+        CHECK(calibration[sensor].angle_rad(RawCount{most}) == doctest::Approx(high_deg * rad));
+      };
+      spans(Sensor::index_mcp, 0, 90);
+      spans(Sensor::middle_pip, 0, 100);
+      spans(Sensor::pinky_dip, 0, 80);
+      spans(Sensor::thumb_mcp, 0, 55);
+      spans(Sensor::thumb_ip, 0, 80);
+      spans(Sensor::index_middle_abduction, 0, 25);
+      spans(Sensor::wrist_pitch, -70, 80);
+    }
+  }
+
+  TEST_CASE("a finer converter of the same sensors gives the same angles") {
+    const Calibration coarse = default_calibration({255, false});
+    const Calibration fine = default_calibration({4095, false});
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      for (const std::uint16_t count : std::initializer_list<std::uint16_t>{0, 1, 60, 128, 255}) {
+        const RawCount same{static_cast<std::uint16_t>(count * 4095 / 255)};
+        if (same.value * 255 != count * 4095) continue; // no whole count corresponds
+        CHECK(fine.sensors[slot].angle_rad(same) ==
+              doctest::Approx(coarse.sensors[slot].angle_rad(RawCount{count})));
+      }
+    }
+    CHECK(fine[Sensor::index_mcp].gain_rad_per_count == doctest::Approx(0.0125 * 255.0 / 4095.0));
+  }
+
+  TEST_CASE("a scale without counts has no angle") {
+    for (const bool whole_range : {false, true}) {
+      for (const auto& sensor : default_calibration({0, whole_range}).sensors)
+        CHECK(sensor.angle_rad(RawCount{65535}) == 0.0);
     }
   }
 }

@@ -1,10 +1,14 @@
 #include <nendo/hand/joint_angles.hpp>
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
+
+#include <nendo/hand/skeleton.hpp>
 
 using namespace nendo;
 using namespace nendo::hand;
@@ -37,6 +41,44 @@ bool all_finite(const JointAngles& angles) {
              std::isfinite(finger.dip_flexion_rad);
   }
   return finite;
+}
+
+constexpr SensorMask mask_of(std::initializer_list<Sensor> sensors) {
+  SensorMask mask;
+  for (const Sensor sensor : sensors)
+    mask.bits |= 1U << static_cast<unsigned>(sensor);
+  return mask;
+}
+
+// Gloves with fewer sensors than a CyberGlove: one a finger, at either joint, and two a finger.
+constexpr SensorMask curls = mask_of({Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp,
+                                      Sensor::ring_mcp, Sensor::pinky_mcp});
+constexpr SensorMask pip_curls = mask_of(
+    {Sensor::thumb_ip, Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::pinky_pip});
+constexpr SensorMask two_a_finger{curls.bits | pip_curls.bits};
+constexpr SensorMask spread_alone = mask_of({Sensor::thumb_mcp, Sensor::thumb_abduction});
+
+constexpr CountScale whole_range{1000, true};
+
+GloveSample closed(SensorMask mask, std::uint16_t count) {
+  GloveSample sample;
+  sample.present = mask;
+  sample.raw.fill(RawCount{count});
+  return sample;
+}
+
+/// Every angle that a flexion sensor may move, in one row.
+std::vector<double> flexions(const JointAngles& a) {
+  std::vector<double> row{a.thumb_roll_rad, a.thumb_abduction_rad, a.thumb_mcp_flexion_rad,
+                          a.thumb_ip_flexion_rad};
+  for (const auto& finger : a.fingers)
+    row.insert(row.end(), {finger.mcp_flexion_rad, finger.pip_flexion_rad, finger.dip_flexion_rad});
+  return row;
+}
+
+double thumb_to_index(const JointAngles& angles) {
+  const HandPose pose = HandSkeleton(Side::right).pose(angles, Eigen::Isometry3d::Identity());
+  return (pose[Joint::thumb_tip].translation() - pose[Joint::index_tip].translation()).norm();
 }
 
 } // namespace
@@ -95,6 +137,107 @@ TEST_SUITE("joint_angles") {
     const JointAngles angles = joint_angles(sample, default_calibration());
     CHECK(angles[Finger::middle].dip_flexion_rad == doctest::Approx(0.32 + 0.17));
     CHECK(angles[Finger::index].dip_flexion_rad == 0.0);
+  }
+
+  TEST_CASE("18- and 22-sensor gloves show what they measure, and nothing is made up but the DIP") {
+    const auto in = [](double low_deg, double angle_rad, double high_deg) {
+      constexpr double rad = 3.14159265358979323846 / 180.0;
+      return std::min(std::max(angle_rad, low_deg * rad), high_deg * rad);
+    };
+    const Calibration calibration = default_calibration();
+    std::mt19937 random(11);
+    for (int round = 0; round < 500; ++round) {
+      GloveSample sample;
+      sample.present = round % 2 == 0 ? sensors_22 : sensors_18;
+      for (auto& raw : sample.raw)
+        raw.value = static_cast<std::uint16_t>(random() % 256);
+      const auto angle = [&](Sensor sensor) {
+        return calibration[sensor].angle_rad(sample[sensor]);
+      };
+      const JointAngles a = joint_angles(sample, calibration);
+      CHECK(a.thumb_roll_rad == doctest::Approx(in(-20, angle(Sensor::thumb_roll), 90)));
+      CHECK(a.thumb_abduction_rad == doctest::Approx(in(-10, angle(Sensor::thumb_abduction), 70)));
+      CHECK(a.thumb_mcp_flexion_rad == doctest::Approx(in(-20, angle(Sensor::thumb_mcp), 70)));
+      CHECK(a.thumb_ip_flexion_rad == doctest::Approx(in(-20, angle(Sensor::thumb_ip), 90)));
+      CHECK(a.palm_arch_rad == doctest::Approx(in(-5, angle(Sensor::palm_arch), 35)));
+      CHECK(a.wrist_pitch_rad == doctest::Approx(in(-75, angle(Sensor::wrist_pitch), 85)));
+      const FingerAngles& ring = a[Finger::ring];
+      CHECK(ring.mcp_flexion_rad == doctest::Approx(in(-30, angle(Sensor::ring_mcp), 100)));
+      const double pip = in(-10, angle(Sensor::ring_pip), 115);
+      CHECK(ring.pip_flexion_rad == doctest::Approx(pip));
+      const double estimated = pip > 0.0 ? 0.32 * pip * pip + 0.17 * pip : 0.0;
+      const double dip = round % 2 == 0 ? angle(Sensor::ring_dip) : estimated;
+      CHECK(ring.dip_flexion_rad == doctest::Approx(in(-10, dip, 85)));
+    }
+  }
+
+  TEST_CASE("with fewer sensors every angle follows without a jump and never backwards") {
+    const Calibration calibration = default_calibration(whole_range);
+    for (const SensorMask mask : {curls, pip_curls, two_a_finger, spread_alone}) {
+      std::vector<double> before = flexions(joint_angles(closed(mask, 0), calibration));
+      for (std::uint16_t count = 1; count <= whole_range.most; ++count) {
+        const auto now = flexions(joint_angles(closed(mask, count), calibration));
+        for (std::size_t n = 0; n < now.size(); ++n) {
+          REQUIRE(now[n] >= before[n]);
+          REQUIRE(now[n] - before[n] <
+                  0.005);          // a thousandth of the way, three times as fast as PIP
+          REQUIRE(now[n] <= 2.01); // 115 degrees, the most that any joint bends
+        }
+        before = now;
+      }
+    }
+  }
+
+  TEST_CASE("a bent finger's PIP follows the MCP 1.1 times, its DIP the PIP, and the MCP the PIP") {
+    const Calibration calibration = default_calibration(whole_range);
+    const double half_mcp = 0.5 * 1.5707963267948966;
+    const FingerAngles curl = joint_angles(closed(curls, 500), calibration)[Finger::middle];
+    CHECK(curl.mcp_flexion_rad == doctest::Approx(half_mcp));
+    CHECK(curl.pip_flexion_rad == doctest::Approx(1.1 * half_mcp));
+    const double pip = 1.1 * half_mcp;
+    CHECK(curl.dip_flexion_rad == doctest::Approx(0.32 * pip * pip + 0.17 * pip));
+    const FingerAngles by_pip = joint_angles(closed(pip_curls, 500), calibration)[Finger::middle];
+    CHECK(by_pip.mcp_flexion_rad == doctest::Approx(by_pip.pip_flexion_rad / 1.1));
+    CHECK(curl.mcp_abduction_rad == 0.0);
+    // Stretching a finger backwards does not bend it further out.
+    Calibration stretched = calibration;
+    stretched.sensors[static_cast<std::size_t>(Sensor::middle_mcp)].offset_counts = 700;
+    const FingerAngles back = joint_angles(closed(curls, 500), stretched)[Finger::middle];
+    CHECK(back.mcp_flexion_rad < 0.0);
+    CHECK(back.pip_flexion_rad == 0.0);
+  }
+
+  TEST_CASE("a glove of five curls makes a flat hand, a fist, and a pinch") {
+    const Calibration calibration = default_calibration(whole_range);
+    const HandSkeleton skeleton(Side::right);
+    const auto fingertips = [&](std::uint16_t count) {
+      return skeleton
+          .pose(joint_angles(closed(curls, count), calibration), Eigen::Isometry3d::Identity())
+          .fingertip_positions();
+    };
+    for (Eigen::Index finger = 1; finger < 5; ++finger) {
+      CHECK(std::abs(fingertips(0)(1, finger)) < 0.01); // in the plane of the hand
+      CHECK(-fingertips(1000)(2, finger) < 0.095);      // back at the palm, which is 83 mm long
+      CHECK(fingertips(1000)(1, finger) < -0.01);       // and in front of it
+    }
+    double nearest = 1.0;
+    for (std::uint16_t index = 0; index <= 1000; index = static_cast<std::uint16_t>(index + 10)) {
+      GloveSample sample = closed(curls, 1000);
+      sample.raw[static_cast<std::size_t>(Sensor::index_mcp)].value = index;
+      nearest = std::min(nearest, thumb_to_index(joint_angles(sample, calibration)));
+    }
+    CHECK(nearest < 0.007);
+    CHECK(thumb_to_index(joint_angles(closed(curls, 0), calibration)) > 0.06);
+  }
+
+  TEST_CASE("a thumb without a flexion sensor lies flat") {
+    GloveSample sample = closed(curls, 1000);
+    sample.present.bits &= ~mask_of({Sensor::thumb_mcp}).bits;
+    const JointAngles angles = joint_angles(sample, default_calibration(whole_range));
+    CHECK(angles.thumb_roll_rad == 0.0);
+    CHECK(angles.thumb_abduction_rad == 0.0);
+    CHECK(angles.thumb_mcp_flexion_rad == 0.0);
+    CHECK(angles.thumb_ip_flexion_rad == 0.0);
   }
 
   TEST_CASE("a glove without any sensor is the flat hand") {

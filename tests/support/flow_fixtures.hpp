@@ -42,7 +42,9 @@ struct LoopUnderTest {
   flow::Placement placement;
   std::unique_ptr<flow::DeformLoop> loop;
 
-  explicit LoopUnderTest(flow::Mode mode, std::uint32_t rings_of_ball = 24, double rate_hz = 1000.0)
+  explicit LoopUnderTest(flow::Mode mode, std::uint32_t rings_of_ball = 24, double rate_hz = 1000.0,
+                         flow::SwitchAction switch_action = flow::SwitchAction::none,
+                         bool gated = true)
       : model(ball(rings_of_ball)) {
     const HostTime now = HostClock::now();
     std::array<std::optional<flow::Fingertips>, 2> tips;
@@ -56,11 +58,12 @@ struct LoopUnderTest {
               .pose(hand::joint_angles(first, hand::default_calibration()),
                     Eigen::Isometry3d::Identity())
               .fingertip_positions();
-      inputs.push_back({rings.back().get(), skeleton, hand::default_calibration(), first});
+      inputs.push_back({rings.back().get(), skeleton, hand::default_calibration(), first, gated});
     }
     placement = flow::place_hands(model, tips);
     flow::LoopOptions options;
     options.rate_hz = rate_hz;
+    options.switch_action = switch_action;
     options.sculptor.mode = mode;
     options.sculptor.radius = 0.5;
     options.sculptor.piece_length = 0.02;

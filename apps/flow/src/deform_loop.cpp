@@ -33,12 +33,14 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     : options_(options), units_per_metre_(placement.units_per_metre),
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
       sculptor_(model.vertices, tips_.cols(), options.sculptor),
+      held_(options.switch_action != SwitchAction::grab), hold_wanted_(held_),
       frames_(first_frame(model.vertices, tips_.cols(), placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
-    const GloveSample first = input.first;
-    hands_.push_back({std::move(input), slot, placement.T_stage_wrist[slot], first});
+    hand::SensorGate gate(input.calibration);
+    const GloveSample first = gate.pass(input.first);
+    hands_.push_back({std::move(input), slot, placement.T_stage_wrist[slot], first, gate});
   }
   compute_hands(frames_.back());
   grab_status_ = sculptor_.grab(tips_);
@@ -46,13 +48,23 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
 
 void DeformLoop::take_samples(HostTime now) noexcept {
   for (auto& hand : hands_) {
-    const std::size_t count =
-        hand.input.ring->drain([&](const GloveSample& sample) noexcept { hand.latest = sample; });
+    const std::size_t count = hand.input.ring->drain([&](const GloveSample& sample) noexcept {
+      hand.latest = hand.input.gated ? hand.gate.pass(sample) : sample;
+      if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
+      ++stats_.switch_uses[hand.slot];
+      if (options_.switch_action == SwitchAction::toggle) hold_wanted_ = !hold_wanted_;
+      if (options_.switch_action == SwitchAction::commit) commit_due_ = true;
+    });
     hand.fresh = count > 0;
     stats_.samples[hand.slot] += count;
+    stats_.spikes[hand.slot] = hand.gate.spikes();
     const bool silent = now - hand.latest.arrival > options_.silent_after;
     if (silent && !hand.silent) ++stats_.silences[hand.slot];
     hand.silent = silent;
+  }
+  if (options_.switch_action == SwitchAction::grab) {
+    hold_wanted_ = std::any_of(hands_.begin(), hands_.end(),
+                               [](const Hand& hand) { return hand.wrist_switch.is_on(); });
   }
 }
 
@@ -70,17 +82,41 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   }
 }
 
+deform::FieldStatus DeformLoop::shape(Frame& frame) noexcept {
+  if (!held_ && hold_wanted_) {
+    held_ = is_solved(sculptor_.grab(tips_));
+    if (held_) ++stats_.grabs;
+  }
+  if (!held_) {
+    frame.vertices = sculptor_.rest();
+    frame.field = sculptor_.field();
+    return deform::FieldStatus::ok;
+  }
+  const bool commits = commit_due_ || !hold_wanted_; // letting go keeps what has been shaped
+  const deform::FieldStatus status =
+      commits ? sculptor_.finish(tips_, frame.vertices) : sculptor_.update(tips_, frame.vertices);
+  frame.field = sculptor_.field();
+  // What cannot be committed now stays held, and is tried again at the next tick.
+  if (commits && is_solved(status) && is_solved(sculptor_.commit(tips_))) {
+    ++stats_.commits;
+    commit_due_ = false;
+    held_ = hold_wanted_;
+  }
+  return status;
+}
+
 void DeformLoop::tick(std::uint64_t number, HostTime scheduled) noexcept {
   const HostTime woke = HostClock::now();
   take_samples(woke);
   Frame& frame = frames_.back();
   compute_hands(frame);
-  frame.status = sculptor_.update(tips_, frame.vertices);
-  frame.field = sculptor_.field();
+  frame.status = shape(frame);
   ++stats_.ticks;
   frame.tick = number;
   frame.ticks = stats_.ticks;
   frame.missed = stats_.missed;
+  frame.commits = stats_.commits;
+  frame.held = held_;
   frame.scheduled = scheduled;
   frame.woke = woke;
   if (!is_solved(frame.status)) ++stats_.failed;
@@ -113,6 +149,7 @@ void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) no
 }
 
 Points DeformLoop::final_shape() {
+  if (!held_) return sculptor_.rest();
   Points shape = frames_.back().vertices;
   sculptor_.finish(tips_, shape);
   return shape;

@@ -58,6 +58,17 @@ FieldStatus Sculptor::finish(const Points& tips, Points& out) noexcept {
   return last;
 }
 
+FieldStatus Sculptor::commit(const Points& tips) noexcept {
+  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->commit(tips);
+  std::get_if<Type2Deformer>(&deformer_)->begin(tips);
+  return FieldStatus::ok;
+}
+
+const Points& Sculptor::rest() const noexcept {
+  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
+  return type1 != nullptr ? type1->rest() : std::get_if<Type2Deformer>(&deformer_)->shape();
+}
+
 const deform::CsrbfField& Sculptor::field() const noexcept {
   const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
   return type1 != nullptr ? type1->field() : std::get_if<Type2Deformer>(&deformer_)->field();

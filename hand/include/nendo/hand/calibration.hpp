@@ -26,8 +26,11 @@ struct Calibration {
   }
 };
 
-/// Usable for an average hand in an 18- or 22-sensor CyberGlove without any file; a wearer's own
-/// calibration is better. The same for both sides.
-Calibration default_calibration() noexcept;
+/// Usable for an average hand without any file; a wearer's own calibration is better. The same for
+/// both sides. A whole-range scale is spread over each joint's range of motion, from straight
+/// (closed) at 0 to fully bent (spread) at `most`; the wrist, which turns both ways, from one end
+/// to the other. Counts of a bare converter are taken for a CyberGlove's, and its typical 8-bit
+/// values scaled to `most`. With `most` = 0 every gain is 0.
+Calibration default_calibration(CountScale scale = {}) noexcept;
 
 } // namespace nendo::hand

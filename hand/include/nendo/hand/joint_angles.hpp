@@ -38,11 +38,24 @@ struct JointAngles {
   }
 };
 
-/// Applies the calibration and clamps every angle to the joint's range of motion.
-/// The abduction sensors measure pairs; the middle finger's own abduction, which none measures, is
-/// taken as zero. A missing DIP sensor is estimated from the PIP as 0.32 PIP^2 + 0.17 PIP (the
-/// vendor library's rule for 18-sensor gloves); any other missing sensor counts as zero. Wait-free;
-/// the result is finite.
+/// Applies the calibration and clamps every angle to the joint's range of motion. The abduction
+/// sensors measure pairs; the middle finger's own abduction, which none measures, is taken as zero.
+///
+/// What is absent is made of what is present, by rules that are continuous and do not fall when a
+/// measured angle rises:
+/// - finger DIP: 0.32 PIP^2 + 0.17 PIP, of a bent PIP (the vendor library's rule for 18-sensor
+///   gloves);
+/// - finger PIP: 1.1 MCP, of a bent MCP. A glove with one sensor a finger measures curl, and a
+///   closing hand has both joints arrive together, at about 100 and 90 degrees;
+/// - finger MCP: the measured PIP / 1.1, for the same reason;
+/// - thumb IP: 0.5 MCP, of a bent MCP; thumb MCP: 2 times the measured IP. In a pinch the IP joint
+///   bends about half as much, and pulp meets pulp;
+/// - thumb roll and abduction: each from 20 degrees, as a hand at rest has them, to 60 with the
+///   thumb bent by 55 degrees (MCP). So a thumb that has one sensor opposes the index finger as it
+///   bends: its tip comes within 5 mm of the path of a curling index finger's;
+/// - all others, and a thumb without any flexion sensor: zero, that is closed fingers, a flat palm,
+///   a straight wrist.
+/// Wait-free; the result is finite.
 JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration) noexcept;
 
 } // namespace nendo::hand

@@ -10,7 +10,9 @@
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/histogram.hpp>
 #include <nendo/flow/sculptor.hpp>
+#include <nendo/flow/wrist_switch.hpp>
 #include <nendo/hand/calibration.hpp>
+#include <nendo/hand/sensor_gate.hpp>
 
 namespace nendo::flow {
 
@@ -21,12 +23,14 @@ struct HandInput {
   hand::HandSkeleton skeleton;
   hand::Calibration calibration = hand::default_calibration();
   GloveSample first; ///< the pose in which the hand takes hold of the model
+  bool gated = true; ///< counts that no hand can have caused are kept out: hand::SensorGate
 };
 
 struct LoopOptions {
   double rate_hz = 90.0; ///< within TickGrid's limits
   SculptorOptions sculptor;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
+  SwitchAction switch_action = SwitchAction::none;
 };
 
 /// Written by the loop's thread; read them when run() has returned.
@@ -37,15 +41,20 @@ struct LoopStats {
   std::uint64_t failed = 0;   ///< ticks without a usable field: the shape stayed as it was
   std::array<std::uint64_t, 2> samples{};
   std::array<std::uint64_t, 2> silences{};
-  Histogram wake_latency; ///< from the deadline to the loop's running
-  Histogram work;         ///< from there to the published frame
-  Histogram end_to_end;   ///< from a sample's last byte to the published frame that shows it
+  std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
+  std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor
+  std::uint64_t grabs = 0;   ///< times the hands took hold again
+  std::uint64_t commits = 0; ///< times the shape became the rest shape
+  Histogram wake_latency;    ///< from the deadline to the loop's running
+  Histogram work;            ///< from there to the published frame
+  Histogram end_to_end;      ///< from a sample's last byte to the published frame that shows it
 };
 
 class DeformLoop {
 public:
   /// One or two hands, at most one of a side. The model's vertices are copied; everything that a
-  /// tick needs is allocated here. The hands take hold of the model at their first samples.
+  /// tick needs is allocated here. The hands take hold of the model at their first samples; with
+  /// SwitchAction::grab they do not keep it until a switch is on.
   DeformLoop(const deform::Mesh& model, const Placement& placement, std::vector<HandInput> hands,
              const LoopOptions& options);
 
@@ -67,12 +76,15 @@ public:
 private:
   void take_samples(HostTime now) noexcept;
   void compute_hands(Frame& frame) noexcept;
+  deform::FieldStatus shape(Frame& frame) noexcept;
 
   struct Hand {
     HandInput input;
     std::size_t slot = 0; ///< of arrays by side
     Eigen::Isometry3d T_stage_wrist;
     GloveSample latest;
+    hand::SensorGate gate;
+    WristSwitchEdge wrist_switch{};
     bool fresh = false; ///< samples came in with this tick
     bool silent = false;
   };
@@ -83,6 +95,9 @@ private:
   deform::Points tips_; ///< 3 by 5 a hand, model units
   Sculptor sculptor_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
+  bool held_;        ///< the fingertips shape the model
+  bool hold_wanted_; ///< what the switches ask for; follows at the next tick that can
+  bool commit_due_ = false;
   LoopStats stats_;
   FrameExchange frames_;
 };

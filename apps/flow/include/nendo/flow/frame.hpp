@@ -24,6 +24,9 @@ struct Frame {
   std::uint64_t tick = 0;   ///< the number of the deadline on the grid
   std::uint64_t ticks = 0;  ///< how many have run
   std::uint64_t missed = 0; ///< how many deadlines were skipped
+  /// How often the shape became the rest shape; a commit of this frame's comes after its field.
+  std::uint64_t commits = 0;
+  bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};
   double units_per_metre = 1.0;   ///< from the stage to the model

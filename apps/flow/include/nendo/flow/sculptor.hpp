@@ -36,6 +36,12 @@ public:
   deform::FieldStatus update(const deform::Points& tips, deform::Points& out) noexcept;
   /// As update(), and nothing of a stroke is left waiting.
   deform::FieldStatus finish(const deform::Points& tips, deform::Points& out) noexcept;
+  /// To be called after finish() with the same tips: the shape that it gave becomes the rest shape,
+  /// and the fingertips hold that where they are. Unless solved, nothing changes. No allocation.
+  deform::FieldStatus commit(const deform::Points& tips) noexcept;
+
+  /// The shape that nobody holds: the rest shape, or where the last stroke ended.
+  const deform::Points& rest() const noexcept;
 
   const deform::CsrbfField& field() const noexcept;
 

@@ -1,0 +1,40 @@
+#pragma once
+// The switch at the wrist as an event: debounced, and what a loop does with it.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::flow {
+
+/// What the switches of both hands do.
+enum class SwitchAction : std::uint8_t {
+  none,   ///< nothing: the hands hold the model all the time
+  grab,   ///< the hands hold the model while a switch is on
+  commit, ///< turning one on makes the shape so far the rest shape, and the hands hold it anew
+  toggle, ///< turning one on has the hands let go of the model, the next time take hold of it again
+};
+
+std::string_view name_of(SwitchAction action) noexcept;
+std::optional<SwitchAction> switch_action_named(std::string_view name) noexcept;
+
+/// Takes the switch's position sample by sample and tells when it was really turned. Pure.
+class WristSwitchEdge {
+public:
+  /// A position counts once it has lasted so long, and for two samples at least: contacts bounce
+  /// for some milliseconds, and a damaged status byte lasts one sample.
+  static constexpr std::chrono::milliseconds settling_time{20};
+
+  /// True when the switch has just been turned on. The first position that is known is where it
+  /// stood all along, and a sample that does not tell the position is passed over.
+  bool turned_on(WristSwitch position, HostTime time) noexcept;
+  bool is_on() const noexcept { return settled_ == WristSwitch::on; }
+
+private:
+  WristSwitch settled_ = WristSwitch::unknown;
+  std::optional<HostTime> differs_since_;
+};
+
+} // namespace nendo::flow

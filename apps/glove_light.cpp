@@ -1,0 +1,21 @@
+#include "glove_light.hpp"
+
+#include <thread>
+
+namespace nendo::app {
+
+void GloveLight::show(bool lit) noexcept {
+  if (!exists() || lit == lit_) return;
+  lit_ = lit;
+  driver::Feedback feedback;
+  feedback.light = lit;
+  glove_.give(feedback);
+}
+
+void GloveLight::put_out() noexcept {
+  if (!lit_) return;
+  show(false);
+  std::this_thread::sleep_for(std::chrono::milliseconds(250)); // Glove::give: within 0.2 s
+}
+
+} // namespace nendo::app

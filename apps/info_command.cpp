@@ -1,0 +1,129 @@
+// nendo info: asks a glove who it is.
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/driver/open_glove.hpp>
+
+#include "cli.hpp"
+#include "printable.hpp"
+
+namespace nendo::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::vector<std::string> names_of(SensorMask mask) {
+  std::vector<std::string> names;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (mask.has(sensor)) names.emplace_back(name_of(sensor));
+  }
+  return names;
+}
+
+void print_json(const driver::GloveInfo& info) {
+  ordered_json facts = ordered_json::object();
+  for (const auto& [name, value] : info.facts)
+    facts[name] = value;
+  const driver::Abilities& can = info.abilities;
+  const ordered_json line{
+      {"source", info.source},
+      {"model", info.model},
+      {"hand", name_of(info.side)},
+      {"sensors", names_of(info.sensors)},
+      {"rate_hz", info.rate_hz},
+      {"counts", {{"most", info.counts.most}, {"whole_range", info.counts.whole_range}}},
+      {"abilities",
+       {{"wrist_switch", can.wrist_switch},
+        {"light", can.light},
+        {"vibration", can.vibration},
+        {"resistance", can.resistance}}},
+      {"facts", std::move(facts)}};
+  // A device's text need not be UTF-8.
+  std::cout << line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+}
+
+// "a, b, c" in lines of at most `width` characters.
+std::vector<std::string> wrapped(const std::vector<std::string>& words, std::size_t width) {
+  std::vector<std::string> lines{""};
+  for (std::size_t at = 0; at < words.size(); ++at) {
+    const std::string word = words[at] + (at + 1 < words.size() ? "," : "");
+    std::string& line = lines.back();
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      lines.push_back(word);
+    } else {
+      line.append(line.empty() ? "" : " ").append(word);
+    }
+  }
+  return lines;
+}
+
+std::string abilities_text(const driver::Abilities& can) {
+  std::string text;
+  const auto add = [&](bool ability, const char* what) {
+    if (ability) text.append(text.empty() ? "" : ", ").append(what);
+  };
+  add(can.wrist_switch, "wrist switch");
+  add(can.light, "light");
+  add(can.vibration, "vibration");
+  add(can.resistance, "resistance");
+  return text.empty() ? "measures only" : text;
+}
+
+void print_text(const driver::GloveInfo& info) {
+  constexpr std::size_t least_name_width = 10;
+  constexpr std::size_t line_width = 80;
+  std::size_t name_width = least_name_width;
+  for (const auto& fact : info.facts)
+    name_width = std::max(name_width, fact.name.size());
+  const auto print = [&](const std::string& name, const std::string& value) {
+    std::string line = printable(name);
+    line.resize(name_width + 2, ' ');
+    std::cout << line << printable(value) << '\n';
+  };
+  char rate[32];
+  std::snprintf(rate, sizeof rate, "%.6g Hz", info.rate_hz);
+  const auto sensors = names_of(info.sensors);
+
+  print("source", info.source);
+  print("model", info.model);
+  print("hand", std::string(name_of(info.side)));
+  print("rate", info.rate_hz > 0.0 ? rate : "unknown");
+  print("counts", "0 to " + std::to_string(info.counts.most) +
+                      (info.counts.whole_range ? ", straight to fully bent" : ", uncalibrated"));
+  print("abilities", abilities_text(info.abilities));
+  print("sensors", std::to_string(sensors.size()));
+  for (const auto& line : wrapped(sensors, line_width - name_width - 2))
+    print("", line);
+  for (const auto& [name, value] : info.facts)
+    print(name, value);
+}
+
+int info(const std::string& spec, bool json) {
+  const auto glove = driver::open_glove(spec);
+  if (!glove) return report(glove.error());
+  json ? print_json((*glove)->info()) : print_text((*glove)->info());
+  return 0;
+}
+
+} // namespace
+
+void add_info(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::string glove;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App& command = *app.add_subcommand("info", "Asks a glove who it is and what it can do");
+  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...")->required();
+  command.add_flag("--json", options->json, "One JSON object");
+  on_chosen(command, exit_code, [options] { return info(options->glove, options->json); });
+}
+
+} // namespace nendo::app
