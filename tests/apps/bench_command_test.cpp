@@ -1,4 +1,6 @@
+#include <cstdint>
 #include <doctest/doctest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "support/program.hpp"
@@ -26,6 +28,45 @@ TEST_SUITE("bench") {
     }
   }
 
+  TEST_CASE("no fault makes a CyberGlove deliver what was not sent, or stay away") {
+    const auto done =
+        nendo::test::nendo({"bench", "faults", "--seconds", "7", "--at-once", "24", "--json"});
+    CHECK_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    CHECK(lines.size() == 64); // 16 faults, 4 kinds of CyberGlove
+    std::uint64_t flipped = 0;
+    for (const auto& line : lines) {
+      const auto cell = nlohmann::json::parse(line);
+      CAPTURE(line);
+      CHECK(cell["broken"] == 0);
+      CHECK(cell["complaint"] == "");
+      CHECK(cell["delivered"].get<int>() > 100);
+      CHECK(cell["delivered"] <= cell["sent"]);
+      const std::string fault = cell["fault"];
+      const bool costs_records = fault == "drop" || fault == "insert" || fault == "flip" ||
+                                 fault == "lose" || fault == "burst";
+      if (costs_records) CHECK(cell["faulted"].get<int>() > 0);
+      if (fault == "silence" || fault == "power cut") CHECK(cell["silences"].get<int>() > 0);
+      if (fault == "unplugged") CHECK(cell["reopened"].get<int>() > 0);
+      if (fault != "flip") CHECK(cell["flipped"] == 0);
+      flipped += cell["flipped"].get<std::uint64_t>();
+    }
+    CHECK(flipped > 0); // the control: a bit in a sensor's byte cannot be seen
+  }
+
+  TEST_CASE("every one of many records is delivered or known to be missed, and memory stays") {
+    const auto done = nendo::test::nendo({"bench", "soak", "--records", "200000", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto tally = nlohmann::json::parse(lines_of(done.out).at(0));
+    const auto number = [&](const char* key) { return tally[key].get<std::uint64_t>(); };
+    CHECK(number("sent") >= 200'000);
+    CHECK(number("faulted") > 1'000);
+    CHECK(number("broken") == 0);
+    CHECK(number("missed") > 1'000);
+    CHECK(number("delivered") + number("missed") <= number("sent"));
+    CHECK(number("delivered") + number("missed") + 5 >= number("sent"));
+  }
+
   TEST_CASE("bench says what cannot be measured") {
     const auto rate = nendo::test::nendo({"bench", "driver", "--rate", "1000"});
     CHECK(rate.exit_code == 2);
@@ -33,5 +74,11 @@ TEST_SUITE("bench") {
     const auto none = nendo::test::nendo({"bench", "driver", "--records", "0"});
     CHECK(none.exit_code == 2);
     CHECK(is_one_line_about(none.err, "--records"));
+    const auto brief = nendo::test::nendo({"bench", "faults", "--seconds", "1"});
+    CHECK(brief.exit_code == 2);
+    CHECK(is_one_line_about(brief.err, "--seconds"));
+    const auto few = nendo::test::nendo({"bench", "soak", "--records", "1"});
+    CHECK(few.exit_code == 2);
+    CHECK(is_one_line_about(few.err, "--records"));
   }
 }

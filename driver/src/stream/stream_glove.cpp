@@ -24,6 +24,8 @@ constexpr auto give_budget = 400ms;
 constexpr auto read_timeout = 100ms; ///< also how soon the reader notices that it is to stop
 constexpr auto shortest_silence = 1500ms;
 constexpr auto retry_interval = 500ms;
+/// Single ones are damage; so many in a row are another glove, line rate or form of record.
+constexpr std::uint64_t bad_in_a_row = 16;
 constexpr auto rate_window = 1s;
 constexpr double rate_tolerance = 0.05;
 
@@ -167,6 +169,7 @@ void StreamGlove::run(const std::stop_token& token) {
     case StreamEnd::doubtful:
       outage_ = true;
       unanswered_ = !restart(token, Occasion::damaged);
+      bad_before_ = protocol_->counters().bad_records;
       break;
     case StreamEnd::gone:
       reopen(token);
@@ -194,7 +197,8 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
     protocol_->push(std::span(buffer).first(count), arrival_, *this);
     stats_.store(protocol_->counters(), at_start_);
     measure_rate(arrival_);
-    if (protocol_->is_doubtful()) return StreamEnd::doubtful;
+    const std::uint64_t bad = protocol_->counters().bad_records - bad_before_;
+    if (protocol_->is_doubtful() || bad >= bad_in_a_row) return StreamEnd::doubtful;
     if (arrival_ - last_record_ > longest_silence) return StreamEnd::silent;
     if (feedback_changed_) show_feedback(token);
   }

@@ -1,6 +1,6 @@
-// nendo bench: what this machine, and this program on it, can do. Every figure stands beside a
-// baseline of the same run.
+// nendo bench driver: the driver's latency, beside that of the least that any program can do.
 
+#include <array>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -10,6 +10,7 @@
 #include <nendo/driver/latency_probe.hpp>
 #include <nendo/flow/histogram.hpp>
 
+#include "bench/bench.hpp"
 #include "cli.hpp"
 
 namespace nendo::app {
@@ -97,10 +98,7 @@ int bench_driver(DriverOptions& options) {
 
 } // namespace
 
-void add_bench(CLI::App& app, int& exit_code) {
-  CLI::App& bench =
-      *app.add_subcommand("bench", "Measures this program on this machine, beside a baseline");
-  bench.require_subcommand(1);
+void add_latency_bench(CLI::App& bench, int& exit_code) {
   auto options = std::make_shared<DriverOptions>();
   CLI::App& command = *bench.add_subcommand(
       "driver", "Latency of the CyberGlove driver, beside that of a bare poll()+read() thread");

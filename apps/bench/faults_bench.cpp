@@ -1,0 +1,117 @@
+// nendo bench faults: the fault matrix, as a table for people, for the documents, or for programs.
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "bench/bench.hpp"
+#include "bench/fault_matrix.hpp"
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct Options {
+  double seconds = 8.0;
+  unsigned at_once = 16;
+  bool json = false;
+  bool markdown = false;
+};
+
+void print_json(const FaultOutcome& outcome) {
+  const driver::GloveStats& stats = outcome.stats;
+  const nlohmann::ordered_json object{{"fault", outcome.fault->name},
+                                      {"glove", outcome.glove->name},
+                                      {"sent", outcome.sent},
+                                      {"faulted", outcome.faulted},
+                                      {"delivered", outcome.delivered},
+                                      {"missed", stats.missed},
+                                      {"bad_records", stats.bad_records},
+                                      {"implausible", stats.implausible},
+                                      {"unplugged", stats.unplugged},
+                                      {"silences", stats.silences},
+                                      {"reopened", stats.reopened},
+                                      {"flipped", outcome.flipped},
+                                      {"broken", outcome.broken},
+                                      {"longest_gap_s", outcome.longest_gap_s},
+                                      {"allowed_gap_s", outcome.fault->longest_gap_s},
+                                      {"complaint", outcome.complaint}};
+  std::cout << object.dump() << '\n';
+}
+
+/// A line a fault, over all gloves: sums, and the longest gap.
+void print_summary(const std::vector<FaultOutcome>& outcomes, bool markdown) {
+  std::cout << (markdown ? "| fault | what happens | sent | delivered | missed | bad | flipped | "
+                           "broken | longest gap, s |\n|---|---|---|---|---|---|---|---|---|\n"
+                         : "fault            sent delivered missed   bad flipped broken  gap s\n");
+  for (std::size_t k = 0; k < outcomes.size(); k += glove_cases().size()) {
+    FaultOutcome sum = outcomes[k];
+    for (std::size_t glove = 1; glove < glove_cases().size(); ++glove) {
+      const FaultOutcome& other = outcomes[k + glove];
+      sum.sent += other.sent;
+      sum.delivered += other.delivered;
+      sum.stats.missed += other.stats.missed;
+      sum.stats.bad_records += other.stats.bad_records;
+      sum.flipped += other.flipped;
+      sum.broken += other.broken;
+      sum.longest_gap_s = std::max(sum.longest_gap_s, other.longest_gap_s);
+    }
+    const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::printf(markdown ? "| %s | %s | %llu | %llu | %llu | %llu | %llu | %llu | %.2f |\n"
+                         : "%-15s %.0s %4llu %9llu %6llu %5llu %7llu %6llu %6.2f\n",
+                std::string(sum.fault->name).c_str(), std::string(sum.fault->happens).c_str(),
+                number(sum.sent), number(sum.delivered), number(sum.stats.missed),
+                number(sum.stats.bad_records), number(sum.flipped), number(sum.broken),
+                sum.longest_gap_s);
+  }
+  std::fflush(stdout);
+}
+
+int bench_faults(const Options& options) {
+  if (!(options.seconds >= 6.0 && options.seconds <= 3600.0)) {
+    return report({Errc::usage, "--seconds: 6 to 3600 for each case; a fault begins after 2 s"});
+  }
+  if (options.at_once == 0 || options.at_once > 64) {
+    return report({Errc::usage, "--at-once: 1 to 64 cases at a time"});
+  }
+  install_stop_signals();
+  spdlog::set_level(spdlog::level::off); // the drivers tell of every fault
+  const auto outcomes = run_fault_matrix(options.seconds, options.at_once, stop_requested());
+  if (!outcomes) return report(outcomes.error());
+  if (stop_requested()) return report({Errc::failed, "ended before all cases were run"});
+  if (!options.json) print_summary(*outcomes, options.markdown);
+  std::size_t complaints = 0;
+  for (const FaultOutcome& outcome : *outcomes) {
+    if (options.json) print_json(outcome);
+    if (outcome.complaint.empty()) continue;
+    ++complaints;
+    if (!options.json) {
+      std::cerr << outcome.fault->name << ", " << outcome.glove->name << ": " << outcome.complaint
+                << '\n';
+    }
+  }
+  if (complaints == 0) return 0;
+  return report({Errc::failed, std::to_string(complaints) + " of " +
+                                   std::to_string(outcomes->size()) +
+                                   " cases were not as they should be"});
+}
+
+} // namespace
+
+void add_faults_bench(CLI::App& bench, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App& command = *bench.add_subcommand(
+      "faults", "Every fault against every CyberGlove, through the real driver: what it costs");
+  command.add_option("--seconds", options->seconds, "For each case")->capture_default_str();
+  command.add_option("--at-once", options->at_once, "Cases that run at the same time")
+      ->capture_default_str();
+  command.add_flag("--json", options->json, "One JSON object for each case");
+  command.add_flag("--markdown", options->markdown, "The table of the documents");
+  on_chosen(command, exit_code, [options] { return bench_faults(*options); });
+}
+
+} // namespace nendo::app

@@ -1,0 +1,170 @@
+// nendo bench soak: days of records in minutes, through a pseudo-terminal and the real driver, with
+// faults; every record has to be accounted for, and memory must not grow.
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <nendo/driver/emulator.hpp>
+#include <nendo/driver/open_glove.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/test_pattern.hpp"
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Options {
+  std::uint64_t records = 10'000'000;
+  // A lost byte and another one too many in one record leave its length as it was: nothing in the
+  // record could expose that, so they do not come together.
+  std::vector<std::string> faults{"lose=0.2%", "drop=0.01%", "flip=0.01%", "burst=0.2%"};
+  bool json = false;
+};
+
+/// A few records at the end, with no good one after them, cannot have been missed yet.
+constexpr std::uint64_t undecided = 5;
+
+struct Tally {
+  std::uint64_t sent = 0, faulted = 0, delivered = 0, flipped = 0, broken = 0;
+  driver::GloveStats stats;
+  double seconds = 0.0;
+  long memory_begin_kb = 0, memory_end_kb = 0;
+};
+
+long resident_kb() {
+  long pages = 0;
+  std::ifstream("/proc/self/statm") >> pages >> pages;
+  return pages * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+/// Takes what is in the ring.
+void take(SampleRing& ring, Tally& tally) {
+  GloveSample sample;
+  while (ring.try_pop(sample)) {
+    ++tally.delivered;
+    const auto verdict = judge_pattern(sample, 1);
+    tally.flipped += verdict == PatternVerdict::flipped ? 1U : 0U;
+    tally.broken += verdict == PatternVerdict::broken ? 1U : 0U;
+  }
+}
+
+Result<Tally> soak(const Options& options) {
+  driver::EmulatorOptions device;
+  device.cyberglove.pattern = true;
+  device.pace = driver::EmulatorPace::host;
+  device.faults = options.faults;
+  auto emulator = driver::GloveEmulator::open(device);
+  if (!emulator) return emulator.error();
+  std::atomic<bool> over{false};
+  Result<void> served;
+  std::thread server([&] { served = (*emulator)->serve(over); });
+  SampleRing ring(1U << 16U);
+  Tally tally;
+  auto glove = driver::open_glove("serial:" + (*emulator)->tty_path());
+  auto started = glove ? (*glove)->start(ring) : Result<void>(glove.error());
+  const auto begin = std::chrono::steady_clock::now();
+  const std::uint64_t warm = options.records / 20;
+  while (started && !stop_requested() && (*emulator)->stats().records_sent < options.records) {
+    take(ring, tally);
+    if (tally.memory_begin_kb == 0 && tally.delivered >= warm)
+      tally.memory_begin_kb = resident_kb();
+    std::this_thread::sleep_for(1ms);
+  }
+  over = true;
+  server.join();
+  std::this_thread::sleep_for(200ms); // what was sent last is on its way
+  if (started) take(ring, tally);
+  tally.seconds = to_seconds(std::chrono::steady_clock::now() - begin);
+  tally.memory_end_kb = resident_kb();
+  if (started) (*glove)->stop();
+  if (started) take(ring, tally);
+  if (!started) return started.error();
+  if (!served) return served.error();
+  tally.stats = (*glove)->stats();
+  tally.sent = (*emulator)->stats().records_sent;
+  tally.faulted = (*emulator)->stats().records_faulted;
+  return tally;
+}
+
+std::string complaint_about(const Tally& tally) {
+  constexpr long most_growth_kb = 2048;
+  const std::uint64_t accounted = tally.stats.records + tally.stats.missed;
+  if (tally.broken > 0) return "records of wrong structure were delivered";
+  if (accounted > tally.sent || accounted + undecided < tally.sent)
+    return "records sent are not those delivered and missed";
+  if (tally.delivered + tally.stats.ring_refused != tally.stats.records)
+    return "samples taken and refused are not those delivered";
+  if (tally.memory_end_kb > tally.memory_begin_kb + most_growth_kb) return "memory grew";
+  return {};
+}
+
+void print(const Tally& tally, bool json) {
+  const driver::GloveStats& stats = tally.stats;
+  if (json) {
+    const nlohmann::ordered_json object{{"sent", tally.sent},
+                                        {"faulted", tally.faulted},
+                                        {"delivered", stats.records},
+                                        {"missed", stats.missed},
+                                        {"bad_records", stats.bad_records},
+                                        {"implausible", stats.implausible},
+                                        {"ring_refused", stats.ring_refused},
+                                        {"flipped", tally.flipped},
+                                        {"broken", tally.broken},
+                                        {"bytes", stats.bytes},
+                                        {"seconds", tally.seconds},
+                                        {"memory_begin_kb", tally.memory_begin_kb},
+                                        {"memory_end_kb", tally.memory_end_kb}};
+    std::cout << object.dump() << std::endl;
+    return;
+  }
+  const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+  std::printf("%llu records sent in %.1f s, %llu of them touched by a fault\n", number(tally.sent),
+              tally.seconds, number(tally.faulted));
+  std::printf("%llu delivered + %llu missed; %llu bad frames, %llu of them well formed; %llu "
+              "samples found the ring full\n",
+              number(stats.records), number(stats.missed), number(stats.bad_records),
+              number(stats.implausible), number(stats.ring_refused));
+  std::printf("delivered with one wrong bit in a sensor: %llu; of wrong structure: %llu\n",
+              number(tally.flipped), number(tally.broken));
+  std::printf("memory: %ld kB after a twentieth, %ld kB at the end\n", tally.memory_begin_kb,
+              tally.memory_end_kb);
+}
+
+int bench_soak(const Options& options) {
+  if (options.records < 1000) {
+    return report({Errc::usage, "--records: at least 1000, or there is nothing to account for"});
+  }
+  install_stop_signals();
+  spdlog::set_level(spdlog::level::off);
+  const auto tally = soak(options);
+  if (!tally) return report(tally.error());
+  if (stop_requested()) return report({Errc::failed, "ended before all records were sent"});
+  print(*tally, options.json);
+  const std::string complaint = complaint_about(*tally);
+  return complaint.empty() ? 0 : report({Errc::failed, complaint});
+}
+
+} // namespace
+
+void add_soak_bench(CLI::App& bench, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App& command = *bench.add_subcommand(
+      "soak", "Millions of records with faults, as fast as they go: all accounted for?");
+  command.add_option("--records", options->records, "How many to send")->capture_default_str();
+  command.add_option("--fault", options->faults, "As for nendo emulate; together about 1 %")
+      ->capture_default_str();
+  command.add_flag("--json", options->json, "One JSON object");
+  on_chosen(command, exit_code, [options] { return bench_soak(*options); });
+}
+
+} // namespace nendo::app
