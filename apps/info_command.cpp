@@ -101,6 +101,7 @@ void print_text(const driver::GloveInfo& info) {
   print("sensors", std::to_string(sensors.size()));
   for (const auto& line : wrapped(sensors, line_width - name_width - 2))
     print("", line);
+  if (!info.facts.empty()) std::cout << "\nin its own words\n";
   for (const auto& [name, value] : info.facts)
     print(name, value);
 }
