@@ -45,7 +45,7 @@ struct FaultOutcome {
   std::uint64_t broken = 0;  ///< delivered though their structure was wrong: must be 0
   driver::GloveStats stats{};
   double longest_gap_s = 0.0; ///< between two samples
-  std::string complaint{};      ///< empty: as it should be
+  std::string complaint{};    ///< empty: as it should be
 };
 
 /// Runs all pairs, `at_once` of them at a time, each for `seconds` (at least 4). Blocks. Error: an

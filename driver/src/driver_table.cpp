@@ -8,6 +8,7 @@
 #include "cyberglove/cyberglove_options.hpp"
 #include "discovery/auto_glove.hpp"
 #include "fivedt/fivedt_driver.hpp"
+#include "forte/forte_driver.hpp"
 #include "lucidgloves/lucidgloves_driver.hpp"
 #include "simulated/simulated_driver.hpp"
 #include "usb/open_usb_glove.hpp"
@@ -30,6 +31,8 @@ constexpr std::array drivers{
            open_lucidgloves},
     Driver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
            "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", open_fivedt},
+    Driver{"forte", "forte:PATH[?link=usb|bluetooth&baud=460800|115200&hand=left|right]",
+           "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth", open_forte},
     Driver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
            "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", open_usb_glove},
     Driver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",

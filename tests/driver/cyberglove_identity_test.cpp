@@ -267,7 +267,8 @@ TEST_SUITE("cyberglove_identity") {
     }
   }
 
-  TEST_CASE("no answer at any rate says which were tried, and a rate that was named is the only one") {
+  TEST_CASE(
+      "no answer at any rate says which were tried, and a rate that was named is the only one") {
     Script script;
     script.baud = 4800;
     const HostTime start = HostClock::now();

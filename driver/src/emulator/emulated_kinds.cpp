@@ -5,6 +5,7 @@
 
 #include "emulator/cyberglove_unit.hpp"
 #include "emulator/fivedt_unit.hpp"
+#include "emulator/forte_unit.hpp"
 #include "emulator/lucidgloves_unit.hpp"
 
 namespace nendo::driver {
@@ -40,10 +41,17 @@ Result<std::unique_ptr<EmulatedUnit>> make_fivedt(const EmulatorOptions& options
   return make_fivedt_unit(*unit);
 }
 
+Result<std::unique_ptr<EmulatedUnit>> make_forte(const EmulatorOptions& options) {
+  const auto unit = common_options<ForteUnitOptions>(options, ForteUnit::most_rate_hz);
+  if (!unit) return unit.error();
+  return make_forte_unit(*unit);
+}
+
 constexpr std::array kinds{
     EmulatedKind{"cyberglove", make_cyberglove_unit, true},
     EmulatedKind{"lucidgloves", make_lucidgloves, false},
     EmulatedKind{"5dt", make_fivedt, false},
+    EmulatedKind{"forte", make_forte, false},
 };
 
 } // namespace

@@ -13,8 +13,8 @@
 namespace nendo::driver {
 
 /// Opens a terminal as 8N1, raw, without flow control, for this program alone. Follows symbolic
-/// links. `baud` is not set at a pseudo-terminal, where it has no meaning. Errors: no_device (missing, not a terminal,
-/// in use), no_permission.
+/// links. `baud` is not set at a pseudo-terminal, where it has no meaning. Errors: no_device
+/// (missing, not a terminal, in use), no_permission.
 Result<std::unique_ptr<Transport>> open_transport(const std::string& path, int baud);
 
 /// The path with symbolic links followed, but no further than to a name that the kernel knows as a

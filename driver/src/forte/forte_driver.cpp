@@ -1,0 +1,141 @@
+#include "forte/forte_driver.hpp"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "forte/forte_parser.hpp"
+#include "glove_spec.hpp"
+#include "serial_options.hpp"
+#include "stream/listen.hpp"
+#include "stream/stream_glove.hpp"
+#include "transport/follow_port.hpp"
+
+namespace nendo::driver {
+namespace {
+
+using namespace forte;
+using namespace std::chrono_literals;
+
+constexpr auto write_timeout = 100ms;
+constexpr auto answer_time = 1100ms; ///< three times: less than open_budget
+constexpr int tries = 3;
+
+constexpr SensorMask sensors() noexcept {
+  SensorMask mask;
+  for (const Sensor sensor : slots)
+    mask.bits |= 1U << static_cast<unsigned>(sensor);
+  return mask;
+}
+
+class ForteProtocol final : public GloveProtocol {
+public:
+  ForteProtocol(bool bluetooth, const HandWishes& hands) noexcept
+      : bluetooth_(bluetooth), hand_(choose_hand(std::nullopt, hands)) {}
+
+  /// A glove that streams already is told again: another program may have chosen the other link.
+  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
+                             const Patience& patience) override {
+    Parser parser;
+    std::optional<Record> record;
+    const auto take = [&](std::span<const std::byte> chunk) {
+      parser.push(chunk, [&](const Record& heard) { record = heard; });
+      return record.has_value();
+    };
+    IoStatus heard = IoStatus::timeout;
+    for (int k = 0; k < tries && heard == IoStatus::timeout; ++k) {
+      heard = tell_to_send(transport);
+      if (heard != IoStatus::gone) heard = listen(transport, patience, answer_time, take);
+    }
+    parser_.count_discarded(parser.counters().bytes);
+    if (heard == IoStatus::gone) return went_away(source);
+    if (!record) return stranger(source, parser.counters().bytes);
+    return describe(*record);
+  }
+
+  /// It streams already; what it sent before now is old.
+  Result<void> start_stream(Transport& transport, const std::string& /*source*/,
+                            const Patience& /*patience*/) override {
+    parser_.count_discarded(drop_waiting(transport));
+    parser_.reset();
+    return {};
+  }
+
+  /// The stream goes on: nobody knows what ends it.
+  void end_stream(Transport& /*transport*/, const Patience& /*patience*/) noexcept override {}
+
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
+            SampleSink& sink) noexcept override {
+    parser_.push(chunk, [&](const Record& record) {
+      GloveSample sample;
+      for (std::size_t k = 0; k < slots.size(); ++k)
+        sample.raw[static_cast<std::size_t>(slots[k])] = RawCount{record.flexion[k]};
+      sample.present = sensors();
+      sample.side = hand_.side;
+      sink.deliver(sample);
+    });
+  }
+
+  const StreamCounters& counters() const noexcept override { return parser_.counters(); }
+
+private:
+  IoStatus tell_to_send(Transport& transport) const noexcept {
+    const IoStatus told = transport.write_all(std::as_bytes(std::span(data_on)), write_timeout);
+    if (told == IoStatus::gone) return told;
+    const Command& link = bluetooth_ ? to_bluetooth : to_usb;
+    return transport.write_all(std::as_bytes(std::span(link)), write_timeout);
+  }
+  static Error went_away(const std::string& source) {
+    return {Errc::no_device, source + " went away; is the cable loose?"};
+  }
+  static Error stranger(const std::string& source, std::uint64_t bytes_heard) {
+    if (bytes_heard == 0) {
+      return {Errc::no_device, source + ": nothing comes from it; is the glove switched on, is "
+                                        "this its port, and is link (usb, bluetooth) right?"};
+    }
+    return {Errc::no_device, source + ": what comes from it are no records of a Forte glove; is "
+                                      "this its port, and is baud (460800, 115200) right?"};
+  }
+  GloveInfo describe(const Record& record) const {
+    GloveInfo info;
+    info.model = "Forte Data Glove, 10 sensors";
+    info.side = hand_.side;
+    info.sensors = sensors();
+    info.counts = {most_count, true};
+    info.facts = {{"link", bluetooth_ ? "bluetooth" : "usb"},
+                  {"hand_source", std::string(hand_.source)},
+                  {"battery_raw", std::to_string(record.battery)}};
+    return info;
+  }
+
+  const bool bluetooth_;
+  const ChosenHand hand_;
+  Parser parser_;
+};
+
+/// True: Bluetooth.
+Result<bool> link_option(const GloveSpec& spec) {
+  const auto option = spec.options.find("link");
+  if (option == spec.options.end() || option->second == "usb") return false;
+  if (option->second == "bluetooth") return true;
+  return Error{Errc::usage, spec.text + ": link=" + option->second + " is none of usb, bluetooth"};
+}
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<Side> side) {
+  if (auto allowed = allow_options(spec, {"baud", "hand", "link"}); !allowed)
+    return allowed.error();
+  const auto rate = number_option(spec, "baud", {baud, other_baud});
+  if (!rate) return rate.error();
+  const auto hand = hand_option(spec);
+  if (!hand) return hand.error();
+  const auto bluetooth = link_option(spec);
+  if (!bluetooth) return bluetooth.error();
+  if (auto named = require_port(spec, "forte:/dev/ttyACM0"); !named) return named.error();
+  return open_stream_glove(spec.text, follow_port(spec.target, *rate),
+                           std::make_unique<ForteProtocol>(*bluetooth, HandWishes{*hand, side}),
+                           HostClock::now() + open_budget);
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,84 @@
+#include "forte/forte_parser.hpp"
+
+#include <utility>
+
+#include <nendo/base/byte_reader.hpp>
+
+namespace nendo::driver::forte {
+
+std::optional<Record> decode_record(std::span<const std::byte> frame) noexcept {
+  ByteReader reader(frame);
+  bool good = reader.u8() == std::to_integer<std::uint8_t>(frame_begin);
+  good = reader.u8() == record_id && good;
+  good = reader.u8() == record_length && good;
+  Record record;
+  for (std::uint8_t& count : record.flexion) {
+    count = reader.u8();
+    good = count <= most_count && good;
+  }
+  record.battery = reader.u8();
+  good = reader.u8() == std::to_integer<std::uint8_t>(frame_end) && good;
+  if (!good || reader.overrun() || reader.remaining() != 0) return std::nullopt;
+  return record;
+}
+
+std::optional<Record> Parser::push_byte(std::byte byte) noexcept {
+  ++counters_.bytes;
+  if (byte == frame_begin) {
+    if (state_ == State::in_frame) {
+      ++counters_.bad_records;
+      discard_held();
+    }
+    state_ = State::in_frame;
+  }
+  if (state_ != State::in_frame) {
+    skip_byte(byte);
+    return std::nullopt;
+  }
+  frame_[held_++] = byte;
+  if (byte == frame_end) return end_frame();
+  const bool motion = held_ == 2 && byte == motion_id;
+  const bool overlong = held_ == record_bytes;
+  if (motion || overlong) {
+    if (overlong) ++counters_.bad_records;
+    discard_held();
+    state_ = State::skipping;
+  }
+  return std::nullopt;
+}
+
+std::optional<Record> Parser::end_frame() noexcept {
+  state_ = State::between;
+  const auto record = decode_record(std::span(frame_).first(held_));
+  if (!record) {
+    ++counters_.bad_records;
+    discard_held();
+    return std::nullopt;
+  }
+  ++counters_.records;
+  counters_.record_bytes += std::exchange(held_, 0);
+  return record;
+}
+
+/// An end without a beginning is a frame that lost it.
+void Parser::skip_byte(std::byte byte) noexcept {
+  ++counters_.discarded_bytes;
+  if (byte != frame_end) return;
+  if (std::exchange(state_, State::between) == State::between) ++counters_.bad_records;
+}
+
+void Parser::discard_held() noexcept {
+  counters_.discarded_bytes += std::exchange(held_, 0);
+}
+
+void Parser::reset() noexcept {
+  discard_held();
+  state_ = State::skipping;
+}
+
+void Parser::count_discarded(std::uint64_t bytes) noexcept {
+  counters_.bytes += bytes;
+  counters_.discarded_bytes += bytes;
+}
+
+} // namespace nendo::driver::forte

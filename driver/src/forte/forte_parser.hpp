@@ -1,0 +1,65 @@
+#pragma once
+// The byte stream of a Forte glove, taken apart into records. Pure: no I/O, clock, log or
+// allocation; bytes are hostile. A frame's first byte occurs nowhere else, so whatever was damaged,
+// the next frame is found.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "forte/forte_protocol.hpp"
+#include "stream/stream_counters.hpp"
+
+namespace nendo::driver::forte {
+
+struct Record {
+  std::array<std::uint8_t, sensor_count> flexion{}; ///< in the order of `slots`, 0 to most_count
+  std::uint8_t battery = 0;                         ///< in an unknown unit
+};
+
+/// Judges a whole frame, its first and last byte included. Nothing if it is no record: of another
+/// kind or length, or with a count above most_count.
+std::optional<Record> decode_record(std::span<const std::byte> frame) noexcept;
+
+class Parser {
+public:
+  /// Takes the next bytes of the stream, cut anywhere, and hands each record to `sink(const
+  /// Record&)`. Damaged frames count as bad, once each; frames of motion and what stands between
+  /// frames are discarded.
+  template <class Sink>
+  void push(std::span<const std::byte> chunk, Sink&& sink) {
+    for (const std::byte byte : chunk) {
+      if (const auto record = push_byte(byte)) sink(*record);
+    }
+  }
+
+  /// Gives up the unfinished frame; the next byte may be anywhere in one.
+  void reset() noexcept;
+  /// Counts bytes that somebody else read from the same stream and that were no records.
+  void count_discarded(std::uint64_t bytes) noexcept;
+
+  const StreamCounters& counters() const noexcept { return counters_; }
+  /// Bytes of the unfinished frame; always less than record_bytes.
+  std::size_t pending() const noexcept { return held_; }
+
+private:
+  enum class State : std::uint8_t {
+    between,  ///< two frames
+    in_frame, ///< that may be a record
+    skipping, ///< the rest of one that is none, or whose beginning was not seen
+  };
+
+  std::optional<Record> push_byte(std::byte byte) noexcept;
+  std::optional<Record> end_frame() noexcept;
+  void skip_byte(std::byte byte) noexcept;
+  void discard_held() noexcept;
+
+  State state_ = State::skipping;
+  std::array<std::byte, record_bytes> frame_{};
+  std::size_t held_ = 0; ///< 0 outside in_frame
+  StreamCounters counters_;
+};
+
+} // namespace nendo::driver::forte
