@@ -1,3 +1,7 @@
+#include <csignal>
+#include <fstream>
+#include <iterator>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
@@ -68,6 +72,29 @@ TEST_SUITE("run") {
       CHECK(moved.maxCoeff() < 0.5 * diagonal);
       CHECK((moved.array() == 0.0).any());
     }
+  }
+
+  TEST_CASE("the switch at a glove's wrist takes hold of the model, and the light shows it") {
+    const TemporaryFolder folder;
+    const auto link = folder.path() / "glove";
+    const auto log = folder.path() / "traffic";
+    nendo::test::Program emulator({"emulate", "--link", link.string(), "--log", log.string(),
+                                   "--fault", "press@3s+1s", "--fault", "press@5s+1s"});
+    REQUIRE(nendo::test::appears(link));
+    const auto done = nendo::test::nendo({"run", "--right", "serial:" + link.string(), "--switch",
+                                          "grab", "--duration", "7", "--json", "--out",
+                                          (folder.path() / "shape.ply").string()});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const json summary = summary_of(done);
+    CHECK(summary["switch"] == "grab");
+    CHECK(summary["right"]["switch_uses"] == 2);
+    emulator.signal(SIGINT);
+    REQUIRE(emulator.wait().exit_code == 0);
+    std::ifstream file(log);
+    const std::string traffic(std::istreambuf_iterator<char>(file), {});
+    const auto lit = traffic.find("4c 01"); // L on
+    REQUIRE(lit != std::string::npos);
+    CHECK(traffic.find("4c 00", lit) != std::string::npos);
   }
 
   TEST_CASE("Ctrl-C ends a run cleanly and still writes the result") {

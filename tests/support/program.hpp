@@ -96,15 +96,20 @@ inline Finished nendo(std::vector<std::string> arguments) {
   return Program(std::move(arguments)).wait();
 }
 
+/// Waits until there is a file or link; false if there is none for ten seconds.
+inline bool appears(const std::filesystem::path& path) {
+  for (int turn = 0; turn < 2000 && !std::filesystem::exists(path); ++turn)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  return std::filesystem::exists(path);
+}
+
 /// A CyberGlove emulated by a program of its own, ready when this is constructed.
 class EmulatedGlove {
 public:
   EmulatedGlove(const std::filesystem::path& link, const std::string& hand,
                 const std::string& sensors)
       : program_({"emulate", "--link", link.string(), "--hand", hand, "--sensors", sensors}) {
-    for (int turn = 0; turn < 2000 && !std::filesystem::exists(link); ++turn) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    appears(link);
   }
 
 private:

@@ -2,12 +2,18 @@
 # TEST_CASE. INCLUDES names private src/ folders of the unit under test.
 include(doctest)
 
+# doctest's own implementation, compiled once for all test programs.
+add_library(nendo_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tests/support/main.cpp)
+nendo_settings(nendo_test_main PRIVATE)
+target_link_libraries(nendo_test_main PUBLIC doctest::doctest)
+
 function(nendo_test folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
   set(target test_${folder})
-  add_executable(${target} ${ARG_SOURCES} ${PROJECT_SOURCE_DIR}/tests/support/main.cpp)
+  add_executable(${target} ${ARG_SOURCES})
   nendo_settings(${target} PRIVATE)
-  target_link_libraries(${target} PRIVATE doctest::doctest ${ARG_LIBRARIES})
+  nendo_precompile(${target} <doctest/doctest.h>)
+  target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
   doctest_discover_tests(${target} TEST_PREFIX "${folder}/" 
     PROPERTIES TIMEOUT 120 FAIL_REGULAR_EXPRESSION "test cases: +0 ")

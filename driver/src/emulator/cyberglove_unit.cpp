@@ -79,6 +79,11 @@ void CyberGloveUnit::befall(const Incident& incident, Time now) {
     restart_ends_ = now + restart_time;
     restart_answers_ = false;
     break;
+  case Incident::Kind::switch_on:
+  case Incident::Kind::switch_off:
+    settings_.switch_on = incident.kind == Incident::Kind::switch_on;
+    if (settings_.switch_drives_light) settings_.light = settings_.switch_on;
+    break;
   }
 }
 

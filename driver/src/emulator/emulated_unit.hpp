@@ -18,7 +18,7 @@ namespace nendo::driver {
 
 /// What befalls a unit without the host's doing.
 struct Incident {
-  enum class Kind : std::uint8_t { glove_out, glove_in, power_cycle };
+  enum class Kind : std::uint8_t { glove_out, glove_in, power_cycle, switch_on, switch_off };
   Kind kind = Kind::glove_out;
   unsigned sensors = 0; ///< glove_in: of another glove; 0: as before
   std::optional<Side> side = std::nullopt;

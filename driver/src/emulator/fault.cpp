@@ -51,6 +51,12 @@ constexpr std::array<Row, fault_kinds> rows{{
      false,
      {},
      {}},
+    {"press",
+     "press@5s+2s",
+     "no fault: the switch at the wrist is on for 2 s",
+     false,
+     Part::required,
+     {}},
 }};
 
 std::optional<double> number(std::string_view text) {

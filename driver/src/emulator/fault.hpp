@@ -27,8 +27,9 @@ enum class FaultKind : std::uint8_t {
   eg,      ///< the glove is pulled out of the unit
   swap,    ///< another glove is plugged in: `value` is 18, 22, left or right
   restart, ///< the unit's power fails for a moment
+  press,   ///< no fault: somebody presses the switch at the wrist
 };
-inline constexpr std::size_t fault_kinds = 11;
+inline constexpr std::size_t fault_kinds = 12;
 
 struct Fault {
   FaultKind kind = FaultKind::drop;
@@ -41,7 +42,8 @@ struct Fault {
 std::string_view name_of(FaultKind kind) noexcept;
 /// The unit suffers it, not its line.
 constexpr bool befalls_unit(FaultKind kind) noexcept {
-  return kind == FaultKind::eg || kind == FaultKind::swap || kind == FaultKind::restart;
+  return kind == FaultKind::eg || kind == FaultKind::swap || kind == FaultKind::restart ||
+         kind == FaultKind::press;
 }
 
 /// Error: usage, with the form that the fault should have.

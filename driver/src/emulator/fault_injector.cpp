@@ -22,7 +22,8 @@ FaultInjector::FaultInjector(const std::vector<Fault>& faults, std::uint32_t see
       continue;
     }
     schedule_.push_back({fault.at, {fault, false}});
-    const bool ends = fault.kind == FaultKind::eg || fault.kind == FaultKind::swap;
+    const bool ends = fault.kind == FaultKind::eg || fault.kind == FaultKind::swap ||
+                      fault.kind == FaultKind::press;
     if (ends) schedule_.push_back({fault.at + fault.lasting, {fault, true}});
     if (fault.kind == FaultKind::silence) silences_.push_back(fault);
   }

@@ -129,6 +129,9 @@ private:
     case FaultKind::restart:
       unit_->befall({Incident::Kind::power_cycle}, now_);
       break;
+    case FaultKind::press:
+      unit_->befall({over ? Incident::Kind::switch_off : Incident::Kind::switch_on}, now_);
+      break;
     case FaultKind::eg:
       unit_->befall({over ? Incident::Kind::glove_in : Incident::Kind::glove_out}, now_);
       break;
