@@ -38,9 +38,12 @@ public:
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
     auto identity = ask(transport, dialogue, source, occasion);
     parser_.count_discarded(dialogue.bytes_received());
-    if (identity) identity_ = *std::move(identity);
+    if (!identity) {
+      begin_records();
+      return identity.error();
+    }
+    identity_ = *std::move(identity);
     begin_records();
-    if (!identity) return identity.error();
     if (occasion == Occasion::opening) {
       for (const std::string& note : identity_.notes)
         spdlog::warn("device: {}: {}", source, note);
