@@ -90,21 +90,29 @@ Answer Dialogue::next(std::byte& byte, HostTime until) noexcept {
   return Answer::good;
 }
 
-/// Reads up to and including the head of a reply.
-Answer Dialogue::find_reply(std::string_view head, HostTime until) noexcept {
-  Tail tail;
+template <class Judge>
+Answer Dialogue::read_until(HostTime until, Judge&& judge) noexcept {
   for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
     std::byte byte{};
     const Answer answer = next(byte, until);
     if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
     if (answer != Answer::good) return answer;
+    if (const std::optional<Answer> judged = judge(byte)) return *judged;
+  }
+  return Answer::nonsense;
+}
+
+/// Reads up to and including the head of a reply.
+Answer Dialogue::find_reply(std::string_view head, HostTime until) noexcept {
+  Tail tail;
+  return read_until(until, [&](std::byte byte) -> std::optional<Answer> {
     if (byte == terminator) {
-      if (const auto error = error_at_end(tail)) return *error;
+      if (const auto error = error_at_end(tail)) return error;
     }
     tail.push(byte);
     if (tail.ends_with(head)) return Answer::good;
-  }
-  return Answer::nonsense;
+    return std::nullopt;
+  });
 }
 
 Answer Dialogue::drain(std::chrono::milliseconds longest) noexcept {
@@ -187,17 +195,13 @@ Answer Dialogue::command(std::span<const std::byte> bytes, std::string_view echo
   const HostTime until = at_most(timeout);
   if (const Answer sent = send(bytes); sent != Answer::good) return sent;
   Tail tail;
-  for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
-    std::byte byte{};
-    const Answer answer = next(byte, until);
-    if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
-    if (answer != Answer::good) return answer;
+  return read_until(until, [&](std::byte byte) -> std::optional<Answer> {
     if (byte == terminator) {
-      if (const auto judged = judge_confirmation(tail, echo)) return *judged;
+      if (const auto judged = judge_confirmation(tail, echo)) return judged;
     }
     tail.push(byte);
-  }
-  return Answer::nonsense;
+    return std::nullopt;
+  });
 }
 
 Answer Dialogue::ask_record(std::size_t least, std::span<std::byte> record, std::size_t& size,
@@ -209,42 +213,35 @@ Answer Dialogue::ask_record(std::size_t least, std::span<std::byte> record, std:
   }
   Tail tail;
   size = 0;
-  for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
-    std::byte byte{};
-    const Answer answer = next(byte, until);
-    if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
-    if (answer != Answer::good) return answer;
+  return read_until(until, [&](std::byte byte) -> std::optional<Answer> {
     if (size < record.size()) record[size] = byte;
     ++size; // beyond the record's room if the frame is too long to be one
     if (byte != terminator) {
       tail.push(byte);
-      continue;
+      return std::nullopt;
     }
     const bool fits = size >= least && size <= record.size();
     if (fits && std::to_integer<char>(record[0]) == record_command) return Answer::good;
-    if (const auto error = error_at_end(tail)) return *error;
+    if (const auto error = error_at_end(tail)) return error;
     size = 0;
-  }
-  return Answer::nonsense;
+    return std::nullopt;
+  });
 }
 
 Answer Dialogue::restart(std::chrono::milliseconds timeout) noexcept {
   const HostTime until = at_most(timeout);
   if (const Answer sent = send(std::span(&restart_firmware, 1)); sent != Answer::good) return sent;
   Tail tail;
-  for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
-    std::byte byte{};
-    const Answer answer = next(byte, until);
-    if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
-    if (answer != Answer::good) return answer;
+  const Answer answer = read_until(until, [&](std::byte byte) -> std::optional<Answer> {
     if (byte == terminator) {
-      if (const auto error = error_at_end(tail)) return *error;
+      if (const auto error = error_at_end(tail)) return error;
     }
     tail.push(byte);
     // One driver expects the command as it would be printed.
-    if (tail.ends_with("\x12\r\n") || tail.ends_with("^R\r\n")) break;
-  }
-  if (!tail.ends_with("\r\n")) return Answer::nonsense;
+    if (tail.ends_with("\x12\r\n") || tail.ends_with("^R\r\n")) return Answer::good;
+    return std::nullopt;
+  });
+  if (answer != Answer::good) return answer;
   // A left glove's answer may lack its NUL.
   std::byte end{};
   return next(end, at_most(quiet_end)) == Answer::gone ? Answer::gone : Answer::good;

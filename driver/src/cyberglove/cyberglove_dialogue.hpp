@@ -86,6 +86,8 @@ private:
   Answer send(std::span<const std::byte> command) noexcept;
   Answer drain(std::chrono::milliseconds longest) noexcept;
   Answer next(std::byte& byte, HostTime until) noexcept;
+  template <class Judge>
+  Answer read_until(HostTime until, Judge&& judge) noexcept; ///< `judge(byte)` ends it
   Answer find_reply(std::string_view head, HostTime until) noexcept;
   HostTime at_most(std::chrono::milliseconds timeout) const noexcept;
 

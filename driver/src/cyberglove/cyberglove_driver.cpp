@@ -71,10 +71,7 @@ public:
     parser_.count_discarded(dialogue.bytes_received());
     begin_records();
     if (!ready) return ready.error();
-    if (answer != Answer::good) {
-      return Error{Errc::no_device, source + " went away; is the cable loose?"};
-    }
-    return {};
+    return answer == Answer::good ? Result<void>() : went_away(source);
   }
 
   void end_stream(Transport& transport, const Patience& patience) noexcept override {

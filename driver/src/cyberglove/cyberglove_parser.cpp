@@ -217,9 +217,4 @@ void Parser::reset(const RecordShape& shape) noexcept {
   shape_ = shape;
 }
 
-void Parser::count_discarded(std::uint64_t bytes) noexcept {
-  counters_.bytes += bytes;
-  counters_.discarded_bytes += bytes;
-}
-
 } // namespace nendo::driver::cyberglove

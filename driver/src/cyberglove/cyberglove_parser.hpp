@@ -90,8 +90,8 @@ public:
 
   /// Gives up the unfinished record and goes on with records of another shape.
   void reset(const RecordShape& shape) noexcept;
-  /// Counts bytes that somebody else read from the same stream and that were no records.
-  void count_discarded(std::uint64_t bytes) noexcept;
+  /// StreamCounters::count_discarded.
+  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
   /// Bytes of the unfinished record; always less than most_record_bytes.

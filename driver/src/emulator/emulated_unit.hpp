@@ -83,6 +83,20 @@ protected:
     return sent;
   }
 
+  /// Sends `make(due)` for each time from `next` on that is due at `now`, one every `period`. Once
+  /// the output is full, the others that are due count as refused without being made, however many
+  /// they are.
+  template <class Make>
+  void send_due(Time& next, Time period, Time now, Make&& make) {
+    for (; next <= now; next += period) {
+      const auto record = make(next);
+      if (send_record(std::as_bytes(std::span(record)))) continue;
+      const auto others = (now - next) / period;
+      counters_.bytes_refused += record.size() * static_cast<std::uint64_t>(others);
+      next += others * period;
+    }
+  }
+
   UnitCounters counters_;
 
 private:

@@ -15,10 +15,7 @@ constexpr std::uint8_t acknowledge = 0x55;
 constexpr std::uint8_t level = 0x7F; // the hand is held level: the middle of a tilt sensor's range
 
 std::uint8_t flexion(const JointAngles& angles, Sensor sensor) {
-  const JointRange range = joint_range(sensor);
-  const double angle_rad = angles[static_cast<std::size_t>(sensor)];
-  const double part = (angle_rad - range.least_rad) / (range.most_rad - range.least_rad);
-  return static_cast<std::uint8_t>(std::lround(std::clamp(part, 0.0, 1.0) * 255.0));
+  return static_cast<std::uint8_t>(std::lround(part_of_range(angles, sensor) * 255.0));
 }
 
 } // namespace
@@ -68,14 +65,7 @@ void FiveDtUnit::advance(Time now) {
     next_sample_ = now + period_;
   }
   if (!streaming_) return;
-  for (; next_sample_ <= now; next_sample_ += period_) {
-    const auto bytes = sample(next_sample_);
-    if (send_record(std::as_bytes(std::span(bytes)))) continue;
-    // The output is full: account for the others that are due without making them.
-    const auto others = (now - next_sample_) / period_;
-    counters_.bytes_refused += bytes.size() * static_cast<std::uint64_t>(others);
-    next_sample_ += others * period_;
-  }
+  send_due(next_sample_, period_, now, [this](Time due) { return sample(due); });
 }
 
 std::optional<EmulatedUnit::Time> FiveDtUnit::next_due() const noexcept {

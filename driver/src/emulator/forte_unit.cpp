@@ -16,10 +16,7 @@ constexpr std::array<std::uint8_t, 16> motion_frame{0xF0, 2, 12, 0, 0, 0, 0, 0,
                                                     0,    0, 0,  0, 0, 0, 0, 0xF7};
 
 std::uint8_t flexion(const JointAngles& angles, Sensor sensor) {
-  const JointRange range = joint_range(sensor);
-  const double angle_rad = angles[static_cast<std::size_t>(sensor)];
-  const double part = (angle_rad - range.least_rad) / (range.most_rad - range.least_rad);
-  return static_cast<std::uint8_t>(std::lround(std::clamp(part, 0.0, 1.0) * 127.0));
+  return static_cast<std::uint8_t>(std::lround(part_of_range(angles, sensor) * 127.0));
 }
 
 } // namespace

@@ -18,9 +18,7 @@ int clamped(double part) {
 }
 
 int flexion(const JointAngles& angles, Sensor sensor) {
-  const JointRange range = joint_range(sensor);
-  const double angle_rad = angles[static_cast<std::size_t>(sensor)];
-  return clamped((angle_rad - range.least_rad) / (range.most_rad - range.least_rad));
+  return clamped(part_of_range(angles, sensor));
 }
 
 // The number behind a letter, as the firmware's atoi reads it; empty where the letter is not there.
@@ -75,15 +73,9 @@ void LucidGlovesUnit::advance(Time now) {
     motion_origin_ = now;
     next_line_ = now + period_;
   }
-  for (; next_line_ <= now; next_line_ += period_) {
-    if (!streaming_) continue;
-    const std::string text = line(next_line_);
-    if (send_record(std::as_bytes(std::span(text)))) continue;
-    // The output is full: account for the others that are due without making them.
-    const auto others = (now - next_line_) / period_;
-    counters_.bytes_refused += text.size() * static_cast<std::uint64_t>(others);
-    next_line_ += others * period_;
-  }
+  if (streaming_) send_due(next_line_, period_, now, [this](Time due) { return line(due); });
+  while (next_line_ <= now) // while it is stopped the grid goes on
+    next_line_ += period_;
 }
 
 std::optional<EmulatedUnit::Time> LucidGlovesUnit::next_due() const noexcept {

@@ -6,8 +6,8 @@
 
 #include "fivedt/fivedt_information.hpp"
 #include "fivedt/fivedt_parser.hpp"
+#include "glove_options.hpp"
 #include "glove_spec.hpp"
-#include "serial_options.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
@@ -27,12 +27,7 @@ constexpr auto longest_babble = 300ms;
 constexpr std::array<Sensor, fingers> slots{
     Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp, Sensor::pinky_mcp};
 
-constexpr SensorMask sensors() noexcept {
-  SensorMask mask;
-  for (const Sensor sensor : slots)
-    mask.bits |= 1U << static_cast<unsigned>(sensor);
-  return mask;
-}
+constexpr SensorMask sensors = mask_of(slots);
 
 class FiveDtProtocol final : public GloveProtocol {
 public:
@@ -61,8 +56,7 @@ public:
     parser_.push(chunk, [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < fingers; ++k)
-        sample.raw[static_cast<std::size_t>(slots[k])] = RawCount{record.flexion[k]};
-      sample.present = sensors();
+        sample.set(slots[k], RawCount{record.flexion[k]});
       sample.side = side_;
       sink.deliver(sample);
     });
@@ -73,9 +67,6 @@ public:
 private:
   static IoStatus send(Transport& transport, char command) noexcept {
     return transport.write_all(std::as_bytes(std::span(&command, 1)), write_timeout);
-  }
-  static Error went_away(const std::string& source) {
-    return {Errc::no_device, source + " went away; is the cable loose?"};
   }
   Error stranger(const std::string& source, std::uint64_t bytes_heard) const {
     const std::string what =
@@ -177,7 +168,7 @@ private:
     GloveInfo info;
     info.model = "5DT Data Glove 5, 5 sensors";
     info.side = hand.side;
-    info.sensors = sensors();
+    info.sensors = sensors;
     info.counts = {255, true};
     info.facts = {{"link", wireless_ ? "wireless" : "wired"},
                   {"hand_source", std::string(hand.source)}};

@@ -53,9 +53,4 @@ void Parser::reset() noexcept {
   in_step_ = false;
 }
 
-void Parser::count_discarded(std::uint64_t bytes) noexcept {
-  counters_.bytes += bytes;
-  counters_.discarded_bytes += bytes;
-}
-
 } // namespace nendo::driver::fivedt

@@ -36,8 +36,8 @@ public:
 
   /// Gives up the unfinished sample; the next byte may be anywhere in one.
   void reset() noexcept;
-  /// Counts bytes that somebody else read from the same stream and that were no samples.
-  void count_discarded(std::uint64_t bytes) noexcept;
+  /// StreamCounters::count_discarded.
+  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
   /// Bytes of the unfinished sample; always less than sample_bytes.

@@ -61,8 +61,7 @@ public:
     if (!report) return;
     GloveSample sample;
     for (std::size_t k = 0; k < value_sensors.size(); k += step_)
-      sample.raw[static_cast<std::size_t>(value_sensors[k])] = RawCount{report->values[k]};
-    sample.present = sensors();
+      sample.set(value_sensors[k], RawCount{report->values[k]});
     sample.side = model_.side;
     sink.deliver(sample);
   }
@@ -73,7 +72,7 @@ private:
   SensorMask sensors() const noexcept {
     SensorMask mask;
     for (std::size_t k = 0; k < value_sensors.size(); k += step_)
-      mask.bits |= 1U << static_cast<unsigned>(value_sensors[k]);
+      mask.add(value_sensors[k]);
     return mask;
   }
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "forte/forte_parser.hpp"
+#include "glove_options.hpp"
 #include "glove_spec.hpp"
-#include "serial_options.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
@@ -21,12 +21,7 @@ constexpr auto write_timeout = 100ms;
 constexpr auto answer_time = 1100ms; ///< three times: less than open_budget
 constexpr int tries = 3;
 
-constexpr SensorMask sensors() noexcept {
-  SensorMask mask;
-  for (const Sensor sensor : slots)
-    mask.bits |= 1U << static_cast<unsigned>(sensor);
-  return mask;
-}
+constexpr SensorMask sensors = mask_of(slots);
 
 class ForteProtocol final : public GloveProtocol {
 public:
@@ -69,8 +64,7 @@ public:
     parser_.push(chunk, [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < slots.size(); ++k)
-        sample.raw[static_cast<std::size_t>(slots[k])] = RawCount{record.flexion[k]};
-      sample.present = sensors();
+        sample.set(slots[k], RawCount{record.flexion[k]});
       sample.side = hand_.side;
       sink.deliver(sample);
     });
@@ -85,9 +79,6 @@ private:
     const Command& link = bluetooth_ ? to_bluetooth : to_usb;
     return transport.write_all(std::as_bytes(std::span(link)), write_timeout);
   }
-  static Error went_away(const std::string& source) {
-    return {Errc::no_device, source + " went away; is the cable loose?"};
-  }
   static Error stranger(const std::string& source, std::uint64_t bytes_heard) {
     if (bytes_heard == 0) {
       return {Errc::no_device, source + ": nothing comes from it; is the glove switched on, is "
@@ -100,7 +91,7 @@ private:
     GloveInfo info;
     info.model = "Forte Data Glove, 10 sensors";
     info.side = hand_.side;
-    info.sensors = sensors();
+    info.sensors = sensors;
     info.counts = {most_count, true};
     info.facts = {{"link", bluetooth_ ? "bluetooth" : "usb"},
                   {"hand_source", std::string(hand_.source)},

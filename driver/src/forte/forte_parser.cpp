@@ -76,9 +76,4 @@ void Parser::reset() noexcept {
   state_ = State::skipping;
 }
 
-void Parser::count_discarded(std::uint64_t bytes) noexcept {
-  counters_.bytes += bytes;
-  counters_.discarded_bytes += bytes;
-}
-
 } // namespace nendo::driver::forte

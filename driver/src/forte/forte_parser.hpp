@@ -37,8 +37,8 @@ public:
 
   /// Gives up the unfinished frame; the next byte may be anywhere in one.
   void reset() noexcept;
-  /// Counts bytes that somebody else read from the same stream and that were no records.
-  void count_discarded(std::uint64_t bytes) noexcept;
+  /// StreamCounters::count_discarded.
+  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
   /// Bytes of the unfinished frame; always less than record_bytes.

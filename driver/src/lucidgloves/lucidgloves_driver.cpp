@@ -8,10 +8,10 @@
 #include <string_view>
 #include <utility>
 
+#include "glove_options.hpp"
 #include "glove_spec.hpp"
 #include "lucidgloves/lucidgloves_parser.hpp"
 #include "lucidgloves/lucidgloves_slots.hpp"
-#include "serial_options.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
@@ -125,9 +125,6 @@ public:
 private:
   static IoStatus send(Transport& transport, std::string_view command) noexcept {
     return transport.write_all(std::as_bytes(std::span(command)), write_timeout);
-  }
-  static Error went_away(const std::string& source) {
-    return {Errc::no_device, source + " went away; is the cable loose?"};
   }
   Error stranger(const std::string& source, const StreamCounters& heard) const {
     if (heard.bytes == 0) {

@@ -197,9 +197,4 @@ void Parser::reset() noexcept {
   state_ = State::begin_unseen;
 }
 
-void Parser::count_discarded(std::uint64_t bytes) noexcept {
-  counters_.bytes += bytes;
-  counters_.discarded_bytes += bytes;
-}
-
 } // namespace nendo::driver::lucidgloves

@@ -49,8 +49,8 @@ public:
 
   /// Gives up the unfinished line; what follows is skipped up to the next line's beginning.
   void reset() noexcept;
-  /// Counts bytes that somebody else read from the same stream and that were no records.
-  void count_discarded(std::uint64_t bytes) noexcept;
+  /// StreamCounters::count_discarded.
+  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
   /// Bytes of the unfinished line; always less than most_line_bytes.

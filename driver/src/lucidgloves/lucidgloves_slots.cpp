@@ -23,12 +23,6 @@ constexpr std::size_t index = 1;
 constexpr std::array<Sensor, fingers - 2> pair_slots{
     Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_pinky_abduction};
 
-void put(GloveSample& sample, Sensor sensor, std::uint16_t count) noexcept {
-  const auto slot = static_cast<std::size_t>(sensor);
-  sample.raw[slot] = RawCount{count};
-  sample.present.bits |= 1U << slot;
-}
-
 std::uint16_t apart(std::uint16_t one, std::uint16_t other, std::uint16_t range) noexcept {
   const int difference = one > other ? one - other : other - one;
   return static_cast<std::uint16_t>(std::min(2 * difference, int{range}));
@@ -38,18 +32,18 @@ std::uint16_t apart(std::uint16_t one, std::uint16_t other, std::uint16_t range)
 
 void fill_slots(const Line& line, std::uint16_t range, GloveSample& sample) noexcept {
   for (std::size_t finger = 0; finger < fingers; ++finger) {
-    if (line.curl[finger]) put(sample, joint_slots[finger][mcp], *line.curl[finger]);
+    if (line.curl[finger]) sample.set(joint_slots[finger][mcp], RawCount{*line.curl[finger]});
     for (std::size_t joint = 0; joint < joints; ++joint) {
       const Sensor sensor = joint_slots[finger][joint];
       if (line.joint[finger][joint] && sensor != none)
-        put(sample, sensor, *line.joint[finger][joint]);
+        sample.set(sensor, RawCount{*line.joint[finger][joint]});
     }
   }
-  if (line.splay[0]) put(sample, Sensor::thumb_abduction, *line.splay[0]);
+  if (line.splay[0]) sample.set(Sensor::thumb_abduction, RawCount{*line.splay[0]});
   for (std::size_t pair = 0; pair < pair_slots.size(); ++pair) {
     const auto& one = line.splay[index + pair];
     const auto& other = line.splay[index + pair + 1];
-    if (one && other) put(sample, pair_slots[pair], apart(*one, *other, range));
+    if (one && other) sample.set(pair_slots[pair], RawCount{apart(*one, *other, range)});
   }
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "glove_options.hpp"
 #include "glove_spec.hpp"
 #include "p5/p5_parser.hpp"
 #include "usb/await_report.hpp"
@@ -30,7 +31,7 @@ public:
     GloveInfo info;
     info.model = "Essential Reality P5, 5 sensors";
     info.side = side_;
-    info.sensors = sensors();
+    info.sensors = mask_of(bend_sensors);
     info.counts = {most_bend, true};
     info.abilities.wrist_switch = true;
     info.facts = facts_of(usb(transport).identity());
@@ -47,8 +48,7 @@ public:
       mouse_was_on_ = true; // and stays so if the stream is started again after a silence
       status = set_mouse(transport, mouse_off);
     }
-    if (status != ControlStatus::gone) return {};
-    return Error{Errc::no_device, source + " went away; is the cable loose?"};
+    return status == ControlStatus::gone ? went_away(source) : Result<void>();
   }
 
   void end_stream(Transport& transport, const Patience& /*patience*/) noexcept override {
@@ -61,8 +61,7 @@ public:
     if (!report) return;
     GloveSample sample;
     for (std::size_t k = 0; k < bend_sensors.size(); ++k)
-      sample.raw[static_cast<std::size_t>(bend_sensors[k])] = RawCount{report->bends[k]};
-    sample.present = sensors();
+      sample.set(bend_sensors[k], RawCount{report->bends[k]});
     sample.wrist_switch = report->button_a ? WristSwitch::on : WristSwitch::off;
     sample.side = side_;
     sink.deliver(sample);
@@ -75,12 +74,6 @@ private:
   static UsbTransport& usb(Transport& transport) noexcept {
     return static_cast<UsbTransport&>(transport);
   }
-  static constexpr SensorMask sensors() noexcept {
-    SensorMask mask;
-    for (const Sensor sensor : bend_sensors)
-      mask.bits |= 1U << static_cast<unsigned>(sensor);
-    return mask;
-  }
   static ControlStatus set_mouse(Transport& transport, std::byte mode) noexcept {
     return usb(transport).set_feature(std::array{mouse_report, mode}, control_timeout);
   }
@@ -90,24 +83,15 @@ private:
   bool mouse_was_on_ = false; ///< and was switched off here
 };
 
-Result<Side> hand_of(const GloveSpec& spec) {
-  const auto hand = spec.options.find("hand");
-  if (hand == spec.options.end()) return Side::right;
-  for (const Side side : {Side::left, Side::right}) {
-    if (hand->second == name_of(side)) return side;
-  }
-  return Error{Errc::usage, spec.text + ": hand is left or right, not " + hand->second};
-}
-
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
                                        HostTime deadline) {
   if (auto allowed = allow_options(spec, {"serial", "hand"}); !allowed) return allowed.error();
-  const auto side = hand_of(spec);
-  if (!side) return side.error();
+  const auto hand = hand_option(spec);
+  if (!hand) return hand.error();
   return open_stream_glove(spec.text, usb_opener(wanted, {interface_number, report_bytes}),
-                           std::make_unique<P5Protocol>(*side), deadline);
+                           std::make_unique<P5Protocol>(hand->value_or(Side::right)), deadline);
 }
 
 } // namespace nendo::driver

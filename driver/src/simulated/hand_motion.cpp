@@ -258,6 +258,12 @@ JointRange joint_range(Sensor sensor) noexcept {
   return {limit.least * rad_per_degree, limit.most * rad_per_degree};
 }
 
+double part_of_range(const JointAngles& angles, Sensor sensor) noexcept {
+  const JointRange range = joint_range(sensor);
+  const double angle_rad = angles[static_cast<std::size_t>(sensor)];
+  return std::clamp((angle_rad - range.least_rad) / (range.most_rad - range.least_rad), 0.0, 1.0);
+}
+
 HandMotion::HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept : motion_(motion) {
   // The standard's distributions differ between libraries; the engine itself does not.
   std::mt19937 random(2 * seed + (side == Side::left ? 1 : 0));

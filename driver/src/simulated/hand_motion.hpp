@@ -34,6 +34,10 @@ struct JointRange {
 /// The range that a motion never leaves.
 JointRange joint_range(Sensor sensor) noexcept;
 
+/// How far through its range a joint is: 0 straight to 1 fully bent, as gloves report that
+/// calibrate themselves.
+double part_of_range(const JointAngles& angles, Sensor sensor) noexcept;
+
 /// One hand's motion. Every motion starts at time 0 in the relaxed pose and grows to its full size
 /// within a second; angles are continuously differentiable. Two hands of one seed move alike but
 /// not in lock-step.

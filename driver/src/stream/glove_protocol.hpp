@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <stop_token>
+#include <string>
 
 #include <nendo/base/result.hpp>
 #include <nendo/base/units.hpp>
@@ -22,6 +23,11 @@ struct Patience {
   HostTime deadline;
   std::stop_token cancelled;
 };
+
+/// no_device: the transport said so in the middle of something.
+inline Error went_away(const std::string& source) {
+  return {Errc::no_device, source + " went away; is the cable loose?"};
+}
 
 /// Why a glove is asked who it is.
 enum class Occasion : std::uint8_t {

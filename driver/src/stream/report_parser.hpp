@@ -23,10 +23,7 @@ public:
     return record;
   }
   /// Counts bytes that were read while nobody wanted records.
-  void count_discarded(std::uint64_t bytes) noexcept {
-    counters_.bytes += bytes;
-    counters_.discarded_bytes += bytes;
-  }
+  void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
   const StreamCounters& counters() const noexcept { return counters_; }
 
 private:

@@ -29,44 +29,41 @@ constexpr std::uint64_t bad_in_a_row = 16;
 constexpr auto rate_window = 1s;
 constexpr double rate_tolerance = 0.05;
 
+/// What the protocol counts, and where it stands in GloveStats. `bytes` is the first to be written
+/// and the last to be read: it is never seen to be less than its parts.
+struct Count {
+  std::uint64_t StreamCounters::*counter;
+  std::uint64_t GloveStats::*stat;
+};
+constexpr std::array counts{Count{&StreamCounters::bytes, &GloveStats::bytes},
+                            Count{&StreamCounters::record_bytes, &GloveStats::record_bytes},
+                            Count{&StreamCounters::discarded_bytes, &GloveStats::discarded_bytes},
+                            Count{&StreamCounters::records, &GloveStats::records},
+                            Count{&StreamCounters::bad_records, &GloveStats::bad_records},
+                            Count{&StreamCounters::implausible, &GloveStats::implausible},
+                            Count{&StreamCounters::missed, &GloveStats::missed},
+                            Count{&StreamCounters::too_fast, &GloveStats::too_fast},
+                            Count{&StreamCounters::unplugged, &GloveStats::unplugged}};
+
 /// GloveStats, written by the reader thread and read by any.
 struct SharedStats {
-  std::atomic<std::uint64_t> bytes{0}, record_bytes{0}, discarded_bytes{0}, records{0},
-      bad_records{0}, implausible{0}, missed{0}, too_fast{0}, unplugged{0}, ring_refused{0},
-      silences{0}, reopened{0};
+  std::array<std::atomic<std::uint64_t>, counts.size()> counted{};
+  std::atomic<std::uint64_t> ring_refused{0}, silences{0}, reopened{0};
   std::atomic<double> rate_hz{0.0};
 
   /// `now` and `then` are the protocol's counters, which outlive a stop() and another start().
-  /// `bytes` goes first and is read last: it is never seen to be less than its parts.
   void store(const StreamCounters& now, const StreamCounters& then) noexcept {
-    const auto set = [](std::atomic<std::uint64_t>& to, std::uint64_t value) {
-      to.store(value, std::memory_order_release);
-    };
-    set(bytes, now.bytes - then.bytes);
-    set(record_bytes, now.record_bytes - then.record_bytes);
-    set(discarded_bytes, now.discarded_bytes - then.discarded_bytes);
-    set(records, now.records - then.records);
-    set(bad_records, now.bad_records - then.bad_records);
-    set(implausible, now.implausible - then.implausible);
-    set(missed, now.missed - then.missed);
-    set(too_fast, now.too_fast - then.too_fast);
-    set(unplugged, now.unplugged - then.unplugged);
+    for (std::size_t k = 0; k < counts.size(); ++k)
+      counted[k].store(now.*counts[k].counter - then.*counts[k].counter, std::memory_order_release);
   }
   GloveStats load() const noexcept {
     GloveStats stats;
-    stats.record_bytes = record_bytes;
-    stats.discarded_bytes = discarded_bytes;
-    stats.records = records;
-    stats.bad_records = bad_records;
-    stats.implausible = implausible;
-    stats.missed = missed;
-    stats.too_fast = too_fast;
-    stats.unplugged = unplugged;
+    for (std::size_t k = counts.size(); k-- > 0;)
+      stats.*counts[k].stat = counted[k].load(std::memory_order_acquire);
     stats.ring_refused = ring_refused;
     stats.silences = silences;
     stats.reopened = reopened;
     stats.rate_hz = rate_hz;
-    stats.bytes = bytes;
     return stats;
   }
 };

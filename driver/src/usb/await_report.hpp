@@ -29,9 +29,7 @@ Result<void> await_report(Transport& transport, const std::string& source, const
   bool babbles = false;
   while (HostClock::now() < deadline && !patience.cancelled.stop_requested()) {
     const auto [status, count] = transport.read_some(buffer, 100ms);
-    if (status == IoStatus::gone) {
-      return Error{Errc::no_device, source + " went away; is the cable loose?"};
-    }
+    if (status == IoStatus::gone) return went_away(source);
     bytes += count;
     if (status != IoStatus::done) continue;
     if (good(std::span<const std::byte>(buffer).first(count))) return {};

@@ -71,8 +71,17 @@ struct SensorMask {
   constexpr bool has(Sensor sensor) const noexcept {
     return ((bits >> static_cast<unsigned>(sensor)) & 1U) != 0;
   }
+  constexpr void add(Sensor sensor) noexcept { bits |= 1U << static_cast<unsigned>(sensor); }
   friend constexpr bool operator==(SensorMask, SensorMask) = default;
 };
+
+template <class Sensors>
+constexpr SensorMask mask_of(const Sensors& sensors) noexcept {
+  SensorMask mask;
+  for (const Sensor sensor : sensors)
+    mask.add(sensor);
+  return mask;
+}
 
 /// The masks of the two gloves that were sold: 22 sensors, and 18 (without the four DIP sensors).
 inline constexpr SensorMask sensors_22{0x7FFF7F};
@@ -108,6 +117,11 @@ struct GloveSample {
 
   constexpr RawCount operator[](Sensor sensor) const noexcept {
     return raw[static_cast<std::size_t>(sensor)];
+  }
+  /// What was measured, and that it was.
+  constexpr void set(Sensor sensor, RawCount count) noexcept {
+    raw[static_cast<std::size_t>(sensor)] = count;
+    present.add(sensor);
   }
 };
 

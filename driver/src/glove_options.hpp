@@ -1,6 +1,6 @@
 #pragma once
-// What a user may say about a glove at a serial port that the glove itself may not: its hand, and
-// numbers out of a short list.
+// What a user may say about a glove that the glove itself may not: its hand, and numbers out of a
+// short list.
 
 #include <initializer_list>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "serial_options.hpp"
+#include "glove_options.hpp"
 
 #include <string>
 
