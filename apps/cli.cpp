@@ -2,7 +2,6 @@
 
 #include <csignal>
 #include <iostream>
-#include <utility>
 
 namespace nendo::app {
 namespace {
@@ -42,10 +41,6 @@ std::filesystem::path shipped_model(std::string_view file_name) {
   std::error_code failed;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
   return program.parent_path().parent_path() / "share" / "nendo" / "models" / file_name;
-}
-
-void on_chosen(CLI::App& subcommand, int& exit_code, std::function<int()> command) {
-  subcommand.callback([&exit_code, command = std::move(command)] { exit_code = command(); });
 }
 
 } // namespace nendo::app

@@ -3,11 +3,8 @@
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
-
-#include <CLI/CLI.hpp>
 
 #include <nendo/base/result.hpp>
 
@@ -24,17 +21,5 @@ void install_stop_signals() noexcept;
 
 /// A model that ships with the program, looked for beside the executable (../share/nendo/models).
 std::filesystem::path shipped_model(std::string_view file_name);
-
-/// Has `command` run when it is chosen; what it returns becomes the exit code.
-void on_chosen(CLI::App& subcommand, int& exit_code, std::function<int()> command);
-
-void add_bench(CLI::App& app, int& exit_code);
-void add_deform(CLI::App& app, int& exit_code);
-void add_devices(CLI::App& app, int& exit_code);
-void add_doctor(CLI::App& app, int& exit_code);
-void add_emulate(CLI::App& app, int& exit_code);
-void add_info(CLI::App& app, int& exit_code);
-void add_monitor(CLI::App& app, int& exit_code);
-void add_run(CLI::App& app, int& exit_code);
 
 } // namespace nendo::app

@@ -8,6 +8,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli.hpp"
+#include "commands.hpp"
 #include "kernel_options.hpp"
 
 namespace nendo::app {
@@ -66,20 +67,20 @@ Result<void> deform_file(const Options& options) {
 
 } // namespace
 
-void add_deform(CLI::App& app, int& exit_code) {
+void add_deform(Command& program) {
   auto options = std::make_shared<Options>();
-  CLI::App& command = *app.add_subcommand(
+  Command command = program.add_command(
       "deform", "Deforms a mesh by control vectors from a file, without gloves or clock");
-  command.add_option("MESH", options->mesh, "OBJ or PLY file")->required();
+  command.add_option("MESH", options->mesh, "OBJ or PLY file").required();
   command
       .add_option("--vectors", options->vectors,
                   "CSV file: x,y,z,dx,dy,dz[,radius], a control vector a line")
-      ->required();
+      .required();
   command.add_option("--radius", options->radius,
                      "Radius of the supports, in the mesh's units; a radius column wins");
   add_kernel_options(command, options->kernel);
-  command.add_option("--out", options->out, "Where to write the result, .obj or .ply")->required();
-  on_chosen(command, exit_code, [options] {
+  command.add_option("--out", options->out, "Where to write the result, .obj or .ply").required();
+  command.on_chosen([options] {
     const auto done = deform_file(*options);
     return done ? 0 : report(done.error());
   });

@@ -15,6 +15,7 @@
 #include <nendo/driver/devices.hpp>
 
 #include "cli.hpp"
+#include "commands.hpp"
 
 namespace nendo::app {
 namespace {
@@ -138,18 +139,18 @@ int watch_devices(bool json) {
 
 } // namespace
 
-void add_devices(CLI::App& app, int& exit_code) {
+void add_devices(Command& program) {
   struct Options {
     bool json = false;
     bool watch = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App& command =
-      *app.add_subcommand("devices", "Lists ports and USB devices that may be gloves, and why");
+  Command command =
+      program.add_command("devices", "Lists ports and USB devices that may be gloves, and why");
   command.add_flag("--json", options->json, "One JSON object a line");
   command.add_flag("--watch", options->watch,
                    "Then a line whenever one is plugged in or pulled out; Ctrl-C ends");
-  on_chosen(command, exit_code, [options] {
+  command.on_chosen([options] {
     return options->watch ? watch_devices(options->json) : list_devices(options->json);
   });
 }

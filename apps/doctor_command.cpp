@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli.hpp"
+#include "commands.hpp"
 #include "doctor.hpp"
 
 namespace nendo::app {
@@ -53,13 +54,13 @@ int examine(bool json) {
 
 } // namespace
 
-void add_doctor(CLI::App& app, int& exit_code) {
+void add_doctor(Command& program) {
   auto json = std::make_shared<bool>(false);
-  CLI::App& command = *app.add_subcommand(
+  Command command = program.add_command(
       "doctor", "Says what keeps gloves from working on this machine, and what mends it");
   command.add_flag("--json", *json, "One JSON object a finding");
-  command.footer("Exit code 1 if something will not work, 0 if there are warnings only.");
-  on_chosen(command, exit_code, [json] { return examine(*json); });
+  command.set_footer("Exit code 1 if something will not work, 0 if there are warnings only.");
+  command.on_chosen([json] { return examine(*json); });
 }
 
 } // namespace nendo::app

@@ -12,6 +12,7 @@
 #include <nendo/driver/emulator.hpp>
 
 #include "cli.hpp"
+#include "commands.hpp"
 
 namespace nendo::app {
 namespace {
@@ -116,82 +117,80 @@ int emulate(Options& options) {
   return served ? 0 : report(served.error());
 }
 
-void add_glove_options(CLI::App& command, Options& options) {
+void add_glove_options(Command& command, Options& options) {
   driver::EmulatorOptions& emulator = options.emulator;
-  const std::string group = "The glove";
-  const auto with_default = [&](CLI::Option* option) {
-    option->capture_default_str()->group(group);
-  };
-  with_default(command.add_option("--glove", emulator.glove,
-                                  "Its kind: " + list_of(driver::emulated_glove_names())));
-  with_default(command.add_option("--hand", options.hand, "left or right"));
+  const std::string heading = "The glove";
   command
-      .add_option("--sensors", emulator.sensors, "How many; a CyberGlove has 22 (default) or 18")
-      ->group(group);
-  with_default(command.add_option("--motion", emulator.motion,
-                                  "What the hand does: " + list_of(driver::motion_names())));
-  with_default(command.add_option("--rate", emulator.rate_hz,
-                                  "Records a second until the host sets its own"));
-  with_default(command.add_option("--seed", emulator.seed, "Varies motion, noise and faults"));
-  with_default(
-      command
-          .add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
-          ->check(CLI::IsMember({"clock", "host"})));
+      .add_option("--glove", emulator.glove, "Its kind: " + list_of(driver::emulated_glove_names()))
+      .under(heading);
+  command.add_option("--hand", options.hand, "left or right").under(heading);
+  command.add_option("--sensors", emulator.sensors, "How many; a CyberGlove has 22 (default) or 18")
+      .under(heading);
+  command
+      .add_option("--motion", emulator.motion,
+                  "What the hand does: " + list_of(driver::motion_names()))
+      .under(heading);
+  command.add_option("--rate", emulator.rate_hz, "Records a second until the host sets its own")
+      .under(heading);
+  command.add_option("--seed", emulator.seed, "Varies motion, noise and faults").under(heading);
+  command.add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
+      .one_of({"clock", "host"})
+      .under(heading);
 }
 
-void add_cyberglove_options(CLI::App& command, Options& options) {
+void add_cyberglove_options(Command& command, Options& options) {
   driver::EmulatedCyberGlove& glove = options.emulator.cyberglove;
-  const std::string group = "CyberGlove only";
-  const auto with_default = [&](CLI::Option* option) {
-    option->capture_default_str()->group(group);
-  };
-  with_default(command.add_option("--model", glove.model, "1, 2 or 3"));
+  const std::string heading = "CyberGlove only";
+  command.add_option("--model", glove.model, "1, 2 or 3").under(heading);
   command.add_option("--mask", options.mask, "The sensors it has, in hexadecimal, e.g. 6b3b3f")
-      ->group(group);
-  command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch")->group(group);
-  with_default(command.add_option("--reply-bytes", glove.reply_bytes,
-                                  "Of the reply to a setting: 2, or 3 as one library expects"));
-  with_default(command
-                   .add_option("--period-order", options.period_order,
-                               "Bytes of the words of T: msb or lsb first")
-                   ->check(CLI::IsMember({"msb", "lsb"})));
-  with_default(command
-                   .add_option("--stamp-bit7", options.stamp_bit7,
-                               "Bit 7 of a time stamp's first byte: on always, off if it may")
-                   ->check(CLI::IsMember({"on", "off"})));
+      .under(heading);
+  command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch").under(heading);
+  command
+      .add_option("--reply-bytes", glove.reply_bytes,
+                  "Of the reply to a setting: 2, or 3 as one library expects")
+      .under(heading);
+  command
+      .add_option("--period-order", options.period_order,
+                  "Bytes of the words of T: msb or lsb first")
+      .one_of({"msb", "lsb"})
+      .under(heading);
+  command
+      .add_option("--stamp-bit7", options.stamp_bit7,
+                  "Bit 7 of a time stamp's first byte: on always, off if it may")
+      .one_of({"on", "off"})
+      .under(heading);
   command
       .add_flag("--streaming", glove.streaming, "It streams at the start, as a dead host left it")
-      ->group(group);
+      .under(heading);
   command
       .add_flag("--pattern", glove.pattern,
                 "No motion: in record n, slot k counts 1 + (n + 29 k) mod 255")
-      ->group(group);
+      .under(heading);
   command
       .add_option("--replay", glove.replay,
                   "Send the records of this file of received bytes, again and again")
-      ->group(group);
+      .under(heading);
 }
 
 } // namespace
 
-void add_emulate(CLI::App& app, int& exit_code) {
+void add_emulate(Command& program) {
   auto options = std::make_shared<Options>();
-  CLI::App& command = *app.add_subcommand(
+  Command command = program.add_command(
       "emulate", "Emulates a glove's electronics on a pseudo-terminal, to test with");
   command
       .add_option("--link", options->emulator.link,
                   "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
-      ->required();
+      .required();
   command.add_option("--duration", options->duration_s, "Seconds to run; without it, until Ctrl-C");
   command.add_option("--fault", options->emulator.faults, "What goes wrong, see below")
-      ->type_name("FAULT")
-      ->allow_extra_args(false);
+      .once_each("FAULT");
   command.add_option("--log", options->emulator.log,
                      "Write all traffic to this file, a line a message");
   add_glove_options(command, *options);
   add_cyberglove_options(command, *options);
-  command.footer(faults_explained());
-  on_chosen(command, exit_code, [options] { return emulate(*options); });
+  command.set_footer(faults_explained());
+  command.on_chosen([options] { return emulate(*options); });
 }
 
 } // namespace nendo::app

@@ -11,6 +11,7 @@
 #include <nendo/driver/open_glove.hpp>
 
 #include "cli.hpp"
+#include "commands.hpp"
 #include "printable.hpp"
 
 namespace nendo::app {
@@ -115,16 +116,16 @@ int info(const std::string& spec, bool json) {
 
 } // namespace
 
-void add_info(CLI::App& app, int& exit_code) {
+void add_info(Command& program) {
   struct Options {
     std::string glove;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App& command = *app.add_subcommand("info", "Asks a glove who it is and what it can do");
-  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...")->required();
+  Command command = program.add_command("info", "Asks a glove who it is and what it can do");
+  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
   command.add_flag("--json", options->json, "One JSON object");
-  on_chosen(command, exit_code, [options] { return info(options->glove, options->json); });
+  command.on_chosen([options] { return info(options->glove, options->json); });
 }
 
 } // namespace nendo::app

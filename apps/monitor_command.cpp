@@ -11,6 +11,7 @@
 #include <nendo/hand/calibration.hpp>
 
 #include "cli.hpp"
+#include "commands.hpp"
 #include "glove_light.hpp"
 #include "monitor_screen.hpp"
 #include "sample_json.hpp"
@@ -113,18 +114,19 @@ int monitor(const Options& options) {
 
 } // namespace
 
-void add_monitor(CLI::App& app, int& exit_code) {
+void add_monitor(Command& program) {
   auto options = std::make_shared<Options>();
-  CLI::App& command = *app.add_subcommand(
+  Command command = program.add_command(
       "monitor",
       "Shows what a glove sends: bars in a terminal, JSON lines when piped or asked for");
-  command.footer("In a bar, # shows the count, and [ ] the least and the greatest seen so far.\n"
-                 "Keys: q quit, r forget the ranges seen, l light on and off.");
-  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...")->required();
+  command.set_footer(
+      "In a bar, # shows the count, and [ ] the least and the greatest seen so far.\n"
+      "Keys: q quit, r forget the ranges seen, l light on and off.");
+  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
   command.add_flag("--json", options->json, "One JSON object a line, also in a terminal");
   command.add_flag("--raw", options->raw, "Raw counts only, no angles");
   command.add_option("--count", options->count, "End after so many samples");
-  on_chosen(command, exit_code, [options] { return monitor(*options); });
+  command.on_chosen([options] { return monitor(*options); });
 }
 
 } // namespace nendo::app

@@ -12,6 +12,7 @@
 #include <nendo/flow/tick_grid.hpp>
 
 #include "cli.hpp"
+#include "commands.hpp"
 #include "kernel_options.hpp"
 #include "run_report.hpp"
 
@@ -99,41 +100,37 @@ int run(CommandOptions& options) {
 
 } // namespace
 
-void add_run(CLI::App& app, int& exit_code) {
+void add_run(Command& program) {
   auto options = std::make_shared<CommandOptions>();
   RunOptions& run_options = options->run;
-  CLI::App& command = *app.add_subcommand("run", "Shapes a model with one or two gloves");
+  Command command = program.add_command("run", "Shapes a model with one or two gloves");
   std::string gloves;
   for (const auto& [grammar, summary] : driver::driver_summaries()) {
     gloves += "\n  " + std::string(grammar) + "\n      " + std::string(summary);
   }
-  command.footer(
+  command.set_footer(
       "A GLOVE is one of" + gloves +
       "\nWithout --left and --right every identified glove is used, or simulated hands.");
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
   command.add_option("--mesh", run_options.mesh,
                      "OBJ or PLY file to shape; without it, the shipped Moai");
-  command
-      .add_option("--mode", options->mode,
-                  "type1: the rest shape follows the fingertips; type2: strokes along their paths")
-      ->capture_default_str();
+  command.add_option(
+      "--mode", options->mode,
+      "type1: the rest shape follows the fingertips; type2: strokes along their paths");
   command.add_option(
       "--radius", run_options.radius,
       "Radius of a fingertip's influence, in the mesh's units; 0: 0.2 of its longest side");
   add_kernel_options(command, options->kernel);
-  command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000")
-      ->capture_default_str();
-  command
-      .add_option("--switch", options->switch_action,
-                  "What the wrist switch does. grab: the hands hold the model while it is on; "
-                  "commit: keeps the shape so far; toggle: lets go, takes hold again")
-      ->capture_default_str();
+  command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
+  command.add_option("--switch", options->switch_action,
+                     "What the wrist switch does. grab: the hands hold the model while it is on; "
+                     "commit: keeps the shape so far; toggle: lets go, takes hold again");
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
   command.add_flag("--json", run_options.json, "Progress and summary as JSON, an object a line");
-  on_chosen(command, exit_code, [options] { return run(*options); });
+  command.on_chosen([options] { return run(*options); });
 }
 
 } // namespace nendo::app

@@ -1,12 +1,12 @@
 #pragma once
-// The subcommands of nendo bench, one a file.
+// The commands of nendo bench, one a file.
 
-#include <CLI/CLI.hpp>
+#include "command.hpp"
 
 namespace nendo::app {
 
-void add_latency_bench(CLI::App& bench, int& exit_code);
-void add_faults_bench(CLI::App& bench, int& exit_code);
-void add_soak_bench(CLI::App& bench, int& exit_code);
+void add_latency_bench(Command& bench);
+void add_faults_bench(Command& bench);
+void add_soak_bench(Command& bench);
 
 } // namespace nendo::app

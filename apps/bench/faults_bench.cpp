@@ -102,16 +102,15 @@ int bench_faults(const Options& options) {
 
 } // namespace
 
-void add_faults_bench(CLI::App& bench, int& exit_code) {
+void add_faults_bench(Command& bench) {
   auto options = std::make_shared<Options>();
-  CLI::App& command = *bench.add_subcommand(
+  Command command = bench.add_command(
       "faults", "Every fault against every CyberGlove, through the real driver: what it costs");
-  command.add_option("--seconds", options->seconds, "For each case")->capture_default_str();
-  command.add_option("--at-once", options->at_once, "Cases that run at the same time")
-      ->capture_default_str();
+  command.add_option("--seconds", options->seconds, "For each case");
+  command.add_option("--at-once", options->at_once, "Cases that run at the same time");
   command.add_flag("--json", options->json, "One JSON object for each case");
   command.add_flag("--markdown", options->markdown, "The table of the documents");
-  on_chosen(command, exit_code, [options] { return bench_faults(*options); });
+  command.on_chosen([options] { return bench_faults(*options); });
 }
 
 } // namespace nendo::app

@@ -98,16 +98,14 @@ int bench_driver(DriverOptions& options) {
 
 } // namespace
 
-void add_latency_bench(CLI::App& bench, int& exit_code) {
+void add_latency_bench(Command& bench) {
   auto options = std::make_shared<DriverOptions>();
-  CLI::App& command = *bench.add_subcommand(
+  Command command = bench.add_command(
       "driver", "Latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
-  command.add_option("--records", options->latency.records, "Records to measure on each line")
-      ->capture_default_str();
-  command.add_option("--rate", options->latency.rate_hz, "Records a second, 1 to 480")
-      ->capture_default_str();
+  command.add_option("--records", options->latency.records, "Records to measure on each line");
+  command.add_option("--rate", options->latency.rate_hz, "Records a second, 1 to 480");
   command.add_flag("--json", options->json, "One JSON object a line");
-  on_chosen(command, exit_code, [options] { return bench_driver(*options); });
+  command.on_chosen([options] { return bench_driver(*options); });
 }
 
 } // namespace nendo::app

@@ -156,15 +156,14 @@ int bench_soak(const Options& options) {
 
 } // namespace
 
-void add_soak_bench(CLI::App& bench, int& exit_code) {
+void add_soak_bench(Command& bench) {
   auto options = std::make_shared<Options>();
-  CLI::App& command = *bench.add_subcommand(
+  Command command = bench.add_command(
       "soak", "Millions of records with faults, as fast as they go: all accounted for?");
-  command.add_option("--records", options->records, "How many to send")->capture_default_str();
-  command.add_option("--fault", options->faults, "As for nendo emulate; together about 1 %")
-      ->capture_default_str();
+  command.add_option("--records", options->records, "How many to send");
+  command.add_option("--fault", options->faults, "As for nendo emulate; together about 1 %");
   command.add_flag("--json", options->json, "One JSON object");
-  on_chosen(command, exit_code, [options] { return bench_soak(*options); });
+  command.on_chosen([options] { return bench_soak(*options); });
 }
 
 } // namespace nendo::app

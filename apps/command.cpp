@@ -1,0 +1,123 @@
+#include "command.hpp"
+
+#include <cstdint>
+#include <iostream>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::app {
+namespace {
+
+/// Nothing that --help should show as a default.
+template <class T>
+bool is_blank(const T& value) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return value == T{};
+  } else if constexpr (requires { value.has_value(); }) {
+    return !value.has_value();
+  } else {
+    return value.empty();
+  }
+}
+
+int report_usage(const CLI::App& app, const std::string& first_word, const std::string& what) {
+  const auto chosen = app.get_subcommands();
+  if (!chosen.empty()) {
+    std::cerr << "nendo: " << what << " (see nendo " << chosen.front()->get_name() << " --help)\n";
+  } else if (first_word.starts_with('-')) {
+    std::cerr << "nendo: " << what << " (see nendo --help)\n";
+  } else {
+    std::string known;
+    for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+      known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    std::cerr << "nendo: "
+              << (first_word.empty() ? "say what to do;" : "no command " + first_word + ";")
+              << " there are " << known << " (see nendo --help)\n";
+  }
+  return static_cast<int>(Errc::usage);
+}
+
+} // namespace
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::under(const std::string& heading) {
+  option_->group(heading);
+  return *this;
+}
+
+Option& Option::one_of(std::initializer_list<const char*> words) {
+  option_->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
+  return *this;
+}
+
+Option& Option::once_each(const std::string& type) {
+  option_->type_name(type)->allow_extra_args(false);
+  return *this;
+}
+
+Command Command::add_command(const std::string& name, const std::string& summary) {
+  return Command(*app_->add_subcommand(name, summary), *chosen_);
+}
+
+template <class T>
+Option Command::add_option(const std::string& names, T& value, const std::string& summary) {
+  CLI::Option* option = app_->add_option(names, value, summary);
+  if (!is_blank(value)) option->capture_default_str();
+  return Option(*option);
+}
+
+template Option Command::add_option(const std::string&, std::string&, const std::string&);
+template Option Command::add_option(const std::string&, double&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint32_t&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<unsigned>&,
+                                    const std::string&);
+template Option Command::add_option(const std::string&, std::vector<std::string>&,
+                                    const std::string&);
+
+Option Command::add_flag(const std::string& names, bool& value, const std::string& summary) {
+  return Option(*app_->add_flag(names, value, summary));
+}
+
+void Command::set_footer(const std::string& text) {
+  app_->footer(text);
+}
+
+void Command::on_chosen(std::function<int()> command) {
+  app_->callback([chosen = chosen_, command = std::move(command)] { *chosen = command; });
+}
+
+void Command::require_command() {
+  app_->require_subcommand(1);
+}
+
+int run_program(int argc, char** argv, const std::string& summary,
+                const std::function<void(Command&)>& add_commands) {
+  CLI::App app{summary};
+  app.set_version_flag("--version", NENDO_VERSION);
+  app.get_formatter()->column_width(34);
+  std::function<int()> chosen;
+  Command program(app, chosen);
+  program.require_command();
+  add_commands(program);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return report_usage(app, argc > 1 ? argv[1] : "", error.what());
+  }
+  return chosen();
+}
+
+} // namespace nendo::app

@@ -1,0 +1,17 @@
+#pragma once
+// The commands of the program, one a file: each function describes its own to the program.
+
+#include "command.hpp"
+
+namespace nendo::app {
+
+void add_bench(Command& program);
+void add_deform(Command& program);
+void add_devices(Command& program);
+void add_doctor(Command& program);
+void add_emulate(Command& program);
+void add_info(Command& program);
+void add_monitor(Command& program);
+void add_run(Command& program);
+
+} // namespace nendo::app
