@@ -47,6 +47,11 @@ long resident_kb() {
   return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
+std::uint64_t accounted(const driver::Glove& glove) {
+  const driver::GloveStats stats = glove.stats();
+  return stats.records + stats.missed;
+}
+
 /// Takes what is in the ring.
 void take(SampleRing& ring, Tally& tally) {
   GloveSample sample;
@@ -82,8 +87,14 @@ Result<Tally> soak(const Options& options) {
   }
   over = true;
   server.join();
-  std::this_thread::sleep_for(200ms); // what was sent last is on its way
-  if (started) take(ring, tally);
+  tally.sent = (*emulator)->stats().records_sent;
+  // What was sent last is on its way, and takes as long as the machine is loaded.
+  const auto patience = std::chrono::steady_clock::now() + 10s;
+  while (started && accounted(**glove) + undecided < tally.sent &&
+         std::chrono::steady_clock::now() < patience) {
+    take(ring, tally);
+    std::this_thread::sleep_for(1ms);
+  }
   tally.seconds = to_seconds(std::chrono::steady_clock::now() - begin);
   tally.memory_end_kb = resident_kb();
   if (started) (*glove)->stop();
@@ -91,7 +102,6 @@ Result<Tally> soak(const Options& options) {
   if (!started) return started.error();
   if (!served) return served.error();
   tally.stats = (*glove)->stats();
-  tally.sent = (*emulator)->stats().records_sent;
   tally.faulted = (*emulator)->stats().records_faulted;
   return tally;
 }

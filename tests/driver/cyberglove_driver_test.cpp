@@ -11,6 +11,7 @@
 
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/within.hpp"
 
 using namespace nendo;
 using namespace nendo::driver;
@@ -20,16 +21,6 @@ using namespace std::chrono_literals;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Looks every millisecond, so that a test waits no longer than it must.
-template <class Condition>
-bool within(std::chrono::milliseconds time, Condition&& condition) {
-  for (const auto end = Clock::now() + time; Clock::now() < end;) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(1ms);
-  }
-  return condition();
-}
 
 void check_conservation(const GloveStats& stats) {
   constexpr std::uint64_t longest_record = 36;

@@ -15,6 +15,7 @@
 
 #include "support/pty_unit.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/within.hpp"
 
 namespace nendo::test {
 
@@ -25,16 +26,6 @@ struct Kind {
   std::function<std::string(const std::string& path)> spec;
   std::uint64_t longest_record = 0; ///< bytes
 };
-
-/// Looks every millisecond, so that a test waits no longer than it must.
-template <class Condition>
-bool within(std::chrono::milliseconds time, Condition&& condition) {
-  for (const auto end = HostClock::now() + time; HostClock::now() < end;) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(1ms);
-  }
-  return condition();
-}
 
 inline void check_conservation(const driver::GloveStats& stats, std::uint64_t longest_record) {
   CHECK(stats.bytes >= stats.record_bytes + stats.discarded_bytes);

@@ -13,10 +13,11 @@ namespace nendo::driver {
 
 namespace fs = std::filesystem;
 
-SymbolicLink::~SymbolicLink() {
+void SymbolicLink::remove() noexcept {
   if (path_.empty()) return;
   std::error_code error;
   if (fs::read_symlink(path_, error) == target_ && !error) fs::remove(path_, error);
+  path_.clear();
 }
 
 Result<SymbolicLink> SymbolicLink::make(const std::string& where, const std::string& target) {
@@ -47,6 +48,7 @@ Result<SymbolicLink> SymbolicLink::make(const std::string& where, const std::str
 }
 
 PseudoTerminal::~PseudoTerminal() {
+  link_.remove();
   if (fd_ >= 0) ::close(fd_);
 }
 

@@ -20,7 +20,8 @@ public:
   SymbolicLink(SymbolicLink&& other) noexcept
       : path_(std::exchange(other.path_, {})), target_(std::move(other.target_)) {}
   SymbolicLink& operator=(SymbolicLink&&) = delete;
-  ~SymbolicLink();
+  ~SymbolicLink() { remove(); }
+  void remove() noexcept;
 
 private:
   SymbolicLink(std::filesystem::path path, std::string target)
@@ -30,7 +31,8 @@ private:
   std::string target_;
 };
 
-/// Raw, 115200 baud. Hosts see it hung up when this is destroyed.
+/// Raw, 115200 baud. Hosts see it hung up when this is destroyed, and its link is gone before that:
+/// the system may give the terminal's number to a stranger at once.
 class PseudoTerminal {
 public:
   /// `link` is empty or the link's path. Error: failed.

@@ -40,6 +40,9 @@ constexpr std::size_t wire_full = 4096;
 // At the host's pace: records made before faults, `stop` and the host are looked at again.
 constexpr int most_records_a_turn = 256;
 
+// At the end: for a host that takes nothing of what was sent to it.
+constexpr auto last_patience = 300ms;
+
 struct Parts {
   EmulatorOptions options;
   std::unique_ptr<EmulatedUnit> unit;
@@ -76,6 +79,8 @@ public:
       if (auto logged = log_.flush(); !logged) return logged;
       if (auto waited = wait(); !waited) return waited;
     }
+    empty_wire();
+    publish();
     return {};
   }
 
@@ -199,6 +204,20 @@ private:
     if (count <= 0) return;
     sent_ += static_cast<std::uint64_t>(count);
     wire_.erase(wire_.begin(), wire_.begin() + count);
+  }
+
+  // What counts as sent goes out, for as long as the host takes any of it.
+  void empty_wire() {
+    HostTime patience = HostClock::now() + last_patience;
+    while (host_present() && !wire_.empty() && HostClock::now() < patience) {
+      const std::uint64_t before = sent_;
+      write();
+      if (sent_ == before) {
+        std::this_thread::sleep_for(1ms);
+      } else {
+        patience = HostClock::now() + last_patience;
+      }
+    }
   }
 
   // Until a host writes, or has room for what waits, or the unit or a fault has something to do, or

@@ -90,8 +90,9 @@ public:
   /// The terminal that a host opens at first, e.g. /dev/pts/4. After the fault `unplug` there is
   /// another, to be found through the link.
   virtual const std::string& tty_path() const noexcept = 0;
-  /// Serves hosts, one after another, until `stop` becomes true; looks at it at least every 20 ms.
-  /// Blocks. Error: failed.
+  /// Serves hosts, one after another, until `stop` becomes true and what was sent has gone out;
+  /// looks at it at least every 20 ms, and waits 300 ms for a host that takes nothing. Blocks.
+  /// Error: failed.
   virtual Result<void> serve(const std::atomic<bool>& stop) = 0;
   /// Any thread.
   virtual EmulatorStats stats() const = 0;
