@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <string>
 
-namespace CLI {
+namespace CLI { // NOLINT(readability-identifier-naming): theirs
 class App;
 class Option;
 } // namespace CLI
