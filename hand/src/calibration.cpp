@@ -65,6 +65,21 @@ SensorCalibration scaled(const TypicalSensor& sensor, double most) noexcept {
 
 } // namespace
 
+SensorAngles Calibration::angles_rad(const GloveSample& sample) const noexcept {
+  SensorAngles lines{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (sample.present.has(static_cast<Sensor>(slot)))
+      lines[slot] = sensors[slot].angle_rad(sample.raw[slot]);
+  }
+  SensorAngles angles = lines;
+  for (std::size_t k = 0; k < couplings.size(); ++k) {
+    const auto [of, by] = couplings[k];
+    if (sample.present.has(of))
+      angles[static_cast<std::size_t>(of)] += mixed_in[k] * lines[static_cast<std::size_t>(by)];
+  }
+  return angles;
+}
+
 Calibration default_calibration(CountScale scale) noexcept {
   Calibration calibration;
   if (scale.most == 0) return calibration;

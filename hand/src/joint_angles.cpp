@@ -58,12 +58,12 @@ constexpr double estimated_opposition(double thumb_mcp_rad) noexcept {
 
 /// A sample seen through a calibration.
 struct Measured {
-  const GloveSample& sample;
-  const Calibration& calibration;
+  SensorMask present;
+  SensorAngles angles_rad;
 
-  bool has(Sensor sensor) const noexcept { return sample.present.has(sensor); }
+  bool has(Sensor sensor) const noexcept { return present.has(sensor); }
   double angle(Sensor sensor, Range range) const noexcept {
-    return range.clamp(calibration[sensor].angle_rad(sample[sensor]));
+    return range.clamp(angles_rad[static_cast<std::size_t>(sensor)]);
   }
   /// `estimate` where there is no such sensor.
   double angle_or(Sensor sensor, Range range, double estimate) const noexcept {
@@ -102,24 +102,26 @@ void set_thumb(JointAngles& angles, const Measured& measured) noexcept {
 } // namespace
 
 JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration) noexcept {
-  const Measured measured{sample, calibration};
+  const Measured measured{sample.present, calibration.angles_rad(sample)};
   const auto or_zero = [&](Sensor sensor, Range range) {
     return measured.angle_or(sensor, range, 0.0);
   };
   const double index_middle = or_zero(Sensor::index_middle_abduction, pair_abduction);
   const double middle_ring = or_zero(Sensor::middle_ring_abduction, pair_abduction);
   const double ring_pinky = or_zero(Sensor::ring_pinky_abduction, pair_abduction);
+  // Away from the thumb is negative; what the middle finger turns by, turns all of them.
+  const double middle = -calibration.middle_bias * (index_middle - middle_ring);
 
   JointAngles angles;
   set_thumb(angles, measured);
   angles[Finger::index] = finger_angles(measured, Sensor::index_mcp, Sensor::index_pip,
-                                        Sensor::index_dip, index_middle);
+                                        Sensor::index_dip, middle + index_middle);
   angles[Finger::middle] =
-      finger_angles(measured, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip, 0.0);
-  angles[Finger::ring] =
-      finger_angles(measured, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip, -middle_ring);
+      finger_angles(measured, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip, middle);
+  angles[Finger::ring] = finger_angles(measured, Sensor::ring_mcp, Sensor::ring_pip,
+                                       Sensor::ring_dip, middle - middle_ring);
   angles[Finger::little] = finger_angles(measured, Sensor::pinky_mcp, Sensor::pinky_pip,
-                                         Sensor::pinky_dip, -(middle_ring + ring_pinky));
+                                         Sensor::pinky_dip, middle - middle_ring - ring_pinky);
   angles.palm_arch_rad = or_zero(Sensor::palm_arch, palm_arch);
   angles.wrist_pitch_rad = or_zero(Sensor::wrist_pitch, wrist_pitch);
   angles.wrist_yaw_rad = or_zero(Sensor::wrist_yaw, wrist_yaw);

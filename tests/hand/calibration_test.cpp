@@ -16,6 +16,41 @@ TEST_SUITE("calibration") {
     CHECK(sensor.angle_rad(RawCount{50}) == doctest::Approx(-1.0));
   }
 
+  TEST_CASE("an angle is its own line and what is mixed in of others' lines, not of their angles") {
+    Calibration calibration = default_calibration();
+    for (std::size_t k = 0; k < couplings.size(); ++k)
+      calibration.mixed_in[k] = 0.1 * static_cast<double>(k + 1);
+    GloveSample sample;
+    sample.present = sensors_22;
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      sample.raw[slot] = RawCount{static_cast<std::uint16_t>(60 + 7 * slot)};
+    const auto line = [&](Sensor sensor) { return calibration[sensor].angle_rad(sample[sensor]); };
+    const SensorAngles angles = calibration.angles_rad(sample);
+    const auto angle = [&](Sensor sensor) { return angles[static_cast<std::size_t>(sensor)]; };
+    CHECK(angle(Sensor::thumb_roll) ==
+          doctest::Approx(line(Sensor::thumb_roll) + 0.1 * line(Sensor::thumb_abduction)));
+    CHECK(angle(Sensor::thumb_abduction) ==
+          doctest::Approx(line(Sensor::thumb_abduction) + 0.2 * line(Sensor::thumb_roll)));
+    CHECK(angle(Sensor::ring_pinky_abduction) ==
+          doctest::Approx(line(Sensor::ring_pinky_abduction) + 0.7 * line(Sensor::ring_mcp) +
+                          0.8 * line(Sensor::pinky_mcp)));
+    CHECK(angle(Sensor::index_dip) == line(Sensor::index_dip));
+    CHECK(angle(Sensor::index_abduction) == 0.0); // no glove has it
+  }
+
+  TEST_CASE("a sensor that is absent is zero and mixes into no other") {
+    Calibration calibration = default_calibration();
+    calibration.mixed_in.fill(1.0);
+    GloveSample sample;
+    sample.raw.fill(RawCount{200});
+    sample.present = sensors_22;
+    sample.present.bits &= ~(1U << static_cast<unsigned>(Sensor::thumb_roll));
+    const SensorAngles angles = calibration.angles_rad(sample);
+    CHECK(angles[static_cast<std::size_t>(Sensor::thumb_roll)] == 0.0);
+    CHECK(angles[static_cast<std::size_t>(Sensor::thumb_abduction)] ==
+          calibration[Sensor::thumb_abduction].angle_rad(RawCount{200}));
+  }
+
   TEST_CASE("the default covers every joint's range of motion within 8 bits") {
     const Calibration calibration = default_calibration();
     const auto reaches = [&](Sensor sensor, double low_deg, double high_deg) {

@@ -131,6 +131,20 @@ TEST_SUITE("joint_angles") {
     CHECK(angles[Finger::little].mcp_abduction_rad == doctest::Approx(-0.25));
   }
 
+  TEST_CASE("the middle bias turns all fingers and leaves the gaps between them as they are") {
+    GloveSample sample = flat_sample(sensors_22);
+    set(sample, Sensor::index_middle_abduction, 20);
+    set(sample, Sensor::middle_ring_abduction, 10);
+    set(sample, Sensor::ring_pinky_abduction, 10);
+    Calibration calibration = default_calibration();
+    calibration.middle_bias = 0.5;
+    const JointAngles angles = joint_angles(sample, calibration);
+    CHECK(angles[Finger::middle].mcp_abduction_rad == doctest::Approx(-0.05));
+    CHECK(angles[Finger::index].mcp_abduction_rad == doctest::Approx(0.15));
+    CHECK(angles[Finger::ring].mcp_abduction_rad == doctest::Approx(-0.15));
+    CHECK(angles[Finger::little].mcp_abduction_rad == doctest::Approx(-0.25));
+  }
+
   TEST_CASE("an 18-sensor glove's DIP joints follow the PIP joints") {
     GloveSample sample = flat_sample(sensors_18);
     set(sample, Sensor::middle_pip, 80); // 1 rad

@@ -1,13 +1,18 @@
 #pragma once
-// Calibration: from raw counts to sensor angles, one line a sensor: angle = gain * (raw - offset).
-// This is the vendor's own form (VirtualHand SDK, vhtCyberGlove). Flexion and spreading are
-// positive.
+// Calibration: from raw counts to joint angles. Each sensor has a line of its own, in the vendor's
+// form, angle = gain * (raw - offset) (VirtualHand SDK, vhtCyberGlove). Above it stand couplings,
+// for what a glove cannot separate: its thumb sensors read roll and abduction mixed, and its
+// abduction sensors are stretched by the flexion of their two neighbours, too. Flexion and
+// spreading are positive.
 
 #include <array>
 
 #include <nendo/driver/sample.hpp>
 
 namespace nendo::hand {
+
+/// The angle that each sensor's joint has, by slot; radians.
+using SensorAngles = std::array<double, sensor_slots>;
 
 struct SensorCalibration {
   double gain_rad_per_count = 0.0;
@@ -18,12 +23,40 @@ struct SensorCalibration {
   }
 };
 
+/// Which sensor's angle needs what another one reads.
+struct Coupling {
+  Sensor of;
+  Sensor by;
+};
+inline constexpr std::array<Coupling, 8> couplings{{
+    {Sensor::thumb_roll, Sensor::thumb_abduction},
+    {Sensor::thumb_abduction, Sensor::thumb_roll},
+    {Sensor::index_middle_abduction, Sensor::index_mcp},
+    {Sensor::index_middle_abduction, Sensor::middle_mcp},
+    {Sensor::middle_ring_abduction, Sensor::middle_mcp},
+    {Sensor::middle_ring_abduction, Sensor::ring_mcp},
+    {Sensor::ring_pinky_abduction, Sensor::ring_mcp},
+    {Sensor::ring_pinky_abduction, Sensor::pinky_mcp},
+}};
+
 struct Calibration {
   std::array<SensorCalibration, sensor_slots> sensors{};
+  /// One for each of `couplings`: radians of `of` for each radian that the line of `by` reads.
+  std::array<double, couplings.size()> mixed_in{};
+  /// The middle finger's own abduction, which no sensor measures, as a part of how far ring and
+  /// index finger lie on different sides of it: 0 keeps it straight. The vendor's "middle bias".
+  double middle_bias = 0.0;
 
   constexpr const SensorCalibration& operator[](Sensor sensor) const noexcept {
     return sensors[static_cast<std::size_t>(sensor)];
   }
+  constexpr SensorCalibration& operator[](Sensor sensor) noexcept {
+    return sensors[static_cast<std::size_t>(sensor)];
+  }
+
+  /// The joint of every sensor that is present; 0 for the others, which couple to nothing.
+  /// Wait-free.
+  SensorAngles angles_rad(const GloveSample& sample) const noexcept;
 };
 
 /// Usable for an average hand without any file; a wearer's own calibration is better. The same for

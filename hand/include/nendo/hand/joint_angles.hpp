@@ -39,7 +39,8 @@ struct JointAngles {
 };
 
 /// Applies the calibration and clamps every angle to the joint's range of motion. The abduction
-/// sensors measure pairs; the middle finger's own abduction, which none measures, is taken as zero.
+/// sensors measure pairs; the middle finger's own abduction, which none measures, is what the
+/// calibration's middle bias makes of them: none, usually.
 ///
 /// What is absent is made of what is present, by rules that are continuous and do not fall when a
 /// measured angle rises:
