@@ -1,5 +1,5 @@
-# nendo_test(<folder> SOURCES ... LIBRARIES ... [INCLUDES ...]): one doctest program test_<folder>, one ctest case per
-# TEST_CASE. INCLUDES names private src/ folders of the unit under test.
+# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [ALONE]): one doctest program test_<name>, one ctest case per
+# TEST_CASE. INCLUDES names private src/ folders of the unit under test. ALONE: nothing else is tested meanwhile.
 include(doctest)
 
 # doctest's own implementation, compiled once for all test programs.
@@ -7,16 +7,16 @@ add_library(nendo_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tests/
 nendo_settings(nendo_test_main PRIVATE)
 target_link_libraries(nendo_test_main PUBLIC doctest::doctest)
 
-function(nendo_test folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
-  set(target test_${folder})
+function(nendo_test name)
+  cmake_parse_arguments(ARG "ALONE" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
+  set(target test_${name})
   add_executable(${target} ${ARG_SOURCES})
   nendo_settings(${target} PRIVATE)
   nendo_precompile(${target} <doctest/doctest.h>)
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
-  doctest_discover_tests(${target} TEST_PREFIX "${folder}/" 
-    PROPERTIES TIMEOUT 120 FAIL_REGULAR_EXPRESSION "test cases: +0 ")
+  doctest_discover_tests(${target} TEST_PREFIX "${name}/"
+    PROPERTIES TIMEOUT 120 RUN_SERIAL ${ARG_ALONE} FAIL_REGULAR_EXPRESSION "test cases: +0 ")
 endfunction()
 
 # nendo_fuzz(<name> SOURCE ... LIBRARIES ...): a libFuzzer program fuzz_<name>; runs over its corpus in
