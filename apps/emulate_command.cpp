@@ -13,6 +13,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "served_emulator.hpp"
 
 namespace nendo::app {
 namespace {
@@ -99,20 +100,14 @@ int emulate(Options& options) {
             << (options.emulator.link.empty() ? (*emulator)->tty_path() : options.emulator.link)
             << "; Ctrl-C ends it" << std::endl;
 
-  std::atomic<bool> over{false};
-  Result<void> served;
-  std::thread server([&] {
-    served = (*emulator)->serve(over);
-    over = true; // an emulator that fails must not be waited for
-  });
+  ServedEmulator server(**emulator);
   const auto start = std::chrono::steady_clock::now();
   const std::chrono::duration<double> duration(options.duration_s);
-  while (!stop_requested() && !over) {
+  while (!stop_requested() && !server.is_over()) {
     if (options.duration_s > 0.0 && std::chrono::steady_clock::now() - start >= duration) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  over = true;
-  server.join();
+  const auto served = server.finish();
   print((*emulator)->stats());
   return served ? 0 : report(served.error());
 }

@@ -96,10 +96,11 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
 }
 
 std::string angle_text(const MonitorPicture& picture, Sensor sensor) {
-  const auto& calibration = (*picture.calibration)[sensor];
-  if (calibration.gain_rad_per_count == 0.0) return std::string(angle_width, ' ');
-  const double angle_deg =
-      calibration.angle_rad((*picture.sample)[sensor]) * 180.0 / std::numbers::pi;
+  const hand::Calibration& calibration = *picture.calibration;
+  if (calibration[sensor].gain_rad_per_count == 0.0) return std::string(angle_width, ' ');
+  const double angle_rad =
+      calibration.angles_rad(*picture.sample)[static_cast<std::size_t>(sensor)];
+  const double angle_deg = angle_rad * 180.0 / std::numbers::pi;
   return right_aligned(fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg", angle_width);
 }
 

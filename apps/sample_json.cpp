@@ -19,13 +19,15 @@ ordered_json switch_json(WristSwitch position) {
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration) {
   ordered_json raw = ordered_json::object();
   ordered_json angles = ordered_json::object();
+  const auto angles_rad =
+      calibration != nullptr ? calibration->angles_rad(sample) : hand::SensorAngles{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     if (!sample.present.has(sensor)) continue;
     const std::string name(name_of(sensor));
     raw[name] = sample[sensor].value;
     if (calibration != nullptr && (*calibration)[sensor].gain_rad_per_count != 0.0)
-      angles[name] = (*calibration)[sensor].angle_rad(sample[sensor]);
+      angles[name] = angles_rad[slot];
   }
   ordered_json line{{"time_s", to_seconds(sample.arrival.time_since_epoch())},
                     {"measured_s", to_seconds(sample.measured.time_since_epoch())},

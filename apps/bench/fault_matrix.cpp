@@ -12,6 +12,7 @@
 #include <nendo/driver/open_glove.hpp>
 
 #include "bench/test_pattern.hpp"
+#include "served_emulator.hpp"
 
 namespace nendo::app {
 namespace {
@@ -115,9 +116,7 @@ Result<FaultOutcome> run_case(const FaultCase& fault, const GloveCase& glove, do
   outcome.glove = &glove;
   auto emulator = driver::GloveEmulator::open(emulator_options(fault, glove, link));
   if (!emulator) return emulator.error();
-  std::atomic<bool> over{false};
-  Result<void> served;
-  std::thread server([&] { served = (*emulator)->serve(over); });
+  ServedEmulator server(**emulator);
   SampleRing ring(4096);
   Watch watch;
   const HostTime begin = HostClock::now();
@@ -132,8 +131,7 @@ Result<FaultOutcome> run_case(const FaultCase& fault, const GloveCase& glove, do
   }
   const double end_gap_s = to_seconds(HostClock::now() - watch.last_arrival);
   if (started) (*opened)->stop();
-  over = true;
-  server.join();
+  const auto served = server.finish();
   if (!started) return started.error();
   if (!served) return served.error();
   const auto sent = (*emulator)->stats();

@@ -17,6 +17,7 @@
 #include "bench/bench.hpp"
 #include "bench/test_pattern.hpp"
 #include "cli.hpp"
+#include "served_emulator.hpp"
 
 namespace nendo::app {
 namespace {
@@ -70,9 +71,7 @@ Result<Tally> soak(const Options& options) {
   device.faults = options.faults;
   auto emulator = driver::GloveEmulator::open(device);
   if (!emulator) return emulator.error();
-  std::atomic<bool> over{false};
-  Result<void> served;
-  std::thread server([&] { served = (*emulator)->serve(over); });
+  ServedEmulator server(**emulator);
   SampleRing ring(1U << 16U);
   Tally tally;
   auto glove = driver::open_glove("serial:" + (*emulator)->tty_path());
@@ -85,8 +84,7 @@ Result<Tally> soak(const Options& options) {
       tally.memory_begin_kb = resident_kb();
     std::this_thread::sleep_for(1ms);
   }
-  over = true;
-  server.join();
+  const auto served = server.finish();
   tally.sent = (*emulator)->stats().records_sent;
   // What was sent last is on its way, and takes as long as the machine is loaded.
   const auto patience = std::chrono::steady_clock::now() + 10s;

@@ -128,9 +128,7 @@ private:
         greet(transport, dialogue, bauds_to_try(baud_, !options_.baud.has_value()));
     if (auto state = judge_state(source, greeting.reply, greeting.asked); !state) {
       const Reply<GloveState>& reply = greeting.reply;
-      const bool pulled = reply.answer == Answer::no_glove || (reply && !reply.value.connected);
-      if (pulled && occasion != Occasion::opening && !std::exchange(unplugged_, true))
-        spdlog::warn("device: {}; it goes on when one is", state.error().message);
+      if (reply.answer == Answer::no_glove || (reply && !reply.value.connected)) unplugged_ = true;
       return state.error();
     }
     unplugged_ = pulled_ = false;

@@ -105,6 +105,7 @@ private:
   // Used by the reader thread only, while it runs.
   std::unique_ptr<Transport> transport_; ///< null while the device is away
   const std::unique_ptr<GloveProtocol> protocol_;
+  std::string complaint_; ///< why it does not come back, as told last
   StreamCounters at_start_;
   SampleRing* ring_ = nullptr;
   Side side_;
@@ -277,7 +278,7 @@ void StreamGlove::reopen(const std::stop_token& token) {
 bool StreamGlove::restart(const std::stop_token& token, Occasion occasion) {
   const Patience patience{HostClock::now() + open_budget, token};
   const auto info = protocol_->identify(*transport_, info_.source, occasion, patience);
-  bool streams = false;
+  Result<void> streams = info ? Result<void>() : info.error();
   if (info) {
     if (!(info->sensors == sensors_) || info->side != side_) {
       spdlog::warn("device: {} is another glove now: {} hand, {}", info_.source,
@@ -285,12 +286,16 @@ bool StreamGlove::restart(const std::stop_token& token, Occasion occasion) {
       side_ = info->side;
       sensors_ = info->sensors;
     }
-    streams = bool(protocol_->start_stream(*transport_, info_.source, patience));
+    streams = protocol_->start_stream(*transport_, info_.source, patience);
     const std::lock_guard lock(feedback_mutex_);
     feedback_changed_ = !(feedback_ == Feedback{});
   }
   stats_.store(protocol_->counters(), at_start_);
-  return streams;
+  // Each reason once, however often it is tried.
+  const std::string why = streams ? std::string() : streams.error().message;
+  if (why != std::exchange(complaint_, why) && !why.empty())
+    spdlog::warn("device: {}; trying again", why);
+  return bool(streams);
 }
 
 /// Sleeps, but wakes up when it is to stop.

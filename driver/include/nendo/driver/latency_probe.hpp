@@ -21,7 +21,7 @@ enum class Line {
 struct LatencyOptions {
   Line line = Line::pseudo_terminal;
   std::size_t records = 2000; ///< of each
-  double rate_hz = 400.0;     ///< 1 to 480, records a second to the driver
+  double rate_hz = 300.0;     ///< 1 to 480, records a second to the driver; with stamps, 384 fit
 };
 
 struct LatencySinks {
