@@ -25,6 +25,11 @@ bool is_blank(const T& value) {
   }
 }
 
+// CLI11 reads a whole number as strtoull does, to which -3 is 18446744073709551613.
+std::string not_negative(const std::string& text) {
+  return text.find('-') == std::string::npos ? "" : text + ": use a whole number, 0 or above";
+}
+
 int report_usage(const CLI::App& app, const std::string& first_word, const std::string& what) {
   const auto chosen = app.get_subcommands();
   if (!chosen.empty()) {
@@ -73,6 +78,7 @@ template <class T>
 Option Command::add_option(const std::string& names, T& value, const std::string& summary) {
   CLI::Option* option = app_->add_option(names, value, summary);
   if (!is_blank(value)) option->capture_default_str();
+  if constexpr (std::is_unsigned_v<T>) option->check(not_negative);
   return Option(*option);
 }
 

@@ -12,6 +12,7 @@ void add_doctor(Command& program);
 void add_emulate(Command& program);
 void add_info(Command& program);
 void add_monitor(Command& program);
+void add_poses(Command& program);
 void add_run(Command& program);
 
 } // namespace nendo::app

@@ -26,20 +26,6 @@ constexpr double default_radius_fraction = 0.2;
 // surface (0.47).
 constexpr double piece_fraction = 0.05;
 
-Result<OpenHand> open_hand(const std::string& spec, Side side) {
-  auto glove = driver::open_glove(spec, side);
-  if (!glove) return glove.error();
-  if ((*glove)->info().side != side) {
-    note(spec + " says that it is a " + std::string(name_of((*glove)->info().side)) +
-         "-hand glove; it shapes as the " + std::string(name_of(side)) + " hand, as you asked");
-  }
-  OpenHand hand;
-  hand.side = side;
-  hand.ring = std::make_unique<SampleRing>(1024);
-  hand.glove = *std::move(glove);
-  return hand;
-}
-
 // Both hands that the machine has, or simulated ones. A glove that is there but cannot be used is
 // an error.
 Result<std::vector<OpenHand>> open_any() {
@@ -81,25 +67,6 @@ Result<std::vector<OpenHand>> open_named(const RunOptions& options) {
     hands.push_back(*std::move(hand));
   }
   return hands;
-}
-
-Result<void> wait_for_first_sample(OpenHand& hand) {
-  constexpr auto patience = milliseconds(2000);
-  const HostTime end = HostClock::now() + patience;
-  while (HostClock::now() < end && !stop_requested()) {
-    bool any = false;
-    hand.ring->drain([&](const GloveSample& sample) noexcept {
-      hand.first = sample;
-      any = true;
-    });
-    if (any) return {};
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  if (stop_requested()) return Error{Errc::failed, "stopped before the first sample came"};
-  return Error{Errc::no_device,
-               hand.glove->info().source +
-                   ": opened, but no sample came within 2 s; is the glove plugged into "
-                   "its interface unit?"};
 }
 
 hand::Calibration calibration_of(const OpenHand& hand) {

@@ -8,8 +8,9 @@
 #include <optional>
 #include <string>
 
-#include <nendo/driver/open_glove.hpp>
 #include <nendo/flow/deform_loop.hpp>
+
+#include "open_hand.hpp"
 
 namespace nendo::app {
 
@@ -22,14 +23,6 @@ struct RunOptions {
   double radius = 0.0;     ///< 0: a fraction of the model's size
   bool json = false;
   flow::LoopOptions loop;
-};
-
-/// A glove, its samples on their way to the loop, and the first of them.
-struct OpenHand {
-  Side side = Side::right;
-  std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
-  std::unique_ptr<driver::Glove> glove;
-  GloveSample first;
 };
 
 /// Opens and starts the gloves and waits for the first sample of each. With none named it uses what

@@ -125,7 +125,8 @@ HandPose HandSkeleton::right_hand_pose(const JointAngles& angles) const noexcept
   Isometry3d wrist = Isometry3d::Identity();
   wrist.linear() = turn_y(angles.wrist_yaw_rad) * turn_x(-angles.wrist_pitch_rad);
   pose.joints[index_of(Joint::wrist)] = wrist;
-  place(Joint::palm, wrist, Matrix3d::Identity());
+  // The palm's -Z is the middle finger's metacarpal's, which rises a little from wrist to knuckle.
+  place(Joint::palm, wrist, pointing(rest_offset(Joint::middle_proximal)));
 
   const Isometry3d thumb = place(Joint::thumb_metacarpal, wrist,
                                  turn_z(angles.thumb_roll_rad) *

@@ -13,5 +13,6 @@ endif()
 if(NENDO_TESTS)
   find_package(doctest REQUIRED)
   find_package(nlohmann_json 3.11 REQUIRED)
+  find_path(NENDO_OPENXR_INCLUDE openxr/openxr.h REQUIRED) # the header alone: nothing is linked, nothing runs
   pkg_check_modules(umockdev REQUIRED IMPORTED_TARGET umockdev-1.0)
 endif()

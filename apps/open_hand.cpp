@@ -1,0 +1,42 @@
+#include "open_hand.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "cli.hpp"
+
+namespace nendo::app {
+
+using std::chrono::milliseconds;
+
+Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side) {
+  auto glove = driver::open_glove(spec, side);
+  if (!glove) return glove.error();
+  const Side own_side = (*glove)->info().side;
+  if (side && own_side != *side) {
+    note(spec + " says that it is a " + std::string(name_of(own_side)) +
+         "-hand glove; it shapes as the " + std::string(name_of(*side)) + " hand, as you asked");
+  }
+  OpenHand hand;
+  hand.side = side.value_or(own_side);
+  hand.ring = std::make_unique<SampleRing>(1024);
+  hand.glove = *std::move(glove);
+  return hand;
+}
+
+Result<void> wait_for_first_sample(OpenHand& hand) {
+  constexpr auto patience = milliseconds(2000);
+  const HostTime end = HostClock::now() + patience;
+  while (HostClock::now() < end && !stop_requested()) {
+    if (hand.ring->try_pop(hand.first)) return {};
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  if (stop_requested()) return Error{Errc::failed, "stopped before the first sample came"};
+  return Error{Errc::no_device,
+               hand.glove->info().source +
+                   ": opened, but no sample came within 2 s; is the glove plugged into "
+                   "its interface unit?"};
+}
+
+} // namespace nendo::app

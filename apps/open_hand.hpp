@@ -1,0 +1,29 @@
+#pragma once
+// A glove that was opened, and the ring in which its samples come: what the commands that use hands
+// begin with.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <nendo/driver/open_glove.hpp>
+
+namespace nendo::app {
+
+/// A glove, its samples on their way to who uses them, and the first of them.
+struct OpenHand {
+  Side side = Side::right;
+  std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
+  std::unique_ptr<driver::Glove> glove;
+  GloveSample first;
+};
+
+/// Opens the glove for that hand, and says so on standard error if it calls itself the other one;
+/// without `side`, for the hand that it is. Blocks and fails as open_glove().
+Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt);
+
+/// Takes the first sample of a started glove out of the ring. Blocks, 2 s at most. Errors:
+/// no_device if none comes, failed if a stop signal does.
+Result<void> wait_for_first_sample(OpenHand& hand);
+
+} // namespace nendo::app

@@ -1,0 +1,16 @@
+#pragma once
+// A hand's pose as a line of JSON, as `nendo poses` prints it.
+
+#include <string>
+
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::app {
+
+/// One object without a line end. Keys: time_s (host clock), hand ("left" or "right"), joints: by
+/// OpenXR's names and in its order, position_m [x, y, z] and orientation_xyzw, a unit quaternion
+/// whose w is not negative.
+std::string pose_json(HostTime time, Side side, const hand::HandPose& pose);
+
+} // namespace nendo::app
