@@ -7,6 +7,7 @@ namespace nendo::app {
 
 void add_latency_bench(Command& bench);
 void add_faults_bench(Command& bench);
+void add_hand_bench(Command& bench);
 void add_soak_bench(Command& bench);
 
 } // namespace nendo::app

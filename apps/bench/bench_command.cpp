@@ -6,11 +6,12 @@
 namespace nendo::app {
 
 void add_bench(Command& program) {
-  Command bench =
-      program.add_command("bench", "Measures this program on this machine: latency, faults, load");
+  Command bench = program.add_command(
+      "bench", "Measures this program on this machine: latency, faults, load, hands");
   bench.require_command();
   add_latency_bench(bench);
   add_faults_bench(bench);
+  add_hand_bench(bench);
   add_soak_bench(bench);
 }
 

@@ -1,7 +1,9 @@
 #include <nendo/hand/skeleton.hpp>
 
 #include <cmath>
-#include <numbers>
+
+#include "hand_shape.hpp"
+#include "turns.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -9,22 +11,8 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
-using Eigen::Translation3d;
 using Eigen::Vector3d;
-
-constexpr double degrees(double d) noexcept {
-  return d * std::numbers::pi / 180.0;
-}
-
-Matrix3d turn_x(double angle_rad) {
-  return AngleAxisd(angle_rad, Vector3d::UnitX()).matrix();
-}
-Matrix3d turn_y(double angle_rad) {
-  return AngleAxisd(angle_rad, Vector3d::UnitY()).matrix();
-}
-Matrix3d turn_z(double angle_rad) {
-  return AngleAxisd(angle_rad, Vector3d::UnitZ()).matrix();
-}
+using Eigen::Vector4d;
 
 // Proportions: B. Buchholz, T. J. Armstrong, S. A. Goldstein, "Anthropometric data for describing
 // the kinematics of the human hand", Ergonomics 35(3), 1992, 261-273: lengths and axial places as
@@ -53,22 +41,88 @@ constexpr double thumb_bones[3] = {0.251, 0.196, 0.158};
 constexpr double metacarpal_base_axial = 0.118;
 constexpr double metacarpal_base_across = 0.5;
 
-// At zero angles the thumb lies beside the index finger, its bones parting from it by the width of
-// the web, and its nail turned towards the thumb's side: its flexion runs across the palm and not
-// towards it.
-constexpr double thumb_rest_abduction_rad = degrees(15);
-constexpr double thumb_pronation_rad = degrees(60);
-
-// The little finger's metacarpal moves most when the palm arches, the ring finger's about half as
-// much; those of index and middle finger are fixed to the carpus.
-constexpr double arch_share[4] = {0.0, 0.0, 0.5, 1.0};
-
 // The rotation that takes -Z to `direction` by the shortest way; `direction` is not +Z. (Eigen's
 // own takes an SVD for the case that cannot be.)
 Matrix3d pointing(const Vector3d& direction) {
   const Vector3d axis = (-Vector3d::UnitZ()).cross(direction);
   const double angle_rad = std::atan2(axis.norm(), -direction.z());
   return angle_rad > 0.0 ? AngleAxisd(angle_rad, axis.normalized()).matrix() : Matrix3d::Identity();
+}
+
+Joint joint_after(Joint joint, std::size_t steps) {
+  return static_cast<Joint>(index_of(joint) + steps);
+}
+
+/// A joint's frame while the hand is walked through: the columns of its homogeneous matrix. A turn
+/// about one of its own axes only mixes the other two, a bone only moves the origin, so that no
+/// matrices are multiplied. Columns have four rows because the vector unit takes them by twos.
+struct Frame {
+  Vector4d x, y, z, origin;
+
+  explicit Frame(const Isometry3d& pose) noexcept
+      : x(pose.matrix().col(0)), y(pose.matrix().col(1)), z(pose.matrix().col(2)),
+        origin(pose.matrix().col(3)) {}
+
+  void turn_x(Turn turn) noexcept { mix(y, z, turn); }
+  void turn_y(Turn turn) noexcept { mix(z, x, turn); }
+  void turn_z(Turn turn) noexcept { mix(x, y, turn); }
+  void turn(const Matrix3d& by) noexcept {
+    const Frame before = *this;
+    x = by(0, 0) * before.x + by(1, 0) * before.y + by(2, 0) * before.z;
+    y = by(0, 1) * before.x + by(1, 1) * before.y + by(2, 1) * before.z;
+    z = by(0, 2) * before.x + by(1, 2) * before.y + by(2, 2) * before.z;
+  }
+  void move(const Vector3d& by) noexcept { origin += by.x() * x + by.y() * y + by.z() * z; }
+  void go_ahead(double length_m) noexcept { origin -= length_m * z; }
+  void store(Isometry3d& pose) const noexcept {
+    pose.matrix().col(0) = x;
+    pose.matrix().col(1) = y;
+    pose.matrix().col(2) = z;
+    pose.matrix().col(3) = origin;
+  }
+
+private:
+  static void mix(Vector4d& from, Vector4d& to, Turn turn) noexcept {
+    const Vector4d turned = turn.cos * from + turn.sin * to;
+    to = turn.cos * to - turn.sin * from;
+    from = turned;
+  }
+};
+
+constexpr Eigen::Index first_arched = 2; // ring finger: the first that the palm's arch moves
+
+// Where each angle's turn is found. A finger's four begin at `finger_turns`.
+enum : Eigen::Index {
+  yaw_turn,
+  pitch_turn,
+  roll_turn,
+  thumb_abduction_turn,
+  thumb_mcp_turn,
+  thumb_ip_turn,
+  arch_turns, // of ring and little finger
+  finger_turns = arch_turns + 2,
+  turn_count = finger_turns + 16
+};
+
+/// Signed as turns about +X, +Y, +Z of a right hand.
+Turns<turn_count> turns_of(const JointAngles& angles) noexcept {
+  Eigen::Array<double, turn_count, 1> row;
+  row[yaw_turn] = angles.wrist_yaw_rad;
+  row[pitch_turn] = -angles.wrist_pitch_rad;
+  row[roll_turn] = angles.thumb_roll_rad;
+  row[thumb_abduction_turn] = thumb_rest_abduction_rad + angles.thumb_abduction_rad;
+  row[thumb_mcp_turn] = -angles.thumb_mcp_flexion_rad;
+  row[thumb_ip_turn] = -angles.thumb_ip_flexion_rad;
+  row[arch_turns] = -arch_share[first_arched] * angles.palm_arch_rad;
+  row[arch_turns + 1] = -arch_share[first_arched + 1] * angles.palm_arch_rad;
+  Eigen::Index at = finger_turns;
+  for (const FingerAngles& finger : angles.fingers) {
+    row[at++] = finger.mcp_abduction_rad;
+    row[at++] = -finger.mcp_flexion_rad;
+    row[at++] = -finger.pip_flexion_rad;
+    row[at++] = -finger.dip_flexion_rad;
+  }
+  return turns(row);
 }
 
 } // namespace
@@ -81,13 +135,14 @@ Eigen::Matrix<double, 3, 5> HandPose::fingertip_positions() const noexcept {
   return tips;
 }
 
-HandSkeleton::HandSkeleton(Side side, HandSize size) : side_(side) {
-  offsets_m_.fill(Vector3d::Zero());
+HandSkeleton::Offsets HandSkeleton::offsets_of(HandSize size) {
+  Offsets offsets_m;
+  offsets_m.fill(Vector3d::Zero());
   const double length = size.length_m;
   const double breadth = size.breadth_m;
   const auto along = [](double metres) { return Vector3d(0.0, 0.0, -metres); };
   const auto set = [&](Joint joint, std::size_t steps, const Vector3d& offset) {
-    offsets_m_[index_of(joint) + steps] = offset;
+    offsets_m[index_of(joint) + steps] = offset;
   };
   set(Joint::thumb_metacarpal, 0,
       {thumb_cmc_across * breadth, thumb_cmc_dorsal * length, -thumb_cmc_axial * length});
@@ -105,70 +160,135 @@ HandSkeleton::HandSkeleton(Side side, HandSize size) : side_(side) {
       set(finger.metacarpal, bone + 2, along(finger.phalanges[bone] * length));
     }
   }
-  const auto& metacarpal = offsets_m_[index_of(Joint::middle_metacarpal)];
-  set(Joint::palm, 0, metacarpal + 0.5 * offsets_m_[index_of(Joint::middle_proximal)]);
+  return offsets_m;
 }
 
-HandPose HandSkeleton::right_hand_pose(const JointAngles& angles) const noexcept {
-  HandPose pose;
-  // Puts `joint` at its rest offset in `frame`, turned by `rotation`.
-  const auto place = [&](Joint joint, const Isometry3d& frame, const Matrix3d& rotation) {
-    Isometry3d& placed = pose.joints[index_of(joint)];
-    placed = frame * Translation3d(rest_offset(joint));
-    placed.linear() = frame.linear() * rotation;
-    return placed;
-  };
-  const auto next = [](Joint joint, std::size_t steps) {
-    return static_cast<Joint>(index_of(joint) + steps);
-  };
+HandSkeleton::HandSkeleton(Side side, HandSize size) : HandSkeleton(side, offsets_of(size)) {}
 
-  Isometry3d wrist = Isometry3d::Identity();
-  wrist.linear() = turn_y(angles.wrist_yaw_rad) * turn_x(-angles.wrist_pitch_rad);
-  pose.joints[index_of(Joint::wrist)] = wrist;
-  // The palm's -Z is the middle finger's metacarpal's, which rises a little from wrist to knuckle.
-  place(Joint::palm, wrist, pointing(rest_offset(Joint::middle_proximal)));
-
-  const Isometry3d thumb = place(Joint::thumb_metacarpal, wrist,
-                                 turn_z(angles.thumb_roll_rad) *
-                                     turn_y(thumb_rest_abduction_rad + angles.thumb_abduction_rad) *
-                                     turn_z(thumb_pronation_rad));
-  const Isometry3d thumb_mcp =
-      place(Joint::thumb_proximal, thumb, turn_x(-angles.thumb_mcp_flexion_rad));
-  const Isometry3d thumb_ip =
-      place(Joint::thumb_distal, thumb_mcp, turn_x(-angles.thumb_ip_flexion_rad));
-  place(Joint::thumb_tip, thumb_ip, Matrix3d::Identity());
-
-  for (std::size_t f = 0; f < 4; ++f) {
-    const Joint base = fingers[f].metacarpal;
-    const FingerAngles& finger = angles.fingers[f];
-    // The offset of the metacarpal's head is given in the wrist's axes; seen from the metacarpal's
-    // own frame, which points along the bone, the bone is straight ahead, and the finger's zero is
-    // parallel to the wrist's axis.
-    const Matrix3d bone = pointing(rest_offset(next(base, 1)));
-    const Isometry3d root = place(base, wrist, turn_x(-arch_share[f] * angles.palm_arch_rad));
-    const Isometry3d mcp = place(
-        next(base, 1), root, turn_y(finger.mcp_abduction_rad) * turn_x(-finger.mcp_flexion_rad));
-    pose.joints[index_of(base)].linear() = root.linear() * bone;
-    const Isometry3d pip = place(next(base, 2), mcp, turn_x(-finger.pip_flexion_rad));
-    const Isometry3d dip = place(next(base, 3), pip, turn_x(-finger.dip_flexion_rad));
-    place(next(base, 4), dip, Matrix3d::Identity());
+HandSkeleton::HandSkeleton(Side side, const Offsets& offsets_m)
+    : side_(side), offsets_m_(offsets_m) {
+  offsets_m_[index_of(Joint::palm)] =
+      rest_offset(Joint::middle_metacarpal) + 0.5 * rest_offset(Joint::middle_proximal);
+  // A left hand is the mirror image of a right one: with M = diag(-1, 1, 1), places become M p and
+  // rotations M R M.
+  const Vector3d mirror(side == Side::left ? -1.0 : 1.0, 1.0, 1.0);
+  palm_m_ = mirror.cwiseProduct(rest_offset(Joint::palm));
+  thumb_base_m_ = mirror.cwiseProduct(rest_offset(Joint::thumb_metacarpal));
+  for (std::size_t f = 0; f < fingers_.size(); ++f) {
+    const Vector3d& head = rest_offset(joint_after(fingers[f].metacarpal, 1));
+    fingers_[f] = {mirror.cwiseProduct(rest_offset(fingers[f].metacarpal)),
+                   mirror.cwiseProduct(head),
+                   mirror.asDiagonal() * pointing(head) * mirror.asDiagonal()};
   }
-  return pose;
 }
+
+Result<HandSkeleton> HandSkeleton::of_bones(Side side, const BoneLengths& bones) {
+  if (auto checked = bones.check(); !checked) return checked.error();
+  const HandSize average;
+  const BoneLengths usual = HandSkeleton(side, average).bones();
+  const auto middle = [](const BoneLengths& of) {
+    double sum_m = 0.0;
+    for (const double bone_m : of.fingers_m[1])
+      sum_m += bone_m;
+    return sum_m;
+  };
+  const double scale = middle(bones) / middle(usual);
+  Offsets offsets_m = offsets_of({scale * average.length_m, scale * average.breadth_m});
+  const auto stretch = [&](Joint joint, double length_m) {
+    Vector3d& offset = offsets_m[index_of(joint)];
+    offset *= length_m / offset.norm();
+  };
+  for (std::size_t bone = 0; bone < 3; ++bone)
+    stretch(joint_after(Joint::thumb_proximal, bone), bones.thumb_m[bone]);
+  for (std::size_t f = 0; f < 4; ++f) {
+    for (std::size_t bone = 0; bone < 4; ++bone)
+      stretch(joint_after(fingers[f].metacarpal, bone + 1), bones.fingers_m[f][bone]);
+  }
+  return HandSkeleton(side, offsets_m);
+}
+
+BoneLengths HandSkeleton::bones() const noexcept {
+  BoneLengths bones;
+  for (std::size_t bone = 0; bone < 3; ++bone)
+    bones.thumb_m[bone] = rest_offset(joint_after(Joint::thumb_proximal, bone)).norm();
+  for (std::size_t f = 0; f < 4; ++f) {
+    for (std::size_t bone = 0; bone < 4; ++bone) {
+      bones.fingers_m[f][bone] = rest_offset(joint_after(fingers[f].metacarpal, bone + 1)).norm();
+    }
+  }
+  return bones;
+}
+
+/// From the wrist outwards, one chain of bones after the other.
+struct HandSkeleton::Walk {
+  const HandSkeleton& hand;
+  Turns<turn_count> turns;
+  HandPose& pose;
+
+  /// The mirror turns rotations about Y and Z round, and leaves those about X as they are.
+  Turn sideways(Turn turn) const noexcept {
+    return hand.side_ == Side::left ? turn.reversed() : turn;
+  }
+  void place(Joint joint, const Frame& frame) noexcept {
+    frame.store(pose.joints[index_of(joint)]);
+  }
+  /// To the end of the bone that begins at `joint`.
+  void go_along(Joint joint, Frame& frame) const noexcept {
+    frame.go_ahead(-hand.rest_offset(joint_after(joint, 1)).z());
+  }
+  void bend(Joint joint, Turn turn, Frame& frame) noexcept {
+    frame.turn_x(turn);
+    place(joint, frame);
+    go_along(joint, frame);
+  }
+
+  void thumb(Frame frame) noexcept {
+    frame.move(hand.thumb_base_m_);
+    frame.turn_z(sideways(turns[roll_turn]));
+    frame.turn_y(sideways(turns[thumb_abduction_turn]));
+    frame.turn_z(sideways(thumb_pronation));
+    place(Joint::thumb_metacarpal, frame);
+    go_along(Joint::thumb_metacarpal, frame);
+    bend(Joint::thumb_proximal, turns[thumb_mcp_turn], frame);
+    bend(Joint::thumb_distal, turns[thumb_ip_turn], frame);
+    place(Joint::thumb_tip, frame);
+  }
+
+  /// f: 0, the index finger, to 3.
+  void finger(std::size_t f, Frame frame) noexcept {
+    const FingerRoot& root = hand.fingers_[f];
+    const Joint metacarpal = fingers[f].metacarpal;
+    const auto turn = finger_turns + 4 * static_cast<Eigen::Index>(f);
+    frame.move(root.base_m);
+    if (arch_share[f] > 0.0)
+      frame.turn_x(turns[arch_turns + static_cast<Eigen::Index>(f) - first_arched]);
+    Frame along_bone = frame;
+    along_bone.turn(root.metacarpal_axes);
+    place(metacarpal, along_bone);
+    frame.move(root.head_m);
+    frame.turn_y(sideways(turns[turn]));
+    bend(joint_after(metacarpal, 1), turns[turn + 1], frame);
+    bend(joint_after(metacarpal, 2), turns[turn + 2], frame);
+    bend(joint_after(metacarpal, 3), turns[turn + 3], frame);
+    place(joint_after(metacarpal, 4), frame);
+  }
+};
 
 HandPose HandSkeleton::pose(const JointAngles& angles,
                             const Isometry3d& T_world_wrist) const noexcept {
-  HandPose pose = right_hand_pose(angles);
-  // A left hand is the mirror image: with M = diag(-1, 1, 1), positions become M p and rotations M
-  // R M.
-  const Vector3d mirror(-1.0, 1.0, 1.0);
-  for (auto& joint : pose.joints) {
-    if (side_ == Side::left) {
-      joint.translation() = mirror.cwiseProduct(joint.translation());
-      joint.linear() = mirror.asDiagonal() * joint.linear() * mirror.asDiagonal();
-    }
-    joint = T_world_wrist * joint;
-  }
+  HandPose pose;
+  Walk walk{*this, turns_of(angles), pose};
+  Frame wrist(T_world_wrist);
+  wrist.turn_y(walk.sideways(walk.turns[yaw_turn]));
+  wrist.turn_x(walk.turns[pitch_turn]);
+  walk.place(Joint::wrist, wrist);
+  Frame palm = wrist;
+  palm.move(palm_m_);
+  palm.turn(fingers_[1].metacarpal_axes); // OpenXR's palm points along the middle metacarpal
+  walk.place(Joint::palm, palm);
+  walk.thumb(wrist);
+  for (std::size_t f = 0; f < fingers_.size(); ++f)
+    walk.finger(f, wrist);
   return pose;
 }
 

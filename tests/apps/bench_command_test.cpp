@@ -71,6 +71,28 @@ TEST_SUITE("bench") {
     CHECK(number("delivered") + number("missed") + 5 >= number("sent"));
   }
 
+  TEST_CASE("bench hand's two ways to pose agree, and it finds the hands that it made up") {
+    const auto done =
+        nendo::test::nendo({"bench", "hand", "--poses", "1000", "--solves", "300", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 1);
+    const auto measured = nlohmann::json::parse(lines[0]);
+    const auto number = [&](const char* key) { return measured[key].get<double>(); };
+    CHECK(number("pose_pair_ns") > 0.0);
+    CHECK(number("plain_to_pose") ==
+          doctest::Approx(number("plain_pair_ns") / number("pose_pair_ns")));
+    CHECK(number("apart_m") < 1e-6);
+    CHECK(measured["solves"] == 300);
+    CHECK(measured["converged"] == 300);
+    CHECK(number("solves_a_second") > 0.0);
+    CHECK(number("worst_residual_m") < 1e-4);
+    CHECK(number("median_residual_m") <= number("worst_residual_m"));
+    const auto text = nendo::test::nendo({"bench", "hand", "--poses", "1", "--solves", "1"});
+    CHECK(text.exit_code == 0);
+    CHECK(lines_of(text.out).size() == 4);
+  }
+
   TEST_CASE("bench says what cannot be measured") {
     const auto rate = nendo::test::nendo({"bench", "driver", "--rate", "1000"});
     CHECK(rate.exit_code == 2);
@@ -81,6 +103,9 @@ TEST_SUITE("bench") {
     const auto brief = nendo::test::nendo({"bench", "faults", "--seconds", "1"});
     CHECK(brief.exit_code == 2);
     CHECK(is_one_line_about(brief.err, "--seconds"));
+    const auto still = nendo::test::nendo({"bench", "hand", "--poses", "0"});
+    CHECK(still.exit_code == 2);
+    CHECK(is_one_line_about(still.err, "--poses"));
     const auto few = nendo::test::nendo({"bench", "soak", "--records", "1"});
     CHECK(few.exit_code == 2);
     CHECK(is_one_line_about(few.err, "--records"));

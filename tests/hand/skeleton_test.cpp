@@ -1,6 +1,10 @@
 #include <nendo/hand/skeleton.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -13,20 +17,20 @@ using Eigen::Vector3d;
 
 namespace {
 
+/// All the way round, which no hand can do.
 JointAngles random_angles(std::mt19937& random) {
-  std::uniform_real_distribution<double> bend(-0.2, 1.6);
-  std::uniform_real_distribution<double> spread(-0.3, 0.4);
+  std::uniform_real_distribution<double> turn(-std::numbers::pi, std::numbers::pi);
   JointAngles angles;
-  angles.thumb_roll_rad = bend(random);
-  angles.thumb_abduction_rad = spread(random);
-  angles.thumb_mcp_flexion_rad = bend(random);
-  angles.thumb_ip_flexion_rad = bend(random);
+  angles.thumb_roll_rad = turn(random);
+  angles.thumb_abduction_rad = turn(random);
+  angles.thumb_mcp_flexion_rad = turn(random);
+  angles.thumb_ip_flexion_rad = turn(random);
   for (auto& finger : angles.fingers) {
-    finger = {bend(random), spread(random), bend(random), bend(random)};
+    finger = {turn(random), turn(random), turn(random), turn(random)};
   }
-  angles.palm_arch_rad = spread(random);
-  angles.wrist_pitch_rad = spread(random);
-  angles.wrist_yaw_rad = spread(random);
+  angles.palm_arch_rad = turn(random);
+  angles.wrist_pitch_rad = turn(random);
+  angles.wrist_yaw_rad = turn(random);
   return angles;
 }
 
@@ -57,51 +61,131 @@ Matrix4d rot(int axis, double angle) {
   m(a, b) = -std::sin(angle);
   return m;
 }
-Vector3d origin_of(const Matrix4d& m) {
-  return {m(0, 3), m(1, 3), m(2, 3)};
+Matrix4d turned(const Eigen::Quaterniond& q) {
+  Matrix4d m = Matrix4d::Identity();
+  m.topLeftCorner<3, 3>() = q.toRotationMatrix();
+  return m;
 }
 
 constexpr int x_axis = 0;
 constexpr int y_axis = 1;
 constexpr int z_axis = 2;
 
+using Matrices = std::array<Matrix4d, joint_count>;
+
+Matrices product_of_matrices(const HandSkeleton& skeleton, const JointAngles& a,
+                             const Isometry3d& base) {
+  Matrices m;
+  const auto offset = [&](Joint j) { return move(skeleton.rest_offset(j)); };
+  const auto at = [&](Joint j) -> Matrix4d& { return m[index_of(j)]; };
+  at(Joint::wrist) = rot(y_axis, a.wrist_yaw_rad) * rot(x_axis, -a.wrist_pitch_rad);
+  const auto along = [&](Joint end) { // from -Z to the bone's direction, by the shortest way
+    return turned(
+        Eigen::Quaterniond::FromTwoVectors(-Vector3d::UnitZ(), skeleton.rest_offset(end)));
+  };
+  at(Joint::palm) = at(Joint::wrist) * offset(Joint::palm) * along(Joint::middle_proximal);
+
+  const double deg = std::numbers::pi / 180.0;
+  at(Joint::thumb_metacarpal) =
+      at(Joint::wrist) * offset(Joint::thumb_metacarpal) * rot(z_axis, a.thumb_roll_rad) *
+      rot(y_axis, 15 * deg + a.thumb_abduction_rad) * rot(z_axis, 60 * deg);
+  at(Joint::thumb_proximal) = at(Joint::thumb_metacarpal) * offset(Joint::thumb_proximal) *
+                              rot(x_axis, -a.thumb_mcp_flexion_rad);
+  at(Joint::thumb_distal) = at(Joint::thumb_proximal) * offset(Joint::thumb_distal) *
+                            rot(x_axis, -a.thumb_ip_flexion_rad);
+  at(Joint::thumb_tip) = at(Joint::thumb_distal) * offset(Joint::thumb_tip);
+
+  const double arch[] = {0.0, 0.0, 0.5, 1.0};
+  const Joint bases[] = {Joint::index_metacarpal, Joint::middle_metacarpal, Joint::ring_metacarpal,
+                         Joint::little_metacarpal};
+  for (std::size_t f = 0; f < 4; ++f) {
+    const auto j = [&](std::size_t n) { return static_cast<Joint>(index_of(bases[f]) + n); };
+    const FingerAngles& finger = a.fingers[f];
+    const Matrix4d root = at(Joint::wrist) * offset(j(0)) * rot(x_axis, -arch[f] * a.palm_arch_rad);
+    at(j(0)) = root * along(j(1));
+    at(j(1)) = root * offset(j(1)) * rot(y_axis, finger.mcp_abduction_rad) *
+               rot(x_axis, -finger.mcp_flexion_rad);
+    at(j(2)) = at(j(1)) * offset(j(2)) * rot(x_axis, -finger.pip_flexion_rad);
+    at(j(3)) = at(j(2)) * offset(j(3)) * rot(x_axis, -finger.dip_flexion_rad);
+    at(j(4)) = at(j(3)) * offset(j(4));
+  }
+  // A left hand: everything seen in the mirror.
+  const Matrix4d mirror = Eigen::Vector4d(-1.0, 1.0, 1.0, 1.0).asDiagonal();
+  for (Matrix4d& joint : m) {
+    if (skeleton.side() == Side::left) joint = (mirror * joint * mirror).eval();
+    joint = (base.matrix() * joint).eval();
+  }
+  return m;
+}
+
+/// The farthest that any entry of any joint's matrix is off: metres, and parts of a unit vector.
+double farthest_apart(const HandPose& pose, const Matrices& matrices) {
+  double farthest = 0.0;
+  for (std::size_t at = 0; at < joint_count; ++at) {
+    const Matrix4d difference = pose.joints[at].matrix() - matrices[at];
+    farthest = std::max(farthest, difference.cwiseAbs().maxCoeff());
+  }
+  return farthest;
+}
+
 } // namespace
 
 TEST_SUITE("skeleton") {
-  TEST_CASE("fingertips agree with a product of homogeneous matrices to 1e-12 m") {
+  TEST_CASE("places and turns of all joints of both hands are a product of homogeneous matrices") {
     std::mt19937 random(1);
-    const HandSkeleton skeleton(Side::right);
-    for (int round = 0; round < 200; ++round) {
-      const JointAngles a = random_angles(random);
-      const Isometry3d base = random_pose(random);
-      const HandPose pose = skeleton.pose(a, base);
-      const auto offset = [&](Joint j) { return move(skeleton.rest_offset(j)); };
-      const Matrix4d wrist =
-          base.matrix() * rot(y_axis, a.wrist_yaw_rad) * rot(x_axis, -a.wrist_pitch_rad);
-
-      const double arch[] = {0.0, 0.0, 0.5, 1.0};
-      const Joint bases[] = {Joint::index_metacarpal, Joint::middle_metacarpal,
-                             Joint::ring_metacarpal, Joint::little_metacarpal};
-      for (std::size_t f = 0; f < 4; ++f) {
-        const auto j = [&](std::size_t n) { return static_cast<Joint>(index_of(bases[f]) + n); };
-        const FingerAngles& finger = a.fingers[f];
-        const Matrix4d tip = wrist * offset(j(0)) * rot(x_axis, -arch[f] * a.palm_arch_rad) *
-                             offset(j(1)) * rot(y_axis, finger.mcp_abduction_rad) *
-                             rot(x_axis, -finger.mcp_flexion_rad) * offset(j(2)) *
-                             rot(x_axis, -finger.pip_flexion_rad) * offset(j(3)) *
-                             rot(x_axis, -finger.dip_flexion_rad) * offset(j(4));
-        CHECK((pose[j(4)].translation() - origin_of(tip)).norm() < 1e-12);
+    std::uniform_real_distribution<double> length(0.12, 0.25);
+    std::uniform_real_distribution<double> breadth(0.05, 0.12);
+    for (int round = 0; round < 2000; ++round) {
+      const HandSize size{length(random), breadth(random)};
+      for (const Side side : {Side::left, Side::right}) {
+        const HandSkeleton skeleton(side, size);
+        const JointAngles a = random_angles(random);
+        const Isometry3d base = random_pose(random);
+        REQUIRE(farthest_apart(skeleton.pose(a, base), product_of_matrices(skeleton, a, base)) <
+                1e-13);
       }
-
-      const double deg = std::acos(-1.0) / 180.0;
-      const Matrix4d thumb = wrist * offset(Joint::thumb_metacarpal) *
-                             rot(z_axis, a.thumb_roll_rad) *
-                             rot(y_axis, 15 * deg + a.thumb_abduction_rad) * rot(z_axis, 60 * deg) *
-                             offset(Joint::thumb_proximal) * rot(x_axis, -a.thumb_mcp_flexion_rad) *
-                             offset(Joint::thumb_distal) * rot(x_axis, -a.thumb_ip_flexion_rad) *
-                             offset(Joint::thumb_tip);
-      CHECK((pose[Joint::thumb_tip].translation() - origin_of(thumb)).norm() < 1e-12);
     }
+  }
+
+  TEST_CASE("angles of many turns are as good as angles of less than one") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> far(-1e4, 1e4);
+    const HandSkeleton skeleton(Side::left);
+    for (int round = 0; round < 200; ++round) {
+      JointAngles a = random_angles(random);
+      a.thumb_mcp_flexion_rad = far(random);
+      a.fingers[0].pip_flexion_rad = far(random);
+      a.fingers[2].mcp_abduction_rad = far(random);
+      const Isometry3d base = random_pose(random);
+      REQUIRE(farthest_apart(skeleton.pose(a, base), product_of_matrices(skeleton, a, base)) <
+              1e-13);
+    }
+  }
+
+  TEST_CASE("an angle that is not finite counts as zero") {
+    const HandSkeleton skeleton(Side::right);
+    std::mt19937 random(6);
+    for (const double none :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+          -std::numeric_limits<double>::infinity()}) {
+      JointAngles zero = random_angles(random);
+      zero.fingers[1].pip_flexion_rad = zero.wrist_yaw_rad = zero.palm_arch_rad = 0.0;
+      JointAngles broken = zero;
+      broken.fingers[1].pip_flexion_rad = broken.wrist_yaw_rad = broken.palm_arch_rad = none;
+      const HandPose expected = skeleton.pose(zero, Isometry3d::Identity());
+      const HandPose pose = skeleton.pose(broken, Isometry3d::Identity());
+      for (std::size_t at = 0; at < joint_count; ++at)
+        CHECK((pose.joints[at].matrix() - expected.joints[at].matrix()).norm() < 1e-13);
+    }
+  }
+
+  TEST_CASE("the largest angles that a double can hold give finite poses") {
+    JointAngles a;
+    a.thumb_roll_rad = std::numeric_limits<double>::max();
+    a.fingers[3].dip_flexion_rad = -std::numeric_limits<double>::max();
+    const HandPose pose = HandSkeleton(Side::left).pose(a, Isometry3d::Identity());
+    for (const auto& joint : pose.joints)
+      CHECK(joint.matrix().allFinite());
   }
 
   TEST_CASE("bones keep their length in every pose") {

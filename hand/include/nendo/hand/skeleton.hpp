@@ -11,6 +11,8 @@
 
 #include <Eigen/Geometry>
 
+#include <nendo/base/result.hpp>
+#include <nendo/hand/bone_lengths.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/joints.hpp>
 
@@ -37,11 +39,17 @@ class HandSkeleton {
 public:
   explicit HandSkeleton(Side side, HandSize size = {});
 
+  /// A wearer's measured bones. Where the metacarpals begin, and in which directions they run, has
+  /// an average hand's proportions, scaled as the middle finger's bones are. Error: bones.check().
+  static Result<HandSkeleton> of_bones(Side side, const BoneLengths& bones);
+
   /// Forward kinematics. T_world_wrist is where the forearm ends; the wrist's own angles turn the
-  /// hand about it. Wait-free, no allocation.
+  /// hand about it. An angle that is not finite counts as zero. Wait-free, no allocation.
   HandPose pose(const JointAngles& angles, const Eigen::Isometry3d& T_world_wrist) const noexcept;
 
   Side side() const noexcept { return side_; }
+  /// As they are in this skeleton, whatever it was made from.
+  BoneLengths bones() const noexcept;
   /// The bone that ends in `joint`, from its parent at zero angles, in the axes of a right hand's
   /// wrist; metres.
   const Eigen::Vector3d& rest_offset(Joint joint) const noexcept {
@@ -49,10 +57,26 @@ public:
   }
 
 private:
-  HandPose right_hand_pose(const JointAngles& angles) const noexcept;
+  using Offsets = std::array<Eigen::Vector3d, joint_count>;
+  /// What does not change from pose to pose, in the axes of this side's own hand.
+  struct FingerRoot {
+    Eigen::Vector3d base_m; ///< of the metacarpal, from the wrist
+    Eigen::Vector3d head_m; ///< of the metacarpal, from its base
+    /// The metacarpal's -Z points along the bone, whereas the finger's zero is parallel to the
+    /// wrist's axis.
+    Eigen::Matrix3d metacarpal_axes;
+  };
+
+  struct Walk;
+
+  static Offsets offsets_of(HandSize size);
+  HandSkeleton(Side side, const Offsets& offsets_m);
 
   Side side_;
-  std::array<Eigen::Vector3d, joint_count> offsets_m_;
+  Offsets offsets_m_;
+  Eigen::Vector3d palm_m_;
+  Eigen::Vector3d thumb_base_m_;
+  std::array<FingerRoot, 4> fingers_;
 };
 
 } // namespace nendo::hand

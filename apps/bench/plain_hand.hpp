@@ -1,0 +1,17 @@
+#pragma once
+// Forward kinematics as a textbook has it: a homogeneous matrix for each turn and each bone, all
+// multiplied. What nendo::hand does is measured against it, and checked by it.
+
+#include <array>
+
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::app {
+
+/// T_world_joint of every joint, by index_of(Joint).
+using PlainPose = std::array<Eigen::Matrix4d, hand::joint_count>;
+
+PlainPose plain_pose(const hand::HandSkeleton& skeleton, const hand::JointAngles& angles,
+                     const Eigen::Isometry3d& T_world_wrist) noexcept;
+
+} // namespace nendo::app

@@ -1,0 +1,109 @@
+#pragma once
+// Damped least squares with a range for each unknown: K. Levenberg (1944), D. W. Marquardt (1963),
+// "An algorithm for least-squares estimation of nonlinear parameters", with an active set for the
+// ranges (J. Nocedal, S. J. Wright, "Numerical Optimization", 2006, chapters 10.3 and 16.7). Sizes
+// are fixed at compile time: nothing is allocated.
+
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace nendo::hand {
+
+template <int N>
+struct Box {
+  Eigen::Matrix<double, N, 1> low;
+  Eigen::Matrix<double, N, 1> high;
+};
+
+/// Of half a sum of squares, at one place: Gauss and Newton's approximation.
+template <int N>
+struct NormalEquations {
+  Eigen::Matrix<double, N, N> matrix;   ///< J^T J
+  Eigen::Matrix<double, N, 1> gradient; ///< J^T r
+  double cost = 0.0;                    ///< r^T r / 2
+  double farthest_m = 0.0;              ///< what `enough_m` is compared with
+};
+
+struct Effort {
+  int most_iterations = 20;
+  double enough_m = 0.0;        ///< stop as soon as no target is farther
+  double least_step_rad = 1e-9; ///< stop when a step is shorter
+};
+
+/// The step that lowers the quadratic model most without leaving the box, starting with those
+/// unknowns held that stand at an end and are pushed out, and adding whichever would leave.
+template <int N>
+Eigen::Matrix<double, N, 1>
+bounded_step(const Eigen::Matrix<double, N, N>& matrix, const Eigen::Matrix<double, N, 1>& gradient,
+             const Eigen::Matrix<double, N, 1>& at, const Box<N>& box) noexcept {
+  Eigen::Matrix<double, N, 1> held_step = Eigen::Matrix<double, N, 1>::Zero();
+  Eigen::Array<bool, N, 1> held;
+  for (int k = 0; k < N; ++k) {
+    held[k] = box.low[k] >= box.high[k] || (at[k] <= box.low[k] && gradient[k] > 0.0) ||
+              (at[k] >= box.high[k] && gradient[k] < 0.0);
+  }
+  Eigen::Matrix<double, N, 1> step = held_step;
+  for (int round = 0; round <= N; ++round) {
+    Eigen::Matrix<double, N, N> system = matrix;
+    Eigen::Matrix<double, N, 1> right = -gradient;
+    right.noalias() -= matrix * held_step;
+    for (int k = 0; k < N; ++k) {
+      if (!held[k]) continue;
+      system.row(k).setZero();
+      system.col(k).setZero();
+      system(k, k) = 1.0;
+      right[k] = held_step[k];
+    }
+    step = system.llt().solve(right);
+    bool inside = true;
+    for (int k = 0; k < N; ++k) {
+      const double to = at[k] + step[k];
+      if (held[k] || (to >= box.low[k] && to <= box.high[k])) continue;
+      held[k] = true;
+      held_step[k] = (to < box.low[k] ? box.low[k] : box.high[k]) - at[k];
+      inside = false;
+    }
+    if (inside) break;
+  }
+  return step;
+}
+
+/// Goes downhill from `at`, which lies in the box, and stays in it. `model(place)` gives the
+/// NormalEquations there. Returns the iterations it took; `at` and `here` end where it ended.
+template <int N, class Model>
+int minimise(const Model& model, const Box<N>& box, const Effort& effort,
+             Eigen::Matrix<double, N, 1>& at, NormalEquations<N>& here) noexcept {
+  here = model(at);
+  double damping = 1e-3;
+  double growth = 2.0;
+  int iteration = 0;
+  while (iteration < effort.most_iterations && here.farthest_m > effort.enough_m) {
+    ++iteration;
+    Eigen::Matrix<double, N, N> damped = here.matrix;
+    damped.diagonal().array() += damping * here.matrix.diagonal().maxCoeff() + 1e-12;
+    const auto step = bounded_step<N>(damped, here.gradient, at, box);
+    const Eigen::Matrix<double, N, 1> there = (at + step).cwiseMax(box.low).cwiseMin(box.high);
+    const NormalEquations<N> next = model(there);
+    const double step_rad = (there - at).cwiseAbs().maxCoeff();
+    if (next.cost < here.cost) {
+      // How well the model foretold the descent says how far it may be trusted (H. B. Nielsen,
+      // "Damping parameter in Marquardt's method", 1999).
+      const double foretold = -step.dot(here.gradient) - 0.5 * step.dot(here.matrix * step);
+      const double quality = foretold > 0.0 ? (here.cost - next.cost) / foretold : 1.0;
+      const double cubed = (2.0 * quality - 1.0) * (2.0 * quality - 1.0) * (2.0 * quality - 1.0);
+      damping = std::max(damping * std::max(1.0 / 3.0, 1.0 - cubed), 1e-12);
+      growth = 2.0;
+      at = there;
+      here = next;
+    } else {
+      damping *= growth;
+      growth *= 2.0;
+    }
+    if (!(step_rad > effort.least_step_rad)) break;
+  }
+  return iteration;
+}
+
+} // namespace nendo::hand

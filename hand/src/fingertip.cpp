@@ -1,0 +1,108 @@
+#include "fingertip.hpp"
+
+#include <cmath>
+
+#include "hand_shape.hpp"
+#include "turns.hpp"
+
+namespace nendo::hand {
+namespace {
+
+constexpr std::array<Joint, finger_count> metacarpals{
+    Joint::thumb_metacarpal, Joint::index_metacarpal, Joint::middle_metacarpal,
+    Joint::ring_metacarpal, Joint::little_metacarpal};
+
+/// Where a bone, or a row of them, leads in the plane in which a finger bends: so far ahead, so far
+/// towards the palm. Turned by a right angle it is the derivative by the angle at its root.
+struct Reach {
+  double ahead_m = 0.0;
+  double down_m = 0.0;
+  friend Reach operator+(Reach a, Reach b) noexcept {
+    return {a.ahead_m + b.ahead_m, a.down_m + b.down_m};
+  }
+  Reach by_flexion() const noexcept { return {-down_m, ahead_m}; }
+};
+
+Reach bone(double length_m, Turn flexion) noexcept {
+  return {length_m * flexion.cos, length_m * flexion.sin};
+}
+
+Eigen::Vector3d turned_about_x(const Eigen::Vector3d& v, Turn turn) noexcept {
+  return {v.x(), turn.cos * v.y() - turn.sin * v.z(), turn.sin * v.y() + turn.cos * v.z()};
+}
+
+} // namespace
+
+FingerChain::FingerChain(const HandSkeleton& skeleton, std::size_t finger) noexcept
+    : is_thumb_(finger == 0), arch_share_(finger == 0 ? 0.0 : arch_share[finger - 1]),
+      base_m_(skeleton.rest_offset(metacarpals[finger])), head_m_(Eigen::Vector3d::Zero()) {
+  std::size_t joint = index_of(metacarpals[finger]) + 1;
+  if (!is_thumb_) head_m_ = skeleton.rest_offset(static_cast<Joint>(joint++));
+  for (double& bone_m : bones_m_)
+    bone_m = -skeleton.rest_offset(static_cast<Joint>(joint++)).z();
+}
+
+Fingertip FingerChain::finger_tip(const FourAngles& angles) const noexcept {
+  const double mcp = angles[0];
+  const double pip = mcp + angles[2];
+  const auto t = turns(Eigen::Array4d(angles[1], mcp, pip, pip + angles[3]));
+  const Turn abduction = t[0];
+  const Reach distal = bone(bones_m_[2], t[3]);
+  const Reach from_pip = bone(bones_m_[1], t[2]) + distal;
+  const Reach from_mcp = bone(bones_m_[0], t[1]) + from_pip;
+  const auto in_space = [&](Reach reach) {
+    return Eigen::Vector3d(-reach.ahead_m * abduction.sin, -reach.down_m,
+                           -reach.ahead_m * abduction.cos);
+  };
+  Fingertip tip;
+  tip.position_m = in_space(from_mcp);
+  tip.by_angle << in_space(from_mcp.by_flexion()),
+      Eigen::Vector3d(tip.position_m.z(), 0.0, -tip.position_m.x()),
+      in_space(from_pip.by_flexion()), in_space(distal.by_flexion());
+  return tip;
+}
+
+Fingertip FingerChain::thumb_tip(const FourAngles& angles) const noexcept {
+  const auto t = turns(Eigen::Array4d(angles[0], thumb_rest_abduction_rad + angles[1], angles[2],
+                                      angles[2] + angles[3]));
+  const Turn roll = t[0];
+  const Turn abduction = t[1];
+  const Reach distal = bone(bones_m_[2], t[3]);
+  const Reach from_mcp = bone(bones_m_[1], t[2]) + distal;
+  const auto rolled = [&](double x, double y, double z) {
+    return Eigen::Vector3d(roll.cos * x - roll.sin * y, roll.sin * x + roll.cos * y, z);
+  };
+  const auto in_space = [&](Reach reach) {
+    const double x = reach.down_m * thumb_pronation.sin;
+    const double y = -reach.down_m * thumb_pronation.cos;
+    const double z = -reach.ahead_m;
+    return rolled(abduction.cos * x + abduction.sin * z, y, abduction.cos * z - abduction.sin * x);
+  };
+  Fingertip tip;
+  tip.position_m = in_space(Reach{bones_m_[0], 0.0} + from_mcp);
+  const Eigen::Vector3d& p = tip.position_m;
+  const double before_roll_x = roll.cos * p.x() + roll.sin * p.y();
+  tip.by_angle << Eigen::Vector3d(-p.y(), p.x(), 0.0), rolled(p.z(), 0.0, -before_roll_x),
+      in_space(from_mcp.by_flexion()), in_space(distal.by_flexion());
+  return tip;
+}
+
+Fingertip FingerChain::tip(const FourAngles& angles, double palm_arch_rad) const noexcept {
+  Fingertip tip = is_thumb_ ? thumb_tip(angles) : finger_tip(angles);
+  tip.position_m += head_m_;
+  if (moves_with_arch()) {
+    const double angle_rad = -arch_share_ * palm_arch_rad;
+    const Turn arch{std::sin(angle_rad), std::cos(angle_rad)};
+    tip.position_m = turned_about_x(tip.position_m, arch);
+    for (Eigen::Index k = 0; k < 4; ++k)
+      tip.by_angle.col(k) = turned_about_x(tip.by_angle.col(k), arch);
+  }
+  tip.position_m += base_m_;
+  return tip;
+}
+
+Eigen::Vector3d FingerChain::by_arch(const Eigen::Vector3d& tip_m) const noexcept {
+  return -arch_share_ * Eigen::Vector3d::UnitX().cross(tip_m - base_m_);
+}
+
+} // namespace nendo::hand
