@@ -1,14 +1,17 @@
 // nendo info: asks a glove who it is.
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/hand/angle_sources.hpp>
 
 #include "cli.hpp"
 #include "commands.hpp"
@@ -28,6 +31,14 @@ std::vector<std::string> names_of(SensorMask mask) {
   return names;
 }
 
+ordered_json angles_json(SensorMask sensors) {
+  const hand::AngleSources sources = hand::angle_sources(sensors);
+  ordered_json by_angle = ordered_json::object();
+  for (std::size_t n = 0; n < hand::angle_count; ++n)
+    by_angle[std::string(hand::angle_names[n])] = name_of(sources[n]);
+  return by_angle;
+}
+
 void print_json(const driver::GloveInfo& info) {
   ordered_json facts = ordered_json::object();
   for (const auto& [name, value] : info.facts)
@@ -38,6 +49,7 @@ void print_json(const driver::GloveInfo& info) {
       {"model", info.model},
       {"hand", name_of(info.side)},
       {"sensors", names_of(info.sensors)},
+      {"angles", angles_json(info.sensors)},
       {"rate_hz", info.rate_hz},
       {"counts", {{"most", info.counts.most}, {"whole_range", info.counts.whole_range}}},
       {"abilities",
@@ -77,34 +89,69 @@ std::string abilities_text(const driver::Abilities& can) {
   return text.empty() ? "measures only" : text;
 }
 
-void print_text(const driver::GloveInfo& info) {
-  constexpr std::size_t least_name_width = 10;
-  constexpr std::size_t line_width = 80;
-  std::size_t name_width = least_name_width;
-  for (const auto& fact : info.facts)
-    name_width = std::max(name_width, fact.name.size());
-  const auto print = [&](const std::string& name, const std::string& value) {
+std::vector<std::string> angles_from(const hand::AngleSources& sources, hand::AngleSource source) {
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < hand::angle_count; ++n) {
+    if (sources[n] == source) names.emplace_back(hand::angle_names[n]);
+  }
+  return names;
+}
+
+/// Two columns, names and values, that fit 80 characters.
+class Columns {
+public:
+  explicit Columns(const driver::GloveInfo& info) {
+    for (const auto& fact : info.facts)
+      name_width_ = std::max(name_width_, fact.name.size());
+  }
+  void print(const std::string& name, const std::string& value) const {
     std::string line = printable(name);
-    line.resize(name_width + 2, ' ');
+    line.resize(name_width_ + 2, ' ');
     std::cout << line << printable(value) << '\n';
-  };
+  }
+  void print_list(std::string name, const std::vector<std::string>& words) const {
+    for (const auto& line : wrapped(words, 80 - name_width_ - 2))
+      print(std::exchange(name, ""), line);
+  }
+
+private:
+  std::size_t name_width_ = 10;
+};
+
+// Which angles of the hand the glove measures; the others by the rule that makes them.
+void print_angles(const Columns& columns, SensorMask sensors) {
+  const hand::AngleSources sources = hand::angle_sources(sensors);
+  const auto measured = angles_from(sources, hand::AngleSource::measured).size();
+  columns.print("angles", std::to_string(measured) + " of " + std::to_string(hand::angle_count) +
+                              " measured" + (measured < hand::angle_count ? "; the others" : ""));
+  for (std::size_t n = 0; n < hand::angle_source_count; ++n) {
+    const auto source = static_cast<hand::AngleSource>(n);
+    const auto names = angles_from(sources, source);
+    if (source != hand::AngleSource::measured && !names.empty())
+      columns.print_list(std::string(name_of(source)), names);
+  }
+}
+
+void print_text(const driver::GloveInfo& info) {
+  const Columns columns(info);
   char rate[32];
   std::snprintf(rate, sizeof rate, "%.6g Hz", info.rate_hz);
   const auto sensors = names_of(info.sensors);
 
-  print("source", info.source);
-  print("model", info.model);
-  print("hand", std::string(name_of(info.side)));
-  print("rate", info.rate_hz > 0.0 ? rate : "unknown");
-  print("counts", "0 to " + std::to_string(info.counts.most) +
-                      (info.counts.whole_range ? ", straight to fully bent" : ", uncalibrated"));
-  print("abilities", abilities_text(info.abilities));
-  print("sensors", std::to_string(sensors.size()));
-  for (const auto& line : wrapped(sensors, line_width - name_width - 2))
-    print("", line);
+  columns.print("source", info.source);
+  columns.print("model", info.model);
+  columns.print("hand", std::string(name_of(info.side)));
+  columns.print("rate", info.rate_hz > 0.0 ? rate : "unknown");
+  columns.print("counts",
+                "0 to " + std::to_string(info.counts.most) +
+                    (info.counts.whole_range ? ", straight to fully bent" : ", uncalibrated"));
+  columns.print("abilities", abilities_text(info.abilities));
+  columns.print("sensors", std::to_string(sensors.size()));
+  columns.print_list("", sensors);
+  print_angles(columns, info.sensors);
   if (!info.facts.empty()) std::cout << "\nin its own words\n";
   for (const auto& [name, value] : info.facts)
-    print(name, value);
+    columns.print(name, value);
 }
 
 int info(const std::string& spec, bool json) {

@@ -23,6 +23,7 @@ struct CommandOptions {
   RunOptions run;
   std::string mode = "type1";
   std::string switch_action = "none";
+  std::string filter = "off";
   KernelOptions kernel;
 };
 
@@ -66,6 +67,10 @@ Result<void> check(CommandOptions& options) {
                                   ": unknown; use none, grab, commit or toggle"};
   }
   run.loop.switch_action = *action;
+  const auto filter = hand::filter_named(options.filter);
+  if (!filter)
+    return Error{Errc::usage, "--filter " + options.filter + ": unknown; use off or one-euro"};
+  run.filter.kind = *filter;
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
   run.loop.sculptor.csrbf = *csrbf;
@@ -126,6 +131,9 @@ void add_run(Command& program) {
   command.add_option("--switch", options->switch_action,
                      "What the wrist switch does. grab: the hands hold the model while it is on; "
                      "commit: keeps the shape so far; toggle: lets go, takes hold again");
+  command.add_option("--filter", options->filter,
+                     "off, or one-euro: smooths the joints' angles, at rest more than in motion; "
+                     "the summary says how late that makes them");
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");

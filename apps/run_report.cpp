@@ -115,6 +115,26 @@ void print_switch(const RunOptions& options, const flow::LoopStats& stats) {
               static_cast<unsigned long long>(stats.grabs));
 }
 
+// What the filter was and how late it made the hands; its lag comes on top of end to end.
+ordered_json filter_json(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
+  ordered_json line{{"kind", hand::name_of(filter.kind)}};
+  if (filter.kind == hand::FilterKind::off) return line;
+  line["min_cutoff_hz"] = filter.min_cutoff_hz;
+  line["beta_hz_per_rad_s"] = filter.beta_hz_per_rad_s;
+  line["derivative_cutoff_hz"] = filter.derivative_cutoff_hz;
+  line["moving_latency_ms"] = percentiles(stats.filter_moving);
+  line["worst_latency_ms"] = percentiles(stats.filter_worst);
+  return line;
+}
+
+void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
+  if (filter.kind == hand::FilterKind::off) return;
+  print_percentiles("filter's lag", stats.filter_moving);
+  std::printf("  %-14s %s: of the joints that move; %.1f ms at rest; comes on top of all these\n",
+              "", std::string(hand::name_of(filter.kind)).c_str(),
+              milliseconds_of(stats.filter_worst.max()));
+}
+
 void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
@@ -146,6 +166,7 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
         {"ring_refused", glove.ring_refused},
         {"reopened", glove.reopened}};
   }
+  line["filter"] = filter_json(options.filter, stats);
   line["end_to_end_ms"] = percentiles(stats.end_to_end);
   line["wake_latency_ms"] = percentiles(stats.wake_latency);
   line["work_ms"] = percentiles(stats.work);
@@ -185,6 +206,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
   print_percentiles("work a tick", stats.work);
   print_percentiles("end to end", stats.end_to_end);
   std::printf("  %-14s from a sample's last byte to the finished mesh\n", "");
+  print_filter(options.filter, stats);
   std::printf("  %-14s %s a second (%s in the model)\n", "vertices",
               thousands(static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) /
                         outcome.elapsed_s)

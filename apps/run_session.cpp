@@ -193,6 +193,7 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   for (const auto& hand : hands) {
     inputs.push_back(
         {hand.ring.get(), hand::HandSkeleton(hand.side), calibration_of(hand), hand.first});
+    inputs.back().filter = options.filter;
   }
   flow::DeformLoop loop(model, placement_for(hands, model), std::move(inputs), loop_options);
   if (!is_solved(loop.grab_status())) {

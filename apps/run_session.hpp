@@ -22,6 +22,7 @@ struct RunOptions {
   double duration_s = 0.0; ///< 0: until a stop signal
   double radius = 0.0;     ///< 0: a fraction of the model's size
   bool json = false;
+  hand::FilterOptions filter; ///< of both hands
   flow::LoopOptions loop;
 };
 

@@ -1,25 +1,26 @@
 #pragma once
-// All angles of a hand in one row, as the solver of inverse kinematics takes them: four for the
-// thumb and for each finger, in the order of FourAngles, then what the whole hand shares.
+// All angles of a hand in one row, as the solver of inverse kinematics takes them: in the order of
+// Angle, that is four for the thumb and for each finger, then what the whole hand shares.
 
+#include <nendo/hand/angle.hpp>
 #include <nendo/hand/inverse_kinematics.hpp>
 
 #include "bounded_least_squares.hpp"
 
 namespace nendo::hand {
 
-inline constexpr int arch_at = 20;
-inline constexpr int pitch_at = 21;
-inline constexpr int yaw_at = 22;
-inline constexpr int angle_count = 23;
-using AllAngles = Eigen::Matrix<double, angle_count, 1>;
+inline constexpr int arch_at = static_cast<int>(Angle::palm_arch);
+inline constexpr int pitch_at = static_cast<int>(Angle::wrist_pitch);
+inline constexpr int yaw_at = static_cast<int>(Angle::wrist_yaw);
+inline constexpr int row_size = static_cast<int>(angle_count);
+using AllAngles = Eigen::Matrix<double, row_size, 1>;
 
 AllAngles row_of(const JointAngles& angles) noexcept;
 JointAngles angles_of(const AllAngles& row) noexcept;
 
 /// Ranges that are none are replaced by the default ones.
-Box<angle_count> box_of(const AngleLimits& limits) noexcept;
+Box<row_size> box_of(const AngleLimits& limits) noexcept;
 /// What is not finite counts as zero.
-AllAngles clamped(AllAngles row, const Box<angle_count>& box) noexcept;
+AllAngles clamped(AllAngles row, const Box<row_size>& box) noexcept;
 
 } // namespace nendo::hand

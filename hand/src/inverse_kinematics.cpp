@@ -90,8 +90,8 @@ struct HandProblem {
   AllAngles start;
   Posture posture;
 
-  NormalEquations<angle_count> operator()(const AllAngles& at) const noexcept {
-    NormalEquations<angle_count> sum;
+  NormalEquations<row_size> operator()(const AllAngles& at) const noexcept {
+    NormalEquations<row_size> sum;
     sum.matrix.setZero();
     AllAngles weights = AllAngles::Constant(posture.start_m * posture.start_m);
     weights.tail<3>().setConstant(posture.shared_m * posture.shared_m);
@@ -106,7 +106,7 @@ struct HandProblem {
   }
 
 private:
-  void add_finger(NormalEquations<angle_count>& sum, std::size_t f, const AllAngles& at,
+  void add_finger(NormalEquations<row_size>& sum, std::size_t f, const AllAngles& at,
                   const Matrix3d& turn) const noexcept {
     const auto block = 4 * static_cast<int>(f);
     const Fingertip tip = chains[f].tip(at.segment<4>(block), at[arch_at]);
@@ -126,7 +126,7 @@ private:
     sum.cost += 0.5 * weight * off_m.squaredNorm();
     sum.farthest_m = std::max(sum.farthest_m, off_m.norm());
     if (posture.together_m > 0.0)
-      add_together<angle_count>(sum, at, block, f == 0, posture.together_m);
+      add_together<row_size>(sum, at, block, f == 0, posture.together_m);
   }
 };
 
@@ -197,8 +197,8 @@ Reached solve_finger(FingerProblem problem, const Box<4>& box, double enough_m) 
 }
 
 /// Palm and wrist stay where they are unless they are to be solved.
-Box<angle_count> freed(Box<angle_count> box, const AllAngles& at,
-                       const InverseOptions& options) noexcept {
+Box<row_size> freed(Box<row_size> box, const AllAngles& at,
+                    const InverseOptions& options) noexcept {
   const auto hold = [&](int k) { box.low[k] = box.high[k] = at[k]; };
   if (!options.solve_palm_arch) hold(arch_at);
   if (!options.solve_wrist) {
@@ -209,13 +209,13 @@ Box<angle_count> freed(Box<angle_count> box, const AllAngles& at,
 }
 
 /// Whole hand: palm and wrist as far as `box` lets them move.
-int solve_hand(const Chains& chains, const Aims& aims, const Box<angle_count>& box, double enough_m,
+int solve_hand(const Chains& chains, const Aims& aims, const Box<row_size>& box, double enough_m,
                AllAngles& at) noexcept {
   HandProblem problem{chains, aims, at, forming};
-  NormalEquations<angle_count> here;
-  int iterations = minimise<angle_count>(problem, box, to_form, at, here);
+  NormalEquations<row_size> here;
+  int iterations = minimise<row_size>(problem, box, to_form, at, here);
   problem.posture = reaching;
-  iterations += minimise<angle_count>(problem, box, to_reach(enough_m), at, here);
+  iterations += minimise<row_size>(problem, box, to_reach(enough_m), at, here);
   return iterations;
 }
 
@@ -252,7 +252,7 @@ InverseSolution inverse_kinematics(const HandSkeleton& skeleton,
                       FingerChain(skeleton, 3), FingerChain(skeleton, 4)};
   const Aims aims = aims_of(targets, T_world_wrist, skeleton.side());
   const double enough_m = options.tolerance_m > 1e-9 ? options.tolerance_m : 1e-9;
-  const Box<angle_count> box = box_of(options.limits);
+  const Box<row_size> box = box_of(options.limits);
   AllAngles at = clamped(row_of(start), box);
   InverseSolution solution;
   int iterations = 0;

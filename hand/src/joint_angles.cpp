@@ -3,37 +3,14 @@
 #include <algorithm>
 #include <numbers>
 
+#include <nendo/hand/joint_limits.hpp>
+
 namespace nendo::hand {
 namespace {
 
 constexpr double degrees(double d) noexcept {
   return d * std::numbers::pi / 180.0;
 }
-
-struct Range {
-  double low_rad;
-  double high_rad;
-  constexpr double clamp(double angle_rad) const noexcept {
-    // Written so that a NaN from a broken calibration becomes the lower end.
-    return angle_rad > low_rad ? std::min(angle_rad, high_rad) : low_rad;
-  }
-};
-
-// Ranges of motion as clinical goniometry gives them (American Academy of Orthopaedic Surgeons:
-// finger MCP 0-90 and 20-30 of extension, PIP 0-100, DIP 0-80, thumb MCP 0-55, IP 0-80, wrist
-// 70-80), a little widened, because a glove that reads past them is more often badly calibrated
-// than worn by an acrobat.
-constexpr Range mcp_flexion{degrees(-30), degrees(100)};
-constexpr Range pip_flexion{degrees(-10), degrees(115)};
-constexpr Range dip_flexion{degrees(-10), degrees(85)};
-constexpr Range pair_abduction{degrees(-10), degrees(40)};
-constexpr Range thumb_roll{degrees(-20), degrees(90)};
-constexpr Range thumb_abduction{degrees(-10), degrees(70)};
-constexpr Range thumb_mcp{degrees(-20), degrees(70)};
-constexpr Range thumb_ip{degrees(-20), degrees(90)};
-constexpr Range palm_arch{degrees(-5), degrees(35)};
-constexpr Range wrist_pitch{degrees(-75), degrees(85)};
-constexpr Range wrist_yaw{degrees(-40), degrees(30)};
 
 // The rules of the header. The thumb's were chosen with this skeleton: of the ends from 50 to 70
 // degrees, and ratios of 0.3 to 1, these bring the tips together.
@@ -62,69 +39,124 @@ struct Measured {
   SensorAngles angles_rad;
 
   bool has(Sensor sensor) const noexcept { return present.has(sensor); }
-  double angle(Sensor sensor, Range range) const noexcept {
-    return range.clamp(angles_rad[static_cast<std::size_t>(sensor)]);
+  /// Of the calibration: no stop yet.
+  double raw_angle(Sensor sensor) const noexcept {
+    return angles_rad[static_cast<std::size_t>(sensor)];
+  }
+  double angle(Sensor sensor, const JointLimit& limit) const noexcept {
+    return limit.soften(raw_angle(sensor));
   }
   /// `estimate` where there is no such sensor.
-  double angle_or(Sensor sensor, Range range, double estimate) const noexcept {
-    return has(sensor) ? angle(sensor, range) : range.clamp(estimate);
+  double angle_or(Sensor sensor, const JointLimit& limit, double estimate) const noexcept {
+    return has(sensor) ? angle(sensor, limit) : limit.soften(estimate);
   }
 };
 
-FingerAngles finger_angles(const Measured& measured, Sensor mcp, Sensor pip, Sensor dip,
-                           double abduction_rad) noexcept {
+FingerAngles finger_angles(const Measured& measured, Sensor mcp, Sensor pip, Sensor dip) noexcept {
   FingerAngles angles;
-  const double mcp_guess = measured.has(pip) ? measured.angle(pip, pip_flexion) / pip_of_mcp : 0.0;
-  angles.mcp_flexion_rad = measured.angle_or(mcp, mcp_flexion, mcp_guess);
-  angles.mcp_abduction_rad = abduction_rad;
+  const double mcp_guess =
+      measured.has(pip) ? measured.angle(pip, finger_pip_limit) / pip_of_mcp : 0.0;
+  angles.mcp_flexion_rad = measured.angle_or(mcp, finger_mcp_limit, mcp_guess);
   angles.pip_flexion_rad =
-      measured.angle_or(pip, pip_flexion, pip_of_mcp * bent(angles.mcp_flexion_rad));
+      measured.angle_or(pip, finger_pip_limit, pip_of_mcp * bent(angles.mcp_flexion_rad));
   angles.dip_flexion_rad =
-      measured.angle_or(dip, dip_flexion, estimated_dip(angles.pip_flexion_rad));
+      measured.angle_or(dip, finger_dip_limit, estimated_dip(angles.pip_flexion_rad));
   return angles;
+}
+
+// The sensors measure gaps. Away from the thumb is negative; what the middle finger turns by, turns
+// all of them.
+void set_abductions(JointAngles& angles, const Measured& measured, double middle_bias) noexcept {
+  const double index_middle = measured.raw_angle(Sensor::index_middle_abduction);
+  const double middle_ring = measured.raw_angle(Sensor::middle_ring_abduction);
+  const double ring_pinky = measured.raw_angle(Sensor::ring_pinky_abduction);
+  const double off_centre = index_middle - middle_ring;
+  // Zero stays zero, whatever the other is: a broken gap must not turn all fingers.
+  const bool straight = middle_bias == 0.0 || off_centre == 0.0;
+  const double middle =
+      straight ? 0.0 : limit_of(Angle::middle_mcp_abduction).soften(-middle_bias * off_centre);
+  const auto set = [&](Angle angle, double angle_rad) {
+    angles[angle] = limit_of(angle).soften(angle_rad);
+  };
+  angles[Angle::middle_mcp_abduction] = middle;
+  set(Angle::index_mcp_abduction, middle + index_middle);
+  set(Angle::ring_mcp_abduction, middle - middle_ring);
+  set(Angle::little_mcp_abduction, middle - middle_ring - ring_pinky);
 }
 
 void set_thumb(JointAngles& angles, const Measured& measured) noexcept {
   const bool bends = measured.has(Sensor::thumb_mcp) || measured.has(Sensor::thumb_ip);
-  const double mcp_guess = measured.has(Sensor::thumb_ip)
-                               ? measured.angle(Sensor::thumb_ip, thumb_ip) / thumb_ip_of_mcp
-                               : 0.0;
-  const double mcp = measured.angle_or(Sensor::thumb_mcp, thumb_mcp, mcp_guess);
+  const auto set = [&](Angle angle, Sensor sensor, double estimate) {
+    angles[angle] = measured.angle_or(sensor, limit_of(angle), estimate);
+  };
+  const double mcp_guess =
+      measured.has(Sensor::thumb_ip)
+          ? measured.angle(Sensor::thumb_ip, limit_of(Angle::thumb_ip_flexion)) / thumb_ip_of_mcp
+          : 0.0;
+  set(Angle::thumb_mcp_flexion, Sensor::thumb_mcp, mcp_guess);
+  const double mcp = angles.thumb_mcp_flexion_rad;
   const double opposition = bends ? estimated_opposition(mcp) : 0.0;
-  angles.thumb_roll_rad = measured.angle_or(Sensor::thumb_roll, thumb_roll, opposition);
-  angles.thumb_abduction_rad =
-      measured.angle_or(Sensor::thumb_abduction, thumb_abduction, opposition);
-  angles.thumb_mcp_flexion_rad = mcp;
-  angles.thumb_ip_flexion_rad =
-      measured.angle_or(Sensor::thumb_ip, thumb_ip, thumb_ip_of_mcp * bent(mcp));
+  set(Angle::thumb_roll, Sensor::thumb_roll, opposition);
+  set(Angle::thumb_abduction, Sensor::thumb_abduction, opposition);
+  set(Angle::thumb_ip_flexion, Sensor::thumb_ip, thumb_ip_of_mcp * bent(mcp));
+}
+
+// The member that is named.
+const double& angle_in(const JointAngles& angles, Angle angle) noexcept {
+  switch (angle) {
+  case Angle::thumb_roll:
+    return angles.thumb_roll_rad;
+  case Angle::thumb_abduction:
+    return angles.thumb_abduction_rad;
+  case Angle::thumb_mcp_flexion:
+    return angles.thumb_mcp_flexion_rad;
+  case Angle::thumb_ip_flexion:
+    return angles.thumb_ip_flexion_rad;
+  case Angle::palm_arch:
+    return angles.palm_arch_rad;
+  case Angle::wrist_pitch:
+    return angles.wrist_pitch_rad;
+  case Angle::wrist_yaw:
+    return angles.wrist_yaw_rad;
+  default:
+    break;
+  }
+  constexpr std::array<double FingerAngles::*, 4> of_finger{
+      &FingerAngles::mcp_flexion_rad, &FingerAngles::mcp_abduction_rad,
+      &FingerAngles::pip_flexion_rad, &FingerAngles::dip_flexion_rad};
+  const std::size_t at = index_of(angle) - index_of(Angle::index_mcp_flexion);
+  return angles.fingers[at / 4].*of_finger[at % 4];
 }
 
 } // namespace
 
+const double& JointAngles::operator[](Angle angle) const noexcept {
+  return angle_in(*this, angle);
+}
+
+double& JointAngles::operator[](Angle angle) noexcept {
+  return const_cast<double&>(angle_in(*this, angle)); // *this is not const
+}
+
 JointAngles joint_angles(const GloveSample& sample, const Calibration& calibration) noexcept {
   const Measured measured{sample.present, calibration.angles_rad(sample)};
-  const auto or_zero = [&](Sensor sensor, Range range) {
-    return measured.angle_or(sensor, range, 0.0);
-  };
-  const double index_middle = or_zero(Sensor::index_middle_abduction, pair_abduction);
-  const double middle_ring = or_zero(Sensor::middle_ring_abduction, pair_abduction);
-  const double ring_pinky = or_zero(Sensor::ring_pinky_abduction, pair_abduction);
-  // Away from the thumb is negative; what the middle finger turns by, turns all of them.
-  const double middle = -calibration.middle_bias * (index_middle - middle_ring);
-
   JointAngles angles;
   set_thumb(angles, measured);
-  angles[Finger::index] = finger_angles(measured, Sensor::index_mcp, Sensor::index_pip,
-                                        Sensor::index_dip, middle + index_middle);
+  angles[Finger::index] =
+      finger_angles(measured, Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip);
   angles[Finger::middle] =
-      finger_angles(measured, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip, middle);
-  angles[Finger::ring] = finger_angles(measured, Sensor::ring_mcp, Sensor::ring_pip,
-                                       Sensor::ring_dip, middle - middle_ring);
-  angles[Finger::little] = finger_angles(measured, Sensor::pinky_mcp, Sensor::pinky_pip,
-                                         Sensor::pinky_dip, middle - middle_ring - ring_pinky);
-  angles.palm_arch_rad = or_zero(Sensor::palm_arch, palm_arch);
-  angles.wrist_pitch_rad = or_zero(Sensor::wrist_pitch, wrist_pitch);
-  angles.wrist_yaw_rad = or_zero(Sensor::wrist_yaw, wrist_yaw);
+      finger_angles(measured, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip);
+  angles[Finger::ring] =
+      finger_angles(measured, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip);
+  angles[Finger::little] =
+      finger_angles(measured, Sensor::pinky_mcp, Sensor::pinky_pip, Sensor::pinky_dip);
+  set_abductions(angles, measured, calibration.middle_bias);
+  const auto set_or_zero = [&](Angle angle, Sensor sensor) {
+    angles[angle] = measured.angle_or(sensor, limit_of(angle), 0.0);
+  };
+  set_or_zero(Angle::palm_arch, Sensor::palm_arch);
+  set_or_zero(Angle::wrist_pitch, Sensor::wrist_pitch);
+  set_or_zero(Angle::wrist_yaw, Sensor::wrist_yaw);
   return angles;
 }
 

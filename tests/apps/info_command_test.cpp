@@ -26,6 +26,18 @@ TEST_SUITE("info") {
     REQUIRE(info["sensors"].size() == 18);
     for (const auto& name : info["sensors"])
       CHECK(name.get<std::string>().find("dip") == std::string::npos);
+    // A glove without DIP sensors: those are estimated, the middle finger's direction, too.
+    REQUIRE(info["angles"].size() == 23);
+    for (const auto& item : info["angles"].items()) {
+      const std::string& angle = item.key();
+      const json& source = item.value();
+      CAPTURE(angle);
+      if (angle == "middle_mcp_abduction") {
+        CHECK(source == "from_gaps");
+      } else {
+        CHECK(source == (angle.find("dip") == std::string::npos ? "measured" : "from_pip"));
+      }
+    }
     CHECK(info["rate_hz"].is_number());
     CHECK(info["counts"] == json{{"most", 255}, {"whole_range", false}});
     for (const auto* ability : {"wrist_switch", "light", "vibration", "resistance"})
@@ -44,6 +56,8 @@ TEST_SUITE("info") {
       if (!nendo::sensors_22.has(static_cast<nendo::Sensor>(slot))) continue;
       CHECK(done.out.find(std::string(nendo::sensor_names[slot])) != std::string::npos);
     }
+    CHECK(done.out.find("angles      22 of 23 measured") != std::string::npos);
+    CHECK(done.out.find("from_gaps   middle_mcp_abduction\n") != std::string::npos);
     for (const auto& line : lines_of(done.out))
       CHECK(line.size() <= 80);
   }

@@ -97,6 +97,30 @@ TEST_SUITE("run") {
     CHECK(traffic.find("4c 00", lit) != std::string::npos);
   }
 
+  TEST_CASE("a filter is named in the summary with its latency, and none is none") {
+    const TemporaryFolder folder;
+    const auto out = (folder.path() / "shape.ply").string();
+    const std::vector<std::string> run{"run",   "--right", "sim:wave?seed=4", "--duration", "1",
+                                       "--out", out};
+    const auto with = [&](std::vector<std::string> more) {
+      more.insert(more.begin(), run.begin(), run.end());
+      auto done = nendo::test::nendo(more);
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      return done;
+    };
+    CHECK(summary_of(with({"--json"}))["filter"] == json{{"kind", "off"}});
+    const json filter = summary_of(with({"--json", "--filter", "one-euro"}))["filter"];
+    CHECK(filter["kind"] == "one-euro");
+    const double slowest_ms = 1000.0 / (6.283185307179586 * filter["min_cutoff_hz"].get<double>());
+    CHECK(filter["worst_latency_ms"]["max"].get<double>() <= slowest_ms * 1.001);
+    CHECK(filter["moving_latency_ms"]["p50"].get<double>() > 0.0);
+    CHECK(filter["moving_latency_ms"]["p50"].get<double>() <
+          filter["worst_latency_ms"]["max"].get<double>());
+    CHECK(filter["moving_latency_ms"]["count"].get<int>() > 20);
+    CHECK(with({"--filter", "one-euro"}).out.find("one-euro") != std::string::npos);
+    CHECK(with({}).out.find("filter") == std::string::npos);
+  }
+
   TEST_CASE("Ctrl-C ends a run cleanly and still writes the result") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "shape.ply";
@@ -181,6 +205,7 @@ TEST_SUITE("run") {
           Case{{"--rate", "nan"}, 2, "--rate"}, Case{{"--rate", "1e9"}, 2, "--rate"},
           Case{{"--duration", "-1"}, 2, "--duration"}, Case{{"--radius", "-1"}, 2, "--radius"},
           Case{{"--kernel", "gauss"}, 2, "gauss"}, Case{{"--switch", "press"}, 2, "press"},
+          Case{{"--filter", "kalman"}, 2, "kalman"},
           Case{{"--mesh", "/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"}}) {
       std::vector<std::string> arguments{"run", "--right", "sim", "--out", out};
       arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());

@@ -93,6 +93,42 @@ TEST_SUITE("deform_loop") {
     }
   }
 
+  TEST_CASE("with the filter on the hands come late, by what is reported, and get there") {
+    LoopUnderTest plain(Mode::type1);
+    LoopUnderTest filtered(Mode::type1, 24, 1000.0, SwitchAction::none, true,
+                           hand::FilterKind::one_euro);
+    const auto index_tip = [](const Frame& frame) {
+      return frame.hands[1].pose[hand::Joint::index_tip].translation().eval();
+    };
+    const HostTime start = HostClock::now();
+    const auto hold_at = [&](int counts, int first, int last) {
+      for (int n = first; n < last; ++n) {
+        plain.bend(counts, start + n * 11ms);
+        filtered.bend(counts, start + n * 11ms);
+        plain.frame_after_tick(static_cast<std::uint64_t>(n));
+        filtered.frame_after_tick(static_cast<std::uint64_t>(n));
+      }
+    };
+    hold_at(0, 1, 10);
+    const Eigen::Vector3d before = index_tip(plain.loop->frames().front());
+    CHECK(index_tip(filtered.loop->frames().front()) == before);
+    hold_at(10, 10, 12);
+    const Eigen::Vector3d there = index_tip(plain.loop->frames().front());
+    const double way = (there - before).norm();
+    const double gone = (index_tip(filtered.loop->frames().front()) - before).norm();
+    CHECK(gone > 0.05 * way);
+    CHECK(gone < 0.9 * way);
+    hold_at(10, 12, 400);
+    CHECK((index_tip(filtered.loop->frames().front()) - there).norm() < 0.001 * way);
+    CHECK((filtered.loop->final_shape() - plain.loop->final_shape()).cwiseAbs().maxCoeff() < 1e-3);
+    const LoopStats& stats = filtered.loop->stats();
+    CHECK(stats.filter_moving.count() == 2 * 399);
+    CHECK(to_seconds(stats.filter_worst.max()) ==
+          doctest::Approx(1.0 / (6.283185307179586 * hand::FilterOptions{}.min_cutoff_hz)));
+    CHECK(stats.filter_moving.min() < stats.filter_worst.max()); // less in motion
+    CHECK(plain.loop->stats().filter_moving.count() == 0);
+  }
+
   TEST_CASE("every sample is counted, and only the newest of a tick is shown") {
     LoopUnderTest test(Mode::type1);
     const HostTime now = HostClock::now();

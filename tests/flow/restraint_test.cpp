@@ -1,6 +1,7 @@
 // The loop is sacred: after start-up its thread allocates nothing, frees nothing and takes no lock.
 
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -34,8 +35,14 @@ TEST_SUITE("restraint") {
   }
 
   TEST_CASE("no tick allocates, frees or locks, in either mode, with two hands in motion") {
-    for (const Mode mode : {Mode::type1, Mode::type2}) {
-      LoopUnderTest test(mode);
+    using hand::FilterKind;
+    for (const auto& [of_model, of_hands] : {std::pair{Mode::type1, FilterKind::off},
+                                             {Mode::type2, FilterKind::off},
+                                             {Mode::type1, FilterKind::one_euro},
+                                             {Mode::type2, FilterKind::one_euro}}) {
+      const Mode mode = of_model; // Clang 14 captures no structured bindings
+      const FilterKind filter = of_hands;
+      LoopUnderTest test(mode, 24, 1000.0, SwitchAction::none, true, filter);
       test::RestraintCounts counts;
       // Samples are pushed, and frames read, on this thread too: the ring and the exchange are held
       // to the same rule.
@@ -49,11 +56,13 @@ TEST_SUITE("restraint") {
         counts = restraint.counts();
       }
       CAPTURE(name_of(mode));
+      CAPTURE(name_of(filter));
       CHECK(counts.allocations == 0);
       CHECK(counts.frees == 0);
       CHECK(counts.locks == 0);
       CHECK(test.loop->stats().ticks == 600);
       CHECK(test.loop->stats().failed == 0);
+      CHECK((test.loop->stats().filter_moving.count() > 0) == (filter != FilterKind::off));
       CHECK((test.loop->frames().front().vertices - test.model.vertices).cwiseAbs().maxCoeff() >
             1e-3);
     }

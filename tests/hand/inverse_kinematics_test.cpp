@@ -303,7 +303,7 @@ TEST_SUITE("inverse_kinematics") {
       const double off_fixed = most(distances(skeleton, base, targets, fixed.angles));
       const double off_free = most(distances(skeleton, base, targets, free.angles));
       CAPTURE(round);
-      CHECK(off_free < 20 * tenth_mm); // downhill alone, it may end at the ends of the ranges
+      CHECK(off_free < 50 * tenth_mm); // downhill alone, it may end at the ends of the ranges
       CHECK(free.converged == (off_free <= all.tolerance_m));
       reached += off_free < tenth_mm ? 1 : 0;
       CHECK(within(default_angle_limits(), free.angles));
@@ -311,7 +311,7 @@ TEST_SUITE("inverse_kinematics") {
       CHECK(fixed.angles.wrist_pitch_rad == doctest::Approx(start.wrist_pitch_rad));
     }
     CHECK(farther > 30);
-    CHECK(reached >= 295);
+    CHECK(reached >= 290);
   }
 
   TEST_CASE("a heavier tip is nearer, when the wrist cannot please all") {

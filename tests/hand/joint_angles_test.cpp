@@ -1,5 +1,6 @@
 #include <nendo/hand/joint_angles.hpp>
 
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -154,9 +155,13 @@ TEST_SUITE("joint_angles") {
   }
 
   TEST_CASE("18- and 22-sensor gloves show what they measure, and nothing is made up but the DIP") {
-    const auto in = [](double low_deg, double angle_rad, double high_deg) {
+    // Between the soft stops what is measured is shown; beyond, something between stop and end.
+    const auto shows = [](double shown, double angle_rad, std::array<double, 4> ends_deg) {
       constexpr double rad = 3.14159265358979323846 / 180.0;
-      return std::min(std::max(angle_rad, low_deg * rad), high_deg * rad);
+      const auto [least, soft_least, soft_most, most] = ends_deg;
+      if (angle_rad > soft_most * rad) return shown > soft_most * rad && shown < most * rad;
+      if (angle_rad < soft_least * rad) return shown < soft_least * rad && shown > least * rad;
+      return shown == doctest::Approx(angle_rad);
     };
     const Calibration calibration = default_calibration();
     std::mt19937 random(11);
@@ -169,19 +174,27 @@ TEST_SUITE("joint_angles") {
         return calibration[sensor].angle_rad(sample[sensor]);
       };
       const JointAngles a = joint_angles(sample, calibration);
-      CHECK(a.thumb_roll_rad == doctest::Approx(in(-20, angle(Sensor::thumb_roll), 90)));
-      CHECK(a.thumb_abduction_rad == doctest::Approx(in(-10, angle(Sensor::thumb_abduction), 70)));
-      CHECK(a.thumb_mcp_flexion_rad == doctest::Approx(in(-20, angle(Sensor::thumb_mcp), 70)));
-      CHECK(a.thumb_ip_flexion_rad == doctest::Approx(in(-20, angle(Sensor::thumb_ip), 90)));
-      CHECK(a.palm_arch_rad == doctest::Approx(in(-5, angle(Sensor::palm_arch), 35)));
-      CHECK(a.wrist_pitch_rad == doctest::Approx(in(-75, angle(Sensor::wrist_pitch), 85)));
+      CHECK(shows(a.thumb_roll_rad, angle(Sensor::thumb_roll), {-20, -10, 80, 90}));
+      CHECK(shows(a.thumb_abduction_rad, angle(Sensor::thumb_abduction), {-10, -5, 60, 70}));
+      CHECK(shows(a.thumb_mcp_flexion_rad, angle(Sensor::thumb_mcp), {-20, -10, 60, 70}));
+      CHECK(shows(a.thumb_ip_flexion_rad, angle(Sensor::thumb_ip), {-20, -10, 80, 90}));
+      CHECK(shows(a.palm_arch_rad, angle(Sensor::palm_arch), {-5, -2, 30, 35}));
+      CHECK(shows(a.wrist_pitch_rad, angle(Sensor::wrist_pitch), {-75, -70, 80, 85}));
+      const double index_middle = angle(Sensor::index_middle_abduction);
+      const double middle_ring = angle(Sensor::middle_ring_abduction);
+      const double ring_pinky = angle(Sensor::ring_pinky_abduction);
+      CHECK(shows(a[Finger::index].mcp_abduction_rad, index_middle, {-15, -10, 30, 40}));
+      CHECK(a[Finger::middle].mcp_abduction_rad == 0.0);
+      CHECK(shows(a[Finger::little].mcp_abduction_rad, -middle_ring - ring_pinky,
+                  {-70, -55, 20, 30}));
       const FingerAngles& ring = a[Finger::ring];
-      CHECK(ring.mcp_flexion_rad == doctest::Approx(in(-30, angle(Sensor::ring_mcp), 100)));
-      const double pip = in(-10, angle(Sensor::ring_pip), 115);
-      CHECK(ring.pip_flexion_rad == doctest::Approx(pip));
+      CHECK(shows(ring.mcp_abduction_rad, -middle_ring, {-40, -30, 10, 15}));
+      CHECK(shows(ring.mcp_flexion_rad, angle(Sensor::ring_mcp), {-30, -20, 90, 100}));
+      CHECK(shows(ring.pip_flexion_rad, angle(Sensor::ring_pip), {-10, -5, 105, 115}));
+      const double pip = ring.pip_flexion_rad;
       const double estimated = pip > 0.0 ? 0.32 * pip * pip + 0.17 * pip : 0.0;
       const double dip = round % 2 == 0 ? angle(Sensor::ring_dip) : estimated;
-      CHECK(ring.dip_flexion_rad == doctest::Approx(in(-10, dip, 85)));
+      CHECK(shows(ring.dip_flexion_rad, dip, {-10, -5, 80, 85}));
     }
   }
 
@@ -260,6 +273,21 @@ TEST_SUITE("joint_angles") {
     CHECK(angles[Finger::index].mcp_flexion_rad == 0.0);
   }
 
+  TEST_CASE("a joint whose sensor reads past its range still moves") {
+    for (const Sensor sensor : {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip}) {
+      GloveSample sample = flat_sample(sensors_22);
+      set(sample, sensor, 170); // 2.1 rad, more than any of them bends
+      const FingerAngles near = joint_angles(sample, default_calibration())[Finger::ring];
+      set(sample, sensor, 8);
+      const FingerAngles far = joint_angles(sample, default_calibration())[Finger::ring];
+      const double moved = (far.mcp_flexion_rad - near.mcp_flexion_rad) +
+                           (far.pip_flexion_rad - near.pip_flexion_rad) +
+                           (far.dip_flexion_rad - near.dip_flexion_rad);
+      CHECK(moved > 0.001);
+      CHECK(moved < 0.1);
+    }
+  }
+
   TEST_CASE(
       "whatever the counts and however broken the calibration, angles are finite and possible") {
     std::mt19937 random(5);
@@ -278,11 +306,16 @@ TEST_SUITE("joint_angles") {
         if (random() % 3 == 0) calibration.sensors[slot].gain_rad_per_count = strange[random() % 6];
         if (random() % 3 == 0) calibration.sensors[slot].offset_counts = strange[random() % 6];
       }
+      for (auto& part : calibration.mixed_in) {
+        if (random() % 3 == 0) part = strange[random() % 6];
+      }
+      if (random() % 3 == 0) calibration.middle_bias = strange[random() % 6];
       const JointAngles angles = joint_angles(sample, calibration);
       REQUIRE(all_finite(angles));
       for (const auto& finger : angles.fingers) {
         REQUIRE(std::abs(finger.mcp_flexion_rad) < 1.8);
         REQUIRE(std::abs(finger.pip_flexion_rad) < 2.1);
+        REQUIRE(std::abs(finger.mcp_abduction_rad) < 1.3);
       }
     }
   }

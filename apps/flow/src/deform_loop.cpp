@@ -26,6 +26,10 @@ Frame first_frame(const Points& vertices, Eigen::Index control_points, double un
   return frame;
 }
 
+HostClock::duration duration_of(double seconds) noexcept {
+  return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
+}
+
 } // namespace
 
 DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
@@ -38,18 +42,25 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
-    hand::SensorGate gate(input.calibration);
-    const GloveSample first = gate.pass(input.first);
-    hands_.push_back({std::move(input), slot, placement.T_stage_wrist[slot], first, gate});
+    const hand::SensorGate gate(input.calibration);
+    const hand::JointFilter filter(input.filter);
+    hands_.push_back({std::move(input), slot, placement.T_stage_wrist[slot], gate, filter});
+    hands_.back().follow(hands_.back().input.first);
   }
   compute_hands(frames_.back());
   grab_status_ = sculptor_.grab(tips_);
 }
 
+void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
+  latest = input.gated ? gate.pass(sample) : sample;
+  const HostTime time = latest.has_device_time ? latest.measured : latest.arrival;
+  angles = filter.pass(hand::joint_angles(latest, input.calibration), time);
+}
+
 void DeformLoop::take_samples(HostTime now) noexcept {
   for (auto& hand : hands_) {
     const std::size_t count = hand.input.ring->drain([&](const GloveSample& sample) noexcept {
-      hand.latest = hand.input.gated ? hand.gate.pass(sample) : sample;
+      hand.follow(sample);
       if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
       ++stats_.switch_uses[hand.slot];
       if (options_.switch_action == SwitchAction::toggle) hold_wanted_ = !hold_wanted_;
@@ -72,8 +83,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
   for (const auto& hand : hands_) {
     HandFrame& shown = frame.hands[hand.slot];
-    const auto angles = hand::joint_angles(hand.latest, hand.input.calibration);
-    shown.pose = hand.input.skeleton.pose(angles, hand.T_stage_wrist);
+    shown.pose = hand.input.skeleton.pose(hand.angles, hand.T_stage_wrist);
     shown.present = true;
     shown.silent = hand.silent;
     shown.samples = stats_.samples[hand.slot];
@@ -122,11 +132,19 @@ void DeformLoop::tick(std::uint64_t number, HostTime scheduled) noexcept {
   if (!is_solved(frame.status)) ++stats_.failed;
   frames_.publish();
 
-  const HostTime done = HostClock::now();
+  record_latencies(scheduled, woke, HostClock::now());
+}
+
+void DeformLoop::record_latencies(HostTime scheduled, HostTime woke, HostTime done) noexcept {
   stats_.wake_latency.record(woke - scheduled);
   stats_.work.record(done - woke);
   for (const auto& hand : hands_) {
-    if (hand.fresh) stats_.end_to_end.record(done - hand.latest.arrival);
+    if (!hand.fresh) continue;
+    stats_.end_to_end.record(done - hand.latest.arrival);
+    if (hand.filter.options().kind == hand::FilterKind::off) continue;
+    const hand::FilterLatency latency = hand.filter.latency();
+    stats_.filter_moving.record(duration_of(latency.moving_s));
+    stats_.filter_worst.record(duration_of(latency.worst_s));
   }
 }
 

@@ -21,8 +21,7 @@ struct AngleLimits {
   JointAngles high;
 };
 
-/// The ranges to which joint_angles() clamps what a glove measures. Fingers: what the sensors
-/// between them can add up to, but 50 degrees at most away from the thumb. Wait-free.
+/// From end to end of joint_limits. Wait-free.
 AngleLimits default_angle_limits() noexcept;
 
 struct FingertipTarget {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include <nendo/driver/sample.hpp>
+#include <nendo/hand/angle.hpp>
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/joints.hpp>
 
@@ -36,14 +37,16 @@ struct JointAngles {
   const FingerAngles& operator[](Finger finger) const noexcept {
     return fingers[static_cast<std::size_t>(finger) - 1];
   }
+  double& operator[](Angle angle) noexcept;
+  const double& operator[](Angle angle) const noexcept;
 };
 
-/// Applies the calibration and clamps every angle to the joint's range of motion. The abduction
-/// sensors measure pairs; the middle finger's own abduction, which none measures, is what the
-/// calibration's middle bias makes of them: none, usually.
+/// Applies the calibration and keeps every angle within its joint's range of motion by soft stops
+/// (joint_limits.hpp). The abduction sensors measure pairs; the middle finger's own abduction,
+/// which none measures, is what the calibration's middle bias makes of them: none, usually.
 ///
 /// What is absent is made of what is present, by rules that are continuous and do not fall when a
-/// measured angle rises:
+/// measured angle rises; angle_sources.hpp tells which angles they made:
 /// - finger DIP: 0.32 PIP^2 + 0.17 PIP, of a bent PIP (the vendor library's rule for 18-sensor
 ///   gloves);
 /// - finger PIP: 1.1 MCP, of a bent MCP. A glove with one sensor a finger measures curl, and a

@@ -12,6 +12,7 @@
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/wrist_switch.hpp>
 #include <nendo/hand/calibration.hpp>
+#include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 
 namespace nendo::flow {
@@ -24,6 +25,7 @@ struct HandInput {
   hand::Calibration calibration = hand::default_calibration();
   GloveSample first; ///< the pose in which the hand takes hold of the model
   bool gated = true; ///< counts that no hand can have caused are kept out: hand::SensorGate
+  hand::FilterOptions filter{}; ///< of the joint angles, at the samples' own times
 };
 
 struct LoopOptions {
@@ -48,6 +50,9 @@ struct LoopStats {
   Histogram wake_latency;    ///< from the deadline to the loop's running
   Histogram work;            ///< from there to the published frame
   Histogram end_to_end;      ///< from a sample's last byte to the published frame that shows it
+  /// hand::FilterLatency of each hand at each tick with samples, which end_to_end does not contain.
+  Histogram filter_moving;
+  Histogram filter_worst;
 };
 
 class DeformLoop {
@@ -76,14 +81,20 @@ public:
 private:
   void take_samples(HostTime now) noexcept;
   void compute_hands(Frame& frame) noexcept;
+  void record_latencies(HostTime scheduled, HostTime woke, HostTime done) noexcept;
   deform::FieldStatus shape(Frame& frame) noexcept;
 
   struct Hand {
+    /// Makes `latest` and `angles` of the next sample.
+    void follow(const GloveSample& sample) noexcept;
+
     HandInput input;
     std::size_t slot = 0; ///< of arrays by side
     Eigen::Isometry3d T_stage_wrist;
-    GloveSample latest;
     hand::SensorGate gate;
+    hand::JointFilter filter;
+    GloveSample latest{};
+    hand::JointAngles angles{}; ///< of `latest`, filtered
     WristSwitchEdge wrist_switch{};
     bool fresh = false; ///< samples came in with this tick
     bool silent = false;

@@ -1,0 +1,44 @@
+#pragma once
+// Where each angle of joint_angles() comes from, which its numbers do not show: a sensor, a rule,
+// or nothing at all. Whoever records, calibrates or judges poses must be able to tell them apart.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/angle.hpp>
+
+namespace nendo::hand {
+
+enum class AngleSource : std::uint8_t {
+  measured,   ///< sensors of its own; spreading is counted from the middle finger's own direction
+  from_mcp,   ///< estimated: a finger's PIP, the thumb's IP
+  from_pip,   ///< estimated: a finger's MCP or DIP. The PIP may itself be an estimate
+  from_ip,    ///< estimated: the thumb's MCP
+  opposition, ///< estimated: the thumb's roll and abduction, from its flexion
+  from_gaps,  ///< estimated: a finger's direction, from gaps between fingers that are not enough
+  zero,       ///< assumed: always 0
+};
+
+inline constexpr std::size_t angle_source_count = 7;
+
+/// "measured", "from_mcp" and so on.
+constexpr std::string_view name_of(AngleSource source) noexcept {
+  constexpr std::array<std::string_view, angle_source_count> names{
+      "measured", "from_mcp", "from_pip", "from_ip", "opposition", "from_gaps", "zero"};
+  return names[static_cast<std::size_t>(source)];
+}
+
+constexpr bool is_estimated(AngleSource source) noexcept {
+  return source != AngleSource::measured && source != AngleSource::zero;
+}
+
+/// By index_of(Angle).
+using AngleSources = std::array<AngleSource, angle_count>;
+
+/// What joint_angles() does with samples of a glove that has these sensors. Constant for a glove:
+/// GloveInfo::sensors, or any sample's `present`. Wait-free.
+AngleSources angle_sources(SensorMask present) noexcept;
+
+} // namespace nendo::hand

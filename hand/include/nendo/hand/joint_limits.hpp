@@ -1,0 +1,75 @@
+#pragma once
+// How far each joint turns, and the soft stops that keep an angle within. A glove reads past the
+// end of a joint's range for many reasons, wrong calibration the first of them. A hard clamp would
+// hold such a joint still; a soft stop presses what is beyond its beginning into what is left, so
+// that the joint still moves, and no pose is impossible.
+
+#include <array>
+#include <numbers>
+
+#include <nendo/hand/angle.hpp>
+
+namespace nendo::hand {
+
+/// A joint's range of motion, radians: least < soft_least < soft_most < most.
+struct JointLimit {
+  double least_rad;
+  double soft_least_rad; ///< below it, angles are pressed together
+  double soft_most_rad;  ///< above it, too
+  double most_rad;
+
+  /// The angle itself from soft_least to soft_most; beyond, an angle on the same side of them and
+  /// no farther than the end. Monotone, of continuous slope, halfway to the end where the angle is
+  /// at the end. Finite for every double: NaN becomes the lower end. Wait-free.
+  double soften(double angle_rad) const noexcept;
+};
+
+constexpr JointLimit limit_deg(double least, double soft_least, double soft_most,
+                               double most) noexcept {
+  constexpr double rad = std::numbers::pi / 180.0;
+  return {least * rad, soft_least * rad, soft_most * rad, most * rad};
+}
+
+// Ranges of motion as clinical goniometry gives them (American Academy of Orthopaedic Surgeons:
+// finger MCP 0 to 90 and 20 to 30 of extension, PIP 0 to 100, DIP 0 to 80, thumb MCP 0 to 55, IP 0
+// to 80, wrist 70 to 80, 20 and 30 to the sides), a little widened, because a glove that reads past
+// them is more often badly calibrated than worn by an acrobat. The soft stops begin at those ends
+// or beyond, so that neither a flat hand nor a full fist is touched. Where goniometry has no angle
+// (spreading, thumb roll, palm arch) a spread or cupped hand gives it: neighbouring fingers part by
+// 25 degrees, which add up from the middle finger outwards.
+inline constexpr JointLimit finger_mcp_limit = limit_deg(-30, -20, 90, 100);
+inline constexpr JointLimit finger_pip_limit = limit_deg(-10, -5, 105, 115);
+inline constexpr JointLimit finger_dip_limit = limit_deg(-10, -5, 80, 85);
+
+/// By index_of(Angle).
+inline constexpr std::array<JointLimit, angle_count> joint_limits{{
+    limit_deg(-20, -10, 80, 90), // thumb_roll
+    limit_deg(-10, -5, 60, 70),  // thumb_abduction
+    limit_deg(-20, -10, 60, 70), // thumb_mcp_flexion
+    limit_deg(-20, -10, 80, 90), // thumb_ip_flexion
+    finger_mcp_limit,            // index
+    limit_deg(-15, -10, 30, 40),
+    finger_pip_limit,
+    finger_dip_limit,
+    finger_mcp_limit, // middle
+    limit_deg(-20, -15, 15, 20),
+    finger_pip_limit,
+    finger_dip_limit,
+    finger_mcp_limit, // ring
+    limit_deg(-40, -30, 10, 15),
+    finger_pip_limit,
+    finger_dip_limit,
+    finger_mcp_limit, // little
+    limit_deg(-70, -55, 20, 30),
+    finger_pip_limit,
+    finger_dip_limit,
+    limit_deg(-5, -2, 30, 35),   // palm_arch
+    limit_deg(-75, -70, 80, 85), // wrist_pitch
+    limit_deg(-40, -30, 20, 30), // wrist_yaw
+}};
+
+constexpr const JointLimit& limit_of(Angle angle) noexcept {
+  return joint_limits[index_of(angle)];
+}
+
+} // namespace nendo::hand
