@@ -12,6 +12,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "glove_calibration.hpp"
 #include "glove_light.hpp"
 #include "monitor_screen.hpp"
 #include "sample_json.hpp"
@@ -25,6 +26,7 @@ struct Options {
   bool json = false;
   bool raw = false;
   std::uint64_t count = 0;
+  CalibrationOptions calibration;
 };
 
 /// Samples on their way from a glove to what is shown of them.
@@ -97,11 +99,17 @@ void show_screen(Monitored& monitored) {
 int monitor(const Options& options) {
   const auto glove = driver::open_glove(options.glove);
   if (!glove) return report(glove.error());
+  auto calibration = hand::default_calibration((*glove)->info().counts);
+  if (!options.raw) {
+    const auto stored =
+        calibration_of((*glove)->info(), (*glove)->info().side, options.calibration);
+    if (!stored) return report(stored.error());
+    calibration = *stored;
+  }
   SampleRing ring(1024);
   install_stop_signals();
   if (const auto started = (*glove)->start(ring); !started) return report(started.error());
 
-  const auto calibration = hand::default_calibration((*glove)->info().counts);
   Monitored monitored{**glove, ring, options.raw ? nullptr : &calibration, options.count};
   if (options.json || isatty(STDOUT_FILENO) == 0) {
     show_lines(monitored);
@@ -125,6 +133,7 @@ void add_monitor(Command& program) {
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
   command.add_flag("--json", options->json, "One JSON object a line, also in a terminal");
   command.add_flag("--raw", options->raw, "Raw counts only, no angles");
+  add_calibration_options(command, options->calibration);
   command.add_option("--count", options->count, "End after so many samples");
   command.on_chosen([options] { return monitor(*options); });
 }

@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
                        add_devices(program);
                        add_doctor(program);
                        add_info(program);
+                       add_calibration(program);
                        add_deform(program);
                        add_emulate(program);
                        add_bench(program);

@@ -7,6 +7,9 @@
 #include <string>
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/hand/calibration.hpp>
+
+#include "glove_calibration.hpp"
 
 namespace nendo::app {
 
@@ -16,6 +19,8 @@ struct OpenHand {
   std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
   std::unique_ptr<driver::Glove> glove;
   GloveSample first;
+  hand::Calibration calibration; ///< of the glove that sent the first sample
+  hand::Calibration swapped;     ///< should one of the other side be plugged in instead
 };
 
 /// Opens the glove for that hand, and says so on standard error if it calls itself the other one;
@@ -25,5 +30,9 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = s
 /// Takes the first sample of a started glove out of the ring. Blocks, 2 s at most. Errors:
 /// no_device if none comes, failed if a stop signal does.
 Result<void> wait_for_first_sample(OpenHand& hand);
+
+/// Finds the hand's calibrations, once its first sample has come. Blocks and fails as
+/// calibration_of().
+Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options);
 
 } // namespace nendo::app

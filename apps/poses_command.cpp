@@ -30,6 +30,7 @@ struct Options {
   double duration_s = 0.0;
   std::uint64_t count = 0;
   double length_m = hand::HandSize{}.length_m;
+  CalibrationOptions calibration;
 };
 
 /// As fine as the grid keeps it, so that a file says the rate that it has.
@@ -65,10 +66,9 @@ hand::HandSkeleton skeleton_for(Side side, const Options& options) {
 class PoseStream {
 public:
   PoseStream(const OpenHand& hand, const Options& options, PoseOutput& output)
-      : options_(options), output_(output), start_(hand.first.arrival),
-        calibration_(hand::default_calibration(hand.glove->info().counts)), gate_(calibration_),
-        left_(skeleton_for(Side::left, options)), right_(skeleton_for(Side::right, options)),
-        grid_(start_, rate_of(options)) {}
+      : options_(options), output_(output), start_(hand.first.arrival), hand_(hand),
+        gate_(hand.calibration), left_(skeleton_for(Side::left, options)),
+        right_(skeleton_for(Side::right, options)), grid_(start_, rate_of(options)) {}
 
   /// False: no more is wanted, or the output failed.
   bool take(const GloveSample& sample) {
@@ -93,17 +93,18 @@ private:
     if (is_over(time) || stop_requested()) return false;
     const Side side = output_.only_side().value_or(sample.side);
     const auto& skeleton = side == Side::left ? left_ : right_;
+    const auto& calibration = sample.side == hand_.first.side ? hand_.calibration : hand_.swapped;
     // A glove does not know where it is: the forearm ends at the origin.
     state_ = output_.put(
         time, side,
-        skeleton.pose(hand::joint_angles(sample, calibration_), Eigen::Isometry3d::Identity()));
+        skeleton.pose(hand::joint_angles(sample, calibration), Eigen::Isometry3d::Identity()));
     return state_ && ++written_ != options_.count;
   }
 
   const Options& options_;
   PoseOutput& output_;
   HostTime start_;
-  hand::Calibration calibration_;
+  const OpenHand& hand_;
   hand::SensorGate gate_;
   hand::HandSkeleton left_;
   hand::HandSkeleton right_;
@@ -142,6 +143,7 @@ int poses(const Options& options) {
   if (const auto started = hand->glove->start(*hand->ring); !started)
     return report(started.error());
   if (const auto came = wait_for_first_sample(*hand); !came) return report(came.error());
+  if (const auto done = calibrate(*hand, options.calibration); !done) return report(done.error());
 
   const auto streamed = stream(*hand, options, **output);
   hand->glove->stop();
@@ -174,6 +176,7 @@ void add_poses(Command& program) {
   command.add_option("--length", options->length_m,
                      "The wearer's hand in metres, from the wrist's crease to the tip of the "
                      "middle finger, 0.10 to 0.25");
+  add_calibration_options(command, options->calibration);
   command.on_chosen([options] { return poses(*options); });
 }
 

@@ -126,6 +126,7 @@ void add_run(Command& program) {
   command.add_option(
       "--radius", run_options.radius,
       "Radius of a fingertip's influence, in the mesh's units; 0: 0.2 of its longest side");
+  add_calibration_options(command, run_options.calibration);
   add_kernel_options(command, options->kernel);
   command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
   command.add_option("--switch", options->switch_action,

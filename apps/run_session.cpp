@@ -69,14 +69,10 @@ Result<std::vector<OpenHand>> open_named(const RunOptions& options) {
   return hands;
 }
 
-hand::Calibration calibration_of(const OpenHand& hand) {
-  return hand::default_calibration(hand.glove->info().counts);
-}
-
 flow::Placement placement_for(const std::vector<OpenHand>& hands, const deform::Mesh& model) {
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : hands) {
-    const auto angles = hand::joint_angles(hand.first, calibration_of(hand));
+    const auto angles = hand::joint_angles(hand.first, hand.calibration);
     tips[flow::Placement::index_of(hand.side)] = hand::HandSkeleton(hand.side)
                                                      .pose(angles, Eigen::Isometry3d::Identity())
                                                      .fingertip_positions();
@@ -172,6 +168,7 @@ Result<std::vector<OpenHand>> open_hands(const RunOptions& options) {
   }
   for (auto& hand : *hands) {
     if (const auto came = wait_for_first_sample(hand); !came) return came.error();
+    if (const auto done = calibrate(hand, options.calibration); !done) return done.error();
   }
   return hands;
 }
@@ -192,8 +189,9 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
     inputs.push_back(
-        {hand.ring.get(), hand::HandSkeleton(hand.side), calibration_of(hand), hand.first});
+        {hand.ring.get(), hand::HandSkeleton(hand.side), hand.calibration, hand.first});
     inputs.back().filter = options.filter;
+    inputs.back().swapped = hand.swapped;
   }
   flow::DeformLoop loop(model, placement_for(hands, model), std::move(inputs), loop_options);
   if (!is_solved(loop.grab_status())) {

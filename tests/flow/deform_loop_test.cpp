@@ -188,4 +188,39 @@ TEST_SUITE("deform_loop") {
     loop.join();
     CHECK(HostClock::now() - asked < 2s); // a period is 5 ms; the rest is for a loaded machine
   }
+
+  TEST_CASE("a glove of the other side in the place of the first does not get its calibration") {
+    const HostTime now = HostClock::now();
+    SampleRing ring(64);
+    const GloveSample first = nendo::test::bent_sample(Side::right, 0, now);
+    const hand::HandSkeleton skeleton(Side::right);
+    hand::Calibration own = hand::default_calibration();
+    for (auto& sensor : own.sensors)
+      sensor.gain_rad_per_count *= 0.5;
+    hand::Calibration swapped = hand::default_calibration();
+    for (auto& sensor : swapped.sensors)
+      sensor.gain_rad_per_count *= 0.8;
+    const auto model = nendo::test::ball(12);
+    std::array<std::optional<flow::Fingertips>, 2> tips;
+    tips[flow::Placement::index_of(Side::right)] =
+        skeleton.pose(hand::joint_angles(first, own), Eigen::Isometry3d::Identity())
+            .fingertip_positions();
+    const auto placement = flow::place_hands(model, tips);
+    flow::LoopOptions options;
+    options.sculptor.radius = 0.5;
+    flow::DeformLoop loop(model, placement, {{&ring, skeleton, own, first, false, {}, swapped}},
+                          options);
+    std::uint64_t number = 0;
+    for (const Side side : {Side::left, Side::right}) {
+      GloveSample sample = nendo::test::bent_sample(side, 30, now);
+      ring.try_push(sample);
+      loop.tick(number++, HostClock::now());
+      loop.frames().update();
+      const auto expected =
+          skeleton.pose(hand::joint_angles(sample, side == Side::right ? own : swapped),
+                        placement.T_stage_wrist[flow::Placement::index_of(Side::right)]);
+      const auto& shown = loop.frames().front().hands[flow::Placement::index_of(Side::right)].pose;
+      CHECK(shown.fingertip_positions().isApprox(expected.fingertip_positions(), 1e-12));
+    }
+  }
 }

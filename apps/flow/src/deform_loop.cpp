@@ -54,7 +54,9 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
 void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
   latest = input.gated ? gate.pass(sample) : sample;
   const HostTime time = latest.has_device_time ? latest.measured : latest.arrival;
-  angles = filter.pass(hand::joint_angles(latest, input.calibration), time);
+  const bool same_glove = latest.side == input.first.side;
+  const hand::Calibration& calibration = same_glove ? input.calibration : input.swapped;
+  angles = filter.pass(hand::joint_angles(latest, calibration), time);
 }
 
 void DeformLoop::take_samples(HostTime now) noexcept {

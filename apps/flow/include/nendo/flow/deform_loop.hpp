@@ -26,6 +26,8 @@ struct HandInput {
   GloveSample first; ///< the pose in which the hand takes hold of the model
   bool gated = true; ///< counts that no hand can have caused are kept out: hand::SensorGate
   hand::FilterOptions filter{}; ///< of the joint angles, at the samples' own times
+  /// For samples of the other side than the first: another glove has been plugged in since.
+  hand::Calibration swapped = hand::default_calibration();
 };
 
 struct LoopOptions {

@@ -1,0 +1,136 @@
+#include "calibration_check.hpp"
+
+#include <cmath>
+
+#include "text.hpp"
+
+namespace nendo::hand {
+namespace {
+
+// NaN lies nowhere.
+bool lies_within(double value, double least, double most) noexcept {
+  return value >= least && value <= most;
+}
+
+constexpr double most_offset_counts = 65535.0 * 100.0;
+constexpr std::size_t most_text_bytes = 200;
+
+std::string complaint_about_texts(const WearerCalibration& wearer) {
+  struct Named {
+    const char* name;
+    const std::string* text;
+    bool may_be_empty;
+  };
+  for (const auto& [name, text, may_be_empty] :
+       {Named{"user", &wearer.user, false}, Named{"glove model", &wearer.glove_model, true},
+        Named{"glove serial", &wearer.glove_serial, true},
+        Named{"method", &wearer.method, false}}) {
+    const std::string complaint = complaint_about_text(*text, may_be_empty);
+    if (!complaint.empty()) return std::string(name) + " " + in_quotes(*text) + ": " + complaint;
+  }
+  return {};
+}
+
+std::string complaint_about_sensors(const WearerCalibration& wearer) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    const auto& line = wearer.calibration.sensors[slot];
+    const bool calibrated = line.gain_rad_per_count != 0.0; // so is NaN
+    std::string complaint;
+    if (calibrated) complaint = complaint_about(sensor, line, wearer.counts);
+    const auto& quality = wearer.quality[slot];
+    if (complaint.empty() && quality)
+      complaint = calibrated ? complaint_about(*quality)
+                             : "has a quality but no gain; leave its quality out";
+    if (!complaint.empty()) return std::string(name_of(sensor)) + ": " + complaint;
+  }
+  return {};
+}
+
+} // namespace
+
+bool rises_with_angle(Sensor sensor) noexcept {
+  const std::string_view name = name_of(sensor);
+  return name.ends_with("_mcp") || name.ends_with("_pip") || name.ends_with("_dip") ||
+         name.ends_with("_ip") || sensor == Sensor::index_middle_abduction ||
+         sensor == Sensor::middle_ring_abduction || sensor == Sensor::ring_pinky_abduction;
+}
+
+bool may_be_calibrated(Sensor sensor) noexcept {
+  return sensor != Sensor::unused;
+}
+
+std::string complaint_about_text(std::string_view text, bool may_be_empty) {
+  if (text.empty()) return may_be_empty ? "" : "must not be empty; give a name";
+  if (text.size() > most_text_bytes) return "is longer than 200 bytes; shorten it";
+  if (!is_utf8(text)) return "is not UTF-8; write it anew";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) return "has control characters; leave them out";
+  }
+  return {};
+}
+
+std::string complaint_about_gain(Sensor sensor, double gain, CountScale counts) {
+  if (gain == 0.0) return "a gain of 0 measures nothing; calibrate it or leave the sensor out";
+  const double most = 255.0 / counts.most; // 1 rad a count of 8 bits
+  if (!lies_within(std::abs(gain), 0.0, most))
+    return "a gain of " + number_text(gain) + " is absurd; it must lie within " +
+           number_text(most) + " rad a count";
+  if (gain < 0.0 && rises_with_angle(sensor))
+    return "a gain of " + number_text(gain) +
+           " has the wrong sign; counts rise when the joint bends or the fingers spread";
+  return {};
+}
+
+std::string complaint_about_offset(double offset_counts) {
+  if (lies_within(offset_counts, -most_offset_counts, most_offset_counts)) return {};
+  return "the offset is absurd; give counts";
+}
+
+std::string complaint_about(Sensor sensor, const SensorCalibration& line, CountScale counts) {
+  if (!may_be_calibrated(sensor)) return "no glove has this sensor; leave it out";
+  std::string complaint = complaint_about_gain(sensor, line.gain_rad_per_count, counts);
+  return complaint.empty() ? complaint_about_offset(line.offset_counts) : complaint;
+}
+
+std::string complaint_about(const SensorQuality& quality) {
+  if (!lies_within(quality.residual_rad, 0.0, 10.0)) return "residual_rad must lie within 0 and 10";
+  if (!lies_within(quality.least_counts, 0.0, 65535.0) ||
+      !lies_within(quality.most_counts, quality.least_counts, 65535.0))
+    return "least_counts and most_counts must be counts, the least first";
+  if (!lies_within(quality.confidence, 0.0, 1.0)) return "confidence must lie within 0 and 1";
+  return {};
+}
+
+std::string complaint_about(const HandSize& size) {
+  if (!lies_within(size.length_m, 0.05, 0.35)) return "length_m must lie within 0.05 and 0.35";
+  if (!lies_within(size.breadth_m, 0.02, 0.2)) return "breadth_m must lie within 0.02 and 0.2";
+  return {};
+}
+
+std::string complaint_about_mixing(double rad_per_rad) {
+  return lies_within(rad_per_rad, -10.0, 10.0) ? "" : "rad_per_rad must lie within -10 and 10";
+}
+
+std::string complaint_about_bias(double middle_bias) {
+  return lies_within(middle_bias, -10.0, 10.0) ? "" : "middle_bias must lie within -10 and 10";
+}
+
+std::string complaint_about(const WearerCalibration& wearer) {
+  using std::chrono::sys_days;
+  using namespace std::chrono_literals;
+  if (wearer.counts.most == 0) return "counts_most must lie within 1 and 65535";
+  if (wearer.made < sys_days{1970y / 1 / 1} || wearer.made >= sys_days{10000y / 1 / 1})
+    return "made must lie within the years 1970 and 9999";
+  std::string complaint = complaint_about_texts(wearer);
+  if (complaint.empty()) complaint = complaint_about(wearer.size);
+  if (complaint.empty()) complaint = complaint_about_sensors(wearer);
+  if (complaint.empty()) complaint = complaint_about_bias(wearer.calibration.middle_bias);
+  for (const double mixed_in : wearer.calibration.mixed_in) {
+    if (complaint.empty()) complaint = complaint_about_mixing(mixed_in);
+  }
+  return complaint;
+}
+
+} // namespace nendo::hand

@@ -1,0 +1,136 @@
+#include "text_file.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace nendo::hand {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Descriptor {
+public:
+  explicit Descriptor(int fd) noexcept : fd_(fd) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int get() const noexcept { return fd_; }
+  bool is_open() const noexcept { return fd_ >= 0; }
+  /// False if the system reports here what an earlier write could not keep.
+  bool close() noexcept {
+    const int fd = fd_;
+    fd_ = -1;
+    return fd < 0 || ::close(fd) == 0;
+  }
+
+private:
+  int fd_;
+};
+
+std::string why(int error_number) {
+  return std::generic_category().message(error_number);
+}
+
+bool write_all(int fd, std::string_view rest) noexcept {
+  while (!rest.empty()) {
+    const ssize_t written = ::write(fd, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+/// A name that no other process or thread uses. Not mkstemp: its 0600 would override the umask.
+fs::path temporary_beside(const fs::path& target) {
+  static std::atomic<unsigned> count{0};
+  fs::path name = target.parent_path() / ".nendo";
+  for (const unsigned part : {static_cast<unsigned>(::getpid()), count++})
+    name += "." + std::to_string(part);
+  name += ".tmp";
+  return name;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// A rename is on the disk when its folder is. What a file system cannot sync is not worth failing.
+void sync_folder(const fs::path& folder) noexcept {
+  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened.is_open()) ::fsync(opened.get());
+}
+
+/// 0, or the error number of the step that failed.
+int write_and_rename(const fs::path& temporary, const fs::path& target, std::string_view contents) {
+  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!file.is_open()) return errno;
+  const bool done = write_all(file.get(), contents) && ::fsync(file.get()) == 0 && file.close() &&
+                    ::rename(temporary.c_str(), target.c_str()) == 0;
+  if (done) return 0;
+  const int error_number = errno;
+  ::unlink(temporary.c_str());
+  return error_number;
+}
+
+} // namespace
+
+Result<std::string> read_text_file(const fs::path& path) {
+  const auto bad = [&](const std::string& what) {
+    return Error{Errc::bad_input, path.string() + ": " + what};
+  };
+  // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.is_open()) return bad("cannot be opened: " + why(errno));
+  struct stat info {};
+  if (::fstat(file.get(), &info) != 0) return bad("cannot be read: " + why(errno));
+  if (!S_ISREG(info.st_mode)) return bad("is not a regular file; name a calibration file");
+  std::string contents(most_file_bytes + 1, '\0');
+  std::size_t filled = 0;
+  while (filled < contents.size()) {
+    const ssize_t got = ::read(file.get(), contents.data() + filled, contents.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return bad("cannot be read: " + why(errno));
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+  }
+  if (filled > most_file_bytes) return bad("is larger than 1 MiB, so it is no calibration");
+  contents.resize(filled);
+  return contents;
+}
+
+Result<void> replace_text_file(const fs::path& path, std::string_view contents) {
+  const auto failed = [&](const std::string& what) {
+    return Error{Errc::failed, path.string() + ": " + what};
+  };
+  const fs::path target = target_of(path);
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return failed("is not a regular file; name another");
+  const int error_number = write_and_rename(temporary_beside(target), target, contents);
+  if (error_number != 0) {
+    return failed("cannot be written: " + why(error_number) +
+                  "; make room or choose a folder that you may write to");
+  }
+  sync_folder(folder_of(target));
+  return {};
+}
+
+int add_name(const fs::path& path, const fs::path& second) noexcept {
+  return ::link(path.c_str(), second.c_str()) == 0 ? 0 : errno;
+}
+
+fs::path target_of(const fs::path& path) {
+  std::error_code missing;
+  fs::path target = fs::canonical(path, missing);
+  return missing ? path : target;
+}
+
+} // namespace nendo::hand

@@ -1,0 +1,311 @@
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <nendo/hand/calibration_exchange.hpp>
+#include <nendo/hand/calibration_file.hpp>
+
+#include "support/program.hpp"
+
+using nendo::Side;
+using nendo::test::contents;
+using nendo::test::Finished;
+using nendo::test::is_one_line_about;
+using nendo::test::lines_of;
+using nendo::test::write_file;
+using nlohmann::json;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A wearer's home of the test's own: what is stored there is gone with it.
+class Home {
+public:
+  Home() {
+    const char* const before = std::getenv("XDG_CONFIG_HOME");
+    if (before != nullptr) before_ = before;
+    ::setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1);
+  }
+  ~Home() {
+    before_.empty() ? ::unsetenv("XDG_CONFIG_HOME")
+                    : ::setenv("XDG_CONFIG_HOME", before_.c_str(), 1);
+  }
+  Home(const Home&) = delete;
+  Home& operator=(const Home&) = delete;
+
+  fs::path stored(const std::string& name) const {
+    return folder_.path() / "nendo" / "calibrations" / (name + ".toml");
+  }
+  fs::path file(const std::string& name) const { return folder_.path() / name; }
+  std::size_t count() const {
+    const fs::path folder = folder_.path() / "nendo" / "calibrations";
+    if (!fs::exists(folder)) return 0;
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder), fs::directory_iterator{}));
+  }
+
+private:
+  nendo::test::TemporaryFolder folder_;
+  std::string before_;
+};
+
+const std::string csv = "sensor,gain_rad_per_count,offset_counts\n"
+                        "index_mcp,0.0125,60\n"
+                        "index_pip,0.0110,64\n";
+
+Finished calibration(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "calibration");
+  return nendo::test::nendo(std::move(arguments));
+}
+
+std::string with_gain(const std::string& gain) {
+  std::string text = csv;
+  return text.replace(text.find("0.0125"), 6, gain);
+}
+
+} // namespace
+
+TEST_SUITE("calibration command") {
+  TEST_CASE("what is imported is stored, listed, shown and exported again") {
+    const Home home;
+    write_file(home.file("x.csv"), csv);
+    const auto done = calibration({"import", home.file("x.csv").string(), "--user", "anna",
+                                   "--hand", "right", "--glove", "A1"});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const fs::path path = home.stored("anna+A1+right");
+    CHECK(done.out.find(path.string()) != std::string::npos);
+    const auto wearer = nendo::hand::read_calibration(path);
+    REQUIRE(wearer);
+    CHECK(wearer->user == "anna");
+    CHECK(wearer->glove_serial == "A1");
+    CHECK(wearer->side == Side::right);
+    CHECK(wearer->method == "imported");
+    CHECK(wearer->calibration[nendo::Sensor::index_mcp].gain_rad_per_count == 0.0125);
+
+    const auto listed = calibration({"list", "--json"});
+    REQUIRE(lines_of(listed.out).size() == 1);
+    const json line = json::parse(listed.out);
+    CHECK(line["user"] == "anna");
+    CHECK(line["hand"] == "right");
+    CHECK(line["glove_serial"] == "A1");
+    CHECK(line["method"] == "imported");
+    CHECK(line["path"] == path.string());
+    CHECK(line["in_force"] == true);
+    CHECK(line["shared"] == false);
+
+    for (const std::string name : {"anna", "anna+A1+right"}) {
+      const json shown = json::parse(calibration({"show", name, "--json"}).out);
+      CHECK(shown["sensors"].size() == 2);
+      CHECK(shown["sensors"]["index_pip"]["offset_counts"] == 64.0);
+      CHECK(calibration({"path", name}).out == path.string() + "\n");
+    }
+    CHECK(calibration({"show", path.string()}).out.find("index_pip") != std::string::npos);
+
+    const auto out = home.file("out.csv").string();
+    const auto written = calibration({"export", "anna", "--format", "csv", "--out", out});
+    CHECK(written.exit_code == 0);
+    const auto back = nendo::hand::parse_calibration_csv(contents(out), out);
+    REQUIRE(back);
+    CHECK(back->calibration[nendo::Sensor::index_pip].gain_rad_per_count == 0.011);
+    CHECK(calibration({"export", "anna"}).out == contents(path));
+  }
+
+  TEST_CASE("a TOML file tells its wearer, glove and hand itself") {
+    const Home home;
+    write_file(home.file("x.csv"), csv);
+    REQUIRE(calibration({"import", home.file("x.csv").string(), "--user", "anna", "--hand", "left"})
+                .exit_code == 0);
+    fs::rename(home.stored("anna+any+left"), home.file("taken.toml"));
+    const auto done = calibration({"import", home.file("taken.toml").string()});
+    CAPTURE(done.err);
+    CHECK(done.exit_code == 0);
+    CHECK(contents(home.stored("anna+any+left")) == contents(home.file("taken.toml")));
+    const auto right = calibration({"import", home.file("taken.toml").string(), "--hand", "right"});
+    CHECK(right.exit_code == 5);
+    CHECK(is_one_line_about(right.err, "left hand"));
+    CHECK(home.count() == 1);
+  }
+
+  TEST_CASE("a .cal goes out in VirtualHand's form and comes back") {
+    const Home home;
+    nendo::hand::WearerCalibration wearer;
+    wearer.user = "anna";
+    wearer.method = "quick";
+    wearer.calibration = nendo::hand::default_calibration();
+    REQUIRE(nendo::hand::write_calibration(home.stored("x"), wearer));
+    const auto out = home.file("x.cal").string();
+    const auto done = calibration({"export", "x", "--format", "cal", "--out", out});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    REQUIRE(calibration({"import", out, "--user", "berta", "--hand", "right"}).exit_code == 0);
+    const auto diff = calibration({"diff", "anna", "berta", "--json"});
+    REQUIRE(lines_of(diff.out).size() == 22);
+    for (const auto& line : lines_of(diff.out)) {
+      const json sensor = json::parse(line);
+      CAPTURE(line);
+      CHECK(std::abs(sensor["change_at_0_deg"].get<double>()) < 0.1);
+      CHECK(std::abs(sensor["change_at_full_deg"].get<double>()) < 0.1);
+      CHECK(sensor["b_at_full_deg"].get<double>() - sensor["a_at_full_deg"].get<double>() ==
+            doctest::Approx(sensor["change_at_full_deg"].get<double>()));
+    }
+  }
+
+  TEST_CASE("diff gives degrees at no counts and at the most") {
+    const Home home;
+    for (const std::string user : {"anna", "berta"}) {
+      write_file(home.file("x.csv"), user == "anna" ? csv : with_gain("0.0150"));
+      REQUIRE(
+          calibration({"import", home.file("x.csv").string(), "--user", user, "--hand", "right"})
+              .exit_code == 0);
+    }
+    const json first =
+        json::parse(lines_of(calibration({"diff", "anna", "berta", "--json"}).out)[0]);
+    constexpr double deg = 57.29577951308232;
+    CHECK(first["sensor"] == "index_mcp");
+    CHECK(first["a_at_0_deg"].get<double>() == doctest::Approx(-0.75 * deg));
+    CHECK(first["b_at_0_deg"].get<double>() == doctest::Approx(-0.90 * deg));
+    CHECK(first["a_at_full_deg"].get<double>() == doctest::Approx(0.0125 * 195.0 * deg));
+    CHECK(first["change_at_full_deg"].get<double>() == doctest::Approx(0.0025 * 195.0 * deg));
+    CHECK(lines_of(calibration({"diff", "anna", "berta"}).out).size() == 3);
+  }
+
+  TEST_CASE("an import keeps the earlier version, and removing keeps the last") {
+    const Home home;
+    const auto take_in = [&] {
+      return calibration(
+          {"import", home.file("x.csv").string(), "--user", "anna", "--hand", "right"});
+    };
+    write_file(home.file("x.csv"), csv);
+    REQUIRE(take_in().exit_code == 0);
+    write_file(home.file("x.csv"), with_gain("0.02"));
+    const auto second = take_in();
+    CHECK(second.exit_code == 0);
+    CHECK(second.err.find("kept as") != std::string::npos);
+    CHECK(home.count() == 2);
+    CHECK(lines_of(calibration({"list", "--json"}).out).size() == 1);
+    const auto removed = calibration({"remove", "anna"});
+    CHECK(removed.exit_code == 0);
+    CHECK(home.count() == 2);
+    CHECK(calibration({"list", "--json"}).out.empty());
+    CHECK(calibration({"remove", "anna"}).exit_code == 5);
+  }
+
+  TEST_CASE("a bad file is one clear line, and no file is touched") {
+    const Home home;
+    write_file(home.file("good.csv"), csv);
+    REQUIRE(
+        calibration({"import", home.file("good.csv").string(), "--user", "anna", "--hand", "right"})
+            .exit_code == 0);
+    const auto before = contents(home.stored("anna+any+right"));
+    for (const std::string& text :
+         {std::string(), with_gain("0"), with_gain("-0.0125"), with_gain("nan"), with_gain("7"),
+          csv.substr(0, csv.size() - 4), std::string("VHv9.0\n"), std::string("version = 9\n"),
+          std::string("\0\1\2", 3)}) {
+      write_file(home.file("bad"), text);
+      const auto done =
+          calibration({"import", home.file("bad").string(), "--user", "anna", "--hand", "right"});
+      CAPTURE(text);
+      CAPTURE(done.err);
+      CHECK(done.exit_code == 5);
+      CHECK(is_one_line_about(done.err, home.file("bad").string() + ":"));
+      CHECK(done.out.empty());
+    }
+    CHECK(contents(home.stored("anna+any+right")) == before);
+    CHECK(home.count() == 1);
+  }
+
+  TEST_CASE("a hostile wearer's name stays within the folder") {
+    const Home home;
+    write_file(home.file("x.csv"), csv);
+    const auto done = calibration({"import", home.file("x.csv").string(), "--user",
+                                   "../../../escaped", "--hand", "right", "--glove", "/dev/null"});
+    CHECK(done.exit_code == 0);
+    CHECK(home.count() == 1);
+    CHECK_FALSE(fs::exists(home.file("escaped")));
+    const auto newline =
+        calibration({"import", home.file("x.csv").string(), "--user", "a\nb", "--hand", "right"});
+    CHECK(newline.exit_code == 5);
+    CHECK(home.count() == 1);
+  }
+
+  TEST_CASE("wrong usage is told") {
+    const Home home;
+    write_file(home.file("x.csv"), csv);
+    const auto file = home.file("x.csv").string();
+    CHECK(is_one_line_about(calibration({"import", file, "--user", "anna"}).err, "--hand"));
+    CHECK(is_one_line_about(calibration({"import", file, "--hand", "left"}).err, "--user"));
+    CHECK(calibration({"import", file, "--user", "a", "--hand", "both"}).exit_code == 2);
+    CHECK(calibration({"export", "anna", "--format", "xml"}).exit_code == 2);
+    CHECK(calibration({"import", "/no/such/file", "--user", "a", "--hand", "left"}).exit_code == 5);
+    CHECK(calibration({"show", "nobody"}).exit_code == 5);
+    CHECK(calibration({}).exit_code == 2);
+    CHECK(home.count() == 0);
+  }
+
+  TEST_CASE("a stored file that cannot be read is told, and the rest is listed") {
+    const Home home;
+    write_file(home.file("x.csv"), csv);
+    REQUIRE(
+        calibration({"import", home.file("x.csv").string(), "--user", "anna", "--hand", "right"})
+            .exit_code == 0);
+    write_file(home.stored("broken"), "version = 1\nuser = 7\n");
+    const auto done = calibration({"list", "--json"});
+    CHECK(done.exit_code == 0);
+    CHECK(lines_of(done.out).size() == 1);
+    CHECK(is_one_line_about(done.err, "broken.toml:2:"));
+  }
+
+  TEST_CASE("a glove gets the stored calibration of its hand, and one line says so") {
+    const Home home;
+    const auto link = home.file("glove");
+    const nendo::test::EmulatedGlove glove(link, "left", "22");
+    const auto monitor = [&](std::vector<std::string> more) {
+      more.insert(more.begin(), {"monitor", "serial:" + link.string(), "--json", "--count", "2"});
+      return nendo::test::nendo(more);
+    };
+    // The gain by which index_mcp's angle was made of its count, if the offset is 60.
+    const auto gain = [&](const Finished& done) {
+      REQUIRE(lines_of(done.out).size() == 2);
+      const json sample = json::parse(lines_of(done.out)[0]);
+      return sample["angle_rad"]["index_mcp"].get<double>() /
+             (sample["raw"]["index_mcp"].get<double>() - 60.0);
+    };
+    const auto take_in = [&](const std::string& user, const std::string& hand,
+                             const std::string& index_gain) {
+      write_file(home.file("x.csv"), with_gain(index_gain));
+      REQUIRE(calibration({"import", home.file("x.csv").string(), "--user", user, "--hand", hand})
+                  .exit_code == 0);
+    };
+    take_in("anna", "right", "0.02");
+    const auto other_hand = monitor({});
+    CHECK(other_hand.err.empty());
+    CHECK(gain(other_hand) == doctest::Approx(0.0125)); // the default
+    CHECK(monitor({"--user", "anna"}).exit_code == 5);
+    CHECK(is_one_line_about(monitor({"--calibration", "anna"}).err, "right hand"));
+
+    take_in("anna", "left", "0.03");
+    const auto own = monitor({});
+    CHECK(is_one_line_about(own.err, "anna, left hand"));
+    CHECK(gain(own) == doctest::Approx(0.03));
+    take_in("berta", "left", "0.01");
+    CHECK(gain(monitor({"--user", "anna"})) == doctest::Approx(0.03));
+    CHECK(gain(monitor({"--user", "berta"})) == doctest::Approx(0.01));
+    CHECK(gain(monitor({"--calibration", "berta"})) == doctest::Approx(0.01));
+    const auto none = monitor({"--calibration", "none"});
+    CHECK(none.err.empty());
+    CHECK(gain(none) == doctest::Approx(0.0125));
+
+    const auto run = nendo::test::nendo({"run", "--left", "serial:" + link.string(), "--user",
+                                         "berta", "--duration", "0.3", "--json", "--out",
+                                         home.file("shape.obj").string()});
+    CHECK(run.exit_code == 0);
+    CHECK(run.err.find("berta, left hand") != std::string::npos);
+  }
+}
