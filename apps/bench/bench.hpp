@@ -5,6 +5,7 @@
 
 namespace nendo::app {
 
+void add_calibration_bench(Command& bench);
 void add_latency_bench(Command& bench);
 void add_faults_bench(Command& bench);
 void add_hand_bench(Command& bench);

@@ -93,6 +93,35 @@ TEST_SUITE("bench") {
     CHECK(lines_of(text.out).size() == 4);
   }
 
+  TEST_CASE("guided poses calibrate strangers: nearer than two poses do, farther than the truth") {
+    const auto done =
+        nendo::test::nendo({"bench", "calibration", "--wearers", "8", "--seed", "2001", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto told = nlohmann::json::parse(lines_of(done.out).at(0));
+    CHECK(told["wearers"] == 8);
+    CHECK(told["refused"] == 0);
+    CHECK(told["touch_gap_m_p95"].get<double>() < 0.005); // the wearers do as they are asked
+    CHECK(told["groups"].size() == 9);
+    for (const auto& group : told["groups"].items()) {
+      const std::string joints = group.key();
+      const auto& methods = group.value();
+      CAPTURE(joints);
+      const auto median = [&](const char* method) {
+        return methods[method]["median_deg"].get<double>();
+      };
+      const bool fingers_bend = joints.starts_with("finger ") && joints != "finger abduction";
+      CHECK(median("full") < (fingers_bend ? 4.0 : 7.0));
+      CHECK(median("full") < median("two_pose"));
+      CHECK(median("floor") < 1.0); // noise, 8 bits, and sensors that are not straight lines
+      CHECK(median("floor") < median("full"));
+      CHECK(methods["full"]["p95_deg"].get<double>() > median("full"));
+    }
+    const auto again =
+        nendo::test::nendo({"bench", "calibration", "--wearers", "8", "--seed", "2001", "--json"});
+    const auto repeated = nlohmann::json::parse(lines_of(again.out).at(0));
+    CHECK(repeated["groups"] == told["groups"]); // the same seed is the same wearer
+  }
+
   TEST_CASE("bench says what cannot be measured") {
     const auto rate = nendo::test::nendo({"bench", "driver", "--rate", "1000"});
     CHECK(rate.exit_code == 2);
@@ -106,6 +135,9 @@ TEST_SUITE("bench") {
     const auto still = nendo::test::nendo({"bench", "hand", "--poses", "0"});
     CHECK(still.exit_code == 2);
     CHECK(is_one_line_about(still.err, "--poses"));
+    const auto nobody = nendo::test::nendo({"bench", "calibration", "--wearers", "0"});
+    CHECK(nobody.exit_code == 2);
+    CHECK(is_one_line_about(nobody.err, "--wearers"));
     const auto few = nendo::test::nendo({"bench", "soak", "--records", "1"});
     CHECK(few.exit_code == 2);
     CHECK(is_one_line_about(few.err, "--records"));

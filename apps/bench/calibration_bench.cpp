@@ -1,0 +1,140 @@
+// nendo bench calibration: how well the guided poses calibrate, on synthetic wearers whose joints
+// are known. Everything about them was tuned on seeds 1 to 50; figures are to be quoted from other
+// seeds, as the default's.
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/calibration_trial.hpp"
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct Options {
+  std::uint64_t wearers = 60;
+  std::uint64_t seed = 1001;
+  bool json = false;
+  bool markdown = false;
+};
+
+struct Figures {
+  double median = 0.0;
+  double p95 = 0.0;
+};
+
+template <class Number>
+Figures figures_of(std::vector<Number> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double part) {
+    return static_cast<double>(
+        values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]);
+  };
+  return {at(0.5), at(0.95)};
+}
+
+void print_json(const TrialErrors& errors, std::uint64_t refused, const Options& options) {
+  nlohmann::ordered_json groups;
+  for (std::size_t group = 0; group < group_names.size(); ++group) {
+    for (std::size_t method = 0; method < method_names.size(); ++method) {
+      const Figures deg = figures_of(errors.deg[method][group]);
+      groups[std::string(group_names[group])][std::string(method_names[method])] = {
+          {"median_deg", deg.median}, {"p95_deg", deg.p95}};
+    }
+  }
+  const nlohmann::ordered_json object{
+      {"wearers", options.wearers},
+      {"first_seed", options.seed},
+      {"refused", refused},
+      {"fit_ms",
+       {{"median", figures_of(errors.fit_ms).median}, {"p95", figures_of(errors.fit_ms).p95}}},
+      {"condition_median", figures_of(errors.condition).median},
+      {"touch_gap_m_p95", figures_of(errors.touch_gap_m).p95},
+      {"groups", groups}};
+  std::cout << object.dump() << std::endl;
+}
+
+void print_table(const TrialErrors& errors, bool markdown) {
+  const char* bar = markdown ? "| " : "";
+  const char* between = markdown ? " | " : "  ";
+  const char* end = markdown ? " |" : "";
+  const auto row = [&](std::string_view first, auto&& cell, auto&& ratio) {
+    std::printf("%s%-16s", bar, std::string(first).c_str());
+    for (std::size_t method = 0; method < method_names.size(); ++method)
+      std::printf("%s%13s", between, cell(method).c_str());
+    std::printf("%s%15s%s\n", between, ratio.c_str(), end);
+  };
+  row(
+      "joints", [](std::size_t method) { return std::string(method_names[method]); },
+      std::string("full / two_pose"));
+  if (markdown) std::printf("|---|---:|---:|---:|---:|---:|\n");
+  for (std::size_t group = 0; group < group_names.size(); ++group) {
+    std::array<Figures, method_names.size()> deg;
+    for (std::size_t method = 0; method < method_names.size(); ++method)
+      deg[method] = figures_of(errors.deg[method][group]);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", deg[0].median / std::max(deg[1].median, 1e-9));
+    const std::string ratio = text;
+    row(
+        group_names[group],
+        [&](std::size_t method) {
+          std::snprintf(text, sizeof text, "%.2f / %.2f", deg[method].median, deg[method].p95);
+          return std::string(text);
+        },
+        ratio);
+  }
+}
+
+void print_text(const TrialErrors& errors, std::uint64_t refused, const Options& options) {
+  std::printf("%llu synthetic wearers, seeds %llu to %llu, %llu refused; error of the joints' "
+              "angles over free motion in degrees, median / 95th percentile%s\n",
+              static_cast<unsigned long long>(options.wearers),
+              static_cast<unsigned long long>(options.seed),
+              static_cast<unsigned long long>(options.seed + options.wearers - 1),
+              static_cast<unsigned long long>(refused), options.markdown ? "\n" : "");
+  print_table(errors, options.markdown);
+  std::printf("%sfit: %.1f ms, condition %.0f (medians); 95%% of touches are closed to %.1f mm\n",
+              options.markdown ? "\n" : "", figures_of(errors.fit_ms).median,
+              figures_of(errors.condition).median, 1e3 * figures_of(errors.touch_gap_m).p95);
+}
+
+int bench_calibration(const Options& options) {
+  if (options.wearers == 0 || options.wearers > 10'000)
+    return report({Errc::usage, "--wearers: from 1 to 10000"});
+  install_stop_signals();
+  TrialErrors errors;
+  std::uint64_t refused = 0;
+  for (std::uint64_t n = 0; n < options.wearers; ++n) {
+    if (stop_requested()) return report({Errc::failed, "ended before all wearers were calibrated"});
+    const auto done = try_wearer(options.seed + n, errors);
+    if (done) continue;
+    ++refused;
+    note("wearer " + std::to_string(options.seed + n) + ": " + done.error().message);
+  }
+  options.json ? print_json(errors, refused, options) : print_text(errors, refused, options);
+  return refused < options.wearers ? 0 : report({Errc::failed, "no wearer could be calibrated"});
+}
+
+} // namespace
+
+void add_calibration_bench(Command& bench) {
+  auto options = std::make_shared<Options>();
+  Command command = bench.add_command(
+      "calibration", "How well guided poses calibrate, on synthetic wearers with known joints");
+  command.add_option("--wearers", options->wearers, "How many, 1 to 10000");
+  command.add_option("--seed", options->seed, "The first wearer's; 1 to 50 were used for tuning");
+  command.add_flag("--json", options->json, "One JSON object");
+  command.add_flag("--markdown", options->markdown, "A table in Markdown");
+  command.on_chosen([options] { return bench_calibration(*options); });
+}
+
+} // namespace nendo::app

@@ -1,0 +1,138 @@
+#include "bench/calibration_trial.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <string>
+
+#include <nendo/hand/calibration_fit.hpp>
+#include <nendo/hand/pose_capture.hpp>
+
+#include "bench/wearers.hpp"
+
+namespace nendo::app {
+namespace {
+
+using hand::Calibration;
+using hand::JointAngles;
+using hand::PoseReading;
+
+constexpr double rate_hz = 90.0;
+constexpr double tremor_rad = 0.002;
+
+HostTime at_time(double time_s) {
+  return HostTime(
+      std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(1.0 + time_s)));
+}
+
+/// The wearer holds each pose until it is captured, as in a guided calibration.
+Result<std::vector<PoseReading>> hold_all(Wearer& wearer, std::mt19937_64& random,
+                                          TrialErrors& errors) {
+  std::normal_distribution<double> tremor(0.0, tremor_rad);
+  hand::PoseCapture capture;
+  std::vector<PoseReading> readings;
+  std::uint64_t n = 0;
+  for (const hand::PoseId pose : hand::full_poses()) {
+    const hand::SensorAngles asked = wearer.perform(pose);
+    if (hand::pose_of(pose).touch) errors.touch_gap_m.push_back(wearer.gap_m(pose, asked));
+    capture.begin_next();
+    for (int turn = 0; turn < 500 && capture.state() != hand::CaptureState::held; ++turn) {
+      hand::SensorAngles now = asked;
+      for (double& angle : now)
+        angle += tremor(random);
+      GloveSample sample = wearer.read(now);
+      sample.arrival = sample.measured = at_time(static_cast<double>(n++) / rate_hz);
+      capture.push(sample);
+    }
+    if (capture.state() != hand::CaptureState::held)
+      return Error{Errc::failed,
+                   std::string(hand::pose_of(pose).name) + " was not captured within 5 s"};
+    readings.push_back({pose, capture.held()});
+  }
+  return readings;
+}
+
+Calibration min_max_calibration(Wearer& wearer, std::uint64_t seed) {
+  const FreeMotion motion(seed, wearer.ranges());
+  std::array<double, sensor_slots> low, high;
+  low.fill(255.0);
+  high.fill(0.0);
+  for (double time_s = 0.0; time_s < 30.0; time_s += 1.0 / rate_hz) {
+    const GloveSample sample = wearer.read(motion.angles_rad(time_s));
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      low[slot] = std::min(low[slot], static_cast<double>(sample.raw[slot].value));
+      high[slot] = std::max(high[slot], static_cast<double>(sample.raw[slot].value));
+    }
+  }
+  Calibration calibration = hand::default_calibration({1, true});
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    auto& [gain, offset] = calibration.sensors[slot];
+    const double span = std::max(high[slot] - low[slot], 1.0);
+    gain /= span;
+    offset = low[slot] + offset * span;
+  }
+  return calibration;
+}
+
+void add_errors(const JointAngles& told, const JointAngles& truth,
+                std::array<std::vector<float>, group_names.size()>& groups) {
+  const auto add = [&](std::size_t group, double a, double b) {
+    groups[group].push_back(static_cast<float>(std::abs(a - b) * 180.0 / std::numbers::pi));
+  };
+  for (std::size_t f = 0; f < 4; ++f) {
+    add(0, told.fingers[f].mcp_flexion_rad, truth.fingers[f].mcp_flexion_rad);
+    add(1, told.fingers[f].pip_flexion_rad, truth.fingers[f].pip_flexion_rad);
+    add(2, told.fingers[f].dip_flexion_rad, truth.fingers[f].dip_flexion_rad);
+    // The middle finger's is straight by definition, here and there.
+    if (f != 1) add(3, told.fingers[f].mcp_abduction_rad, truth.fingers[f].mcp_abduction_rad);
+  }
+  add(4, told.thumb_roll_rad, truth.thumb_roll_rad);
+  add(5, told.thumb_abduction_rad, truth.thumb_abduction_rad);
+  add(6, told.thumb_mcp_flexion_rad, truth.thumb_mcp_flexion_rad);
+  add(6, told.thumb_ip_flexion_rad, truth.thumb_ip_flexion_rad);
+  add(7, told.palm_arch_rad, truth.palm_arch_rad);
+  add(8, told.wrist_pitch_rad, truth.wrist_pitch_rad);
+  add(8, told.wrist_yaw_rad, truth.wrist_yaw_rad);
+}
+
+} // namespace
+
+Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
+  Wearer wearer(seed);
+  std::mt19937_64 random(seed);
+  const auto readings = hold_all(wearer, random, errors);
+  if (!readings) return readings.error();
+  std::vector<PoseReading> two;
+  for (const PoseReading& reading : *readings) {
+    const auto quick = hand::quick_poses();
+    if (std::find(quick.begin(), quick.end(), reading.pose) != quick.end()) two.push_back(reading);
+  }
+  // The fit is not told how large the hand is.
+  const auto begin = std::chrono::steady_clock::now();
+  const auto full = hand::fit_calibration(*readings, wearer.side(), sensors_22);
+  errors.fit_ms.push_back(1e3 * to_seconds(std::chrono::steady_clock::now() - begin));
+  if (!full) return full.error();
+  hand::FitOptions quick;
+  quick.mode = hand::FitMode::quick;
+  const auto two_pose = hand::fit_calibration(two, wearer.side(), sensors_22, quick);
+  if (!two_pose) return two_pose.error();
+  errors.condition.push_back(full->condition);
+
+  const std::array<Calibration, method_names.size()> calibrations{
+      full->calibration, two_pose->calibration, min_max_calibration(wearer, random()),
+      wearer.truth()};
+  const FreeMotion motion(random(), wearer.ranges());
+  for (double time_s = 0.0; time_s < 60.0; time_s += 0.2) {
+    const hand::SensorAngles angles = motion.angles_rad(time_s);
+    const GloveSample sample = wearer.read(angles);
+    for (std::size_t method = 0; method < calibrations.size(); ++method) {
+      add_errors(hand::joint_angles(sample, calibrations[method]), joints_of(angles),
+                 errors.deg[method]);
+    }
+  }
+  return {};
+}
+
+} // namespace nendo::app

@@ -1,0 +1,39 @@
+#pragma once
+// One synthetic wearer calibrated in three ways, and how far each leaves the joints' angles from
+// the true ones.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::app {
+
+enum class Method : std::uint8_t {
+  full,     ///< the guided poses
+  two_pose, ///< flat and fist
+  min_max,  ///< counts of a free motion, spread over each joint's range of motion
+  floor,    ///< the true lines and couplings: what noise, 8 bits and bent lines leave
+};
+inline constexpr std::array<std::string_view, 4> method_names{"full", "two_pose", "min_max",
+                                                              "floor"};
+inline constexpr std::array<std::string_view, 9> group_names{
+    "finger MCP",       "finger PIP", "finger DIP",
+    "finger abduction", "thumb roll", "thumb abduction",
+    "thumb flexion",    "palm arch",  "wrist"};
+
+/// Absolute errors in degrees, by method and group of joints.
+struct TrialErrors {
+  std::array<std::array<std::vector<float>, group_names.size()>, method_names.size()> deg;
+  std::vector<double> fit_ms;      ///< what the full fit took
+  std::vector<double> condition;   ///< of the full fit
+  std::vector<double> touch_gap_m; ///< of the performed touches, the truth
+};
+
+/// Adds the errors of the wearer with this seed over a fresh minute of free motion. Error: no
+/// capture or no fit came about.
+Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors);
+
+} // namespace nendo::app

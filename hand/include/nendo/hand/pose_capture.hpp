@@ -1,0 +1,92 @@
+#pragma once
+// From a stream of samples to a held pose: waits until the hand has been still for a second, and
+// says what it waits for.
+
+#include <array>
+#include <cstdint>
+
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::hand {
+
+/// What the sensors said while a pose was held.
+struct HeldPose {
+  std::array<double, sensor_slots> mean_counts{};
+  std::array<double, sensor_slots> noise_counts{}; ///< standard deviation of one sample
+  SensorMask present;                              ///< of which slots the two tell
+};
+
+enum class CaptureState : std::uint8_t {
+  waiting,   ///< no sample yet, or none of a sensor
+  moving,    ///< some sensor changes; troubled() says which
+  noisy,     ///< some sensor jumps to and fro faster than a joint could
+  saturated, ///< still, but some sensor is at an end of its counts half the time
+  unchanged, ///< still, but in the last pose
+  settling,  ///< still, not yet for long enough
+  held,      ///< held() is complete
+};
+
+/// Wait-free, no allocation. One thread.
+class PoseCapture {
+public:
+  /// Limits for 255 counts; other scales have them in proportion, yet never below what a last bit
+  /// that flickers does.
+  static constexpr double still_range_counts = 6.0;
+  static constexpr double most_noise_counts = 2.0;
+  static constexpr double least_change_counts = 8.0;
+  static constexpr double hold_s = 1.0;
+  static constexpr std::uint32_t least_samples = 10; ///< within hold_s
+
+  explicit PoseCapture(CountScale scale = {}) noexcept;
+
+  /// The next sample in time. Once held, nothing changes until begin_next().
+  CaptureState push(const GloveSample& sample) noexcept;
+
+  CaptureState state() const noexcept { return state_; }
+  /// The sensors that stand in the way, if the state is moving, noisy or saturated.
+  SensorMask troubled() const noexcept { return troubled_; }
+  /// How much of hold_s is over, 0 to 1; 1 is held, and nothing else is.
+  double progress() const noexcept { return progress_; }
+  /// Of value if the state is held.
+  const HeldPose& held() const noexcept { return held_; }
+  /// Waits for another pose, different from the one held.
+  void begin_next() noexcept;
+
+private:
+  struct Watched {
+    double before_counts = 0.0; ///< one sample ago
+    double earlier_counts = 0.0;
+    double noise_variance = 0.0; ///< by second differences, which steady movement does not touch
+    double low_counts = 0.0;     ///< since the window's beginning, as all that follow
+    double high_counts = 0.0;
+    double mean_counts = 0.0;
+    double squares = 0.0; ///< of deviations from the mean
+    std::uint32_t at_end = 0;
+  };
+  void begin_window(const GloveSample& sample, HostTime now) noexcept;
+  void watch_noise(const GloveSample& sample, double elapsed_s) noexcept;
+  void add(const GloveSample& sample) noexcept;
+  CaptureState judge_movement(SensorMask moved) noexcept;
+  CaptureState judge_rest(double still_s) noexcept;
+  SensorMask restless() const noexcept;
+  SensorMask at_ends() const noexcept;
+  bool differs_from_last() const noexcept;
+  void fill_held() noexcept;
+
+  CountScale scale_;
+  double unit_; ///< counts of this scale for one of 255
+  std::array<Watched, sensor_slots> watched_{};
+  SensorMask present_;
+  HostTime begun_{};
+  HostTime last_time_{};
+  std::uint32_t samples_ = 0; ///< in the window
+  std::uint32_t seen_ = 0;    ///< since the sensors last changed; stops at 3
+  CaptureState state_ = CaptureState::waiting;
+  SensorMask troubled_;
+  SensorMask last_troubled_; ///< a sample ago
+  double progress_ = 0.0;
+  HeldPose held_{};
+  HeldPose last_{};
+};
+
+} // namespace nendo::hand

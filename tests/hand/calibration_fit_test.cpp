@@ -1,0 +1,428 @@
+#include <nendo/hand/calibration_fit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <Eigen/LU>
+#include <doctest/doctest.h>
+
+#include <nendo/hand/joint_angles.hpp>
+
+using namespace nendo;
+using namespace nendo::hand;
+
+namespace {
+
+constexpr double rad = std::numbers::pi / 180.0;
+constexpr std::size_t roll = 0, web = 3; // the thumb's abduction
+
+constexpr std::size_t slot_of(Sensor sensor) {
+  return static_cast<std::size_t>(sensor);
+}
+
+/// Gains up to a quarter above the default, and offsets up to 12 counts off it.
+Calibration some_truth(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  Calibration truth = default_calibration();
+  for (auto& [gain, offset] : truth.sensors) {
+    gain *= 1.1 + 0.15 * u(random);
+    offset += 12.0 * u(random);
+  }
+  truth.mixed_in = {0.3, -0.2, -0.1, -0.2, -0.15, 0.05, -0.2, -0.1};
+  return truth;
+}
+
+/// The counts, not rounded, at which `truth` says these angles: the couplings written out
+/// backwards.
+std::array<double, sensor_slots> counts_at(const SensorAngles& angles, const Calibration& truth) {
+  SensorAngles lines = angles;
+  for (std::size_t k = 2; k < couplings.size(); ++k)
+    lines[slot_of(couplings[k].of)] -= truth.mixed_in[k] * angles[slot_of(couplings[k].by)];
+  const double a = truth.mixed_in[0], b = truth.mixed_in[1];
+  lines[roll] = (angles[roll] - a * angles[web]) / (1.0 - a * b);
+  lines[web] = (angles[web] - b * angles[roll]) / (1.0 - a * b);
+  std::array<double, sensor_slots> counts{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto [gain, offset] = truth.sensors[slot];
+    if (gain == 0.0) continue;
+    counts[slot] = lines[slot] / gain + offset;
+    REQUIRE(counts[slot] > 1.0);
+    REQUIRE(counts[slot] < 255.0);
+  }
+  return counts;
+}
+
+/// Held exactly: angles as asked, and where nothing is asked, something else each time.
+SensorAngles exact(PoseId id, std::mt19937& random) {
+  std::uniform_real_distribution<double> u(0.1, 0.6);
+  SensorAngles angles{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const AssumedAngle& assumed = pose_of(id).assumed[slot];
+    angles[slot] = assumed.known() ? assumed.angle_rad : u(random);
+  }
+  return angles;
+}
+
+HeldPose held(const SensorAngles& angles, const Calibration& truth,
+              SensorMask sensors = sensors_22) {
+  HeldPose pose;
+  pose.present = sensors;
+  pose.mean_counts = counts_at(angles, truth);
+  return pose;
+}
+
+/// Without the touches, because what is asked of the angles need not close a loop. `times`: more
+/// evidence, for which the default's pull vanishes.
+std::vector<PoseReading> exact_readings(const Calibration& truth, int times = 1) {
+  std::mt19937 random(4);
+  std::vector<PoseReading> readings;
+  for (int n = 0; n < times; ++n) {
+    for (const PoseId id : full_poses()) {
+      if (!pose_of(id).touch) readings.push_back({id, held(exact(id, random), truth)});
+    }
+  }
+  return readings;
+}
+
+std::vector<PoseReading> quick_readings(const Calibration& truth) {
+  std::vector<PoseReading> readings = exact_readings(truth);
+  readings.resize(2);
+  return readings;
+}
+
+Calibration fitted(const std::vector<PoseReading>& readings, const FitOptions& options = {},
+                   Side side = Side::right) {
+  const auto fit = fit_calibration(readings, side, sensors_22, options);
+  REQUIRE_MESSAGE(fit, (fit ? "" : fit.error().message));
+  return fit->calibration;
+}
+
+/// The largest difference of any angle that the two say over the range of counts that the readings
+/// covered.
+double largest_difference_rad(const Calibration& a, const Calibration& b,
+                              const std::vector<PoseReading>& readings) {
+  double largest = 0.0;
+  for (const auto& reading : readings) {
+    GloveSample sample;
+    sample.present = sensors_22;
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      sample.raw[slot].value = static_cast<std::uint16_t>(reading.held.mean_counts[slot]);
+    const SensorAngles of_a = a.angles_rad(sample), of_b = b.angles_rad(sample);
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      largest = std::max(largest, std::abs(of_a[slot] - of_b[slot]));
+  }
+  return largest;
+}
+
+/// The thumb's angles that bring the pads together, by Newton's steps on the forward kinematics.
+SensorAngles touching(PoseId id, const HandSkeleton& skeleton, SensorAngles angles) {
+  const Touch& touch = *pose_of(id).touch;
+  const auto gap = [&](const SensorAngles& at) -> Eigen::Vector3d {
+    JointAngles joints;
+    joints.thumb_roll_rad = at[0];
+    joints.thumb_mcp_flexion_rad = at[1];
+    joints.thumb_ip_flexion_rad = at[2];
+    joints.thumb_abduction_rad = at[3];
+    for (std::size_t f = 0; f < 4; ++f)
+      joints.fingers[f] = {at[4 * f + 4], 0.0, at[4 * f + 5], at[4 * f + 6]};
+    const HandPose pose = skeleton.pose(joints, Eigen::Isometry3d::Identity());
+    return pose[Joint::thumb_tip] * Eigen::Vector3d(0, -pad_depth_m, pad_behind_tip_m) -
+           pose[touch.with] * Eigen::Vector3d(0, -pad_depth_m, pad_behind_tip_m);
+  };
+  const std::size_t first = 4 * (index_of(touch.with) - index_of(Joint::index_tip)) / 5 + 4;
+  const std::array<std::size_t, 6> moved{0, 1, 2, 3, first, first + 1};
+  for (int turn = 0; turn < 100; ++turn) {
+    const Eigen::Vector3d apart = gap(angles);
+    Eigen::Matrix<double, 3, 6> slopes;
+    for (std::size_t n = 0; n < moved.size(); ++n) {
+      SensorAngles next = angles;
+      next[moved[n]] += 1e-6;
+      slopes.col(static_cast<Eigen::Index>(n)) = (gap(next) - apart) / 1e-6;
+    }
+    const Eigen::Matrix3d square = slopes * slopes.transpose() + 1e-7 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix<double, 6, 1> step = slopes.transpose() * (square.inverse() * apart);
+    for (std::size_t n = 0; n < moved.size(); ++n)
+      angles[moved[n]] -= 0.5 * step[static_cast<Eigen::Index>(n)];
+  }
+  REQUIRE(gap(angles).norm() < 1e-4);
+  return angles;
+}
+
+bool names(const Result<CalibrationFit>& fit, std::string_view what) {
+  REQUIRE_FALSE(fit);
+  CAPTURE(fit.error().message);
+  CHECK(fit.error().code == Errc::bad_input);
+  CHECK(fit.error().message.find('\n') == std::string::npos);
+  return fit.error().message.find(what) != std::string::npos;
+}
+
+} // namespace
+
+TEST_SUITE("calibration_fit") {
+  TEST_CASE("poses held exactly give back lines and couplings, whatever the glove") {
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+      const Calibration truth = some_truth(seed);
+      const auto readings = exact_readings(truth);
+      const auto fit = fit_calibration(readings, Side::right, sensors_22);
+      REQUIRE(fit);
+      // The default's pull, which is weak beside poses that are known to some degrees.
+      CHECK(largest_difference_rad(fit->calibration, truth, readings) < 3.5 * rad);
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+        if (!sensors_22.has(static_cast<Sensor>(slot))) continue;
+        CAPTURE(std::string(name_of(static_cast<Sensor>(slot))));
+        CHECK(fit->sensors[slot].gain_determined);
+        CHECK(fit->sensors[slot].residual_rad < 2.5 * rad);
+        CHECK(fit->sensors[slot].deviation_rad < 7.0 * rad);
+      }
+      for (std::size_t k = 0; k < couplings.size(); ++k)
+        CHECK(fit->calibration.mixed_in[k] == doctest::Approx(truth.mixed_in[k]).epsilon(0.1));
+      CHECK(fit->undetermined.bits == 0);
+      CHECK(fit->condition > 1.0);
+      CHECK(fit->condition < 1000.0);
+    }
+  }
+
+  TEST_CASE("the more often poses are held exactly, the nearer the fit is to the truth") {
+    const Calibration truth = some_truth(4);
+    double before = 1.0;
+    for (const int times : {1, 6, 36}) {
+      const auto readings = exact_readings(truth, times);
+      const double off = largest_difference_rad(fitted(readings), truth, readings);
+      CAPTURE(times);
+      CHECK(off < 0.35 * before);
+      before = off;
+    }
+    CHECK(before < 0.25 * rad);
+  }
+
+  TEST_CASE("two poses give the flexion sensors' lines, and leave the rest at the default") {
+    const Calibration truth = some_truth(5);
+    const auto readings = quick_readings(truth);
+    FitOptions options;
+    options.mode = FitMode::quick;
+    const auto fit = fit_calibration(readings, Side::right, sensors_22, options);
+    REQUIRE(fit);
+    const Calibration start = default_calibration();
+    for (const Sensor sensor : {Sensor::index_mcp, Sensor::ring_pip, Sensor::pinky_dip}) {
+      CHECK(fit->sensors[slot_of(sensor)].gain_determined);
+      CHECK(fit->calibration[sensor].gain_rad_per_count ==
+            doctest::Approx(truth[sensor].gain_rad_per_count).epsilon(0.02));
+    }
+    for (const Sensor sensor : {Sensor::wrist_yaw, Sensor::wrist_pitch, Sensor::palm_arch,
+                                Sensor::thumb_roll, Sensor::index_middle_abduction}) {
+      CHECK(fit->undetermined.has(sensor));
+      CHECK_FALSE(fit->sensors[slot_of(sensor)].gain_determined);
+      CHECK(fit->calibration[sensor].gain_rad_per_count == start[sensor].gain_rad_per_count);
+      CHECK(fit->sensors[slot_of(sensor)].offset_determined); // by the flat hand
+      const double flat = readings[0].held.mean_counts[slot_of(sensor)];
+      CHECK(fit->calibration[sensor].offset_counts == doctest::Approx(flat).epsilon(0.02));
+    }
+    CHECK_FALSE(fit->undetermined.has(Sensor::index_mcp));
+    CHECK(fit->calibration.mixed_in == start.mixed_in);
+  }
+
+  TEST_CASE("what no pose shows stays at the default to the last bit, and is said") {
+    const Calibration truth = some_truth(6);
+    auto readings = exact_readings(truth);
+    std::erase_if(readings, [](const PoseReading& reading) {
+      return reading.pose == PoseId::wrist_down || reading.pose == PoseId::wrist_back;
+    });
+    const auto fit = fit_calibration(readings, Side::right, sensors_22);
+    REQUIRE(fit);
+    CHECK(fit->undetermined.bits == 1U << slot_of(Sensor::wrist_pitch));
+    CHECK(fit->calibration[Sensor::wrist_pitch].gain_rad_per_count ==
+          default_calibration()[Sensor::wrist_pitch].gain_rad_per_count);
+    CHECK(fit->sensors[slot_of(Sensor::wrist_yaw)].gain_determined);
+    CHECK(fit->calibration.middle_bias == default_calibration().middle_bias);
+  }
+
+  TEST_CASE("touches mend a thumb whose poses were not held as asked") {
+    const Calibration truth = some_truth(7);
+    const HandSkeleton skeleton(Side::right);
+    std::mt19937 random(8);
+    auto readings = exact_readings(truth);
+    for (auto& reading : readings) { // 10 degrees short, and 6 too far
+      SensorAngles angles = exact(reading.pose, random);
+      if (reading.pose == PoseId::thumb_up) angles[roll] -= 10.0 * rad;
+      if (reading.pose == PoseId::thumb_up || reading.pose == PoseId::thumb_out)
+        angles[web] += 6.0 * rad;
+      reading.held = held(angles, truth);
+    }
+    std::vector<PoseReading> touched;
+    for (const PoseId id : {PoseId::pinch_index, PoseId::pinch_index_flat, PoseId::pinch_middle}) {
+      SensorAngles angles{};
+      angles[roll] = angles[web] = 45.0 * rad;
+      angles[1] = angles[2] = 25.0 * rad;
+      for (std::size_t f = 0; f < 4; ++f) {
+        angles[4 * f + 4] = angles[4 * f + 5] = 45.0 * rad;
+        angles[4 * f + 6] = 25.0 * rad;
+      }
+      touched.push_back({id, held(touching(id, skeleton, angles), truth)});
+    }
+    auto with_touches = readings;
+    with_touches.insert(with_touches.end(), touched.begin(), touched.end());
+    const Calibration without = fitted(readings);
+    const auto with = fit_calibration(with_touches, Side::right, sensors_22);
+    REQUIRE(with);
+    CHECK(largest_difference_rad(with->calibration, truth, touched) <
+          0.75 * largest_difference_rad(without, truth, touched));
+    for (std::size_t n = readings.size(); n < with_touches.size(); ++n)
+      CHECK(with->readings[n].gap_m < 0.004);
+  }
+
+  TEST_CASE("the order of the readings is of no consequence") {
+    auto readings = exact_readings(some_truth(9));
+    const Calibration in_order = fitted(readings);
+    std::mt19937 random(10);
+    std::shuffle(readings.begin(), readings.end(), random);
+    CHECK(largest_difference_rad(fitted(readings), in_order, readings) < 1e-7);
+  }
+
+  TEST_CASE("a finer converter of the same glove gets the same angles, with smaller gains") {
+    const auto readings = exact_readings(some_truth(11));
+    auto fine = readings;
+    const double ratio = 4095.0 / 255.0;
+    for (auto& reading : fine) {
+      for (double& counts : reading.held.mean_counts)
+        counts *= ratio;
+    }
+    FitOptions options;
+    options.scale.most = 4095;
+    const Calibration coarse_fit = fitted(readings), fine_fit = fitted(fine, options);
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      CHECK(fine_fit.sensors[slot].gain_rad_per_count * ratio ==
+            doctest::Approx(coarse_fit.sensors[slot].gain_rad_per_count).epsilon(1e-6));
+      CHECK(fine_fit.sensors[slot].offset_counts / ratio ==
+            doctest::Approx(coarse_fit.sensors[slot].offset_counts).epsilon(1e-6));
+    }
+  }
+
+  TEST_CASE("a left hand that sends the same counts gets the same calibration") {
+    auto readings = exact_readings(some_truth(12));
+    std::mt19937 random(13);
+    for (const PoseId id : {PoseId::pinch_index, PoseId::thumb_across})
+      readings.push_back({id, held(exact(id, random), some_truth(12))});
+    CHECK(largest_difference_rad(fitted(readings, {}, Side::left),
+                                 fitted(readings, {}, Side::right), readings) < 1e-7);
+  }
+
+  TEST_CASE("holding the poses again makes the angles surer") {
+    const auto once = exact_readings(some_truth(14));
+    auto often = once;
+    for (int n = 0; n < 3; ++n)
+      often.insert(often.end(), once.begin(), once.end());
+    const auto a = fit_calibration(once, Side::right, sensors_22);
+    const auto b = fit_calibration(often, Side::right, sensors_22);
+    REQUIRE(a);
+    REQUIRE(b);
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      if (!sensors_22.has(static_cast<Sensor>(slot))) continue;
+      // Four times the evidence is half the deviation, but for the default's little part.
+      CHECK(b->sensors[slot].deviation_rad < 0.7 * a->sensors[slot].deviation_rad);
+    }
+  }
+
+  TEST_CASE("gloves with fewer sensors, and those that know their range, are calibrated, too") {
+    SensorMask curls;
+    for (const Sensor sensor : {Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp,
+                                Sensor::ring_mcp, Sensor::pinky_mcp})
+      curls.add(sensor);
+    FitOptions options;
+    options.scale = {1000, true};
+    std::vector<PoseReading> readings(2);
+    readings[0].held.present = readings[1].held.present = curls;
+    readings[1].pose = PoseId::fist;
+    readings[1].held.mean_counts.fill(1000.0); // the end of the scale is no fault here
+    const auto fit = fit_calibration(readings, Side::left, curls, options);
+    REQUIRE(fit);
+    const double fist = pose_of(PoseId::fist).assumed[slot_of(Sensor::ring_mcp)].angle_rad;
+    CHECK(fit->calibration[Sensor::ring_mcp].angle_rad(RawCount{1000}) ==
+          doctest::Approx(fist).epsilon(0.02));
+    CHECK(std::abs(fit->calibration[Sensor::ring_mcp].angle_rad(RawCount{0})) < 1.0 * rad);
+    const auto eighteen = fit_calibration(exact_readings(some_truth(15)), Side::left, sensors_18);
+    REQUIRE(eighteen);
+    CHECK(eighteen->undetermined.bits == 0);
+  }
+
+  TEST_CASE("what cannot be a wearer's poses is refused, in one line that names it") {
+    const Calibration truth = some_truth(16);
+    const auto good = exact_readings(truth);
+    const auto fit = [](const std::vector<PoseReading>& readings, SensorMask mask = sensors_22,
+                        const FitOptions& options = {}) {
+      return fit_calibration(readings, Side::right, mask, options);
+    };
+    CHECK(names(fit({}), "flat"));
+    CHECK(names(fit({good[0]}), "fist"));
+    CHECK(names(fit(good, SensorMask{}), "sensors"));
+    FitOptions options;
+    options.scale.most = 0;
+    CHECK(names(fit(good, sensors_22, options), "scale"));
+    options = {};
+    options.size.length_m = std::numeric_limits<double>::quiet_NaN();
+    CHECK(names(fit(good, sensors_22, options), "long"));
+
+    constexpr std::size_t slot = slot_of(Sensor::ring_pip);
+    for (const double counts :
+         {0.0, 1.0, 255.0, 256.0, -5.0, 1e300, std::numeric_limits<double>::quiet_NaN(),
+          std::numeric_limits<double>::infinity()}) {
+      auto bad = good;
+      bad[3].held.mean_counts[slot] = counts;
+      CHECK(names(fit(bad), "ring_pip"));
+      CHECK(names(fit(bad), pose_of(bad[3].pose).name));
+    }
+    auto lacking = good;
+    lacking[1].held.present = sensors_18;
+    CHECK(names(fit(lacking), "index_dip"));
+    auto unknown = good;
+    unknown[2].pose = static_cast<PoseId>(200);
+    CHECK(names(fit(unknown), "pose"));
+    auto reversed = good;
+    for (auto& reading : reversed)
+      reading.held.mean_counts[slot] = 255.0 - reading.held.mean_counts[slot];
+    CHECK(names(fit(reversed), "ring_pip"));
+    auto dead = good;
+    for (auto& reading : dead)
+      reading.held.mean_counts[slot] = 90.0;
+    CHECK(names(fit(dead), "ring_pip"));
+    auto exchanged = quick_readings(truth);
+    std::swap(exchanged[0].held, exchanged[1].held);
+    CHECK_FALSE(fit(exchanged));
+  }
+
+  TEST_CASE("random counts under random names give an error or finite numbers") {
+    std::mt19937 random(17);
+    int fits = 0;
+    for (int round = 0; round < 30; ++round) {
+      const auto sensors =
+          round % 2 == 0 ? sensors_22 : SensorMask{static_cast<std::uint32_t>(random())};
+      std::vector<PoseReading> readings(2 + random() % 12);
+      for (std::size_t n = 0; n < readings.size(); ++n) {
+        readings[n].pose =
+            n < 2 ? static_cast<PoseId>(n) : static_cast<PoseId>(random() % pose_count);
+        readings[n].held.present = sensors;
+        for (double& counts : readings[n].held.mean_counts)
+          counts = static_cast<double>(round < 20 ? 100 + random() % 3 + 90 * (n == 1)
+                                                  : 2 + random() % 250);
+      }
+      const auto fit = fit_calibration(readings, Side::right, sensors);
+      if (!fit) continue;
+      ++fits;
+      CHECK(std::isfinite(fit->condition));
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+        CHECK(std::isfinite(fit->calibration.sensors[slot].gain_rad_per_count));
+        CHECK(std::isfinite(fit->calibration.sensors[slot].offset_counts));
+        CHECK(std::isfinite(fit->sensors[slot].residual_rad));
+        CHECK(std::isfinite(fit->sensors[slot].deviation_rad));
+      }
+      for (const double mix : fit->calibration.mixed_in)
+        CHECK(std::isfinite(mix));
+    }
+    CHECK(fits > 0);
+  }
+}

@@ -1,0 +1,70 @@
+#include <nendo/hand/calibration_poses.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+
+using namespace nendo;
+using namespace nendo::hand;
+
+TEST_SUITE("calibration_poses") {
+  TEST_CASE("every pose has a name of its own, is found by it, and is asked for in a sentence") {
+    std::set<std::string> names;
+    for (const PoseId id : full_poses()) {
+      const CalibrationPose& pose = pose_of(id);
+      CAPTURE(std::string(pose.name));
+      CHECK(names.insert(std::string(pose.name)).second);
+      CHECK(pose_named(pose.name) == id);
+      CHECK(pose.instruction.ends_with('.'));
+      CHECK(pose.instruction.size() <= 80);
+    }
+    CHECK(names.size() == pose_count);
+    CHECK_FALSE(pose_named("pinch").has_value());
+    CHECK_FALSE(pose_named("").has_value());
+  }
+
+  TEST_CASE("the quick poses are a flat hand and a fist, and among the full ones") {
+    CHECK(quick_poses().size() == 2);
+    CHECK(pose_of(quick_poses()[0]).name == "flat");
+    CHECK(pose_of(quick_poses()[1]).name == "fist");
+    const auto full = full_poses();
+    for (const PoseId id : quick_poses())
+      CHECK(std::count(full.begin(), full.end(), id) == 1);
+  }
+
+  TEST_CASE("together the poses show every sensor of a 22-sensor glove two different angles") {
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      if (!sensors_22.has(static_cast<Sensor>(slot))) continue;
+      CAPTURE(std::string(name_of(static_cast<Sensor>(slot))));
+      double low = 10.0, high = -10.0, deviation = 0.0;
+      for (const PoseId id : full_poses()) {
+        const AssumedAngle& assumed = pose_of(id).assumed[slot];
+        if (!assumed.known()) continue;
+        low = std::min(low, assumed.angle_rad);
+        high = std::max(high, assumed.angle_rad);
+        deviation = std::max(deviation, assumed.deviation_rad);
+      }
+      CHECK(high - low > 1.2 * deviation);
+      CHECK(low <= 0.0);
+    }
+  }
+
+  TEST_CASE("nobody is asked for what a joint cannot do, or said to do it exactly") {
+    constexpr double rad = std::numbers::pi / 180.0;
+    for (const PoseId id : full_poses()) {
+      for (const AssumedAngle& assumed : pose_of(id).assumed) {
+        CHECK(std::abs(assumed.angle_rad) <= 100.0 * rad);
+        if (assumed.known()) CHECK(assumed.deviation_rad >= 2.0 * rad - 1e-9);
+        if (assumed.known()) CHECK(assumed.deviation_rad <= 15.0 * rad + 1e-9);
+      }
+      if (const auto& touch = pose_of(id).touch; touch) {
+        CHECK(touch->deviation_m > 0.0);
+        CHECK((touch->with == Joint::index_tip || touch->with == Joint::middle_tip));
+      }
+    }
+  }
+}
