@@ -6,6 +6,7 @@
 namespace nendo::app {
 
 void add_bench(Command& program);
+void add_calibrate(Command& program);
 void add_calibration(Command& program);
 void add_deform(Command& program);
 void add_devices(Command& program);

@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
                      [](Command& program) {
                        add_run(program);
                        add_monitor(program);
+                       add_calibrate(program);
                        add_poses(program);
                        add_devices(program);
                        add_doctor(program);

@@ -7,8 +7,7 @@ namespace nendo::app {
 
 void add_bench(Command& program) {
   Command bench = program.add_command(
-      "bench",
-      "Measures this program on this machine: latency, faults, load, hands, calibration");
+      "bench", "Measures this program on this machine: latency, faults, load, hands, calibration");
   bench.require_command();
   add_calibration_bench(bench);
   add_latency_bench(bench);

@@ -1,0 +1,226 @@
+// nendo calibrate: from a wearer's poses to a calibration that the other commands find.
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+#include <nendo/driver/open_glove.hpp>
+#include <nendo/hand/calibration_file.hpp>
+#include <nendo/hand/calibration_store.hpp>
+
+#include "calibrate/capture_file.hpp"
+#include "calibrate/report.hpp"
+#include "calibrate/session.hpp"
+#include "cli.hpp"
+#include "commands.hpp"
+#include "glove_calibration.hpp"
+#include "printable.hpp"
+
+namespace nendo::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string glove;
+  std::string user;
+  std::string from;
+  std::string out;
+  std::string picture;
+  double length_m = hand::HandSize{}.length_m;
+  double breadth_m = hand::HandSize{}.breadth_m;
+  bool quick = false;
+  bool fresh = false;
+};
+
+/// Whose calibration it is going to be.
+struct Wearer {
+  hand::WearerCalibration about; ///< all but the numbers
+  SensorMask sensors;
+  fs::path path; ///< of its file
+};
+
+Result<void> check(const Options& options) {
+  if (options.glove.empty() == options.from.empty())
+    return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
+  if (options.user.empty())
+    return Error{Errc::usage,
+                 "--user is missing: whose hand is it? e.g. --user " + std::string("anna")};
+  if (!(options.length_m >= 0.10 && options.length_m <= 0.25))
+    return Error{Errc::usage, "--hand-length: use metres from 0.10 to 0.25, wrist to middle tip"};
+  if (!(options.breadth_m >= 0.05 && options.breadth_m <= 0.13))
+    return Error{Errc::usage, "--hand-breadth: use metres from 0.05 to 0.13, across the knuckles"};
+  const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
+  if (options.from.empty() && !at_terminal)
+    return Error{Errc::usage, "the guided calibration needs a terminal; elsewhere use --from FILE"};
+  return {};
+}
+
+hand::FitOptions fit_options(const Options& options, CountScale counts) {
+  return {counts,
+          options.quick ? hand::FitMode::quick : hand::FitMode::full,
+          {options.length_m, options.breadth_m}};
+}
+
+std::span<const hand::PoseId> poses_for(const Options& options) {
+  return options.quick ? hand::quick_poses() : hand::full_poses();
+}
+
+Wearer describe(const Options& options, Side side, CountScale counts, SensorMask sensors) {
+  Wearer wearer;
+  wearer.about.user = options.user;
+  wearer.about.side = side;
+  wearer.about.counts = counts;
+  wearer.about.size = {options.length_m, options.breadth_m};
+  wearer.about.method = options.quick ? "quick" : "full";
+  wearer.about.made = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  wearer.sensors = sensors;
+  return wearer;
+}
+
+void set_path(Wearer& wearer, const Options& options) {
+  wearer.path = options.out.empty()
+                    ? hand::calibration_folders().own /
+                          hand::calibration_file_name(options.user, wearer.about.glove_serial,
+                                                      wearer.about.side)
+                    : fs::path(options.out);
+}
+
+/// Beside the calibration: what a session that was quit has taken so far.
+fs::path unfinished_path(const Wearer& wearer) {
+  return wearer.path.string() + ".unfinished";
+}
+
+int fit_and_write(const Options& options, Wearer& wearer,
+                  std::span<const hand::PoseReading> readings) {
+  const auto fit = hand::fit_calibration(readings, wearer.about.side, wearer.sensors,
+                                         fit_options(options, wearer.about.counts));
+  if (!fit) return report(fit.error());
+  print_report(std::cout, *fit, readings, wearer.sensors);
+  wearer.about.calibration = fit->calibration;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const hand::SensorFit& sensor = fit->sensors[slot];
+    if (!wearer.sensors.has(static_cast<Sensor>(slot))) {
+      wearer.about.calibration.sensors[slot] = {};
+      continue;
+    }
+    const bool known = sensor.gain_determined && sensor.offset_determined;
+    wearer.about.quality[slot] = hand::SensorQuality{sensor.residual_rad, sensor.low_counts,
+                                                     sensor.high_counts, known ? 1.0 : 0.0};
+  }
+  const auto earlier = hand::write_calibration(wearer.path, wearer.about);
+  if (!earlier) return report(earlier.error());
+  std::error_code ignored;
+  fs::remove(unfinished_path(wearer), ignored);
+  std::cout << "written to " << printable(wearer.path.string()) << '\n';
+  if (!earlier->empty())
+    std::cout << "the one before is kept as " << printable(earlier->string()) << '\n';
+  if (options.picture.empty()) return 0;
+  const auto drawn =
+      write_report_picture(options.picture, *fit, wearer.sensors, wearer.about.counts);
+  return drawn ? 0 : report(drawn.error());
+}
+
+int calibrate_from_capture(const Options& options) {
+  const auto capture = read_capture(options.from);
+  if (!capture) return report(capture.error());
+  CalibrationGuide guide(poses_for(options), capture->counts);
+  guide.restore(capture->readings);
+  SensorMask sensors;
+  for (const auto& reading : capture->readings)
+    sensors.bits |= reading.held.present.bits;
+  bool doubted = false; // one pose that was missed shifts all that follow
+  for (const GloveSample& sample : capture->samples) {
+    sensors.bits |= sample.present.bits;
+    if (guide.see(sample) == CalibrationGuide::Event::implausible && !std::exchange(doubted, true))
+      note(options.from + ": a pose that was held is not " +
+           std::string(hand::pose_of(guide.asked()).name) + ", by " +
+           std::string(name_of(*guide.doubted())) + "; such poses are left out");
+  }
+  if (!guide.is_done())
+    note(options.from + ": ends before the pose " + std::string(hand::pose_of(guide.asked()).name) +
+         " was held");
+  Wearer wearer = describe(options, capture->side, capture->counts, sensors);
+  set_path(wearer, options);
+  return fit_and_write(options, wearer, guide.readings());
+}
+
+/// Keeps what was taken, so that the same command goes on from there.
+int keep_for_later(const Wearer& wearer, const CalibrationGuide& guide) {
+  const auto readings = guide.readings();
+  if (readings.empty()) return 0;
+  std::error_code ignored;
+  fs::create_directories(wearer.path.parent_path(), ignored);
+  const auto kept =
+      write_readings(unfinished_path(wearer), readings, wearer.about.side, wearer.about.counts);
+  if (!kept) return report(kept.error());
+  note(std::to_string(readings.size()) +
+       " poses are kept; the same command goes on from there, with --fresh from the beginning");
+  return 0;
+}
+
+int calibrate_glove(const Options& options) {
+  const auto glove = driver::open_glove(options.glove);
+  if (!glove) return report(glove.error());
+  const driver::GloveInfo& info = (*glove)->info();
+  Wearer wearer = describe(options, info.side, info.counts, info.sensors);
+  wearer.about.glove_model = info.model;
+  wearer.about.glove_serial = serial_of(info);
+  set_path(wearer, options);
+  CalibrationGuide guide(poses_for(options), info.counts);
+  std::error_code error;
+  if (!options.fresh && fs::exists(unfinished_path(wearer), error)) {
+    const auto before = read_capture(unfinished_path(wearer));
+    if (!before) return report(before.error());
+    if (before->counts == info.counts && before->side == info.side) guide.restore(before->readings);
+  }
+  install_stop_signals();
+  const auto end =
+      run_calibration_session(**glove, options.user, fit_options(options, info.counts), guide);
+  if (!end) return report(end.error());
+  if (*end == SessionEnd::quit) return keep_for_later(wearer, guide);
+  const auto readings = guide.readings();
+  const int code = fit_and_write(options, wearer, readings);
+  return code == 0 ? 0 : (keep_for_later(wearer, guide), code);
+}
+
+int calibrate(const Options& options) {
+  if (const auto fine = check(options); !fine) return report(fine.error());
+  return options.from.empty() ? calibrate_glove(options) : calibrate_from_capture(options);
+}
+
+} // namespace
+
+void add_calibrate(Command& program) {
+  auto options = std::make_shared<Options>();
+  Command command = program.add_command(
+      "calibrate", "Guides a wearer through poses, so that angles are those of this hand");
+  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, auto, ...");
+  command.add_option("--user", options->user, "Whose hand it is");
+  command.add_flag("--quick", options->quick, "Two poses only: the flat hand and the fist");
+  command.add_option("--from", options->from,
+                     "A capture instead of a glove: what nendo monitor --json has printed while "
+                     "the poses were held one after another, three seconds each");
+  command.add_option("--hand-length", options->length_m,
+                     "Metres from the wrist's crease to the tip of the middle finger");
+  command.add_option("--hand-breadth", options->breadth_m, "Metres across the knuckles");
+  command.add_option("--out", options->out,
+                     "Where to write it; without it, where the other commands find it");
+  command.add_option("--picture", options->picture, "Also draw ranges and residuals, as FILE.svg");
+  command.add_flag("--fresh", options->fresh, "Do not go on from a session that was quit");
+  std::string footer = "The poses, in their order:\n";
+  for (const auto id : hand::full_poses())
+    footer += "  " + std::string(hand::pose_of(id).name) + ": " +
+              std::string(hand::pose_of(id).instruction) + "\n";
+  command.set_footer(footer + "The other commands use the calibration by themselves; nendo "
+                              "calibration lists, compares and exports them.");
+  command.on_chosen([options] { return calibrate(*options); });
+}
+
+} // namespace nendo::app

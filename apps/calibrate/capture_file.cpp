@@ -1,0 +1,172 @@
+#include "calibrate/capture_file.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+namespace nendo::app {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::uintmax_t most_bytes = 1U << 30U;
+
+std::optional<std::size_t> slot_named(const std::string& name) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (name_of(static_cast<Sensor>(slot)) == name) return slot;
+  return std::nullopt;
+}
+
+/// A number within the range, or nothing.
+std::optional<double> number(const json& object, const char* key, double least, double most) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number()) return std::nullopt;
+  const double value = found->get<double>();
+  return value >= least && value <= most ? std::optional(value) : std::nullopt;
+}
+
+/// Calls `take(slot, value)` for each sensor of an object of counts; false if it is none.
+template <class Take>
+bool for_each_count(const json& line, const char* key, double most, Take&& take) {
+  const auto counts = line.find(key);
+  if (counts == line.end() || !counts->is_object() || counts->empty()) return false;
+  for (const auto& [name, value] : counts->items()) {
+    const auto slot = slot_named(name);
+    if (!slot || !value.is_number()) return false;
+    const double count = value.template get<double>();
+    if (!(count >= 0.0 && count <= most)) return false;
+    take(*slot, count);
+  }
+  return true;
+}
+
+bool read_sample(const json& line, GloveSample& sample) {
+  const auto time_s = number(line, line.contains("measured_s") ? "measured_s" : "time_s", 0.0, 1e9);
+  if (!time_s) return false;
+  sample.arrival = HostTime(
+      std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(*time_s)));
+  sample.measured = sample.arrival;
+  return for_each_count(line, "raw", 65535.0, [&](std::size_t slot, double count) {
+    sample.set(static_cast<Sensor>(slot), RawCount{static_cast<std::uint16_t>(count)});
+  });
+}
+
+bool read_reading(const json& line, hand::PoseReading& reading, CountScale& counts) {
+  const auto pose =
+      line["pose"].is_string() ? hand::pose_named(line["pose"].get<std::string>()) : std::nullopt;
+  const auto most = number(line, "counts_most", 1.0, 65535.0);
+  if (!pose || !most) return false;
+  counts = {static_cast<std::uint16_t>(*most), line.value("whole_range", json(false)) == true};
+  reading.pose = *pose;
+  hand::HeldPose& held = reading.held;
+  const bool noise = for_each_count(line, "noise_counts", *most, [&](std::size_t slot, double n) {
+    held.noise_counts[slot] = n;
+  });
+  return noise && for_each_count(line, "mean_counts", *most, [&](std::size_t slot, double n) {
+           held.mean_counts[slot] = n;
+           held.present.add(static_cast<Sensor>(slot));
+         });
+}
+
+/// The hand of a line; nothing if it names none.
+std::optional<Side> hand_of(const json& line) {
+  const auto found = line.find("hand");
+  for (const Side side : {Side::left, Side::right})
+    if (found != line.end() && *found == name_of(side)) return side;
+  return std::nullopt;
+}
+
+/// What is wrong with the line; empty if nothing is.
+std::string take_line(const std::string& text, CaptureFile& file, bool first) {
+  const json line = json::parse(text, nullptr, false);
+  if (!line.is_object()) return "not a JSON object; use what nendo monitor --json prints";
+  const auto side = hand_of(line);
+  if (!side) return "no \"hand\" that is left or right";
+  if (!first && *side != file.side) return "the other hand; use one file for each";
+  file.side = *side;
+  if (line.contains("pose")) {
+    hand::PoseReading reading;
+    if (!read_reading(line, reading, file.counts)) return "not a held pose with its counts";
+    file.readings.push_back(reading);
+    return {};
+  }
+  GloveSample sample;
+  sample.side = *side;
+  if (!read_sample(line, sample)) return "neither a sample with its time and counts nor a pose";
+  file.samples.push_back(sample);
+  return {};
+}
+
+ordered_json counts_json(const hand::HeldPose& held,
+                         const std::array<double, sensor_slots>& counts) {
+  ordered_json object = ordered_json::object();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (held.present.has(sensor)) object[std::string(name_of(sensor))] = counts[slot];
+  }
+  return object;
+}
+
+} // namespace
+
+Result<CaptureFile> read_capture(const std::filesystem::path& path) {
+  const auto bad = [&](const std::string& what) {
+    return Error{Errc::bad_input, path.string() + ": " + what};
+  };
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) return bad(error.message());
+  if (size > most_bytes) return bad("larger than 1 GiB; that is no capture of a calibration");
+  std::ifstream input(path);
+  CaptureFile file;
+  std::string text;
+  for (std::size_t number = 1; std::getline(input, text); ++number) {
+    if (text.empty()) continue;
+    const bool first = file.samples.empty() && file.readings.empty();
+    const std::string wrong = take_line(text, file, first);
+    if (!wrong.empty())
+      return Error{Errc::bad_input, path.string() + ":" + std::to_string(number) + ": " + wrong};
+  }
+  if (input.bad()) return bad("cannot be read");
+  if (file.samples.empty() && file.readings.empty()) return bad("there is nothing in it");
+  return file;
+}
+
+Result<void> write_readings(const std::filesystem::path& path,
+                            std::span<const hand::PoseReading> readings, Side side,
+                            CountScale counts) {
+  const std::filesystem::path temporary = path.string() + "." + std::to_string(::getpid());
+  {
+    std::ofstream output(temporary);
+    for (const auto& reading : readings) {
+      const ordered_json line{
+          {"pose", hand::pose_of(reading.pose).name},
+          {"hand", name_of(side)},
+          {"counts_most", counts.most},
+          {"whole_range", counts.whole_range},
+          {"mean_counts", counts_json(reading.held, reading.held.mean_counts)},
+          {"noise_counts", counts_json(reading.held, reading.held.noise_counts)}};
+      output << line.dump() << '\n';
+    }
+    output.flush();
+    if (!output) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      return Error{Errc::failed, path.string() + ": cannot be written"};
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (error) return Error{Errc::failed, path.string() + ": " + error.message()};
+  return {};
+}
+
+} // namespace nendo::app

@@ -1,0 +1,58 @@
+#pragma once
+// The guided calibration without its terminal: which pose is asked for, which were held, and
+// whether what was held can be that pose.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <nendo/hand/calibration_fit.hpp>
+#include <nendo/hand/calibration_poses.hpp>
+#include <nendo/hand/pose_capture.hpp>
+
+namespace nendo::app {
+
+class CalibrationGuide {
+public:
+  /// `poses` must outlive this; flat and fist are among them.
+  CalibrationGuide(std::span<const hand::PoseId> poses, CountScale scale);
+
+  enum class Event : std::uint8_t {
+    none,
+    captured,    ///< the pose was held and is kept; the next one is asked for
+    implausible, ///< a pose was held that cannot be the one asked for; see doubted()
+  };
+  /// The next sample in time. Nothing once is_done().
+  Event see(const GloveSample& sample);
+
+  bool is_done() const noexcept { return at_ == poses_.size(); }
+  /// The pose asked for; not once is_done().
+  hand::PoseId asked() const noexcept { return poses_[at_]; }
+  std::size_t number() const noexcept { return at_; } ///< of the pose asked for, from 0
+  std::size_t pose_count() const noexcept { return poses_.size(); }
+  const hand::PoseCapture& capture() const noexcept { return capture_; }
+  /// The sensor by which the last held pose was found implausible.
+  std::optional<Sensor> doubted() const noexcept { return doubted_; }
+
+  void go_back(); ///< forgets the pose before this one and asks for it again
+  void skip();    ///< goes on without this pose; flat and fist are asked for again at the end
+  /// What an earlier session kept; poses that are not asked for here are left out.
+  void restore(std::span<const hand::PoseReading> readings);
+
+  /// In the order in which they are asked for.
+  std::vector<hand::PoseReading> readings() const;
+
+private:
+  void advance();
+  std::optional<Sensor> implausible_sensor(const hand::HeldPose& held) const;
+  const hand::HeldPose* kept(hand::PoseId pose) const;
+
+  std::span<const hand::PoseId> poses_;
+  std::vector<std::optional<hand::HeldPose>> kept_; ///< by number
+  std::size_t at_ = 0;
+  hand::PoseCapture capture_;
+  std::optional<Sensor> doubted_;
+};
+
+} // namespace nendo::app

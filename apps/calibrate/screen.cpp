@@ -1,0 +1,193 @@
+#include "calibrate/screen.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <nendo/hand/inverse_kinematics.hpp>
+#include <nendo/hand/joint_angles.hpp>
+
+#include "calibrate/hand_drawing.hpp"
+#include "printable.hpp"
+
+namespace nendo::app {
+namespace {
+
+using hand::CaptureState;
+using hand::Joint;
+using hand::JointAngles;
+
+constexpr int name_width = 23;
+constexpr int least_bar = 8;
+constexpr int drawing_rows = 16;
+constexpr int least_drawing_rows = 10;
+constexpr double silent_after_s = 1.0;
+
+/// The angles that a pose assumes, as a glove would measure them; what it leaves open is relaxed.
+JointAngles assumed_angles(const hand::CalibrationPose& pose) {
+  constexpr double gain = 1e-4; // rad: finer than any eye
+  constexpr double offset = 30000.0;
+  constexpr double relaxed_thumb_rad = 0.35;
+  hand::Calibration calibration;
+  calibration.sensors.fill({gain, offset});
+  GloveSample sample;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!sensors_22.has(sensor)) continue;
+    double angle_rad = pose.assumed[slot].known() ? pose.assumed[slot].angle_rad : 0.0;
+    const bool opposes = sensor == Sensor::thumb_roll || sensor == Sensor::thumb_abduction;
+    if (opposes && !pose.assumed[slot].known()) angle_rad = relaxed_thumb_rad;
+    sample.set(sensor,
+               RawCount{static_cast<std::uint16_t>(std::lround(offset + angle_rad / gain))});
+  }
+  return hand::joint_angles(sample, calibration);
+}
+
+/// The tips of thumb and finger brought together, from where a half closed hand has them, or, if
+/// the pose asks for a `straight` finger, one that is bent at its base alone.
+JointAngles touching(JointAngles angles, Joint with, bool straight,
+                     const hand::HandSkeleton& skeleton) {
+  const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+  const auto found = std::find(hand::fingertips.begin(), hand::fingertips.end(), with);
+  const auto finger = static_cast<std::size_t>(found - hand::fingertips.begin());
+  angles.thumb_roll_rad = 0.9;
+  angles.thumb_abduction_rad = 0.5;
+  angles.fingers[finger - 1] =
+      straight ? hand::FingerAngles{1.0, 0.0, 0.2, 0.1} : hand::FingerAngles{0.8, 0.0, 0.8, 0.4};
+  const auto tips = skeleton.pose(angles, origin).fingertip_positions();
+  const Eigen::Vector3d thumb = tips.col(0);
+  const Eigen::Vector3d tip = tips.col(static_cast<Eigen::Index>(finger));
+  const Eigen::Vector3d half_gap = hand::pad_depth_m * (thumb - tip).stableNormalized();
+  hand::FingertipTargets targets{};
+  targets[0] = {0.5 * (thumb + tip) + half_gap, 1.0};
+  targets[finger] = {0.5 * (thumb + tip) - half_gap, 1.0};
+  return hand::inverse_kinematics(skeleton, origin, targets, angles).angles;
+}
+
+std::string fitted(std::string text, int width) {
+  text.resize(static_cast<std::size_t>(std::max(width, 0)), ' ');
+  return text;
+}
+
+std::string state_text(const CalibrationPicture& picture) {
+  const hand::PoseCapture& capture = picture.guide->capture();
+  const auto troubled = [&] {
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      const auto sensor = static_cast<Sensor>(slot);
+      if (capture.troubled().has(sensor)) return std::string(name_of(sensor));
+    }
+    return std::string("a sensor");
+  };
+  if (!picture.begun) return "Put the glove on. SPACE begins; then each pose is taken by itself.";
+  if (picture.sample == nullptr || picture.age_s > silent_after_s) return "The glove is silent.";
+  switch (capture.state()) {
+  case CaptureState::waiting:
+    return "Waiting for the glove.";
+  case CaptureState::moving:
+    return "Hold still: " + troubled() + " moves.";
+  case CaptureState::noisy:
+    return "Too noisy: " + troubled() + " jumps to and fro. Does the glove sit well?";
+  case CaptureState::saturated:
+    return "At an end of what it can measure: " + troubled() + ". Bend that joint less.";
+  case CaptureState::unchanged:
+    if (picture.guide->doubted())
+      return "That is not it: look at " + std::string(name_of(*picture.guide->doubted())) + ".";
+    return picture.guide->number() == 0 ? "Take this pose." : "Taken. Now take this one.";
+  case CaptureState::settling:
+  case CaptureState::held:
+    break;
+  }
+  constexpr int width = 20;
+  const int done = static_cast<int>(std::lround(capture.progress() * width));
+  return "Good, hold it [" + std::string(static_cast<std::size_t>(done), '#') +
+         std::string(static_cast<std::size_t>(width - done), '.') + "]";
+}
+
+std::string undetermined_text(SensorMask undetermined) {
+  constexpr int most_names = 3;
+  const int count = std::popcount(undetermined.bits);
+  if (count == 0) return {};
+  std::string names;
+  int named = 0;
+  for (std::size_t slot = 0; slot < sensor_slots && named < most_names; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!undetermined.has(sensor)) continue;
+    names += (named++ == 0 ? "" : ", ") + std::string(name_of(sensor));
+  }
+  if (count > named) names += " and " + std::to_string(count - named) + " more";
+  return "Not known yet: " + names;
+}
+
+std::vector<std::string> bars(const CalibrationPicture& picture, int width, int rows) {
+  std::vector<std::string> lines;
+  if (picture.sample == nullptr || width < name_width + least_bar) return lines;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!picture.sample->present.has(sensor) || static_cast<int>(lines.size()) >= rows) continue;
+    lines.push_back(fitted(std::string(name_of(sensor)), name_width) +
+                    count_bar(width - name_width, (*picture.sample)[sensor].value,
+                              (*picture.seen)[sensor], picture.info->counts.most));
+  }
+  return lines;
+}
+
+/// Two drawings and the bars beside each other, as far as they fit.
+std::vector<std::string> middle(const CalibrationPicture& picture, int columns, int rows) {
+  constexpr int least_columns = 22;
+  const bool draws = rows >= least_drawing_rows && columns >= 2 * least_columns;
+  const int drawn_rows = std::min(rows, drawing_rows);
+  const int drawn = draws ? std::min(2 * drawn_rows, (columns - (name_width + least_bar)) / 2) : 0;
+  std::vector<std::string> lines(static_cast<std::size_t>(std::max(rows, 0)));
+  if (draws && drawn >= least_columns) {
+    const auto pose = demonstrated(picture.guide->asked(), picture.info->side);
+    const auto palm = draw_hand(pose, picture.info->side, HandView::palm, drawn, drawn_rows);
+    const auto side = draw_hand(pose, picture.info->side, HandView::side, drawn, drawn_rows);
+    for (std::size_t row = 0; row < palm.size(); ++row)
+      lines[row] = palm[row] + side[row];
+  }
+  const int used = draws && drawn >= least_columns ? 2 * drawn : 0;
+  const auto sensors = bars(picture, columns - used, rows);
+  for (std::size_t row = 0; row < sensors.size(); ++row)
+    lines[row] = fitted(lines[row], used) + sensors[row];
+  return lines;
+}
+
+} // namespace
+
+hand::HandPose demonstrated(hand::PoseId id, Side side) {
+  const hand::CalibrationPose& pose = hand::pose_of(id);
+  const hand::HandSkeleton skeleton(side);
+  JointAngles angles = assumed_angles(pose);
+  if (pose.touch) {
+    // Solved as a right hand: a left one is its mirror image.
+    const bool straight = pose.assumed[static_cast<std::size_t>(Sensor::index_pip)].known();
+    angles = touching(angles, pose.touch->with, straight, hand::HandSkeleton(Side::right));
+  }
+  return skeleton.pose(angles, Eigen::Isometry3d::Identity());
+}
+
+std::vector<std::string> calibration_lines(const CalibrationPicture& picture, ScreenSize size) {
+  const CalibrationGuide& guide = *picture.guide;
+  const hand::CalibrationPose& pose = hand::pose_of(guide.asked());
+  const std::string title = "Pose " + std::to_string(guide.number() + 1) + " of " +
+                            std::to_string(guide.pose_count()) + ": " + std::string(pose.name) +
+                            "   (" + std::string(name_of(picture.info->side)) + " hand of " +
+                            printable(*picture.user) + ")";
+  std::vector<std::string> lines{title, std::string(pose.instruction), state_text(picture)};
+  const std::vector<std::string> below{
+      undetermined_text(picture.undetermined),
+      "SPACE begin   b back one pose   s skip it   w write what there is   q quit"};
+  const int room = size.rows - static_cast<int>(lines.size() + below.size());
+  const auto between = middle(picture, size.columns, room);
+  lines.insert(lines.end(), between.begin(), between.end());
+  lines.insert(lines.end(), below.begin(), below.end());
+  for (auto& line : lines)
+    if (static_cast<int>(line.size()) > size.columns)
+      line.resize(static_cast<std::size_t>(std::max(size.columns, 0)));
+  // Where rows are scarce the keys go last.
+  while (static_cast<int>(lines.size()) > std::max(size.rows, 1))
+    lines.erase(lines.end() - 2);
+  return lines;
+}
+
+} // namespace nendo::app

@@ -1,0 +1,36 @@
+#pragma once
+// The picture of nendo calibrate in a terminal: what to do, a drawing of the pose from two sides,
+// and the sensors as they move.
+
+#include <string>
+#include <vector>
+
+#include <nendo/driver/glove.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+#include "calibrate/guide.hpp"
+#include "monitor_screen.hpp"
+#include "terminal.hpp"
+
+namespace nendo::app {
+
+/// What a picture is made of. Everything that is pointed to lives as long as the picture.
+struct CalibrationPicture {
+  const driver::GloveInfo* info = nullptr;
+  const std::string* user = nullptr;
+  const CalibrationGuide* guide = nullptr; ///< not done
+  const GloveSample* sample = nullptr;     ///< the latest; null: none came yet
+  const SeenCounts* seen = nullptr;        ///< has seen `sample`
+  double age_s = 0.0;                      ///< of `sample`
+  bool begun = false;                      ///< else the guide sees no samples yet
+  SensorMask undetermined;                 ///< by the poses so far
+};
+
+/// Lines of printable ASCII, at most as many and as long as the screen. The drawing and then the
+/// bars go where the screen is small; the instruction and the keys stay.
+std::vector<std::string> calibration_lines(const CalibrationPicture& picture, ScreenSize size);
+
+/// The pose as a wearer would take it; touching tips are brought together.
+hand::HandPose demonstrated(hand::PoseId pose, Side side);
+
+} // namespace nendo::app

@@ -1,0 +1,88 @@
+#include "calibrate/session.hpp"
+
+#include <chrono>
+#include <optional>
+#include <vector>
+
+#include "calibrate/screen.hpp"
+#include "cli.hpp"
+#include "monitor_screen.hpp"
+#include "terminal.hpp"
+
+namespace nendo::app {
+namespace {
+
+constexpr std::chrono::milliseconds frame_time{50};
+
+/// A session while it lasts.
+struct Session {
+  driver::Glove& glove;
+  const std::string& user;
+  const hand::FitOptions& fit;
+  CalibrationGuide& guide;
+  SampleRing ring{1024};
+  Terminal terminal{};
+  SeenCounts seen{};
+  std::optional<GloveSample> latest{};
+  SensorMask undetermined{};
+  bool begun = false;
+
+  void take_samples() {
+    GloveSample sample;
+    while (ring.try_pop(sample)) {
+      seen.see(sample);
+      latest = sample;
+      if (begun && guide.see(sample) == CalibrationGuide::Event::captured) look_what_is_known();
+    }
+  }
+  void look_what_is_known() {
+    const auto readings = guide.readings();
+    const auto sensors = glove.info().sensors;
+    const auto fitted = hand::fit_calibration(readings, glove.info().side, sensors, fit);
+    undetermined = fitted ? fitted->undetermined : sensors;
+  }
+  void show() {
+    const HostTime now = HostClock::now();
+    const CalibrationPicture picture{
+        &glove.info(), &user,
+        &guide,        latest ? &*latest : nullptr,
+        &seen,         latest ? to_seconds(now - latest->arrival) : 0.0,
+        begun,         begun ? undetermined : SensorMask{}};
+    terminal.draw(calibration_lines(picture, terminal.size()));
+  }
+  std::optional<SessionEnd> obey(char key) {
+    if (key == 'q') return SessionEnd::quit;
+    if (key == 'w') return SessionEnd::written;
+    if (key == ' ') begun = true;
+    if (key == 'b') guide.go_back();
+    if (key == 's') guide.skip();
+    if (key == 'b' || key == 's') look_what_is_known();
+    return std::nullopt;
+  }
+};
+
+} // namespace
+
+Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::string& user,
+                                           const hand::FitOptions& fit, CalibrationGuide& guide) {
+  Session session{glove, user, fit, guide};
+  if (const auto started = glove.start(session.ring); !started) return started.error();
+  session.look_what_is_known();
+  SessionEnd end = SessionEnd::complete;
+  while (!guide.is_done()) {
+    session.take_samples();
+    if (guide.is_done()) break;
+    session.show();
+    std::optional<SessionEnd> ended;
+    if (const auto key = session.terminal.key(frame_time)) ended = session.obey(*key);
+    if (stop_requested() || session.terminal.is_gone()) ended = SessionEnd::quit;
+    if (!ended) continue;
+    end = *ended;
+    break;
+  }
+  session.terminal.leave();
+  glove.stop();
+  return end;
+}
+
+} // namespace nendo::app

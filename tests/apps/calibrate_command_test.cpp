@@ -1,0 +1,192 @@
+// nendo calibrate, as a wearer uses it: from a capture of the poses, and at a terminal.
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <span>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <nendo/hand/calibration_file.hpp>
+
+#include "bench/wearers.hpp"
+#include "calibrate/capture_file.hpp"
+#include "sample_json.hpp"
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/terminal_program.hpp"
+
+using namespace nendo;
+using namespace nendo::test;
+
+namespace {
+
+constexpr double rate_hz = 90.0;
+constexpr int samples_between = 40; ///< from pose to pose
+constexpr int samples_held = 270;   // three seconds
+
+/// A wearer doing the poses one after another, recorded as nendo monitor --json --raw prints it.
+void record(app::Wearer& wearer, std::span<const hand::PoseId> poses,
+            const std::filesystem::path& path) {
+  std::ofstream file(path);
+  hand::SensorAngles from = wearer.perform(hand::PoseId::flat);
+  double time_s = 100.0;
+  const auto put = [&](const hand::SensorAngles& angles) {
+    GloveSample sample = wearer.read(angles);
+    time_s += 1.0 / rate_hz;
+    sample.arrival = HostTime(
+        std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(time_s)));
+    sample.measured = sample.arrival;
+    sample.side = wearer.side();
+    file << app::sample_json(sample, nullptr) << '\n';
+  };
+  for (const auto pose : poses) {
+    const hand::SensorAngles to = wearer.perform(pose);
+    for (int k = 1; k <= samples_between; ++k) {
+      hand::SensorAngles between{};
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+        between[slot] = from[slot] + (to[slot] - from[slot]) * k / samples_between;
+      put(between);
+    }
+    for (int k = 0; k < samples_held; ++k)
+      put(to);
+    from = to;
+  }
+}
+
+} // namespace
+
+TEST_SUITE("calibrate") {
+  TEST_CASE("a capture of all poses becomes a calibration that is this wearer's") {
+    const TemporaryFolder folder;
+    for (const std::uint64_t seed : {2001U, 2002U}) { // a left hand and a right one
+      app::Wearer wearer(seed);
+      const auto capture = folder.path() / "capture.jsonl";
+      const auto out = folder.path() / "anna.toml";
+      const auto picture = folder.path() / "anna.svg";
+      record(wearer, hand::full_poses(), capture);
+      const auto done = nendo::test::nendo(
+          {"calibrate", "--from", capture, "--user", "anna", "--out", out, "--picture", picture});
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      CHECK(done.err == "");
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+        const auto sensor = static_cast<Sensor>(slot);
+        if (sensors_22.has(sensor)) CHECK(done.out.find(name_of(sensor)) != std::string::npos);
+      }
+      const auto written = hand::read_calibration(out);
+      REQUIRE_MESSAGE(written, written.error().message);
+      CHECK(written->user == "anna");
+      CHECK(written->side == wearer.side());
+      CHECK(written->method == "full");
+      for (const Sensor sensor : {Sensor::index_mcp, Sensor::middle_pip, Sensor::ring_pip,
+                                  Sensor::pinky_mcp, Sensor::wrist_pitch}) {
+        const double truth = wearer.truth()[sensor].gain_rad_per_count;
+        CAPTURE(name_of(sensor));
+        CHECK(written->calibration[sensor].gain_rad_per_count ==
+              doctest::Approx(truth).epsilon(0.15));
+      }
+      CHECK(contents(picture).starts_with("<svg"));
+      CHECK(contents(picture).ends_with("</svg>\n"));
+    }
+  }
+
+  TEST_CASE("two poses are enough for the quick way, and less is an error that names what lacks") {
+    const TemporaryFolder folder;
+    app::Wearer wearer(2003);
+    const auto capture = folder.path() / "capture.jsonl";
+    const auto out = folder.path() / "quick.toml";
+    record(wearer, hand::quick_poses(), capture);
+    const auto quick = nendo::test::nendo(
+        {"calibrate", "--from", capture, "--user", "bo", "--quick", "--out", out});
+    REQUIRE_MESSAGE(quick.exit_code == 0, quick.err);
+    CHECK(hand::read_calibration(out)->method == "quick");
+
+    const auto before = contents(out);
+    record(wearer, hand::quick_poses().first(1), capture);
+    const auto flat_only = nendo::test::nendo(
+        {"calibrate", "--from", capture, "--user", "bo", "--quick", "--out", out});
+    CHECK(flat_only.exit_code == 5);
+    CHECK(flat_only.err.find("fist") != std::string::npos);
+    CHECK(contents(out) == before);
+  }
+
+  TEST_CASE("held poses can be a capture, too, and are what was held") {
+    const TemporaryFolder folder;
+    app::Wearer wearer(2004);
+    std::vector<hand::PoseReading> readings;
+    for (const auto pose : hand::full_poses()) {
+      const GloveSample sample = wearer.read(wearer.perform(pose));
+      hand::PoseReading reading{pose, {}};
+      reading.held.present = sample.present;
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+        reading.held.mean_counts[slot] = sample.raw[slot].value + 0.125;
+        reading.held.noise_counts[slot] = 0.5;
+      }
+      readings.push_back(reading);
+    }
+    const auto path = folder.path() / "poses.jsonl";
+    REQUIRE(app::write_readings(path, readings, wearer.side(), {}));
+    const auto read = app::read_capture(path);
+    REQUIRE_MESSAGE(read, read.error().message);
+    CHECK(read->side == wearer.side());
+    REQUIRE(read->readings.size() == readings.size());
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      CHECK(read->readings[k].pose == readings[k].pose);
+      CHECK(read->readings[k].held.present == readings[k].held.present);
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+        if (readings[k].held.present.has(static_cast<Sensor>(slot)))
+          CHECK(read->readings[k].held.mean_counts[slot] == readings[k].held.mean_counts[slot]);
+    }
+  }
+
+  TEST_CASE("what cannot be a calibration is one line about it, with the right exit code") {
+    const TemporaryFolder folder;
+    const auto refused = [](std::vector<std::string> arguments, int code, const std::string& word) {
+      arguments.insert(arguments.begin(), "calibrate");
+      const auto done = nendo::test::nendo(arguments);
+      CAPTURE(done.err);
+      CHECK(done.exit_code == code);
+      CHECK(is_one_line_about(done.err, word));
+    };
+    refused({"--user", "a"}, 2, "GLOVE");
+    refused({"sim", "--from", "x", "--user", "a"}, 2, "GLOVE");
+    refused({"sim"}, 2, "--user");
+    refused({"sim", "--user", "a"}, 2, "terminal");
+    refused({"--from", "x", "--user", "a", "--hand-length", "3"}, 2, "--hand-length");
+    refused({"--from", "x", "--user", "a", "--hand-breadth", "nan"}, 2, "--hand-breadth");
+    const std::string missing = folder.path() / "missing";
+    refused({"--from", missing, "--user", "a"}, 5, missing);
+    const auto file = folder.path() / "bad.jsonl";
+    for (const std::string text :
+         {"", "[1]\n", "{\"hand\":\"right\"}\n", "nonsense\n",
+          "{\"hand\":\"right\",\"measured_s\":1,\"raw\":{\"index_mcp\":70000}}\n",
+          "{\"hand\":\"right\",\"measured_s\":1,\"raw\":{\"elbow\":7}}\n",
+          "{\"hand\":\"right\",\"measured_s\":-1e300,\"raw\":{\"index_mcp\":7}}\n",
+          "{\"hand\":\"right\",\"pose\":\"flat\",\"counts_most\":0}\n",
+          "{\"hand\":\"right\",\"pose\":7,\"counts_most\":255}\n"}) {
+      write_file(file, text);
+      refused({"--from", file, "--user", "a"}, 5, "bad.jsonl");
+    }
+  }
+
+  TEST_CASE("at a terminal the pose is drawn, a moving hand is told to hold still, and q gives the "
+            "terminal back") {
+    const TemporaryFolder folder;
+    REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
+    TerminalProgram program({"calibrate", "sim:wave", "--user", "cleo"}, 100, 26);
+    REQUIRE(program.sees("SPACE begins"));
+    CHECK(program.screen().shows("Pose 1 of"));
+    CHECK(program.screen().shows("cleo"));
+    CHECK(program.screen().shows("q quit"));
+    REQUIRE(program.press(' '));
+    REQUIRE(program.sees("Hold still"));
+    REQUIRE(program.press('s')); // flat is skipped for now
+    REQUIRE(program.sees("Pose 2 of"));
+    REQUIRE(program.press('b'));
+    REQUIRE(program.sees("Pose 1 of"));
+    REQUIRE(program.press('q'));
+    CHECK(program.wait() == 0);
+    CHECK_FALSE(program.screen().on_page());
+  }
+}

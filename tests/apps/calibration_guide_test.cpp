@@ -1,0 +1,166 @@
+// The guide of nendo calibrate, and what it shows.
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "bench/wearers.hpp"
+#include "calibrate/guide.hpp"
+#include "calibrate/hand_drawing.hpp"
+#include "calibrate/screen.hpp"
+
+using namespace nendo;
+using namespace nendo::app;
+using hand::PoseId;
+
+namespace {
+
+/// A wearer in front of a guide.
+struct Session {
+  Wearer wearer;
+  CalibrationGuide guide;
+  double time_s = 10.0;
+
+  explicit Session(std::uint64_t seed, std::span<const PoseId> poses = hand::full_poses())
+      : wearer(seed), guide(poses, CountScale{}) {}
+
+  /// The last event that was one, while the wearer holds the angles for so long.
+  CalibrationGuide::Event hold(const hand::SensorAngles& angles, double seconds) {
+    auto last = CalibrationGuide::Event::none;
+    for (double end = time_s + seconds; time_s < end; time_s += 1.0 / 90.0) {
+      GloveSample sample = wearer.read(angles);
+      sample.arrival = HostTime(
+          std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(time_s)));
+      sample.measured = sample.arrival;
+      const auto event = guide.see(sample);
+      if (event != CalibrationGuide::Event::none) last = event;
+    }
+    return last;
+  }
+  CalibrationGuide::Event do_pose(PoseId pose) { return hold(wearer.perform(pose), 2.0); }
+};
+
+bool is_printable(const std::string& line) {
+  return std::all_of(line.begin(), line.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+} // namespace
+
+TEST_SUITE("calibration_guide") {
+  TEST_CASE("poses that are held are taken in their order, once each") {
+    Session session(3001);
+    for (const PoseId pose : hand::full_poses()) {
+      CAPTURE(hand::pose_of(pose).name);
+      REQUIRE_FALSE(session.guide.is_done());
+      CHECK(session.guide.asked() == pose);
+      CHECK(session.do_pose(pose) == CalibrationGuide::Event::captured);
+    }
+    CHECK(session.guide.is_done());
+    const auto readings = session.guide.readings();
+    REQUIRE(readings.size() == hand::full_poses().size());
+    for (std::size_t k = 0; k < readings.size(); ++k)
+      CHECK(readings[k].pose == hand::full_poses()[k]);
+    CHECK(session.hold(session.wearer.perform(PoseId::flat), 2.0) ==
+          CalibrationGuide::Event::none); // nothing is asked for any more
+  }
+
+  TEST_CASE("holding on is not the next pose") {
+    Session session(3002);
+    const auto flat = session.wearer.perform(PoseId::flat);
+    CHECK(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+    CHECK(session.hold(flat, 10.0) == CalibrationGuide::Event::none);
+    CHECK(session.guide.number() == 1);
+  }
+
+  TEST_CASE("a pose that cannot be the one asked for is refused, and a sensor named by which") {
+    Session session(3003);
+    REQUIRE(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
+    REQUIRE(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
+    while (session.guide.asked() != PoseId::spread)
+      session.guide.skip();
+    // A flat hand's fingers are asked for; a hand with fingers bent is none.
+    const auto event = session.do_pose(PoseId::hook);
+    CHECK(event == CalibrationGuide::Event::implausible);
+    REQUIRE(session.guide.doubted());
+    CHECK(std::string(name_of(*session.guide.doubted())).find("ip") != std::string::npos);
+    CHECK(session.guide.asked() == PoseId::spread);
+    CHECK(session.do_pose(PoseId::spread) == CalibrationGuide::Event::captured);
+  }
+
+  TEST_CASE("one can go back, and skip; flat and fist are asked for again") {
+    Session session(3004);
+    session.guide.skip(); // flat
+    REQUIRE(session.do_pose(hand::full_poses()[1]) == CalibrationGuide::Event::captured);
+    session.guide.go_back();
+    CHECK(session.guide.number() == 1);
+    CHECK(session.guide.readings().empty());
+    std::set<PoseId> asked;
+    for (std::size_t k = 0; k < 3 * hand::full_poses().size(); ++k) {
+      asked.insert(session.guide.asked());
+      session.guide.skip();
+      REQUIRE_FALSE(session.guide.is_done());
+    }
+    CHECK(asked.contains(PoseId::flat));
+    CHECK(asked.contains(PoseId::fist));
+  }
+
+  TEST_CASE("a session goes on where another one stopped") {
+    Session before(3005);
+    for (std::size_t k = 0; k < 4; ++k)
+      REQUIRE(before.do_pose(hand::full_poses()[k]) == CalibrationGuide::Event::captured);
+    Session after(3005);
+    after.guide.restore(before.guide.readings());
+    CHECK(after.guide.number() == 4);
+    CHECK(after.guide.readings().size() == 4);
+  }
+
+  TEST_CASE("every pose is drawn for either hand, and no two alike") {
+    for (const Side side : {Side::left, Side::right}) {
+      std::set<std::string> drawings;
+      for (const PoseId pose : hand::full_poses()) {
+        std::string both;
+        for (const HandView view : {HandView::palm, HandView::side}) {
+          const auto lines = draw_hand(demonstrated(pose, side), side, view, 36, 18);
+          REQUIRE(lines.size() == 18);
+          for (const auto& line : lines) {
+            CHECK(line.size() == 36);
+            CHECK(is_printable(line));
+            both += line;
+          }
+        }
+        CHECK(std::count_if(both.begin(), both.end(), [](char c) { return c != ' '; }) > 100);
+        drawings.insert(both);
+      }
+      CHECK(drawings.size() == hand::full_poses().size());
+    }
+  }
+
+  TEST_CASE("the picture fits every screen, and says what to do on all but the smallest") {
+    Session session(3006);
+    session.do_pose(PoseId::flat);
+    driver::GloveInfo info;
+    info.sensors = sensors_22;
+    info.side = session.wearer.side();
+    const std::string user = "d\033[2Jo";
+    GloveSample sample = session.wearer.read(session.wearer.perform(PoseId::fist));
+    SeenCounts seen;
+    seen.see(sample);
+    const CalibrationPicture picture{&info, &user, &session.guide, &sample,
+                                     &seen, 0.0,   true,           sensors_22};
+    for (int rows = 1; rows <= 60; rows += 3)
+      for (int columns = 1; columns <= 200; columns += 9) {
+        const auto lines = calibration_lines(picture, {columns, rows});
+        CHECK(static_cast<int>(lines.size()) <= std::max(rows, 1));
+        for (const auto& line : lines) {
+          CHECK(static_cast<int>(line.size()) <= columns);
+          CHECK(is_printable(line));
+        }
+        if (rows < 4 || columns < 80) continue;
+        CHECK(lines.back().find("q quit") != std::string::npos);
+        CHECK(lines[1] == hand::pose_of(session.guide.asked())
+                              .instruction.substr(0, static_cast<std::size_t>(columns)));
+      }
+  }
+}
