@@ -12,9 +12,10 @@ function(nendo_settings target scope)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
     -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2
     $<$<BOOL:${NENDO_WERROR}>:-Werror>)
-  # GCC 12 sees impossible lengths in std::string and std::vector that it has inlined.
+  # GCC 12 sees impossible lengths in std::string and std::vector that it has inlined, and the insides of empty optionals.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Wno-restrict -Wno-array-bounds -Wno-stringop-overread>)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Wno-restrict -Wno-array-bounds -Wno-stringop-overread
+      -Wno-maybe-uninitialized>)
   endif()
   if(NENDO_SANITIZE)
     # Bad pointers are the address sanitizer's to find; the other's checks of them would double the time that Eigen's
