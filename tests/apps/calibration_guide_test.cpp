@@ -89,7 +89,7 @@ TEST_SUITE("calibration_guide") {
     CHECK(session.do_pose(PoseId::spread) == CalibrationGuide::Event::captured);
   }
 
-  TEST_CASE("one can go back, and skip; flat and fist are asked for again") {
+  TEST_CASE("one can go back, and skip, but flat and fist are asked for again") {
     Session session(3004);
     session.guide.skip(); // flat
     REQUIRE(session.do_pose(hand::full_poses()[1]) == CalibrationGuide::Event::captured);
