@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 #include <stdexcept>
+#include <thread>
 
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
@@ -338,6 +339,9 @@ void MockedUsb::unplug(Device& device) {
     const std::lock_guard lock(device.mutex);
     device.gone = true;
   }
+  // umockdev aborts if a listener closes its socket just then, and a driver whose transfers fail
+  // does close it.
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
   umockdev_testbed_uevent(testbed_, device.path.c_str(), "remove");
   umockdev_testbed_remove_device(testbed_, device.path.c_str());
   umockdev_testbed_detach_ioctl(testbed_, device.node.c_str(), nullptr);
