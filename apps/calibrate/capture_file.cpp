@@ -7,9 +7,9 @@
 #include <string>
 #include <system_error>
 
-#include <unistd.h>
-
 #include <nlohmann/json.hpp>
+
+#include <nendo/base/files.hpp>
 
 namespace nendo::app {
 namespace {
@@ -143,30 +143,17 @@ Result<CaptureFile> read_capture(const std::filesystem::path& path) {
 Result<void> write_readings(const std::filesystem::path& path,
                             std::span<const hand::PoseReading> readings, Side side,
                             CountScale counts) {
-  const std::filesystem::path temporary = path.string() + "." + std::to_string(::getpid());
-  {
-    std::ofstream output(temporary);
-    for (const auto& reading : readings) {
-      const ordered_json line{
-          {"pose", hand::pose_of(reading.pose).name},
-          {"hand", name_of(side)},
-          {"counts_most", counts.most},
-          {"whole_range", counts.whole_range},
-          {"mean_counts", counts_json(reading.held, reading.held.mean_counts)},
-          {"noise_counts", counts_json(reading.held, reading.held.noise_counts)}};
-      output << line.dump() << '\n';
-    }
-    output.flush();
-    if (!output) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      return Error{Errc::failed, path.string() + ": cannot be written"};
-    }
+  std::string text;
+  for (const auto& reading : readings) {
+    const ordered_json line{{"pose", hand::pose_of(reading.pose).name},
+                            {"hand", name_of(side)},
+                            {"counts_most", counts.most},
+                            {"whole_range", counts.whole_range},
+                            {"mean_counts", counts_json(reading.held, reading.held.mean_counts)},
+                            {"noise_counts", counts_json(reading.held, reading.held.noise_counts)}};
+    text += line.dump() + "\n";
   }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) return Error{Errc::failed, path.string() + ": " + error.message()};
-  return {};
+  return replace_file(path, text);
 }
 
 } // namespace nendo::app

@@ -1,12 +1,13 @@
 #include "calibrate/report.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <numbers>
 #include <string>
 #include <string_view>
 
 #include <spdlog/fmt/fmt.h>
+
+#include <nendo/base/files.hpp>
 
 namespace nendo::app {
 namespace {
@@ -102,19 +103,17 @@ Result<void> write_report_picture(const std::filesystem::path& path,
     rows += row(sensor, fit.sensors[slot], fit.calibration[sensor], counts.most, y);
     y += row_height;
   });
-  std::ofstream output(path);
-  output << fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" width="840" height="{}" font-family="sans-serif" font-size="12">
+  return replace_file(
+      path,
+      fmt::format(
+          R"(<svg xmlns="http://www.w3.org/2000/svg" width="840" height="{}" font-family="sans-serif" font-size="12">
 <style>.s{{font-size:10px;fill:#444444}}</style>
 <rect width="100%" height="100%" fill="white"/>
 <text x="{}" y="24">counts that were covered, of {}, and angles; grey: kept</text>
 <text x="{}" y="24">residual of the poses</text>
 {}</svg>
 )",
-      y + top / 2, range_left, counts.most, residual_left, rows);
-  output.flush();
-  if (!output) return Error{Errc::failed, path.string() + ": cannot be written"};
-  return {};
+          y + top / 2, range_left, counts.most, residual_left, rows));
 }
 
 } // namespace nendo::app

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "file_io.hpp"
+#include <nendo/base/files.hpp>
+
 #include "text.hpp"
 
 namespace nendo::deform {
@@ -119,7 +120,7 @@ Result<ControlVectors> parse_control_vectors(std::string_view text, std::string_
 }
 
 Result<ControlVectors> read_control_vectors(const std::filesystem::path& path) {
-  const auto text = read_file(path);
+  const auto text = read_file(path, most_file_bytes, "control vector");
   if (!text) return text.error();
   return parse_control_vectors(*text, path.string());
 }

@@ -3,7 +3,8 @@
 #include <new>
 #include <string>
 
-#include "file_io.hpp"
+#include <nendo/base/files.hpp>
+
 #include "mesh_formats.hpp"
 #include "text.hpp"
 
@@ -43,7 +44,7 @@ Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name)
 
 Result<Mesh> read_mesh(const std::filesystem::path& path) {
   try {
-    const auto text = read_file(path);
+    const auto text = read_file(path, most_file_bytes, "mesh");
     if (!text) return text.error();
     return parse_text(*text, path.string());
   } catch (const std::bad_alloc&) {

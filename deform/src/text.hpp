@@ -16,6 +16,9 @@ namespace nendo::deform {
 /// No model is that large; below it, squares, cubes and sums of coordinates stay finite.
 inline constexpr double largest_number = 1e100;
 
+/// Of a mesh or of control vectors.
+inline constexpr std::uint64_t most_file_bytes = std::uint64_t{4} << 30;
+
 /// The whole field as a number, or nothing. A leading plus sign is allowed; NaN and infinity come
 /// through.
 std::optional<double> to_number(std::string_view field) noexcept;

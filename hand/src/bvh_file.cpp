@@ -9,6 +9,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <nendo/base/files.hpp>
+
 namespace nendo::hand {
 namespace {
 
@@ -27,13 +29,6 @@ bool write_all(int fd, std::string_view rest, std::uint64_t at) noexcept {
     at += static_cast<std::uint64_t>(written);
   }
   return true;
-}
-
-/// The file that `path` leads to, through symbolic links.
-fs::path target_of(const fs::path& path) {
-  std::error_code missing;
-  const fs::path target = fs::canonical(path, missing);
-  return missing ? path : target;
 }
 
 bool is_finite(const HandPose& pose) {

@@ -2,11 +2,11 @@
 #include <array>
 #include <string>
 
+#include <nendo/base/files.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
 
 #include "imported_gains.hpp"
 #include "text.hpp"
-#include "text_file.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -91,11 +91,11 @@ Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration)
 }
 
 Result<std::string> read_calibration_text(const std::filesystem::path& path) {
-  return read_text_file(path);
+  return read_file(path, most_calibration_bytes, "calibration");
 }
 
 Result<void> write_calibration_text(const std::filesystem::path& path, std::string_view text) {
-  return replace_text_file(path, text);
+  return replace_file(path, text);
 }
 
 } // namespace nendo::hand

@@ -10,9 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include <unistd.h>
+
+#include <nendo/base/files.hpp>
+
 #include "calibration_check.hpp"
 #include "text.hpp"
-#include "text_file.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -120,6 +123,11 @@ Versions versions_of(const fs::path& target) {
   return versions;
 }
 
+/// Gives a file a second name, which must be free. 0, or the error number.
+int add_name(const fs::path& path, const fs::path& second) noexcept {
+  return ::link(path.c_str(), second.c_str()) == 0 ? 0 : errno;
+}
+
 /// Gives the file of today a second name, after those of all its versions, even if the clock was
 /// put back or old ones of this second are gone. Empty if there is no file.
 Result<fs::path> keep_as_earlier(const fs::path& path) {
@@ -193,7 +201,7 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
 }
 
 Result<WearerCalibration> read_calibration(const fs::path& path) {
-  const auto text = read_text_file(path);
+  const auto text = read_file(path, most_calibration_bytes, "calibration");
   if (!text) return text.error();
   return parse_calibration(*text, path.string());
 }
@@ -209,7 +217,7 @@ Result<fs::path> write_calibration(const fs::path& path, const WearerCalibration
   }
   auto kept = keep_as_earlier(path);
   if (!kept) return kept;
-  if (const auto written = replace_text_file(path, *text); !written) {
+  if (const auto written = replace_file(path, *text); !written) {
     if (!kept->empty()) fs::remove(*kept, failed); // the file itself is as it was
     return written.error();
   }

@@ -3,6 +3,7 @@
 // a place in it.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,9 @@
 #include <nendo/base/result.hpp>
 
 namespace nendo::hand {
+
+/// Of a file of any form that holds one.
+inline constexpr std::uint64_t most_calibration_bytes = std::uint64_t{1} << 20;
 
 /// Numbers the lines that it hands out, from 1, without blanks at their ends.
 class LineReader {
