@@ -1,7 +1,6 @@
 #pragma once
-// The displacement field of the paper (Sato, Savchenko, Ohbuchi 2004, section 2.3):
-//   s(x) = sum_i a_i psi(|x - c_i| / r_i) + p(x),   p(x) = b0 + b1 x + b2 y + b3 z,
-// with s(c_i) = g_i and sum_i a_i q(c_i) = 0 for every q in p's basis.
+// Finds the field that moves start points by given displacements (Sato, Savchenko, Ohbuchi 2004,
+// section 2.3): s(c_i) = g_i and sum_i a_i q(c_i) = 0 for every q in p's basis.
 
 #include <optional>
 #include <string_view>
@@ -9,8 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include <nendo/deform/mesh.hpp>
-#include <nendo/deform/wendland.hpp>
+#include <nendo/deform/field.hpp>
 
 namespace nendo::deform {
 
@@ -28,18 +26,6 @@ struct CsrbfOptions {
   /// displacements, the more the nearer they are, and wholly when they coincide: a pinch stays
   /// bounded and continuous. From this distance on, interpolation is exact.
   double merge_fraction = 1e-6;
-};
-
-/// All that is needed to deform a copy of the model elsewhere: a few hundred bytes.
-struct CsrbfField {
-  Wendland kernel = Wendland::c2;
-  Points centres;
-  Eigen::VectorXd radii; ///< one a centre
-  Points coefficients;   ///< a_i, 3 by #centres
-  Eigen::Matrix<double, 3, 4> polynomial =
-      Eigen::Matrix<double, 3, 4>::Zero(); ///< p(x) = P (1, x, y, z)
-
-  Eigen::Vector3d displacement_at(const Eigen::Vector3d& x) const noexcept;
 };
 
 enum class FieldStatus {
@@ -97,9 +83,5 @@ private:
       elimination_; ///< of the saddle-point matrix where A is unsymmetric
   Eigen::MatrixX3d right_side_, solution_, correction_, scratch_;
 };
-
-/// out = points + s(points), column by column; `out` is resized only if its size differs. May be
-/// `points` itself.
-void displace(const CsrbfField& field, const Points& points, Points& out);
 
 } // namespace nendo::deform
