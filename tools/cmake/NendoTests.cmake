@@ -1,5 +1,6 @@
-# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [ALONE]): one doctest program test_<name>, one ctest case per
-# TEST_CASE. INCLUDES names private src/ folders of the unit under test. ALONE: nothing else is tested meanwhile.
+# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [ALONE] [UNOPTIMISED]): one doctest program test_<name>, one
+# ctest case per TEST_CASE. INCLUDES names private src/ folders of the unit under test. ALONE: nothing else is tested
+# meanwhile. UNOPTIMISED halves the compile time; not for tests of templates: the linker may prefer their slow copies.
 include(doctest)
 
 # doctest's own implementation, compiled once for all test programs.
@@ -8,10 +9,13 @@ nendo_settings(nendo_test_main PRIVATE)
 target_link_libraries(nendo_test_main PUBLIC doctest::doctest)
 
 function(nendo_test name)
-  cmake_parse_arguments(ARG "ALONE" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE;UNOPTIMISED" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
   set(target test_${name})
   add_executable(${target} ${ARG_SOURCES})
   nendo_settings(${target} PRIVATE)
+  if(ARG_UNOPTIMISED)
+    target_compile_options(${target} PRIVATE -O0)
+  endif()
   nendo_precompile(${target} <doctest/doctest.h>)
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
