@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -25,10 +24,6 @@ using hand::WearerCalibration;
 using nlohmann::ordered_json;
 
 constexpr auto replace_bytes = ordered_json::error_handler_t::replace; // a path need not be UTF-8
-
-double degrees(double rad) {
-  return rad * 180.0 / std::numbers::pi;
-}
 
 void print_line(const ordered_json& line) {
   std::cout << line.dump(-1, ' ', false, replace_bytes) << '\n';
@@ -128,12 +123,12 @@ void show_text(const StoredCalibration& file) {
     const auto& line = wearer.calibration.sensors[slot];
     if (line.gain_rad_per_count == 0.0) continue;
     const auto at = [&](double count) {
-      return degrees(line.gain_rad_per_count * (count - line.offset_counts));
+      return to_degrees(line.gain_rad_per_count * (count - line.offset_counts));
     };
     const auto& quality = wearer.quality[slot];
     rows.push_back({std::string(sensor_names[slot]), fixed(line.gain_rad_per_count, 5),
                     fixed(line.offset_counts, 1), fixed(at(0.0), 1), fixed(at(most), 1),
-                    quality ? fixed(degrees(quality->residual_rad), 1) : "-"});
+                    quality ? fixed(to_degrees(quality->residual_rad), 1) : "-"});
   }
   print_table(rows);
 }
@@ -172,7 +167,7 @@ std::vector<double> changes_deg(const WearerCalibration& a, const WearerCalibrat
     for (const auto* wearer : {&a, &b}) {
       const auto& line = wearer->calibration.sensors[slot];
       const double count = full ? wearer->counts.most : 0.0;
-      deg.push_back(degrees(line.gain_rad_per_count * (count - line.offset_counts)));
+      deg.push_back(to_degrees(line.gain_rad_per_count * (count - line.offset_counts)));
     }
     deg.push_back(deg.back() - deg[deg.size() - 2]);
   }

@@ -15,8 +15,15 @@ void tell(const driver::GloveInfo& glove, const hand::StoredCalibration& file,
        printable(file.path.string()) + ")" + doubt);
 }
 
-Result<hand::Calibration> asked_for(const driver::GloveInfo& glove, Side side,
-                                    const std::string& name) {
+KnownHand hand_of(const hand::WearerCalibration& wearer, CountScale counts) {
+  return {hand::calibration_for(wearer, counts), wearer.size};
+}
+
+KnownHand average_hand(CountScale counts) {
+  return {hand::default_calibration(counts), {}};
+}
+
+Result<KnownHand> asked_for(const driver::GloveInfo& glove, Side side, const std::string& name) {
   const auto file = named_calibration(name);
   if (!file) return file.error();
   const auto refused = [&](const std::string& why) {
@@ -29,7 +36,33 @@ Result<hand::Calibration> asked_for(const driver::GloveInfo& glove, Side side,
   if (file->wearer.counts.whole_range != glove.counts.whole_range)
     return refused("is of another kind of glove than " + printable(glove.source));
   tell(glove, *file, "");
-  return hand::calibration_for(file->wearer, glove.counts);
+  return hand_of(file->wearer, glove.counts);
+}
+
+/// The best that is stored for either side.
+Result<KnownHands> stored_hands(const driver::GloveInfo& glove, KnownHands hands,
+                                const std::string& user) {
+  const auto stored = stored_calibrations();
+  const auto choose = [&](Side side, const std::string& serial) {
+    return hand::choose_calibration(stored.files, {user, glove.model, serial, side, glove.counts});
+  };
+  const auto own = choose(hands.side, serial_of(glove));
+  if (own) {
+    tell(glove, *own->file,
+         own->match == hand::GloveMatch::other_glove ? "; made with another glove of this model"
+                                                     : "");
+    hands.own = hand_of(own->file->wearer, glove.counts);
+  } else if (!user.empty()) {
+    return Error{Errc::bad_input, "--user " + printable(user) + ": no calibration of a " +
+                                      std::string(name_of(hands.side)) + " hand for " +
+                                      printable(glove.source) +
+                                      " is stored; `nendo calibration list` shows what is"};
+  }
+  const Side other = hands.side == Side::left ? Side::right : Side::left;
+  if (glove.source.starts_with("sim")) return hands; // its hand does not change
+  const auto swapped = choose(other, "");            // of an unknown number
+  if (swapped) hands.swapped = hand_of(swapped->file->wearer, glove.counts);
+  return hands;
 }
 
 } // namespace
@@ -44,43 +77,33 @@ void add_calibration_options(Command& command, CalibrationOptions& options) {
   command.add_option("--user", options.user, "The wearer, whose stored calibration is used");
   command.add_option("--calibration", options.calibration,
                      "A file or stored name to use instead (see nendo calibration), or none");
+  command.add_flag("--adapt", options.adapt,
+                   "Learn the wearer's ranges while the glove is used, in place of a calibration");
 }
 
-Result<hand::Calibration> calibration_of(const driver::GloveInfo& glove, Side side,
-                                         const CalibrationOptions& options) {
-  if (options.calibration == "none") return hand::default_calibration(glove.counts);
-  if (!options.calibration.empty()) return asked_for(glove, side, options.calibration);
+Result<void> check(const CalibrationOptions& options) {
+  if (!options.adapt || (options.user.empty() && options.calibration.empty())) return {};
+  return Error{Errc::usage, "--adapt learns the hand from how it moves; leave out " +
+                                std::string(options.user.empty() ? "--calibration" : "--user")};
+}
+
+Result<KnownHands> known_hands(const driver::GloveInfo& glove, Side side,
+                               const CalibrationOptions& options) {
+  KnownHands hands{side, average_hand(glove.counts), average_hand(glove.counts), {}};
+  if (options.adapt) {
+    hands.adapt = glove.counts;
+    return hands;
+  }
+  if (options.calibration == "none") return hands;
+  if (!options.calibration.empty()) {
+    const auto own = asked_for(glove, side, options.calibration);
+    if (!own) return own.error();
+    hands.own = *own;
+    return hands;
+  }
   // The simulated wearer has the hand that the default is for.
-  if (options.user.empty() && glove.source.starts_with("sim"))
-    return hand::default_calibration(glove.counts);
-  const auto stored = stored_calibrations();
-  const auto choice = hand::choose_calibration(
-      stored.files, {options.user, glove.model, serial_of(glove), side, glove.counts});
-  if (choice) {
-    tell(glove, *choice->file,
-         choice->match == hand::GloveMatch::other_glove ? "; made with another glove of this model"
-                                                        : "");
-    return hand::calibration_for(choice->file->wearer, glove.counts);
-  }
-  if (!options.user.empty()) {
-    return Error{Errc::bad_input, "--user " + printable(options.user) + ": no calibration of a " +
-                                      std::string(name_of(side)) + " hand for " +
-                                      printable(glove.source) +
-                                      " is stored; `nendo calibration list` shows what is"};
-  }
-  return hand::default_calibration(glove.counts);
-}
-
-hand::Calibration swapped_calibration(const driver::GloveInfo& glove, Side side,
-                                      const CalibrationOptions& options) {
-  const bool any = options.calibration.empty() && !glove.source.starts_with("sim");
-  const Side other = side == Side::left ? Side::right : Side::left;
-  if (!any) return hand::default_calibration(glove.counts);
-  const auto list = hand::list_calibrations(hand::calibration_folders());
-  const auto choice = hand::choose_calibration(
-      list.files, {options.user, glove.model, "", other, glove.counts}); // of an unknown number
-  return choice ? hand::calibration_for(choice->file->wearer, glove.counts)
-                : hand::default_calibration(glove.counts);
+  if (options.user.empty() && glove.source.starts_with("sim")) return hands;
+  return stored_hands(glove, hands, options.user);
 }
 
 } // namespace nendo::app

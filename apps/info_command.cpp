@@ -13,6 +13,7 @@
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/hand/angle_sources.hpp>
 
+#include "angle_sources_json.hpp"
 #include "cli.hpp"
 #include "commands.hpp"
 #include "printable.hpp"
@@ -31,14 +32,6 @@ std::vector<std::string> names_of(SensorMask mask) {
   return names;
 }
 
-ordered_json angles_json(SensorMask sensors) {
-  const hand::AngleSources sources = hand::angle_sources(sensors);
-  ordered_json by_angle = ordered_json::object();
-  for (std::size_t n = 0; n < hand::angle_count; ++n)
-    by_angle[std::string(hand::angle_names[n])] = name_of(sources[n]);
-  return by_angle;
-}
-
 void print_json(const driver::GloveInfo& info) {
   ordered_json facts = ordered_json::object();
   for (const auto& [name, value] : info.facts)
@@ -49,7 +42,7 @@ void print_json(const driver::GloveInfo& info) {
       {"model", info.model},
       {"hand", name_of(info.side)},
       {"sensors", names_of(info.sensors)},
-      {"angles", angles_json(info.sensors)},
+      {"angles", angle_sources_json(info.sensors)},
       {"rate_hz", info.rate_hz},
       {"counts", {{"most", info.counts.most}, {"whole_range", info.counts.whole_range}}},
       {"abilities",

@@ -3,13 +3,15 @@
 #include <cstdint>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <unistd.h>
 
 #include <nendo/driver/open_glove.hpp>
-#include <nendo/hand/calibration.hpp>
+#include <nendo/hand/calibration_in_force.hpp>
 
+#include "angle_sources_json.hpp"
 #include "cli.hpp"
 #include "commands.hpp"
 #include "glove_calibration.hpp"
@@ -33,13 +35,15 @@ struct Options {
 struct Monitored {
   driver::Glove& glove;
   SampleRing& ring;
-  const hand::Calibration* calibration; ///< null: counts only
-  std::uint64_t most;                   ///< samples to show; 0: no end
+  hand::CalibrationInForce* calibrations;      ///< null: counts only
+  std::uint64_t most;                          ///< samples to show; 0: no end
+  const hand::Calibration* in_force = nullptr; ///< of the sample that came last; null: none
   std::uint64_t shown = 0;
 
   bool wanted() const { return !stop_requested() && (most == 0 || shown < most); }
   bool next(GloveSample& sample) {
     if (!wanted() || !ring.try_pop(sample)) return false;
+    if (calibrations != nullptr) in_force = &calibrations->follow(sample);
     ++shown;
     return true;
   }
@@ -47,10 +51,13 @@ struct Monitored {
 
 void show_lines(Monitored& monitored) {
   GloveSample sample;
+  GloveChanges gloves;
   while (monitored.wanted() && std::cout) {
     bool any = false;
-    for (; monitored.next(sample); any = true)
-      std::cout << sample_json(sample, monitored.calibration) << '\n';
+    for (; monitored.next(sample); any = true) {
+      const bool first = gloves.is_first(sample.side, sample.present);
+      std::cout << sample_json(sample, monitored.in_force, first) << '\n';
+    }
     if (any) std::cout.flush();
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -78,7 +85,7 @@ void show_screen(Monitored& monitored) {
     const HostTime now = HostClock::now();
     const MonitorPicture picture{&monitored.glove.info(), monitored.glove.stats(),
                                  any ? &sample : nullptr, &seen,
-                                 monitored.calibration,   to_seconds(now - sample.arrival),
+                                 monitored.in_force,      to_seconds(now - sample.arrival),
                                  light.is_lit(),          terminal.has_keys()};
     lines = monitor_lines(picture, terminal.size());
     terminal.draw(lines);
@@ -97,20 +104,20 @@ void show_screen(Monitored& monitored) {
 }
 
 int monitor(const Options& options) {
+  if (const auto fine = check(options.calibration); !fine) return report(fine.error());
   const auto glove = driver::open_glove(options.glove);
   if (!glove) return report(glove.error());
-  auto calibration = hand::default_calibration((*glove)->info().counts);
+  std::optional<hand::CalibrationInForce> calibrations;
   if (!options.raw) {
-    const auto stored =
-        calibration_of((*glove)->info(), (*glove)->info().side, options.calibration);
-    if (!stored) return report(stored.error());
-    calibration = *stored;
+    const auto known = known_hands((*glove)->info(), (*glove)->info().side, options.calibration);
+    if (!known) return report(known.error());
+    calibrations = known->in_force();
   }
   SampleRing ring(1024);
   install_stop_signals();
   if (const auto started = (*glove)->start(ring); !started) return report(started.error());
 
-  Monitored monitored{**glove, ring, options.raw ? nullptr : &calibration, options.count};
+  Monitored monitored{**glove, ring, calibrations ? &*calibrations : nullptr, options.count};
   if (options.json || isatty(STDOUT_FILENO) == 0) {
     show_lines(monitored);
   } else {

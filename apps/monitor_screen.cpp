@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <numbers>
 #include <string_view>
 
 #include "printable.hpp"
@@ -100,7 +99,7 @@ std::string angle_text(const MonitorPicture& picture, Sensor sensor) {
   if (calibration[sensor].gain_rad_per_count == 0.0) return std::string(angle_width, ' ');
   const double angle_rad =
       calibration.angles_rad(*picture.sample)[static_cast<std::size_t>(sensor)];
-  const double angle_deg = angle_rad * 180.0 / std::numbers::pi;
+  const double angle_deg = to_degrees(angle_rad);
   return right_aligned(fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg", angle_width);
 }
 

@@ -41,10 +41,9 @@ Result<void> wait_for_first_sample(OpenHand& hand) {
 
 // A sample tells the side of the glove that sent it, which need not be the one that was identified.
 Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options) {
-  auto calibration = calibration_of(hand.glove->info(), hand.first.side, options);
-  if (!calibration) return calibration.error();
-  hand.calibration = *calibration;
-  hand.swapped = swapped_calibration(hand.glove->info(), hand.first.side, options);
+  auto known = known_hands(hand.glove->info(), hand.first.side, options);
+  if (!known) return known.error();
+  hand.known = *std::move(known);
   return {};
 }
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include <nendo/driver/open_glove.hpp>
-#include <nendo/hand/calibration.hpp>
 
 #include "glove_calibration.hpp"
 
@@ -19,8 +18,7 @@ struct OpenHand {
   std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
   std::unique_ptr<driver::Glove> glove;
   GloveSample first;
-  hand::Calibration calibration; ///< of the glove that sent the first sample
-  hand::Calibration swapped;     ///< should one of the other side be plugged in instead
+  KnownHands known; ///< for the glove that sent the first sample; by calibrate()
 };
 
 /// Opens the glove for that hand, and says so on standard error if it calls itself the other one;
@@ -31,8 +29,8 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = s
 /// no_device if none comes, failed if a stop signal does.
 Result<void> wait_for_first_sample(OpenHand& hand);
 
-/// Finds the hand's calibrations, once its first sample has come. Blocks and fails as
-/// calibration_of().
+/// Finds what is known of the wearer's hand, once its first sample has come. Blocks and fails as
+/// known_hands().
 Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options);
 
 } // namespace nendo::app

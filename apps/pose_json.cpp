@@ -4,11 +4,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "angle_sources_json.hpp"
+
 namespace nendo::app {
 
 using nlohmann::ordered_json;
 
-std::string pose_json(HostTime time, Side side, const hand::HandPose& pose) {
+std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
+                      std::optional<SensorMask> sensors) {
   ordered_json joints = ordered_json::object();
   for (std::size_t at = 0; at < hand::joint_count; ++at) {
     const Eigen::Isometry3d& joint = pose.joints[at];
@@ -20,9 +23,10 @@ std::string pose_json(HostTime time, Side side, const hand::HandPose& pose) {
         {"position_m", {position.x(), position.y(), position.z()}},
         {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
   }
-  const ordered_json line{{"time_s", to_seconds(time.time_since_epoch())},
-                          {"hand", name_of(side)},
-                          {"joints", std::move(joints)}};
+  ordered_json line{{"time_s", to_seconds(time.time_since_epoch())},
+                    {"hand", name_of(side)},
+                    {"joints", std::move(joints)}};
+  if (sensors) line["angles"] = angle_sources_json(*sensors);
   return line.dump();
 }
 

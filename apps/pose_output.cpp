@@ -14,6 +14,7 @@
 
 #include <nendo/hand/bvh_file.hpp>
 
+#include "angle_sources_json.hpp"
 #include "cli.hpp"
 #include "pose_json.hpp"
 
@@ -27,8 +28,10 @@ constexpr std::uint64_t most_pending_frames = 64;
 class JsonLines final : public PoseOutput {
 public:
   std::optional<Side> only_side() const override { return std::nullopt; }
-  Result<void> put(HostTime time, Side side, const hand::HandPose& pose) override {
-    lines_ += pose_json(time, side, pose);
+  Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
+                   SensorMask sensors) override {
+    const bool first = gloves_.is_first(side, sensors);
+    lines_ += pose_json(time, side, pose, first ? std::optional(sensors) : std::nullopt);
     lines_ += '\n';
     return lines_.size() < most_pending_bytes ? Result<void>() : flush();
   }
@@ -52,6 +55,7 @@ public:
 
 private:
   std::string lines_;
+  GloveChanges gloves_;
 };
 
 class BvhRecording final : public PoseOutput {
@@ -60,7 +64,7 @@ public:
       : file_(std::move(file)), path_(std::move(path)), side_(side) {}
 
   std::optional<Side> only_side() const override { return side_; }
-  Result<void> put(HostTime, Side, const hand::HandPose& pose) override {
+  Result<void> put(HostTime, Side, const hand::HandPose& pose, SensorMask) override {
     if (const auto added = file_.add(pose); !added) return added;
     return ++put_ % most_pending_frames != 0 ? Result<void>() : flush();
   }

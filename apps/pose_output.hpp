@@ -20,8 +20,9 @@ public:
 
   /// The hand that every pose has to be of; nullopt: any.
   virtual std::optional<Side> only_side() const = 0;
-  /// Kept until flush().
-  virtual Result<void> put(HostTime time, Side side, const hand::HandPose& pose) = 0;
+  /// A pose that was made of these sensors. Kept until flush().
+  virtual Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
+                           SensorMask sensors) = 0;
   /// Blocks as long as the disk or the reader does. Error: failed.
   virtual Result<void> flush() = 0;
   /// Flushes and completes; the last call. Error: failed.

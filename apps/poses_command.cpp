@@ -11,6 +11,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "hand_length.hpp"
 #include "open_hand.hpp"
 #include "pose_output.hpp"
 #include "sample_grid.hpp"
@@ -20,8 +21,6 @@ namespace {
 
 constexpr double default_bvh_rate_hz = 90.0;
 constexpr double most_duration_s = 1e7;
-constexpr double least_length_m = 0.10;
-constexpr double most_length_m = 0.25;
 
 struct Options {
   std::string glove;
@@ -29,7 +28,7 @@ struct Options {
   double rate_hz = 0.0;
   double duration_s = 0.0;
   std::uint64_t count = 0;
-  double length_m = hand::HandSize{}.length_m;
+  HandLength length;
   CalibrationOptions calibration;
 };
 
@@ -49,32 +48,27 @@ Result<void> check(const Options& options) {
   if (!(options.duration_s >= 0.0 && options.duration_s <= most_duration_s)) {
     return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
   }
-  if (!(options.length_m >= least_length_m && options.length_m <= most_length_m)) {
-    return Error{Errc::usage, "--length: use 0.10 to 0.25 metres, from the wrist's crease to the "
-                              "tip of the middle finger"};
-  }
-  return {};
+  if (const auto fine = options.length.check(); !fine) return fine;
+  return check(options.calibration);
 }
 
-hand::HandSkeleton skeleton_for(Side side, const Options& options) {
-  const hand::HandSize average;
-  const double scale = options.length_m / average.length_m; // of the same proportions
-  return hand::HandSkeleton(side, {options.length_m, scale * average.breadth_m});
+hand::HandSkeleton skeleton_for(Side side, const OpenHand& hand, const Options& options) {
+  return hand::HandSkeleton(side, options.length.size(hand.known.of(side).size));
 }
 
 /// From samples to poses in an output, until there are enough.
 class PoseStream {
 public:
   PoseStream(const OpenHand& hand, const Options& options, PoseOutput& output)
-      : options_(options), output_(output), start_(hand.first.arrival), hand_(hand),
-        gate_(hand.calibration), left_(skeleton_for(Side::left, options)),
-        right_(skeleton_for(Side::right, options)), grid_(start_, rate_of(options)) {}
+      : options_(options), output_(output), start_(hand.first.arrival),
+        calibration_(hand.known.in_force()), left_(skeleton_for(Side::left, hand, options)),
+        right_(skeleton_for(Side::right, hand, options)), grid_(start_, rate_of(options)) {}
 
   /// False: no more is wanted, or the output failed.
   bool take(const GloveSample& sample) {
-    return grid_.take(gate_.pass(sample), [this](HostTime time, const GloveSample& newest) {
-      return put(time, newest);
-    });
+    const GloveSample passed = gate_.pass(sample, calibration_.follow(sample));
+    return grid_.take(
+        passed, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
   }
   /// False: no more is wanted, or the output failed.
   bool pass_time(HostTime now) {
@@ -93,18 +87,17 @@ private:
     if (is_over(time) || stop_requested()) return false;
     const Side side = output_.only_side().value_or(sample.side);
     const auto& skeleton = side == Side::left ? left_ : right_;
-    const auto& calibration = sample.side == hand_.first.side ? hand_.calibration : hand_.swapped;
+    const auto angles = hand::joint_angles(sample, calibration_.of(sample.side));
     // A glove does not know where it is: the forearm ends at the origin.
-    state_ = output_.put(
-        time, side,
-        skeleton.pose(hand::joint_angles(sample, calibration), Eigen::Isometry3d::Identity()));
+    state_ = output_.put(time, side, skeleton.pose(angles, Eigen::Isometry3d::Identity()),
+                         sample.present);
     return state_ && ++written_ != options_.count;
   }
 
   const Options& options_;
   PoseOutput& output_;
   HostTime start_;
-  const OpenHand& hand_;
+  hand::CalibrationInForce calibration_;
   hand::SensorGate gate_;
   hand::HandSkeleton left_;
   hand::HandSkeleton right_;
@@ -128,9 +121,9 @@ Result<void> stream(OpenHand& hand, const Options& options, PoseOutput& output) 
   return poses.state();
 }
 
-Result<std::unique_ptr<PoseOutput>> open_output(const Options& options, Side side) {
+Result<std::unique_ptr<PoseOutput>> open_output(const Options& options, const OpenHand& hand) {
   if (options.bvh.empty()) return json_pose_output();
-  return bvh_pose_output(options.bvh, skeleton_for(side, options), rate_of(options));
+  return bvh_pose_output(options.bvh, skeleton_for(hand.side, hand, options), rate_of(options));
 }
 
 int poses(const Options& options) {
@@ -138,12 +131,12 @@ int poses(const Options& options) {
   auto hand = open_hand(options.glove);
   if (!hand) return report(hand.error());
   install_stop_signals();
-  const auto output = open_output(options, hand->side);
-  if (!output) return report(output.error());
   if (const auto started = hand->glove->start(*hand->ring); !started)
     return report(started.error());
   if (const auto came = wait_for_first_sample(*hand); !came) return report(came.error());
   if (const auto done = calibrate(*hand, options.calibration); !done) return report(done.error());
+  const auto output = open_output(options, *hand); // a BVH file begins with the wearer's bones
+  if (!output) return report(output.error());
 
   const auto streamed = stream(*hand, options, **output);
   hand->glove->stop();
@@ -173,9 +166,7 @@ void add_poses(Command& program) {
                      "sample, in a BVH file 90 a second");
   command.add_option("--duration", options->duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--count", options->count, "End after so many poses");
-  command.add_option("--length", options->length_m,
-                     "The wearer's hand in metres, from the wrist's crease to the tip of the "
-                     "middle finger, 0.10 to 0.25");
+  add_hand_length(command, options->length);
   add_calibration_options(command, options->calibration);
   command.on_chosen([options] { return poses(*options); });
 }

@@ -13,6 +13,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "filter_options.hpp"
 #include "kernel_options.hpp"
 #include "run_report.hpp"
 
@@ -23,7 +24,7 @@ struct CommandOptions {
   RunOptions run;
   std::string mode = "type1";
   std::string switch_action = "none";
-  std::string filter = "off";
+  FilterArguments filter;
   KernelOptions kernel;
 };
 
@@ -67,10 +68,9 @@ Result<void> check(CommandOptions& options) {
                                   ": unknown; use none, grab, commit or toggle"};
   }
   run.loop.switch_action = *action;
-  const auto filter = hand::filter_named(options.filter);
-  if (!filter)
-    return Error{Errc::usage, "--filter " + options.filter + ": unknown; use off or one-euro"};
-  run.filter.kind = *filter;
+  const auto filter = options.filter.parse();
+  if (!filter) return filter.error();
+  run.filter = *filter;
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
   run.loop.sculptor.csrbf = *csrbf;
@@ -84,6 +84,8 @@ Result<void> check(CommandOptions& options) {
   if (!std::isfinite(run.radius) || run.radius < 0.0) {
     return Error{Errc::usage, "--radius: use a length > 0 in the mesh's units, or leave it out"};
   }
+  if (const auto fine = run.length.check(); !fine) return fine;
+  if (const auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
   if (run.mesh.empty()) run.mesh = shipped_model("moai.obj").string();
   return check_output(run.out);
@@ -127,14 +129,13 @@ void add_run(Command& program) {
       "--radius", run_options.radius,
       "Radius of a fingertip's influence, in the mesh's units; 0: 0.2 of its longest side");
   add_calibration_options(command, run_options.calibration);
+  add_hand_length(command, run_options.length);
   add_kernel_options(command, options->kernel);
   command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
   command.add_option("--switch", options->switch_action,
                      "What the wrist switch does. grab: the hands hold the model while it is on; "
                      "commit: keeps the shape so far; toggle: lets go, takes hold again");
-  command.add_option("--filter", options->filter,
-                     "off, or one-euro: smooths the joints' angles, at rest more than in motion; "
-                     "the summary says how late that makes them");
+  add_filter_options(command, options->filter);
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cli.hpp"
+#include "range_report.hpp"
 
 namespace nendo::app {
 namespace {
@@ -130,9 +131,10 @@ ordered_json filter_json(const hand::FilterOptions& filter, const flow::LoopStat
 void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
   if (filter.kind == hand::FilterKind::off) return;
   print_percentiles("filter's lag", stats.filter_moving);
-  std::printf("  %-14s %s: of the joints that move; %.1f ms at rest; comes on top of all these\n",
-              "", std::string(hand::name_of(filter.kind)).c_str(),
-              milliseconds_of(stats.filter_worst.max()));
+  std::printf("  %-14s %s, min cutoff %g Hz, beta %g: of the joints that move; %.1f ms at rest; "
+              "comes on top of all these\n",
+              "", std::string(hand::name_of(filter.kind)).c_str(), filter.min_cutoff_hz,
+              filter.beta_hz_per_rad_s, milliseconds_of(stats.filter_worst.max()));
 }
 
 void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
@@ -154,17 +156,20 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
     const auto glove = hand.glove->stats();
-    line[std::string(name_of(hand.side))] = {
-        {"glove", hand.glove->info().source},
-        {"model", hand.glove->info().model},
-        {"samples", stats.samples[slot]},
-        {"samples_per_s", static_cast<double>(stats.samples[slot]) / outcome.elapsed_s},
-        {"silences", stats.silences[slot]},
-        {"spikes", spikes_json(stats.spikes[slot])},
-        {"switch_uses", stats.switch_uses[slot]},
-        {"bad_records", glove.bad_records},
-        {"ring_refused", glove.ring_refused},
-        {"reopened", glove.reopened}};
+    ordered_json& of_hand = line[std::string(name_of(hand.side))];
+    of_hand = {{"glove", hand.glove->info().source},
+               {"model", hand.glove->info().model},
+               {"hand_length_mm", 1e3 * options.length.size(hand.known.own.size).length_m},
+               {"samples", stats.samples[slot]},
+               {"samples_per_s", static_cast<double>(stats.samples[slot]) / outcome.elapsed_s},
+               {"silences", stats.silences[slot]},
+               {"spikes", spikes_json(stats.spikes[slot])},
+               {"switch_uses", stats.switch_uses[slot]},
+               {"bad_records", glove.bad_records},
+               {"ring_refused", glove.ring_refused},
+               {"reopened", glove.reopened}};
+    if (hand.known.adapt)
+      of_hand["ranges"] = ranges_json(stats.ranges[slot], hand.glove->info().sensors);
   }
   line["filter"] = filter_json(options.filter, stats);
   line["end_to_end_ms"] = percentiles(stats.end_to_end);
@@ -196,6 +201,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
                 static_cast<unsigned long long>(stats.silences[slot]),
                 hand.glove->info().source.c_str());
     print_spikes(stats.spikes[slot]);
+    if (hand.known.adapt) print_ranges(stats.ranges[slot], hand.glove->info().sensors);
   }
   print_switch(options, stats);
   std::printf("  %-14s %s at %g Hz, %llu overruns, %llu missed\n", "ticks",

@@ -69,13 +69,27 @@ Result<std::vector<OpenHand>> open_named(const RunOptions& options) {
   return hands;
 }
 
-flow::Placement placement_for(const std::vector<OpenHand>& hands, const deform::Mesh& model) {
+std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
+                                       const RunOptions& options) {
+  std::vector<flow::HandInput> inputs;
+  inputs.reserve(hands.size());
+  for (const auto& hand : hands) {
+    const hand::HandSkeleton skeleton(hand.side, options.length.size(hand.known.own.size));
+    inputs.push_back({hand.ring.get(), skeleton, hand.known.own.calibration, hand.first});
+    inputs.back().filter = options.filter;
+    inputs.back().swapped = hand.known.swapped.calibration;
+    inputs.back().adapt = hand.known.adapt;
+  }
+  return inputs;
+}
+
+flow::Placement placement_for(const std::vector<flow::HandInput>& hands,
+                              const deform::Mesh& model) {
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : hands) {
     const auto angles = hand::joint_angles(hand.first, hand.calibration);
-    tips[flow::Placement::index_of(hand.side)] = hand::HandSkeleton(hand.side)
-                                                     .pose(angles, Eigen::Isometry3d::Identity())
-                                                     .fingertip_positions();
+    tips[flow::Placement::index_of(hand.skeleton.side())] =
+        hand.skeleton.pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
   }
   return flow::place_hands(model, tips);
 }
@@ -185,15 +199,9 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   // between them.
   sculptor.csrbf.merge_fraction = 0.05;
 
-  std::vector<flow::HandInput> inputs;
-  inputs.reserve(hands.size());
-  for (const auto& hand : hands) {
-    inputs.push_back(
-        {hand.ring.get(), hand::HandSkeleton(hand.side), hand.calibration, hand.first});
-    inputs.back().filter = options.filter;
-    inputs.back().swapped = hand.swapped;
-  }
-  flow::DeformLoop loop(model, placement_for(hands, model), std::move(inputs), loop_options);
+  auto inputs = inputs_of(hands, options);
+  const auto placement = placement_for(inputs, model);
+  flow::DeformLoop loop(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop.grab_status())) {
     return Error{Errc::failed, "the hands cannot take hold of the model: " +
                                    std::string(deform::describe(loop.grab_status()))};

@@ -11,6 +11,7 @@
 #include <nendo/flow/deform_loop.hpp>
 
 #include "glove_calibration.hpp"
+#include "hand_length.hpp"
 #include "open_hand.hpp"
 
 namespace nendo::app {
@@ -24,13 +25,14 @@ struct RunOptions {
   double radius = 0.0;     ///< 0: a fraction of the model's size
   bool json = false;
   CalibrationOptions calibration;
+  HandLength length;
   hand::FilterOptions filter; ///< of both hands
   flow::LoopOptions loop;
 };
 
 /// Opens and starts the gloves and waits for the first sample of each. With none named it uses what
 /// is identified, and simulated hands, saying so, if there is nothing. Errors as open_glove();
-/// no_device if no sample comes; as calibration_of().
+/// no_device if no sample comes; as known_hands().
 Result<std::vector<OpenHand>> open_hands(const RunOptions& options);
 
 /// What the summary is made of.

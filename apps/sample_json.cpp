@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "angle_sources_json.hpp"
+
 namespace nendo::app {
 namespace {
 
@@ -16,7 +18,8 @@ ordered_json switch_json(WristSwitch position) {
 
 } // namespace
 
-std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration) {
+std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
+                        bool tell_sources) {
   ordered_json raw = ordered_json::object();
   ordered_json angles = ordered_json::object();
   const auto angles_rad =
@@ -37,6 +40,7 @@ std::string sample_json(const GloveSample& sample, const hand::Calibration* cali
                     {"raw", std::move(raw)}};
   if (sample.has_device_time) line["device_time_s"] = to_seconds(sample.device_time);
   if (calibration != nullptr) line["angle_rad"] = std::move(angles);
+  if (calibration != nullptr && tell_sources) line["angles"] = angle_sources_json(sample.present);
   return line.dump();
 }
 

@@ -76,7 +76,7 @@ void print_table(const TrialErrors& errors, bool markdown) {
   row(
       "joints", [](std::size_t method) { return std::string(method_names[method]); },
       std::string("full / two_pose"));
-  if (markdown) std::printf("|---|---:|---:|---:|---:|---:|\n");
+  if (markdown) std::printf("|---|---:|---:|---:|---:|---:|---:|\n");
   for (std::size_t group = 0; group < group_names.size(); ++group) {
     std::array<Figures, method_names.size()> deg;
     for (std::size_t method = 0; method < method_names.size(); ++method)

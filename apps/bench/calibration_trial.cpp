@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <string>
 
 #include <nendo/hand/calibration_fit.hpp>
 #include <nendo/hand/pose_capture.hpp>
+#include <nendo/hand/range_adaptation.hpp>
 
 #include "bench/wearers.hpp"
 
@@ -54,13 +54,22 @@ Result<std::vector<PoseReading>> hold_all(Wearer& wearer, std::mt19937_64& rando
   return readings;
 }
 
-Calibration min_max_calibration(Wearer& wearer, std::uint64_t seed) {
+/// What half a minute of free motion teaches.
+struct FromMotion {
+  Calibration min_max;
+  Calibration adaptive;
+};
+
+FromMotion watch(Wearer& wearer, std::uint64_t seed) {
   const FreeMotion motion(seed, wearer.ranges());
+  hand::RangeAdaptation adaptation;
   std::array<double, sensor_slots> low, high;
   low.fill(255.0);
   high.fill(0.0);
   for (double time_s = 0.0; time_s < 30.0; time_s += 1.0 / rate_hz) {
-    const GloveSample sample = wearer.read(motion.angles_rad(time_s));
+    GloveSample sample = wearer.read(motion.angles_rad(time_s));
+    sample.arrival = sample.measured = at_time(time_s);
+    adaptation.push(sample);
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       low[slot] = std::min(low[slot], static_cast<double>(sample.raw[slot].value));
       high[slot] = std::max(high[slot], static_cast<double>(sample.raw[slot].value));
@@ -73,13 +82,13 @@ Calibration min_max_calibration(Wearer& wearer, std::uint64_t seed) {
     gain /= span;
     offset = low[slot] + offset * span;
   }
-  return calibration;
+  return {calibration, adaptation.calibration()};
 }
 
 void add_errors(const JointAngles& told, const JointAngles& truth,
                 std::array<std::vector<float>, group_names.size()>& groups) {
   const auto add = [&](std::size_t group, double a, double b) {
-    groups[group].push_back(static_cast<float>(std::abs(a - b) * 180.0 / std::numbers::pi));
+    groups[group].push_back(static_cast<float>(to_degrees(std::abs(a - b))));
   };
   for (std::size_t f = 0; f < 4; ++f) {
     add(0, told.fingers[f].mcp_flexion_rad, truth.fingers[f].mcp_flexion_rad);
@@ -120,9 +129,9 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
   if (!two_pose) return two_pose.error();
   errors.condition.push_back(full->condition);
 
+  const FromMotion watched = watch(wearer, random());
   const std::array<Calibration, method_names.size()> calibrations{
-      full->calibration, two_pose->calibration, min_max_calibration(wearer, random()),
-      wearer.truth()};
+      full->calibration, two_pose->calibration, watched.min_max, watched.adaptive, wearer.truth()};
   const FreeMotion motion(random(), wearer.ranges());
   for (double time_s = 0.0; time_s < 60.0; time_s += 0.2) {
     const hand::SensorAngles angles = motion.angles_rad(time_s);

@@ -1,5 +1,5 @@
 #pragma once
-// One synthetic wearer calibrated in three ways, and how far each leaves the joints' angles from
+// One synthetic wearer calibrated in four ways, and how far each leaves the joints' angles from
 // the true ones.
 
 #include <array>
@@ -15,10 +15,11 @@ enum class Method : std::uint8_t {
   full,     ///< the guided poses
   two_pose, ///< flat and fist
   min_max,  ///< counts of a free motion, spread over each joint's range of motion
+  adaptive, ///< what hand::RangeAdaptation makes of the same counts
   floor,    ///< the true lines and couplings: what noise, 8 bits and bent lines leave
 };
-inline constexpr std::array<std::string_view, 4> method_names{"full", "two_pose", "min_max",
-                                                              "floor"};
+inline constexpr std::array<std::string_view, 5> method_names{"full", "two_pose", "min_max",
+                                                              "adaptive", "floor"};
 inline constexpr std::array<std::string_view, 9> group_names{
     "finger MCP",       "finger PIP", "finger DIP",
     "finger abduction", "thumb roll", "thumb abduction",

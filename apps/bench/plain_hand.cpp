@@ -1,7 +1,6 @@
 #include "bench/plain_hand.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace nendo::app {
 namespace {
@@ -36,7 +35,6 @@ Matrix4d along(const Vector3d& bone_m) {
   return m;
 }
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double arch_share[4] = {0.0, 0.0, 0.5, 1.0};
 constexpr Joint metacarpals[4] = {Joint::index_metacarpal, Joint::middle_metacarpal,
                                   Joint::ring_metacarpal, Joint::little_metacarpal};
@@ -53,7 +51,7 @@ PlainPose plain_pose(const hand::HandSkeleton& skeleton, const hand::JointAngles
   at(Joint::palm) = wrist * bone(Joint::palm) * along(skeleton.rest_offset(Joint::middle_proximal));
   at(Joint::thumb_metacarpal) =
       wrist * bone(Joint::thumb_metacarpal) * turn(z_axis, angles.thumb_roll_rad) *
-      turn(y_axis, 15 * degree + angles.thumb_abduction_rad) * turn(z_axis, 60 * degree);
+      turn(y_axis, from_degrees(15) + angles.thumb_abduction_rad) * turn(z_axis, from_degrees(60));
   at(Joint::thumb_proximal) = at(Joint::thumb_metacarpal) * bone(Joint::thumb_proximal) *
                               turn(x_axis, -angles.thumb_mcp_flexion_rad);
   at(Joint::thumb_distal) = at(Joint::thumb_proximal) * bone(Joint::thumb_distal) *

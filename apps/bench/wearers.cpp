@@ -13,9 +13,6 @@ using hand::Joint;
 using hand::PoseId;
 using hand::SensorAngles;
 
-constexpr double degrees(double d) noexcept {
-  return d * std::numbers::pi / 180.0;
-}
 constexpr std::size_t slot_of(Sensor sensor) noexcept {
   return static_cast<std::size_t>(sensor);
 }
@@ -116,11 +113,11 @@ Wearer::Wearer(std::uint64_t seed)
   skeleton_ = hand::HandSkeleton(side_, size_);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const Kind& kind = kinds[slot];
-    habit_rad_[slot] = degrees(normal(0.0, 0.5 * kind.bent));
+    habit_rad_[slot] = from_degrees(normal(0.0, 0.5 * kind.bent));
     const double deviation_deg =
         std::max(range_deviation * (kind.high - kind.low), least_range_deviation_deg);
     const auto end_rad = [&](double end_deg) {
-      return degrees(end_deg + deviation_deg * std::clamp(normal(0.0, 1.0), -1.5, 1.1));
+      return from_degrees(end_deg + deviation_deg * std::clamp(normal(0.0, 1.0), -1.5, 1.1));
     };
     ranges_[slot] = {kind.low == 0.0 ? 0.0 : end_rad(kind.low), end_rad(kind.high)};
   }
@@ -154,7 +151,7 @@ void Wearer::draw_sensors() {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const Kind& kind = kinds[slot];
     if (kind.gain == 0.0) continue;
-    bow_rad_[slot] = degrees(uniform(-1.0, 1.0));
+    bow_rad_[slot] = from_degrees(uniform(-1.0, 1.0));
     const auto fits = [&](const SensorAngles& lines) {
       const double count = count_of(slot, lines);
       return count > 13.0 && count < 243.0;
@@ -167,8 +164,8 @@ void Wearer::draw_sensors() {
 }
 
 double Wearer::count_of(std::size_t slot, const SensorAngles& lines) const {
-  const double low = degrees(kinds[slot].low);
-  const double part = (lines[slot] - low) / (degrees(kinds[slot].high) - low);
+  const double low = from_degrees(kinds[slot].low);
+  const double part = (lines[slot] - low) / (from_degrees(kinds[slot].high) - low);
   // Straight line and parabola, which is bow_rad at the middle of the range and 0 at its ends.
   const double bow = bow_rad_[slot] * 4.0 * part * (1.0 - part);
   const auto [gain, offset] = truth_.sensors[slot];
@@ -194,15 +191,15 @@ SensorAngles Wearer::perform(PoseId id) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const Kind& kind = kinds[slot];
     const hand::AssumedAngle asked = pose.assumed[slot];
-    const bool bent = std::abs(asked.angle_rad) > degrees(8);
-    double angle = degrees(normal(kind.relaxed, kind.relaxed_deviation));
+    const bool bent = std::abs(asked.angle_rad) > from_degrees(8);
+    double angle = from_degrees(normal(kind.relaxed, kind.relaxed_deviation));
     if (asked.known()) {
       const double farther = asked.angle_rad < 0.0 ? -1.0 : 1.0;
-      angle = asked.angle_rad + degrees(normal(0.0, bent ? kind.bent : kind.straight));
-      if (bent) angle += habit_rad_[slot] + farther * degrees(kind.shift);
+      angle = asked.angle_rad + from_degrees(normal(0.0, bent ? kind.bent : kind.straight));
+      if (bent) angle += habit_rad_[slot] + farther * from_degrees(kind.shift);
     }
     // Chance leads no farther than a joint goes; calm hands do not lie at 0, but about it.
-    const double play_rad = asked.known() ? degrees(4) : 0.0;
+    const double play_rad = asked.known() ? from_degrees(4) : 0.0;
     angles[slot] =
         std::clamp(angle, ranges_[slot].low_rad - play_rad, ranges_[slot].high_rad + play_rad);
   }
@@ -267,7 +264,7 @@ void Wearer::make_touch(PoseId id, SensorAngles& angles) {
   for (int attempt = 0; attempt < 40 && best_gap_m > 0.002; ++attempt) {
     SensorAngles now = angles;
     for (std::size_t n = 0; n < slots.size(); ++n)
-      now[slots[n]] = clamped(slots[n], degrees(normal(liked_deg[n], 8)));
+      now[slots[n]] = clamped(slots[n], from_degrees(normal(liked_deg[n], 8)));
     for (int turn = 0; turn < 60; ++turn)
       approach(touch, slip_m, now);
     const double apart_m = (gap(touch, now) - slip_m).norm();

@@ -33,8 +33,8 @@ struct Options {
   std::string from;
   std::string out;
   std::string picture;
-  double length_m = hand::HandSize{}.length_m;
-  double breadth_m = hand::HandSize{}.breadth_m;
+  double length_mm = 1e3 * hand::HandSize{}.length_m;
+  double breadth_mm = 1e3 * hand::HandSize{}.breadth_m;
   bool quick = false;
   bool fresh = false;
 };
@@ -52,20 +52,23 @@ Result<void> check(const Options& options) {
   if (options.user.empty())
     return Error{Errc::usage,
                  "--user is missing: whose hand is it? e.g. --user " + std::string("anna")};
-  if (!(options.length_m >= 0.10 && options.length_m <= 0.25))
-    return Error{Errc::usage, "--hand-length: use metres from 0.10 to 0.25, wrist to middle tip"};
-  if (!(options.breadth_m >= 0.05 && options.breadth_m <= 0.13))
-    return Error{Errc::usage, "--hand-breadth: use metres from 0.05 to 0.13, across the knuckles"};
+  if (!(options.length_mm >= 100.0 && options.length_mm <= 250.0))
+    return Error{Errc::usage, "--hand-length: use 100 to 250 millimetres, from the wrist's crease "
+                              "to the tip of the middle finger"};
+  if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
+    return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
   const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
   if (options.from.empty() && !at_terminal)
     return Error{Errc::usage, "the guided calibration needs a terminal; elsewhere use --from FILE"};
   return {};
 }
 
+hand::HandSize size_of(const Options& options) {
+  return {1e-3 * options.length_mm, 1e-3 * options.breadth_mm};
+}
+
 hand::FitOptions fit_options(const Options& options, CountScale counts) {
-  return {counts,
-          options.quick ? hand::FitMode::quick : hand::FitMode::full,
-          {options.length_m, options.breadth_m}};
+  return {counts, options.quick ? hand::FitMode::quick : hand::FitMode::full, size_of(options)};
 }
 
 std::span<const hand::PoseId> poses_for(const Options& options) {
@@ -77,7 +80,7 @@ Wearer describe(const Options& options, Side side, CountScale counts, SensorMask
   wearer.about.user = options.user;
   wearer.about.side = side;
   wearer.about.counts = counts;
-  wearer.about.size = {options.length_m, options.breadth_m};
+  wearer.about.size = size_of(options);
   wearer.about.method = options.quick ? "quick" : "full";
   wearer.about.made = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   wearer.sensors = sensors;
@@ -177,7 +180,9 @@ int calibrate_glove(const Options& options) {
   std::error_code error;
   if (!options.fresh && fs::exists(unfinished_path(wearer), error)) {
     const auto before = read_capture(unfinished_path(wearer));
-    if (!before) return report(before.error());
+    if (!before)
+      return report({before.error().code,
+                     before.error().message + "; with --fresh it is not read, and written anew"});
     if (before->counts == info.counts && before->side == info.side) guide.restore(before->readings);
   }
   install_stop_signals();
@@ -207,9 +212,9 @@ void add_calibrate(Command& program) {
   command.add_option("--from", options->from,
                      "A capture instead of a glove: what nendo monitor --json has printed while "
                      "the poses were held one after another, three seconds each");
-  command.add_option("--hand-length", options->length_m,
-                     "Metres from the wrist's crease to the tip of the middle finger");
-  command.add_option("--hand-breadth", options->breadth_m, "Metres across the knuckles");
+  command.add_option("--hand-length", options->length_mm,
+                     "Millimetres from the wrist's crease to the tip of the middle finger");
+  command.add_option("--hand-breadth", options->breadth_mm, "Millimetres across the knuckles");
   command.add_option("--out", options->out,
                      "Where to write it; without it, where the other commands find it");
   command.add_option("--picture", options->picture, "Also draw ranges and residuals, as FILE.svg");

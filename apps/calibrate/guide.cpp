@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace nendo::app {
 namespace {
@@ -13,7 +12,7 @@ using hand::PoseId;
 
 // How far a joint may be from where the pose has it before it is taken for another pose: wearers
 // differ, and so do the two poses by which their sensors are judged.
-constexpr double most_doubt_rad = 40.0 * std::numbers::pi / 180.0;
+constexpr double most_doubt_rad = from_degrees(40.0);
 constexpr double deviations_allowed = 3.0;
 
 } // namespace

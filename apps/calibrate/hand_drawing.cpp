@@ -1,127 +1,16 @@
 #include "calibrate/hand_drawing.hpp"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
-#include <limits>
+
+#include "calibrate/limb_canvas.hpp"
 
 namespace nendo::app {
 namespace {
 
-using Eigen::Index;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 using hand::Joint;
 
-// Dots that a character's cell is sampled with; they are as wide as high.
-constexpr int dots_across = 4;
-constexpr int dots_down = 8;
-
-/// Which dots a character covers, row by row from the top; four bits a row, the left one highest.
-struct Glyph {
-  char character;
-  std::array<std::uint8_t, dots_down> rows;
-};
-constexpr std::array<Glyph, 14> glyphs{{
-    {'|', {6, 6, 6, 6, 6, 6, 6, 6}},
-    {'-', {0, 0, 0, 15, 15, 0, 0, 0}},
-    {'_', {0, 0, 0, 0, 0, 0, 15, 15}},
-    {'/', {1, 1, 2, 2, 4, 4, 8, 8}},
-    {'\\', {8, 8, 4, 4, 2, 2, 1, 1}},
-    {'(', {2, 4, 8, 8, 8, 8, 4, 2}},
-    {')', {4, 2, 1, 1, 1, 1, 2, 4}},
-    {'.', {0, 0, 0, 0, 0, 0, 6, 6}},
-    {'\'', {6, 6, 6, 0, 0, 0, 0, 0}},
-    {',', {0, 0, 0, 0, 0, 6, 6, 4}},
-    {'`', {12, 6, 0, 0, 0, 0, 0, 0}},
-    {'~', {0, 0, 0, 5, 10, 0, 0, 0}},
-    {'+', {0, 6, 6, 15, 15, 6, 6, 0}},
-    {'"', {15, 9, 9, 0, 0, 0, 0, 0}},
-}};
-
-/// A bone with flesh: what lies within the radius of a line, which shrinks towards its end.
-struct Limb {
-  Vector3d begin, end; ///< x to the right, y up, z towards the viewer; metres
-  double begin_radius, end_radius;
-  std::uint8_t part; ///< palm or finger
-};
-
-constexpr std::uint8_t nothing = 0xFF;
 constexpr std::uint8_t palm_part = 0;
-
-class Canvas {
-public:
-  Canvas(int columns, int rows)
-      : width_(columns * dots_across), height_(rows * dots_down),
-        parts_(static_cast<std::size_t>(width_ * height_), nothing),
-        depths_(parts_.size(), -std::numeric_limits<double>::infinity()) {
-    // A hand, its fingers spread, is as wide as it is long, and the wrist is to be seen.
-    metres_a_dot_ = std::max(0.235 / height_, 0.21 / width_);
-  }
-
-  void draw(const Limb& limb) {
-    for (int row = 0; row < height_; ++row)
-      for (int column = 0; column < width_; ++column) {
-        const Vector2d at((column - 0.5 * width_) * metres_a_dot_,
-                          (0.5 * height_ - row) * metres_a_dot_);
-        const Vector2d along = (limb.end - limb.begin).head<2>();
-        const double length2 = along.squaredNorm();
-        const double part =
-            length2 > 0.0 ? std::clamp((at - limb.begin.head<2>()).dot(along) / length2, 0.0, 1.0)
-                          : 0.0;
-        const double radius = limb.begin_radius + part * (limb.end_radius - limb.begin_radius);
-        const double off2 = (at - limb.begin.head<2>() - part * along).squaredNorm();
-        if (off2 > radius * radius) continue;
-        const double depth = limb.begin.z() + part * (limb.end.z() - limb.begin.z()) +
-                             std::sqrt(radius * radius - off2);
-        const auto dot = static_cast<std::size_t>(row * width_ + column);
-        if (depth <= depths_[dot]) continue;
-        depths_[dot] = depth;
-        parts_[dot] = limb.part;
-      }
-  }
-
-  char character(int column, int row) const {
-    std::array<std::uint8_t, dots_down> edges{};
-    int count = 0;
-    for (int y = 0; y < dots_down; ++y)
-      for (int x = 0; x < dots_across; ++x) {
-        if (!is_edge(column * dots_across + x, row * dots_down + y)) continue;
-        edges[static_cast<std::size_t>(y)] |= static_cast<std::uint8_t>(8 >> x);
-        ++count;
-      }
-    if (count < 3) return ' ';
-    const auto distance = [&](const Glyph& glyph) {
-      int differing = 0;
-      for (std::size_t y = 0; y < edges.size(); ++y)
-        differing += std::popcount(static_cast<unsigned>(edges[y] ^ glyph.rows[y]));
-      return differing;
-    };
-    return std::min_element(glyphs.begin(), glyphs.end(),
-                            [&](const Glyph& one, const Glyph& other) {
-                              return distance(one) < distance(other);
-                            })
-        ->character;
-  }
-
-private:
-  std::uint8_t part(int column, int row) const {
-    if (column < 0 || row < 0 || column >= width_ || row >= height_) return nothing;
-    return parts_[static_cast<std::size_t>(row * width_ + column)];
-  }
-  bool is_edge(int column, int row) const {
-    const std::uint8_t here = part(column, row);
-    return part(column + 1, row) != here || part(column, row + 1) != here ||
-           part(column - 1, row) != here || part(column, row - 1) != here;
-  }
-
-  int width_, height_;
-  double metres_a_dot_;
-  std::vector<std::uint8_t> parts_;
-  std::vector<double> depths_;
-};
 
 } // namespace
 
@@ -135,7 +24,7 @@ std::vector<std::string> draw_hand(const hand::HandPose& pose, Side side, HandVi
                                   : Vector3d(outwards * p.y(), up, -outwards * p.x());
   };
   const auto seen = [&](Joint joint) { return seen_at(pose[joint].translation()); };
-  Canvas canvas(columns, rows);
+  LimbCanvas canvas(columns, rows);
   const auto limb = [&](Joint from, Joint to, double from_mm, double to_mm, std::size_t part) {
     canvas.draw(
         {seen(from), seen(to), 1e-3 * from_mm, 1e-3 * to_mm, static_cast<std::uint8_t>(part)});

@@ -1,7 +1,6 @@
 #include "calibrate/report.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -20,10 +19,6 @@ constexpr int range_width = 360;
 constexpr int residual_left = 640;
 constexpr double pixels_a_degree = 12.0;
 constexpr double most_degrees = 12.0;
-
-constexpr double degrees(double rad) {
-  return rad * 180.0 / std::numbers::pi;
-}
 
 std::string_view kept_text(const hand::SensorFit& sensor) {
   if (sensor.gain_determined && sensor.offset_determined) return "";
@@ -56,11 +51,11 @@ void print_readings(std::ostream& out, const hand::CalibrationFit& fit,
 std::string row(Sensor sensor, const hand::SensorFit& quality, const hand::SensorCalibration& line,
                 double counts_most, int y) {
   const auto angle_deg = [&](double counts) {
-    return degrees(line.gain_rad_per_count * (counts - line.offset_counts));
+    return to_degrees(line.gain_rad_per_count * (counts - line.offset_counts));
   };
   const double low = range_left + quality.low_counts / counts_most * range_width;
   const double high = range_left + quality.high_counts / counts_most * range_width;
-  const double residual_deg = degrees(quality.residual_rad);
+  const double residual_deg = to_degrees(quality.residual_rad);
   const double bar = pixels_a_degree * std::min(residual_deg, most_degrees);
   return fmt::format(
       R"(<text x="10" y="{}">{}</text>
@@ -86,8 +81,8 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
     const std::string range =
         fmt::format("{:.0f} to {:.0f}", quality.low_counts, quality.high_counts);
     out << fmt::format("{:22} {:>11}  {:9.3f}  {:5.1f} deg  {:5.1f} deg  {}\n", name_of(sensor),
-                       range, degrees(fit.calibration[sensor].gain_rad_per_count),
-                       degrees(quality.residual_rad), degrees(quality.deviation_rad),
+                       range, to_degrees(fit.calibration[sensor].gain_rad_per_count),
+                       to_degrees(quality.residual_rad), to_degrees(quality.deviation_rad),
                        kept_text(quality));
   });
   print_readings(out, fit, readings);

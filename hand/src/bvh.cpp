@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
 namespace nendo::hand {
 namespace {
@@ -13,8 +12,6 @@ using Eigen::Vector3d;
 
 constexpr int decimals = 6; // 10 nm, and at a fingertip less than that of an angle
 constexpr int time_decimals = 12;
-
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 // Not printf, whose decimal point is a matter of the host program's locale.
 void append_number(double value, std::string& text, int places = decimals) {
@@ -121,7 +118,7 @@ bool BvhFormat::append_frame(const HandPose& pose, std::string& text) const {
     const auto parent = parent_of(joint);
     const Matrix3d rotation =
         parent ? Matrix3d(turned(*parent).transpose() * turned(joint)) : turned(joint);
-    append(degrees_per_radian * turns_yzx(rotation));
+    append(turns_yzx(rotation).unaryExpr(&to_degrees));
   });
   if (!finite) {
     text.resize(before);

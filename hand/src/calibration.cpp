@@ -1,7 +1,5 @@
 #include <nendo/hand/calibration.hpp>
 
-#include <numbers>
-
 namespace nendo::hand {
 namespace {
 
@@ -55,7 +53,7 @@ constexpr std::array<TypicalSensor, sensor_slots> typical{{
 SensorCalibration spread_over(const TypicalSensor& sensor, double most) noexcept {
   const double range_deg = sensor.high_deg - sensor.low_deg;
   if (range_deg == 0.0) return {};
-  return {range_deg * std::numbers::pi / 180.0 / most, -sensor.low_deg / range_deg * most};
+  return {from_degrees(range_deg) / most, -sensor.low_deg / range_deg * most};
 }
 
 SensorCalibration scaled(const TypicalSensor& sensor, double most) noexcept {

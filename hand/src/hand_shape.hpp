@@ -4,18 +4,16 @@
 #include <array>
 #include <numbers>
 
+#include <nendo/base/units.hpp>
+
 #include "turns.hpp"
 
 namespace nendo::hand {
 
-constexpr double degrees(double d) noexcept {
-  return d * std::numbers::pi / 180.0;
-}
-
 // At zero angles the thumb lies beside the index finger, its bones parting from it by the width of
 // the web, and its nail turned towards the thumb's side: its flexion runs across the palm and not
 // towards it.
-inline constexpr double thumb_rest_abduction_rad = degrees(15);
+inline constexpr double thumb_rest_abduction_rad = from_degrees(15);
 inline constexpr Turn thumb_pronation{std::numbers::sqrt3 / 2, 0.5}; // 60 degrees
 
 // Index to little finger. The little finger's metacarpal moves most when the palm arches, the ring

@@ -1,24 +1,19 @@
 #include <nendo/hand/joint_angles.hpp>
 
 #include <algorithm>
-#include <numbers>
 
 #include <nendo/hand/joint_limits.hpp>
 
 namespace nendo::hand {
 namespace {
 
-constexpr double degrees(double d) noexcept {
-  return d * std::numbers::pi / 180.0;
-}
-
 // The rules of the header. The thumb's were chosen with this skeleton: of the ends from 50 to 70
 // degrees, and ratios of 0.3 to 1, these bring the tips together.
 constexpr double pip_of_mcp = 1.1;
 constexpr double thumb_ip_of_mcp = 0.5;
-constexpr double resting_opposition = degrees(20);
-constexpr double full_opposition = degrees(60);
-constexpr double fully_bent_thumb_mcp = degrees(55);
+constexpr double resting_opposition = from_degrees(20);
+constexpr double full_opposition = from_degrees(60);
+constexpr double fully_bent_thumb_mcp = from_degrees(55);
 
 constexpr double bent(double angle_rad) noexcept {
   return std::max(angle_rad, 0.0);

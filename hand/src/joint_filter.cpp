@@ -19,14 +19,6 @@ bool is_possible(double angle_rad) noexcept {
   return std::abs(angle_rad) <= turn_rad; // not NaN
 }
 
-/// Defined for any two times: far apart, their difference would overflow, and wraps instead.
-double seconds_between(HostTime from, HostTime to) noexcept {
-  const auto ticks = [](HostTime time) {
-    return static_cast<std::uint64_t>(time.time_since_epoch().count());
-  };
-  return to_seconds(HostClock::duration(static_cast<HostClock::rep>(ticks(to) - ticks(from))));
-}
-
 double time_constant_of(double cutoff_hz) noexcept {
   return 1.0 / (turn_rad * cutoff_hz);
 }

@@ -11,21 +11,14 @@ int distance(RawCount a, RawCount b) noexcept {
   return std::abs(int{a.value} - int{b.value});
 }
 
+bool is_movement(double jump_rad, double elapsed_s) noexcept {
+  // A gain that is not a number tells nothing of the joint: let it pass.
+  return !(jump_rad > SensorGate::noise_rad + SensorGate::most_speed_rad_s * elapsed_s);
+}
+
 } // namespace
 
-SensorGate::SensorGate(const Calibration& calibration) noexcept {
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    gains_rad_[slot] = std::abs(calibration.sensors[slot].gain_rad_per_count);
-  }
-}
-
-bool SensorGate::is_movement(std::size_t slot, RawCount count, double elapsed_s) const noexcept {
-  const double jump_rad = gains_rad_[slot] * distance(count, accepted_[slot].count);
-  // A gain that is not a number tells nothing of the joint: let it pass.
-  return !(jump_rad > noise_rad + most_speed_rad_s * elapsed_s);
-}
-
-GloveSample SensorGate::pass(const GloveSample& sample) noexcept {
+GloveSample SensorGate::pass(const GloveSample& sample, const Calibration& calibration) noexcept {
   const bool same_hand = sample.side == side_;
   side_ = sample.side;
   const HostTime time = sample.has_device_time ? sample.measured : sample.arrival;
@@ -40,8 +33,10 @@ GloveSample SensorGate::pass(const GloveSample& sample) noexcept {
     const RawCount count = sample.raw[slot];
     const bool comparable = last.known && same_hand;
     // Clocks are the glove's word: time that runs backwards is no time.
-    const double elapsed_s = std::max(to_seconds(time - last.time), least_s);
-    if (comparable && !last.holding && !is_movement(slot, count, elapsed_s)) {
+    const double elapsed_s = std::max(seconds_between(last.time, time), least_s);
+    const double jump_rad =
+        std::abs(calibration.sensors[slot].gain_rad_per_count) * distance(count, last.count);
+    if (comparable && !last.holding && !is_movement(jump_rad, elapsed_s)) {
       last.holding = true;
       last.refused = count;
       passed.raw[slot] = last.count;

@@ -114,6 +114,9 @@ TEST_SUITE("bench") {
       CHECK(median("full") < median("two_pose"));
       CHECK(median("floor") < 1.0); // noise, 8 bits, and sensors that are not straight lines
       CHECK(median("floor") < median("full"));
+      CHECK(median("adaptive") > median("floor"));
+      // Half a minute of movement teaches about as much as its very minima and maxima.
+      CHECK(median("adaptive") < 2.0 * median("min_max") + 2.0);
       CHECK(methods["full"]["p95_deg"].get<double>() > median("full"));
     }
     const auto again =

@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include <nendo/hand/calibration_file.hpp>
+#include <nendo/hand/calibration_store.hpp>
 
 #include "bench/wearers.hpp"
 #include "calibrate/capture_file.hpp"
@@ -153,7 +154,7 @@ TEST_SUITE("calibrate") {
     refused({"sim", "--from", "x", "--user", "a"}, 2, "GLOVE");
     refused({"sim"}, 2, "--user");
     refused({"sim", "--user", "a"}, 2, "terminal");
-    refused({"--from", "x", "--user", "a", "--hand-length", "3"}, 2, "--hand-length");
+    refused({"--from", "x", "--user", "a", "--hand-length", "0.19"}, 2, "--hand-length");
     refused({"--from", "x", "--user", "a", "--hand-breadth", "nan"}, 2, "--hand-breadth");
     const std::string missing = folder.path() / "missing";
     refused({"--from", missing, "--user", "a"}, 5, missing);
@@ -168,6 +169,24 @@ TEST_SUITE("calibrate") {
       write_file(file, text);
       refused({"--from", file, "--user", "a"}, 5, "bad.jsonl");
     }
+  }
+
+  TEST_CASE("a session that was quit and cannot be read can be left behind") {
+    const TemporaryFolder folder;
+    REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
+    const auto stored = folder.path() / "nendo" / "calibrations";
+    std::filesystem::create_directories(stored);
+    const auto file = hand::calibration_file_name("dora", "", Side::right) + ".unfinished";
+    write_file(stored / file, "nonsense\n");
+    TerminalProgram refused({"calibrate", "sim", "--user", "dora"}, 200, 26);
+    REQUIRE(refused.sees([](const VtScreen& screen) {
+      return screen.transcript().find("--fresh") != std::string::npos;
+    }));
+    CHECK(refused.wait() == 5);
+    TerminalProgram fresh({"calibrate", "sim", "--user", "dora", "--fresh"}, 100, 26);
+    REQUIRE(fresh.sees("Pose 1 of"));
+    REQUIRE(fresh.press('q'));
+    CHECK(fresh.wait() == 0);
   }
 
   TEST_CASE("at a terminal the pose is drawn, a moving hand is told to hold still, and q gives the "

@@ -10,6 +10,7 @@
 #include <nendo/hand/calibration_exchange.hpp>
 #include <nendo/hand/calibration_file.hpp>
 
+#include "support/bvh_reader.hpp"
 #include "support/program.hpp"
 
 using nendo::Side;
@@ -307,5 +308,84 @@ TEST_SUITE("calibration command") {
                                          home.file("shape.obj").string()});
     CHECK(run.exit_code == 0);
     CHECK(run.err.find("berta, left hand") != std::string::npos);
+  }
+
+  TEST_CASE("a glove of the other hand that is plugged in instead gets that hand's calibration") {
+    const Home home;
+    for (const auto& [hand, index_gain] : {std::pair{"left", "0.03"}, {"right", "0.02"}}) {
+      write_file(home.file("x.csv"), with_gain(index_gain));
+      REQUIRE(calibration({"import", home.file("x.csv").string(), "--user", "anna", "--hand", hand})
+                  .exit_code == 0);
+    }
+    const auto link = home.file("glove");
+    const nendo::test::Program emulator(
+        {"emulate", "--link", link.string(), "--hand", "left", "--fault", "swap@4s=right"});
+    REQUIRE(nendo::test::appears(link));
+    const auto done =
+        nendo::test::nendo({"monitor", "serial:" + link.string(), "--json", "--count", "480"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    std::size_t left = 0, right = 0, told = 0;
+    for (const auto& line : lines_of(done.out)) {
+      const json sample = json::parse(line);
+      const bool is_left = sample["hand"] == "left";
+      ++(is_left ? left : right);
+      if (sample.contains("angles")) ++told;
+      const double counts = sample["raw"]["index_mcp"].get<double>() - 60.0;
+      REQUIRE(sample["angle_rad"]["index_mcp"].get<double>() ==
+              doctest::Approx((is_left ? 0.03 : 0.02) * counts));
+    }
+    CHECK(left > 0);
+    CHECK(right > 0);
+    CHECK(told == 2); // once a glove
+  }
+
+  TEST_CASE("a wearer's hand has the size that the calibration says, unless another is given") {
+    const Home home;
+    nendo::hand::WearerCalibration wearer;
+    wearer.user = "anna";
+    wearer.method = "full";
+    wearer.size = {0.160, 0.070};
+    wearer.calibration = nendo::hand::default_calibration();
+    REQUIRE(nendo::hand::write_calibration(home.stored("x"), wearer));
+    // Buchholz et al. 1992: the index finger's proximal phalanx is 0.245 of the hand's length, and
+    // its knuckle 0.251 of the breadth from the middle one's axis.
+    const auto measures = [](std::vector<std::string> more) {
+      more.insert(more.begin(), {"poses", "sim", "--count", "1"});
+      const auto done = nendo::test::nendo(more);
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const auto joints = json::parse(done.out)["joints"];
+      const auto place = [&](const char* joint) {
+        const auto& p = joints[joint]["position_m"];
+        return Eigen::Vector3d(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+      };
+      return std::pair{(place("index_proximal") - place("index_intermediate")).norm() / 0.245,
+                       (place("index_proximal") - place("middle_proximal")).norm()};
+    };
+    const auto [own, own_knuckles] = measures({"--user", "anna"});
+    CHECK(own == doctest::Approx(0.160));
+    const auto [named, named_knuckles] = measures({"--calibration", "anna"});
+    CHECK(named == doctest::Approx(0.160));
+    CHECK(measures({}).first == doctest::Approx(0.187)); // an average one
+    const auto [given, given_knuckles] = measures({"--user", "anna", "--hand-length", "208"});
+    CHECK(given == doctest::Approx(0.208));
+    CHECK(given_knuckles == doctest::Approx(own_knuckles * 208.0 / 160.0)); // of her proportions
+
+    const auto bvh = home.file("x.bvh").string();
+    REQUIRE(nendo::test::nendo({"poses", "sim", "--count", "1", "--user", "anna", "--bvh", bvh})
+                .exit_code == 0);
+    const nendo::test::BvhRecording recording(contents(bvh));
+    const auto& bone = recording.nodes[recording.find("index_intermediate_R")];
+    CHECK(0.01 * bone.offset.norm() == doctest::Approx(0.245 * 0.160));
+
+    for (const auto& [option, length_mm] :
+         {std::pair<std::string, double>{"", 160.0}, {"208", 208.0}}) {
+      std::vector<std::string> run{"run",    "--right",    "sim", "--user", "anna",
+                                   "--json", "--duration", "0.3", "--out",  home.file("x.obj")};
+      if (!option.empty()) run.insert(run.end(), {"--hand-length", option});
+      const auto done = nendo::test::nendo(run);
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const json summary = json::parse(lines_of(done.out).back());
+      CHECK(summary["right"]["hand_length_mm"].get<double>() == doctest::Approx(length_mm));
+    }
   }
 }

@@ -79,6 +79,42 @@ TEST_SUITE("monitor") {
     CHECK(line["angle_rad"]["index_mcp"].get<double>() < 0.8);
   }
 
+  TEST_CASE("the first line of a glove tells which joints it measures, as nendo info does") {
+    for (const std::string glove : {"sim?sensors=18", "sim?sensors=22"}) {
+      const auto info = nendo::test::nendo({"info", glove, "--json"});
+      const auto done = nendo::test::nendo({"monitor", glove, "--count", "3"});
+      const auto lines = lines_of(done.out);
+      REQUIRE(lines.size() == 3);
+      CHECK(json::parse(lines[0])["angles"] == json::parse(info.out)["angles"]);
+      CHECK(json::parse(lines[0])["angles"]["index_dip_flexion"] ==
+            (glove.ends_with("18") ? "from_pip" : "measured"));
+      for (const std::size_t later : {1U, 2U})
+        CHECK_FALSE(json::parse(lines[later]).contains("angles"));
+      const auto raw = nendo::test::nendo({"monitor", glove, "--count", "1", "--raw"});
+      CHECK_FALSE(json::parse(raw.out).contains("angles"));
+    }
+  }
+
+  TEST_CASE("--adapt begins as the default, and cannot be had with a calibration") {
+    const auto angles = [](const std::string& option) {
+      const auto done =
+          nendo::test::nendo({"monitor", "sim:rest?seed=3&rate=1", "--count", "1", option});
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const json line = json::parse(done.out);
+      const double counts = line["raw"]["index_mcp"].get<double>() - 60.0;
+      CHECK(line["angle_rad"]["index_mcp"].get<double>() == doctest::Approx(0.0125 * counts));
+    };
+    angles("--adapt");
+    angles("--json");
+    for (const std::string command : {"monitor", "poses"}) {
+      for (const std::string option : {"--user", "--calibration"}) {
+        const auto done = nendo::test::nendo({command, "sim", "--adapt", option, "anna"});
+        CHECK(done.exit_code == 2);
+        CHECK(is_one_line_about(done.err, "leave out " + option));
+      }
+    }
+  }
+
   TEST_CASE("in a terminal of 80 by 24 there is a line a sensor, and not a character too many") {
     const nendo::test::TemporaryFolder folder;
     const auto link = folder.path() / "glove";

@@ -93,6 +93,34 @@ TEST_SUITE("poses") {
     CHECK(place(poses.front(), "index_tip") != place(poses.back(), "index_tip")); // it waves
   }
 
+  TEST_CASE("the first line of a glove tells which joints it measures, as nendo info does") {
+    for (const std::string glove : {"sim?sensors=18", "sim?sensors=22"}) {
+      const auto info = ordered_json::parse(nendo::test::nendo({"info", glove, "--json"}).out);
+      const auto poses = poses_of({"poses", glove, "--count", "3"});
+      CHECK(poses.at(0)["angles"] == info["angles"]);
+      CHECK(poses[0]["angles"].size() == 23);
+      CHECK_FALSE(poses.at(1).contains("angles"));
+      CHECK_FALSE(poses.at(2).contains("angles"));
+    }
+  }
+
+  TEST_CASE("--adapt poses the hand by what it learns") {
+    const auto poses =
+        poses_of({"poses", "sim:wave?seed=4&rate=200", "--adapt", "--count", "1200"});
+    const auto plain = poses_of({"poses", "sim:wave?seed=4&rate=200", "--count", "1200"});
+    const auto reach = [](const ordered_json& pose) {
+      return distance(pose, "wrist", "index_tip");
+    };
+    const auto least = [&](const std::vector<ordered_json>& of) {
+      double reach_m = 1.0;
+      for (std::size_t n = 800; n < of.size(); ++n)
+        reach_m = std::min(reach_m, reach(of[n]));
+      return reach_m;
+    };
+    // A wave bends the fingers by less than their usual range, so that it comes to look larger.
+    CHECK(least(poses) < least(plain) - 0.002);
+  }
+
   TEST_CASE("a quaternion turns -Z to where the bone goes") {
     for (const auto& pose : poses_of({"poses", "sim:wave?seed=4&hand=left", "--count", "20"})) {
       for (const std::string finger : {"index", "ring"}) {
@@ -120,9 +148,9 @@ TEST_SUITE("poses") {
     CHECK(place(right.at(0), "thumb_metacarpal").x() < -0.01);
   }
 
-  TEST_CASE("--length scales the whole hand") {
-    const auto small = poses_of({"poses", "sim", "--count", "1", "--length", "0.1"}).at(0);
-    const auto large = poses_of({"poses", "sim", "--count", "1", "--length", "0.25"}).at(0);
+  TEST_CASE("--hand-length scales the whole hand") {
+    const auto small = poses_of({"poses", "sim", "--count", "1", "--hand-length", "100"}).at(0);
+    const auto large = poses_of({"poses", "sim", "--count", "1", "--hand-length", "250"}).at(0);
     // Buchholz et al. 1992: the index finger's proximal phalanx is 0.245 of the hand's length.
     CHECK(distance(small, "index_proximal", "index_intermediate") == doctest::Approx(0.0245));
     for (const std::string joint : {"little_proximal", "thumb_metacarpal", "palm"}) {
@@ -162,8 +190,9 @@ TEST_SUITE("poses") {
     for (const std::string hand : {"left", "right"}) {
       const TemporaryFolder folder;
       const auto path = folder.path() / "take.bvh";
-      const auto done = nendo::test::nendo({"poses", "sim:wave?hand=" + hand, "--bvh",
-                                            path.string(), "--duration", "0.7", "--length", "0.2"});
+      const auto done =
+          nendo::test::nendo({"poses", "sim:wave?hand=" + hand, "--bvh", path.string(),
+                              "--duration", "0.7", "--hand-length", "200"});
       CAPTURE(done.err);
       REQUIRE(done.exit_code == 0);
       CHECK(lines_of(done.out).size() == 1);
@@ -301,9 +330,9 @@ TEST_SUITE("poses") {
           Case{{"sim", "--rate", "fast"}, 2, "fast"},
           Case{{"sim", "--duration", "-1"}, 2, "--duration"},
           Case{{"sim", "--duration", "inf"}, 2, "--duration"},
-          Case{{"sim", "--length", "0.09"}, 2, "--length"},
-          Case{{"sim", "--length", "18.7"}, 2, "--length"},
-          Case{{"sim", "--length", "nan"}, 2, "--length"},
+          Case{{"sim", "--hand-length", "99"}, 2, "--hand-length"},
+          Case{{"sim", "--hand-length", "0.187"}, 2, "millimetres"},
+          Case{{"sim", "--hand-length", "nan"}, 2, "--hand-length"},
           Case{{"sim", "--count", "-3"}, 2, "count"}, Case{{"bogus:1"}, 2, "bogus"},
           Case{{"sim:moonwalk"}, 2, "moonwalk"},
           Case{{"serial:/dev/no-such-port"}, 3, "/dev/no-such-port"},

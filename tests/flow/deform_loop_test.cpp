@@ -189,6 +189,74 @@ TEST_SUITE("deform_loop") {
     CHECK(HostClock::now() - asked < 2s); // a period is 5 ms; the rest is for a loaded machine
   }
 
+  TEST_CASE("after a swap a jump is judged by the gains of the glove that is there") {
+    // 40 counts in 11 ms are no movement at 0.0125 rad each, and one at a tenth of that.
+    for (const bool slow_first : {true, false}) {
+      const HostTime now = HostClock::now();
+      SampleRing ring(64);
+      const hand::Calibration fast = hand::default_calibration();
+      hand::Calibration slow = fast;
+      for (auto& sensor : slow.sensors)
+        sensor.gain_rad_per_count *= 0.1;
+      const GloveSample first = nendo::test::bent_sample(Side::right, 0, now);
+      HandInput input{&ring, hand::HandSkeleton(Side::right), slow_first ? slow : fast, first};
+      input.swapped = slow_first ? fast : slow;
+      flow::LoopOptions options;
+      options.sculptor.radius = 0.5;
+      flow::DeformLoop loop(nendo::test::ball(12), {}, {input}, options);
+      int sample = 0;
+      for (const auto& [side, counts] : {std::pair{Side::right, 40},
+                                         {Side::right, 0},
+                                         {Side::left, 0},
+                                         {Side::left, 40},
+                                         {Side::left, 0}}) {
+        ring.try_push(nendo::test::bent_sample(side, counts, now + ++sample * 11ms));
+        loop.tick(static_cast<std::uint64_t>(sample), HostClock::now());
+        const auto spikes = loop.stats().spikes[1][static_cast<std::size_t>(Sensor::index_mcp)];
+        // Kept out, and counted when it has come back.
+        const std::uint64_t of_first = !slow_first && sample >= 2 ? 1 : 0;
+        const std::uint64_t of_swapped = slow_first && sample >= 5 ? 1 : 0;
+        CHECK(spikes == of_first + of_swapped);
+      }
+    }
+  }
+
+  TEST_CASE("a loop that adapts learns each hand's ranges as hand::RangeAdaptation does") {
+    const HostTime now = HostClock::now();
+    LoopUnderTest test(Mode::type1, 24, 1000.0, SwitchAction::none, true, hand::FilterKind::off,
+                       CountScale{});
+    LoopUnderTest plain(Mode::type1);
+    hand::RangeAdaptation reference;
+    reference.push(test::bent_sample(Side::right, 0, now));
+    for (int n = 0; n <= 1000; ++n) {         // and there they are at the least
+      const int bent = std::abs(n % 80 - 40); // 40 counts to and fro, 0.9 s
+      test.bend(bent, now + n * 11ms);
+      plain.bend(bent, now + n * 11ms);
+      reference.push(test::bent_sample(Side::right, bent, now + n * 11ms));
+      test.frame_after_tick(static_cast<std::uint64_t>(n));
+      plain.frame_after_tick(static_cast<std::uint64_t>(n));
+    }
+    constexpr auto index_mcp = static_cast<std::size_t>(Sensor::index_mcp);
+    for (const std::size_t slot : {0U, 1U}) {
+      const hand::SensorRange& learned = test.loop->stats().ranges[slot][index_mcp];
+      const hand::SensorRange known = reference.ranges()[index_mcp];
+      CHECK(learned.turns > 10);
+      CHECK(learned.turns == known.turns);
+      CHECK(learned.low_counts == doctest::Approx(known.low_counts));
+      CHECK(learned.high_counts == doctest::Approx(known.high_counts));
+      CHECK(plain.loop->stats().ranges[slot][index_mcp].turns == 0);
+    }
+    const hand::HandSkeleton skeleton(Side::right);
+    const GloveSample last = test::bent_sample(Side::right, 0, now);
+    const auto tips_by = [&](const hand::Calibration& calibration) {
+      return skeleton.pose(hand::joint_angles(last, calibration), test.placement.T_stage_wrist[1])
+          .fingertip_positions();
+    };
+    const auto shown = test.loop->frames().front().hands[1].pose.fingertip_positions();
+    CHECK((shown - tips_by(reference.calibration())).cwiseAbs().maxCoeff() < 1e-4);
+    CHECK((shown - tips_by(hand::default_calibration())).cwiseAbs().maxCoeff() > 1e-3);
+  }
+
   TEST_CASE("a glove of the other side in the place of the first does not get its calibration") {
     const HostTime now = HostClock::now();
     SampleRing ring(64);

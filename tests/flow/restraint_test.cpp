@@ -42,9 +42,12 @@ TEST_SUITE("restraint") {
                                              {Mode::type2, FilterKind::off},
                                              {Mode::type1, FilterKind::one_euro},
                                              {Mode::type2, FilterKind::one_euro}}) {
+      // With the filter, adaptation too.
       const Mode mode = of_model; // Clang 14 captures no structured bindings
       const FilterKind filter = of_hands;
-      LoopUnderTest test(mode, 24, 1000.0, SwitchAction::none, true, filter);
+      const bool adapts = filter != FilterKind::off;
+      LoopUnderTest test(mode, 24, 1000.0, SwitchAction::none, true, filter,
+                         adapts ? std::optional(CountScale{}) : std::nullopt);
       test::RestraintCounts counts;
       const HostTime begin = HostClock::now();
       // Samples are pushed, and frames read, on this thread too: the ring and the exchange are held
@@ -66,6 +69,8 @@ TEST_SUITE("restraint") {
       CHECK(counts.locks == 0);
       CHECK(test.loop->stats().ticks == 600);
       CHECK(test.loop->stats().failed == 0);
+      constexpr auto index_mcp = static_cast<std::size_t>(Sensor::index_mcp);
+      CHECK((test.loop->stats().ranges[0][index_mcp].turns > 0) == adapts);
       CHECK((test.loop->stats().filter_moving.count() > 0) == (filter != FilterKind::off));
       CHECK((test.loop->frames().front().vertices - test.model.vertices).cwiseAbs().maxCoeff() >
             1e-3);

@@ -18,7 +18,8 @@ constexpr auto pip = static_cast<std::size_t>(Sensor::index_pip);
 
 /// A 22-sensor glove's samples, one after another, all sensors at the same count.
 struct Stream {
-  SensorGate gate{default_calibration()};
+  SensorGate gate{};
+  Calibration calibration = default_calibration();
   HostTime now{1h};
   bool has_clock = true;
 
@@ -34,7 +35,7 @@ struct Stream {
   GloveSample pass(GloveSample next, HostClock::duration later = period_90_hz) {
     now += later;
     next.measured = next.arrival = now;
-    return gate.pass(next);
+    return gate.pass(next, calibration);
   }
   GloveSample pass(int count, HostClock::duration later = period_90_hz) {
     return pass(sample(count), later);
@@ -150,15 +151,37 @@ TEST_SUITE("sensor_gate") {
     CHECK(stream.spikes() == 0);
   }
 
+  TEST_CASE("after a swap a jump is judged by the gains of the glove that is there now") {
+    // 25 rad/s and 11.1 ms are 0.33 rad: 33 counts at 0.01 rad a count, and 330 at a tenth of that.
+    for (const double factor : {0.1, 10.0}) {
+      Stream stream;
+      for (auto& sensor : stream.calibration.sensors)
+        sensor.gain_rad_per_count = 0.01;
+      CHECK(stream.pass(100).raw[pip].value == 100);
+      CHECK(stream.pass(120).raw[pip].value == 120);
+      CHECK(stream.pass(160).raw[pip].value == 120); // 0.4 rad
+      CHECK(stream.pass(160).raw[pip].value == 160);
+      for (auto& sensor : stream.calibration.sensors)
+        sensor.gain_rad_per_count *= factor;
+      const auto left = [&](int count) {
+        GloveSample sample = stream.sample(count);
+        sample.side = Side::left;
+        return stream.pass(sample).raw[pip].value;
+      };
+      CHECK(left(100) == 100);
+      CHECK(left(120) == (factor < 1.0 ? 120 : 100)); // 0.02 rad, or 2
+      left(120);
+      CHECK(left(160) == (factor < 1.0 ? 160 : 120));
+    }
+  }
+
   TEST_CASE("time that runs backwards or stands still, and broken gains, do no harm") {
     Stream stream;
     stream.pass(100);
     CHECK(stream.pass(102, -1h).raw[pip].value == 102);
     CHECK(stream.pass(104, 0ns).raw[pip].value == 104);
-    Calibration broken = default_calibration();
     for (const double gain : {std::numeric_limits<double>::quiet_NaN(), 0.0}) {
-      broken.sensors[pip].gain_rad_per_count = gain;
-      stream.gate = SensorGate(broken);
+      stream.calibration.sensors[pip].gain_rad_per_count = gain;
       stream.pass(0);
       CHECK(stream.pass(255).raw[pip].value == 255);
     }

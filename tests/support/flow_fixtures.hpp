@@ -44,7 +44,8 @@ struct LoopUnderTest {
 
   explicit LoopUnderTest(flow::Mode mode, std::uint32_t rings_of_ball = 24, double rate_hz = 1000.0,
                          flow::SwitchAction switch_action = flow::SwitchAction::none,
-                         bool gated = true, hand::FilterKind filter = hand::FilterKind::off)
+                         bool gated = true, hand::FilterKind filter = hand::FilterKind::off,
+                         std::optional<CountScale> adapt = std::nullopt)
       : model(ball(rings_of_ball)) {
     const HostTime now = HostClock::now();
     std::array<std::optional<flow::Fingertips>, 2> tips;
@@ -60,6 +61,7 @@ struct LoopUnderTest {
               .fingertip_positions();
       inputs.push_back({rings.back().get(), skeleton, hand::default_calibration(), first, gated});
       inputs.back().filter.kind = filter;
+      inputs.back().adapt = adapt;
     }
     placement = flow::place_hands(model, tips);
     flow::LoopOptions options;

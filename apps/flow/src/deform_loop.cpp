@@ -26,6 +26,11 @@ Frame first_frame(const Points& vertices, Eigen::Index control_points, double un
   return frame;
 }
 
+hand::CalibrationInForce calibration_of(const HandInput& input) noexcept {
+  if (input.adapt) return hand::CalibrationInForce(*input.adapt);
+  return {input.first.side, input.calibration, input.swapped};
+}
+
 HostClock::duration duration_of(double seconds) noexcept {
   return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
 }
@@ -42,9 +47,10 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
-    const hand::SensorGate gate(input.calibration);
+    const hand::CalibrationInForce calibration = calibration_of(input);
     const hand::JointFilter filter(input.filter);
-    hands_.push_back({std::move(input), slot, placement.T_stage_wrist[slot], gate, filter});
+    hands_.push_back(
+        {std::move(input), slot, placement.T_stage_wrist[slot], calibration, {}, filter});
     hands_.back().follow(hands_.back().input.first);
   }
   compute_hands(frames_.back());
@@ -52,11 +58,10 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
 }
 
 void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
-  latest = input.gated ? gate.pass(sample) : sample;
+  const hand::Calibration& in_force = calibration.follow(sample);
+  latest = input.gated ? gate.pass(sample, in_force) : sample;
   const HostTime time = latest.has_device_time ? latest.measured : latest.arrival;
-  const bool same_glove = latest.side == input.first.side;
-  const hand::Calibration& calibration = same_glove ? input.calibration : input.swapped;
-  angles = filter.pass(hand::joint_angles(latest, calibration), time);
+  angles = filter.pass(hand::joint_angles(latest, in_force), time);
 }
 
 void DeformLoop::take_samples(HostTime now) noexcept {
@@ -71,6 +76,8 @@ void DeformLoop::take_samples(HostTime now) noexcept {
     hand.fresh = count > 0;
     stats_.samples[hand.slot] += count;
     stats_.spikes[hand.slot] = hand.gate.spikes();
+    if (const auto* learned = hand.calibration.adaptation())
+      stats_.ranges[hand.slot] = learned->ranges();
     const bool silent = now - hand.latest.arrival > options_.silent_after;
     if (silent && !hand.silent) ++stats_.silences[hand.slot];
     hand.silent = silent;

@@ -4,14 +4,13 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
 namespace nendo::driver {
 namespace {
 
-constexpr int analog_most = 4095;                                 // an ESP32's converter, 12 bits
-constexpr std::size_t command_room = 100;                         // the firmware's buffer
-constexpr double splay_end_rad = 20.0 * std::numbers::pi / 180.0; // as OpenGloves shows it
+constexpr int analog_most = 4095;                    // an ESP32's converter, 12 bits
+constexpr std::size_t command_room = 100;            // the firmware's buffer
+constexpr double splay_end_rad = from_degrees(20.0); // as OpenGloves shows it
 
 int clamped(double part) {
   return static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * analog_most));

@@ -12,7 +12,6 @@
 namespace nendo::driver {
 namespace {
 
-constexpr double rad_per_degree = std::numbers::pi / 180.0;
 constexpr double tau = 2.0 * std::numbers::pi;
 
 // Everything in this file is in degrees until at() returns.
@@ -255,7 +254,7 @@ Result<Motion> find_motion(std::string_view name) {
 
 JointRange joint_range(Sensor sensor) noexcept {
   const Limits& limit = limits[static_cast<std::size_t>(sensor)];
-  return {limit.least * rad_per_degree, limit.most * rad_per_degree};
+  return {from_degrees(limit.least), from_degrees(limit.most)};
 }
 
 double part_of_range(const JointAngles& angles, Sensor sensor) noexcept {
@@ -299,7 +298,7 @@ JointAngles HandMotion::at(double time_s) const noexcept {
   for (const Finger& finger : fingers)
     slot(pose, finger.dip) = 2.0 / 3.0 * slot(pose, finger.pip);
   for (double& angle : pose)
-    angle *= rad_per_degree;
+    angle = from_degrees(angle);
   return pose;
 }
 

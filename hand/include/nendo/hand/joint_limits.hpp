@@ -5,8 +5,8 @@
 // that the joint still moves, and no pose is impossible.
 
 #include <array>
-#include <numbers>
 
+#include <nendo/base/units.hpp>
 #include <nendo/hand/angle.hpp>
 
 namespace nendo::hand {
@@ -26,8 +26,8 @@ struct JointLimit {
 
 constexpr JointLimit limit_deg(double least, double soft_least, double soft_most,
                                double most) noexcept {
-  constexpr double rad = std::numbers::pi / 180.0;
-  return {least * rad, soft_least * rad, soft_most * rad, most * rad};
+  return {from_degrees(least), from_degrees(soft_least), from_degrees(soft_most),
+          from_degrees(most)};
 }
 
 // Ranges of motion as clinical goniometry gives them (American Academy of Orthopaedic Surgeons:

@@ -22,14 +22,13 @@ public:
   /// adapters hand over bytes every 16 ms. An interval is then taken as that long at least.
   static constexpr double least_arrival_interval_s = 0.016;
 
-  /// The gains of `calibration` tell how far a count turns a joint.
-  explicit SensorGate(const Calibration& calibration) noexcept;
-
-  /// The sample to use instead of this one, next in time. A sensor that jumped farther than a joint
-  /// can turn since its last accepted count is held at that count, for this one sample; whatever
-  /// comes next is accepted, so that a real jump is a sample late and no more. A sensor that was
-  /// absent before, or on the other hand, is accepted. Wait-free.
-  GloveSample pass(const GloveSample& sample) noexcept;
+  /// The sample to use instead of this one, next in time. The gains of its calibration tell how far
+  /// a count turns a joint: they are those of the glove that sent it, which may not be the one that
+  /// sent the last. A sensor that jumped farther than a joint can turn since its last accepted
+  /// count is held at that count, for this one sample; whatever comes next is accepted, so that a
+  /// real jump is a sample late and no more. A sensor that was absent before, or on the other hand,
+  /// is accepted. Wait-free.
+  GloveSample pass(const GloveSample& sample, const Calibration& calibration) noexcept;
 
   /// By slot: how often a jump was kept out and came back, that is, was no movement.
   const std::array<std::uint64_t, sensor_slots>& spikes() const noexcept { return spikes_; }
@@ -42,9 +41,6 @@ private:
     bool known = false;
     bool holding = false;
   };
-  bool is_movement(std::size_t slot, RawCount count, double elapsed_s) const noexcept;
-
-  std::array<double, sensor_slots> gains_rad_{}; ///< a count, without sign
   std::array<Accepted, sensor_slots> accepted_{};
   std::array<std::uint64_t, sensor_slots> spikes_{};
   Side side_ = Side::right;

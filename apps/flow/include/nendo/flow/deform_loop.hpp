@@ -5,13 +5,14 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/histogram.hpp>
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/wrist_switch.hpp>
-#include <nendo/hand/calibration.hpp>
+#include <nendo/hand/calibration_in_force.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 
@@ -28,6 +29,8 @@ struct HandInput {
   hand::FilterOptions filter{}; ///< of the joint angles, at the samples' own times
   /// For samples of the other side than the first: another glove has been plugged in since.
   hand::Calibration swapped = hand::default_calibration();
+  /// A glove with such counts: its ranges are learned while it is used, in place of calibrations.
+  std::optional<CountScale> adapt{};
 };
 
 struct LoopOptions {
@@ -47,11 +50,12 @@ struct LoopStats {
   std::array<std::uint64_t, 2> silences{};
   std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
   std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor
-  std::uint64_t grabs = 0;   ///< times the hands took hold again
-  std::uint64_t commits = 0; ///< times the shape became the rest shape
-  Histogram wake_latency;    ///< from the deadline to the loop's running
-  Histogram work;            ///< from there to the published frame
-  Histogram end_to_end;      ///< from a sample's last byte to the published frame that shows it
+  std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
+  std::uint64_t grabs = 0;                    ///< times the hands took hold again
+  std::uint64_t commits = 0;                  ///< times the shape became the rest shape
+  Histogram wake_latency;                     ///< from the deadline to the loop's running
+  Histogram work;                             ///< from there to the published frame
+  Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it
   /// hand::FilterLatency of each hand at each tick with samples, which end_to_end does not contain.
   Histogram filter_moving;
   Histogram filter_worst;
@@ -93,7 +97,8 @@ private:
     HandInput input;
     std::size_t slot = 0; ///< of arrays by side
     Eigen::Isometry3d T_stage_wrist;
-    hand::SensorGate gate;
+    hand::CalibrationInForce calibration;
+    hand::SensorGate gate{};
     hand::JointFilter filter;
     GloveSample latest{};
     hand::JointAngles angles{}; ///< of `latest`, filtered

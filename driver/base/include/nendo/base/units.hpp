@@ -6,6 +6,7 @@
 #include <chrono>
 #include <compare>
 #include <cstdint>
+#include <numbers>
 
 namespace nendo {
 
@@ -21,6 +22,22 @@ using HostTime = HostClock::time_point;
 
 constexpr double to_seconds(HostClock::duration d) noexcept {
   return std::chrono::duration<double>(d).count();
+}
+
+/// Defined for any two times: far apart, where their difference would overflow, it wraps instead.
+constexpr double seconds_between(HostTime from, HostTime to) noexcept {
+  const auto ticks = [](HostTime time) {
+    return static_cast<std::uint64_t>(time.time_since_epoch().count());
+  };
+  return to_seconds(HostClock::duration(static_cast<HostClock::rep>(ticks(to) - ticks(from))));
+}
+
+/// Degrees are for people: texts, tables of sources, options. Radians of degrees, and back.
+constexpr double from_degrees(double angle_deg) noexcept {
+  return angle_deg * std::numbers::pi / 180.0;
+}
+constexpr double to_degrees(double angle_rad) noexcept {
+  return angle_rad * 180.0 / std::numbers::pi;
 }
 
 } // namespace nendo

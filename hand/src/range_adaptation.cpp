@@ -1,0 +1,150 @@
+#include <nendo/hand/range_adaptation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nendo::hand {
+namespace {
+
+// How far an end of a swing draws a bound: outwards most of the way at once; inwards a part, which
+// is the less the more has been seen. The ratio of the last two sets which expectile is kept, here
+// that of 0.993; the last one alone, how soon a smaller hand takes over from one that has been
+// there for long: half-way in 140 full swings. Chosen with synthetic wearers, seeds 1 to 50.
+constexpr double out_share = 0.7;
+constexpr double first_in_share = 0.6;
+constexpr double last_in_share = 0.005;
+/// After so many ends of swings the first share, and the first step, have come down by a half.
+constexpr double half_after = 4.0;
+
+// A pause is no time for the lines to move: they would jump.
+constexpr double longest_interval_s = 0.1;
+
+double decline(std::uint32_t ends, double first, double last) noexcept {
+  return last + (first - last) / (1.0 + ends / half_after);
+}
+
+/// Where the bound moves to because of an end of a swing. `outwards` is -1 or 1; amplitude is of
+/// the swing.
+double drawn(double bound, double end, double outwards, double amplitude, double span,
+             double usual_span, std::uint32_t ends) noexcept {
+  const double beyond = outwards * (end - bound);
+  if (beyond > 0.0) {
+    const double most =
+        usual_span * decline(ends, RangeAdaptation::most_first_step, RangeAdaptation::most_step);
+    return bound + outwards * std::min(out_share * beyond, most);
+  }
+  // A swing in the middle of the range tells little of its ends.
+  const double part = std::min(amplitude / span, 1.0);
+  return bound + outwards * decline(ends, first_in_share, last_in_share) * part * part * beyond;
+}
+
+} // namespace
+
+RangeAdaptation::RangeAdaptation(CountScale counts) noexcept
+    : counts_(counts), calibration_(default_calibration(counts)) {
+  const Calibration usual_ranges = default_calibration({1, true});
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto [gain_rad, offset] = calibration_.sensors[slot];
+    if (gain_rad == 0.0) continue;
+    Learner& learner = learners_[slot];
+    learner.usual = usual_ranges.sensors[slot];
+    learner.low = offset + learner.usual.angle_rad(RawCount{0}) / gain_rad;
+    learner.high = offset + learner.usual.angle_rad(RawCount{1}) / gain_rad;
+    learner.usual_span = learner.high - learner.low;
+  }
+}
+
+bool RangeAdaptation::Learner::median(std::uint16_t count, double& result) noexcept {
+  recent[seen % window] = count;
+  ++seen;
+  if (seen < window) return false;
+  auto sorted = recent;
+  std::nth_element(sorted.begin(), sorted.begin() + window / 2, sorted.end());
+  result = sorted[window / 2];
+  return true;
+}
+
+void RangeAdaptation::Learner::learn_top(double amplitude) noexcept {
+  const double to = drawn(high, top, 1.0, amplitude, high - low, usual_span, tops++);
+  if (to - low >= least_span * usual_span) high = to;
+}
+
+void RangeAdaptation::Learner::learn_bottom(double amplitude) noexcept {
+  const double to = drawn(low, bottom, -1.0, amplitude, high - low, usual_span, bottoms++);
+  if (high - to >= least_span * usual_span) low = to;
+}
+
+/// Where the first count lies in its swing is not known, so that the first turn teaches nothing.
+void RangeAdaptation::Learner::follow(double count) noexcept {
+  const double swing = least_swing * usual_span;
+  if (seen == window) { // the first since it was absent
+    rises = falls = false;
+    top = bottom = count;
+  }
+  if (!falls) top = std::max(top, count);
+  if (!rises) bottom = std::min(bottom, count);
+  if (!falls && count <= top - swing) {
+    if (rises) learn_top(top - bottom);
+    falls = true;
+    rises = false;
+    bottom = count;
+  } else if (!rises && count >= bottom + swing) {
+    if (falls) learn_bottom(top - bottom);
+    rises = true;
+    falls = false;
+    top = count;
+  }
+}
+
+// Between two lines an angle changes most at an end of the counts; there it is bounded, and so for
+// every count.
+void RangeAdaptation::drift(std::size_t slot, double interval_s) noexcept {
+  const Learner& learner = learners_[slot];
+  auto& [gain_rad, offset] = calibration_.sensors[slot];
+  const double most = counts_.most;
+  const double goal_gain_rad = learner.usual.gain_rad_per_count / (learner.high - learner.low);
+  const double at_zero = -gain_rad * offset;
+  const double to_zero =
+      learner.usual.angle_rad(RawCount{0}) - goal_gain_rad * learner.low - at_zero;
+  const double to_most = to_zero + (goal_gain_rad - gain_rad) * most;
+  const double farthest = std::max(std::abs(to_zero), std::abs(to_most));
+  const double drift_rad = most_drift_rad_s * interval_s;
+  constexpr double rounding_rad = 1e-12;
+  if (!(farthest > rounding_rad) || drift_rad == 0.0) return;
+  const double part = std::min(drift_rad / farthest, 1.0);
+  gain_rad += part * (goal_gain_rad - gain_rad);
+  offset = -(at_zero + part * to_zero) / gain_rad;
+}
+
+void RangeAdaptation::push(const GloveSample& sample) noexcept {
+  if (begun_ && sample.side != side_) *this = RangeAdaptation(counts_);
+  const HostTime time = sample.has_device_time ? sample.measured : sample.arrival;
+  const double interval_s =
+      begun_ ? std::clamp(seconds_between(last_time_, time), 0.0, longest_interval_s) : 0.0;
+  begun_ = true;
+  side_ = sample.side;
+  last_time_ = time;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    Learner& learner = learners_[slot];
+    if (learner.usual_span == 0.0) continue;
+    double count = 0.0;
+    if (!sample.present.has(static_cast<Sensor>(slot))) {
+      learner.seen = 0;
+    } else if (learner.median(std::min(sample.raw[slot].value, counts_.most), count)) {
+      learner.follow(count);
+    }
+    drift(slot, interval_s);
+  }
+}
+
+SensorRanges RangeAdaptation::ranges() const noexcept {
+  SensorRanges ranges;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const Learner& learner = learners_[slot];
+    ranges[slot] = {learner.low, learner.high,
+                    std::uint64_t{learner.bottoms} + std::uint64_t{learner.tops}};
+  }
+  return ranges;
+}
+
+} // namespace nendo::hand
