@@ -2,6 +2,8 @@
 
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <nendo/deform/control_vectors.hpp>
 #include <nendo/deform/csrbf.hpp>
@@ -20,18 +22,43 @@ struct Options {
   std::string mesh;
   std::string vectors;
   std::string out;
-  double radius = 0.0;
+  std::string radius;
+  std::string common_radius;
   KernelOptions kernel;
 };
 
-Result<Eigen::VectorXd> radii_for(const ControlVectors& vectors, const Options& options) {
-  if (vectors.radii.size() > 0) return vectors.radii;
-  if (!(options.radius > 0.0)) {
+Result<std::optional<Support>> common_radius(const Options& options, bool is_used) {
+  if (options.common_radius.empty()) return std::optional<Support>();
+  const auto common = parse_supports(options.common_radius);
+  if (!common || common->size() != 1) {
+    return Error{Errc::usage, "--common-radius " + options.common_radius +
+                                  ": use R or R:WEIGHT, both greater than 0"};
+  }
+  if (!is_used) {
+    return Error{Errc::usage, "--common-radius: stands beside a radius column, and " +
+                                  options.vectors + " has none; leave it out"};
+  }
+  return std::optional(common->front());
+}
+
+Result<Supports> supports_for(const ControlVectors& vectors, const Options& options) {
+  const bool has_own = !vectors.own.empty();
+  const auto common = common_radius(options, has_own);
+  if (!common) return common.error();
+  if (has_own) return with_common(vectors.own, *common);
+  if (options.radius.empty()) {
     return Error{Errc::usage,
                  "--radius is missing: " + options.vectors +
                      " has no radius column; give --radius R in the mesh's units, R > 0"};
   }
-  return Eigen::VectorXd::Constant(vectors.starts.cols(), options.radius).eval();
+  auto shared = parse_supports(options.radius);
+  if (!shared) {
+    return Error{Errc::usage,
+                 "--radius " + options.radius +
+                     ": use a length > 0 in the mesh's units, or several with weights, "
+                     "like 10+40:0.5"};
+  }
+  return Supports{std::move(*shared), {}};
 }
 
 Result<void> deform_file(const Options& options) {
@@ -41,12 +68,12 @@ Result<void> deform_file(const Options& options) {
   if (!mesh) return mesh.error();
   const auto vectors = read_control_vectors(options.vectors);
   if (!vectors) return vectors.error();
-  const auto radii = radii_for(*vectors, options);
-  if (!radii) return radii.error();
+  const auto supports = supports_for(*vectors, options);
+  if (!supports) return supports.error();
 
   CsrbfSolver solver(*csrbf);
   CsrbfField field;
-  FieldStatus status = solver.build(vectors->starts, *radii);
+  FieldStatus status = solver.build(vectors->starts, *supports);
   if (is_solved(status)) {
     const FieldStatus solved = solver.solve(vectors->displacements, field);
     if (solved != FieldStatus::ok) status = solved;
@@ -77,7 +104,12 @@ void add_deform(Command& program) {
                   "CSV file: x,y,z,dx,dy,dz[,radius], a control vector a line")
       .required();
   command.add_option("--radius", options->radius,
-                     "Radius of the supports, in the mesh's units; a radius column wins");
+                     "Radius of the supports, in the mesh's units, or several with weights for a "
+                     "kernel that is their sum: 10+40:0.5; a radius column wins");
+  command.add_option(
+      "--common-radius", options->common_radius,
+      "Radius beside those of a radius column that all control vectors share, so that "
+      "any choice has a solution; without it, the least of them with weight 0.01");
   add_kernel_options(command, options->kernel);
   command.add_option("--out", options->out, "Where to write the result, .obj or .ply").required();
   command.on_chosen([options] {

@@ -10,5 +10,6 @@ void add_latency_bench(Command& bench);
 void add_faults_bench(Command& bench);
 void add_hand_bench(Command& bench);
 void add_soak_bench(Command& bench);
+void add_solve_bench(Command& bench);
 
 } // namespace nendo::app

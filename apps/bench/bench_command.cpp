@@ -7,13 +7,15 @@ namespace nendo::app {
 
 void add_bench(Command& program) {
   Command bench = program.add_command(
-      "bench", "Measures this program on this machine: latency, faults, load, hands, calibration");
+      "bench",
+      "Measures this program on this machine: latency, faults, load, hands, calibration, fields");
   bench.require_command();
   add_calibration_bench(bench);
   add_latency_bench(bench);
   add_faults_bench(bench);
   add_hand_bench(bench);
   add_soak_bench(bench);
+  add_solve_bench(bench);
 }
 
 } // namespace nendo::app

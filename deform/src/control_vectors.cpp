@@ -14,8 +14,8 @@ namespace nendo::deform {
 
 namespace {
 
-/// The solve is dense: this many need 134 MB a matrix and some ten seconds.
-constexpr std::size_t most_rows = 4096;
+/// Far beyond what can be solved for in a minute.
+constexpr std::size_t most_rows = 1'000'000;
 
 constexpr std::array<std::string_view, 7> column_names{"x", "y", "z", "dx", "dy", "dz", "radius"};
 
@@ -49,8 +49,9 @@ private:
 
   std::string_view name_;
   std::size_t line_ = 0;
-  std::size_t columns_ = 0; ///< 6 or 7; 0 before the header
-  std::vector<double> numbers_;
+  std::size_t columns_ = 0;     ///< 6 or 7; 0 before the header
+  std::vector<double> numbers_; ///< six a row
+  std::vector<OwnSupport> own_;
 };
 
 Result<ControlVectors> CsvParser::parse(std::string_view text) {
@@ -83,33 +84,39 @@ Result<void> CsvParser::header(std::string_view row) {
 }
 
 Result<void> CsvParser::numbers(std::string_view row) {
-  if (numbers_.size() / columns_ == most_rows)
-    return bad("more than " + std::to_string(most_rows) + " control vectors");
+  const std::size_t rows = numbers_.size() / 6;
+  if (rows == most_rows) return bad("more than " + std::to_string(most_rows) + " control vectors");
   const auto fields = static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) + 1;
   if (fields != columns_)
     return bad("column " + std::to_string(std::min(fields, columns_) + 1) + ": has " +
                std::to_string(fields) + " columns, the header " + std::to_string(columns_));
   for (std::size_t column = 0; column < columns_; ++column) {
     const std::string_view field = trimmed(cut(row, ','));
-    const auto number = to_number(field);
     const std::string place =
         "column " + std::to_string(column + 1) + " (" + std::string(column_names[column]) + "): ";
+    if (column == 6) {
+      const auto supports = parse_supports(field);
+      if (!supports)
+        return bad(place + quoted(field) + " is not a radius > 0, or several like 10+40:0.5");
+      for (const Support& support : *supports)
+        own_.push_back({static_cast<Eigen::Index>(rows), support});
+      continue;
+    }
+    const auto number = to_number(field);
     if (!number || !is_usable(*number))
       return bad(place + quoted(field) + " is not a finite number of at most 1e100");
-    if (column == 6 && *number <= 0.0) return bad(place + "a radius must be greater than 0");
     numbers_.push_back(*number);
   }
   return {};
 }
 
 ControlVectors CsvParser::vectors() const {
-  const auto columns = static_cast<Eigen::Index>(columns_);
-  const Eigen::Map<const Eigen::MatrixXd> table(
-      numbers_.data(), columns, static_cast<Eigen::Index>(numbers_.size()) / columns);
+  const Eigen::Map<const Eigen::MatrixXd> table(numbers_.data(), 6,
+                                                static_cast<Eigen::Index>(numbers_.size()) / 6);
   ControlVectors result;
   result.starts = table.topRows<3>();
-  result.displacements = table.middleRows<3>(3);
-  if (columns_ == 7) result.radii = table.row(6).transpose();
+  result.displacements = table.bottomRows<3>();
+  result.own = own_;
   return result;
 }
 

@@ -1,10 +1,14 @@
 #include <nendo/deform/field.hpp>
 
-#include <cmath>
+#include "field_by_cells.hpp"
+#include "field_terms.hpp"
 
 namespace nendo::deform {
 
 namespace {
+
+/// From here on, sorting costs less than asking every function about every point.
+constexpr Eigen::Index least_by_cells = 256;
 
 bool is_zero(const CsrbfField& field) {
   return field.coefficients.isZero(0.0) && field.polynomial.isZero(0.0);
@@ -13,12 +17,9 @@ bool is_zero(const CsrbfField& field) {
 } // namespace
 
 Eigen::Vector3d CsrbfField::displacement_at(const Eigen::Vector3d& x) const noexcept {
-  Eigen::Vector3d sum = polynomial.col(0) + polynomial.rightCols<3>() * x;
-  for (Eigen::Index i = 0; i < centres.cols(); ++i) {
-    const double squared = (x - centres.col(i)).squaredNorm();
-    if (!(squared < radii[i] * radii[i])) continue;
-    sum += wendland(kernel, std::sqrt(squared) / radii[i]) * coefficients.col(i);
-  }
+  Eigen::Vector3d sum = polynomial_at(*this, x);
+  for (Eigen::Index i = 0; i < centres.cols(); ++i)
+    add_term(*this, i, x, sum);
   return sum;
 }
 
@@ -26,6 +27,10 @@ void displace(const CsrbfField& field, const Points& points, Points& out) {
   if (out.cols() != points.cols()) out.resize(3, points.cols());
   if (is_zero(field)) {
     out = points; // adding +0 would turn a coordinate of -0 into +0
+    return;
+  }
+  if (field.centres.cols() >= least_by_cells && points.cols() > 1) {
+    displace_by_cells(field, points, out);
     return;
   }
   for (Eigen::Index i = 0; i < points.cols(); ++i) {

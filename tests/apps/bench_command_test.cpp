@@ -1,5 +1,7 @@
 #include <cstdint>
 #include <cstdlib>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
@@ -93,6 +95,31 @@ TEST_SUITE("bench") {
     CHECK(lines_of(text.out).size() == 4);
   }
 
+  TEST_CASE("bench solve tells the times and the fill of every order, and of a dense elimination") {
+    const auto done =
+        nendo::test::nendo({"bench", "solve", "--points", "400", "--rounds", "1", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 5);
+    const auto ten = nlohmann::json::parse(lines[0]);
+    for (const char* key : {"build_us", "solve_us", "several_radii_build_us"})
+      CHECK(ten[key].get<double>() > 0.0);
+    std::vector<std::int64_t> entries;
+    for (std::size_t line = 1; line < 5; ++line) {
+      const auto one = nlohmann::json::parse(lines[line]);
+      CHECK(one["points"] == 400);
+      CHECK(one["build_ms"].get<double>() >= one["factor_ms"].get<double>());
+      CHECK(one["solve_ms"].get<double>() > 0.0);
+      entries.push_back(one["factor_entries"].get<std::int64_t>());
+    }
+    CHECK(entries[0] > 2 * entries[1]); // no order, octree
+    CHECK(entries[1] > entries[2]);     // minimum degree
+    CHECK(entries[3] == 400 * 401 / 2); // dense
+    const auto text = nendo::test::nendo({"bench", "solve", "--points", "200", "--rounds", "1"});
+    CHECK(text.exit_code == 0);
+    CHECK(text.out.find("times as long as") != std::string::npos);
+  }
+
   TEST_CASE("guided poses calibrate strangers: nearer than two poses do, farther than the truth") {
     const auto done =
         nendo::test::nendo({"bench", "calibration", "--wearers", "8", "--seed", "2001", "--json"});
@@ -141,6 +168,9 @@ TEST_SUITE("bench") {
     const auto nobody = nendo::test::nendo({"bench", "calibration", "--wearers", "0"});
     CHECK(nobody.exit_code == 2);
     CHECK(is_one_line_about(nobody.err, "--wearers"));
+    const auto hermits = nendo::test::nendo({"bench", "solve", "--neighbours", "0"});
+    CHECK(hermits.exit_code == 2);
+    CHECK(is_one_line_about(hermits.err, "--neighbours"));
     const auto few = nendo::test::nendo({"bench", "soak", "--records", "1"});
     CHECK(few.exit_code == 2);
     CHECK(is_one_line_about(few.err, "--records"));

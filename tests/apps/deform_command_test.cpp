@@ -215,6 +215,65 @@ TEST_SUITE("deform") {
     }
   }
 
+  TEST_CASE("several radii, as a mix or a control vector each, reach the end points") {
+    const TemporaryFolder folder;
+    const auto mesh = (folder.path() / "m.obj").string();
+    const auto vectors = (folder.path() / "v.csv").string();
+    const auto out = folder.path() / "o.obj";
+    nendo::test::write_file(mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 0 0\nf 1 2 3\n");
+    const auto moved = [&](const std::string& rows, std::vector<std::string> more) {
+      nendo::test::write_file(vectors, rows);
+      std::vector<std::string> all{"deform", mesh, "--vectors", vectors, "--out", out.string()};
+      all.insert(all.end(), more.begin(), more.end());
+      const auto done = nendo::test::nendo(all);
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const auto result = deform::read_mesh(out);
+      REQUIRE(result);
+      return result->vertices;
+    };
+    const std::string head = "x,y,z,dx,dy,dz";
+    const Points mixed = moved(head + "\n0,0,0,0,0,1\n1,0,0,0,0,2\n", {"--radius", "2+20:0.5"});
+    CHECK(mixed(2, 0) == doctest::Approx(1.0));
+    CHECK(mixed(2, 1) == doctest::Approx(2.0));
+    CHECK(mixed(2, 3) > 0.01); // only the radius of 20 reaches it
+    const std::string own = head + ",radius\n0,0,0,0,0,1,2\n1,0,0,0,0,2,2+20:0.5\n";
+    const Points apart = moved(own, {});
+    CHECK(apart(2, 0) == doctest::Approx(1.0));
+    CHECK(apart(2, 1) == doctest::Approx(2.0));
+    CHECK(apart(2, 3) > 0.01);
+    const Points common = moved(own, {"--common-radius", "3:1000"});
+    CHECK(common(2, 1) == doctest::Approx(2.0));
+    CHECK(std::abs(common(2, 3)) < 0.01); // all but left to the common radius
+  }
+
+  TEST_CASE("thousands of control vectors are no matter") {
+    std::mt19937 random(23);
+    std::uniform_real_distribution<double> u(0.0, 50.0);
+    const Mesh mesh = plane(41);
+    const TemporaryFolder folder;
+    const auto in = folder.path() / "plane.ply";
+    REQUIRE(deform::write_mesh(in, mesh));
+    Points starts(3, 5000);
+    for (auto start : starts.colwise())
+      start << u(random), u(random), 0.0;
+    // The mesh's own corner is one of the start points.
+    starts.col(4999) = mesh.vertices.col(0);
+    const Points moves = Points::Random(3, 5000);
+    const auto vectors = folder.path() / "vectors.csv";
+    const auto out = folder.path() / "out.ply";
+    nendo::test::write_file(vectors, csv(starts, moves));
+    const auto done = nendo::test::nendo({"deform", in.string(), "--vectors", vectors.string(),
+                                          "--radius", "1.5", "--out", out.string()});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto result = deform::read_mesh(out);
+    REQUIRE(result);
+    CHECK((result->vertices.col(0) - mesh.vertices.col(0) - moves.col(4999)).norm() < 1e-6);
+    const auto wide = nendo::test::nendo({"deform", in.string(), "--vectors", vectors.string(),
+                                          "--radius", "40", "--out", out.string()});
+    CHECK(wide.exit_code == 5);
+    CHECK(is_one_line_about(wide.err, "smaller radii or fewer points"));
+  }
+
   TEST_CASE("wrong options are wrong usage") {
     const TemporaryFolder folder;
     const auto mesh = (folder.path() / "m.obj").string();
@@ -233,6 +292,9 @@ TEST_SUITE("deform") {
     CHECK(with({"--out", out, "--radius", "-3"}).exit_code == 2);
     CHECK(with({"--out", out, "--radius", "nan"}).exit_code == 2);
     CHECK(with({"--out", out, "--radius", "ten"}).exit_code == 2);
+    CHECK(is_one_line_about(with({"--out", out, "--radius", "1+"}).err, "--radius 1+"));
+    CHECK(with({"--out", out, "--radius", "1", "--common-radius", "2"}).exit_code == 2);
+    CHECK(with({"--out", out, "--radius", "1", "--common-radius", "1+2"}).exit_code == 2);
     CHECK(with({"--out", out, "--radius", "1", "--kernel", "gauss"}).exit_code == 2);
     CHECK(with({"--out", out, "--radius", "1", "--polynomial", "cubic"}).exit_code == 2);
     CHECK(with({"--out", (folder.path() / "o.stl").string(), "--radius", "1"}).exit_code == 2);

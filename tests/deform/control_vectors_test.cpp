@@ -22,13 +22,19 @@ TEST_SUITE("control_vectors") {
     CHECK(vectors->displacements.col(0) == Eigen::Vector3d(4, 5, 6));
     CHECK(vectors->starts.col(1) == Eigen::Vector3d(-1, 2.5, 30));
     CHECK(vectors->displacements.col(1) == Eigen::Vector3d(0.5, 0, 0));
-    CHECK(vectors->radii == Eigen::Vector2d(7, 0.25));
+    using nendo::deform::OwnSupport;
+    CHECK(vectors->own == std::vector<OwnSupport>{{0, {7.0, 1.0}}, {1, {0.25, 1.0}}});
+    const auto mixed = parse_control_vectors(
+        "x,y,z,dx,dy,dz,radius\n1,2,3,4,5,6,7+20:0.5\n1,2,3,4,5,6, 9:2\n", "t.csv");
+    REQUIRE(mixed);
+    CHECK(mixed->own ==
+          std::vector<OwnSupport>{{0, {7.0, 1.0}}, {0, {20.0, 0.5}}, {1, {9.0, 2.0}}});
   }
 
   TEST_CASE("without a radius column there are no radii") {
     const auto vectors = parse_control_vectors(header + "1,2,3,4,5,6\n", "t.csv");
     REQUIRE(vectors);
-    CHECK(vectors->radii.size() == 0);
+    CHECK(vectors->own.empty());
   }
 
   TEST_CASE("what is wrong is named with its line and column") {
@@ -56,6 +62,8 @@ TEST_SUITE("control_vectors") {
         {header + "1\x01\x7f" + std::string(99, 'a') + ",2,3,4,5,6\n", "(x): '1??aaa"},
         {with_radius + "1,2,3,4,5,6,0\n", "t.csv:2: column 7 (radius)"},
         {with_radius + "1,2,3,4,5,6,-1\n", "t.csv:2: column 7 (radius)"},
+        {with_radius + "1,2,3,4,5,6,7+\n", "t.csv:2: column 7 (radius): '7+'"},
+        {with_radius + "1,2,3,4,5,6,7:0\n", "t.csv:2: column 7 (radius): '7:0'"},
     };
     for (const Case& one : cases) {
       CAPTURE(one.text);
@@ -69,14 +77,18 @@ TEST_SUITE("control_vectors") {
     }
   }
 
-  TEST_CASE("4096 control vectors are taken, one more is refused") {
+  TEST_CASE("tens of thousands of control vectors are taken, more than a million are refused") {
     std::string text = header;
-    for (int row = 0; row < 4096; ++row)
+    for (int row = 0; row < 20'000; ++row)
       text += "1,2,3,4,5,6\n";
-    CHECK(parse_control_vectors(text, "t.csv"));
-    const auto more = parse_control_vectors(text + "1,2,3,4,5,6\n", "t.csv");
+    const auto many = parse_control_vectors(text, "t.csv");
+    REQUIRE(many);
+    CHECK(many->starts.cols() == 20'000);
+    for (int row = 20'000; row < 1'000'001; ++row)
+      text += "1,2,3,4,5,6\n";
+    const auto more = parse_control_vectors(text, "t.csv");
     REQUIRE_FALSE(more);
-    CHECK(more.error().message == "t.csv:4098: more than 4096 control vectors");
+    CHECK(more.error().message == "t.csv:1000002: more than 1000000 control vectors");
   }
 
   TEST_CASE("a file that is not there is bad input") {

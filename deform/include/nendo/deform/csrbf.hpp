@@ -2,13 +2,13 @@
 // Finds the field that moves start points by given displacements (Sato, Savchenko, Ohbuchi 2004,
 // section 2.3): s(c_i) = g_i and sum_i a_i q(c_i) = 0 for every q in p's basis.
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string_view>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include <nendo/deform/field.hpp>
+#include <nendo/deform/supports.hpp>
 
 namespace nendo::deform {
 
@@ -19,21 +19,32 @@ enum class Polynomial { none, constant, linear };
 std::string_view name_of(Polynomial polynomial) noexcept;
 std::optional<Polynomial> polynomial_named(std::string_view name) noexcept;
 
+/// How many start points are put in a row before the elimination: as they come, along an octree, or
+/// by approximate minimum degree on top of that, which fills the factor least but takes longer to
+/// find. by_size: an octree's up to 800 points.
+enum class PointOrder { by_size, as_given, octree, minimum_degree };
+/// by_size: dense up to a hundred start points, and where most of them meet.
+enum class Storage { by_size, dense, sparse };
+
 struct CsrbfOptions {
   Wendland kernel = Wendland::c2;
   Polynomial polynomial = Polynomial::none;
-  /// Start points nearer than this fraction of the radius (the larger of the two) share their
-  /// displacements, the more the nearer they are, and wholly when they coincide: a pinch stays
-  /// bounded and continuous. From this distance on, interpolation is exact.
+  /// Start points nearer than this fraction of the least shared radius share their displacements,
+  /// the more the nearer they are, and wholly when they coincide: a pinch stays continuous, and
+  /// bounded by some 0.25 / merge_fraction displacements, five times that with several radii (as
+  /// pinch_test.cpp finds). From this distance on, interpolation is exact.
   double merge_fraction = 1e-6;
+  PointOrder order = PointOrder::by_size;
+  Storage storage = Storage::by_size;
 };
 
 enum class FieldStatus {
   ok,
-  merged,    ///< some start points shared their displacements
-  singular,  ///< these centres and radii have no usable solution; the field is unchanged
-  not_finite ///< an input was NaN, infinite or beyond 1e100, a radius not positive; the field is
-             ///< unchanged
+  merged,     ///< some start points shared their displacements
+  singular,   ///< no usable solution in double; the field is unchanged
+  too_dense,  ///< too many start points lie in each other's supports; the field is unchanged
+  not_finite, ///< an input was NaN, infinite or beyond 1e100, a radius or weight not positive; the
+              ///< field is unchanged
 };
 std::string_view describe(FieldStatus status) noexcept;
 
@@ -41,47 +52,52 @@ constexpr bool is_solved(FieldStatus status) noexcept {
   return status == FieldStatus::ok || status == FieldStatus::merged;
 }
 
-/// Factorises once for a set of start points, then solves for any number of displacements. After
-/// the first build() of a size, neither build() nor solve() of that size allocates, locks or calls
-/// the system, up to `lean_size` points.
+/// What the last build() took. Times are 0 up to lean_size points, where no clock is read.
+struct SolverEffort {
+  bool sparse = false;
+  Eigen::Index matrix_entries = 0; ///< of one triangle
+  Eigen::Index factor_entries = 0;
+  double order_s = 0.0;    ///< octree
+  double assembly_s = 0.0; ///< neighbours, matrix
+  double analysis_s = 0.0; ///< minimum degree, the factor's pattern
+  double factor_s = 0.0;
+};
+
+/// Factorises once for a set of start points, then solves for any number of displacements. Up to
+/// `lean_size` points neither build() nor solve() allocates, locks or calls the system once they
+/// have been called with as many points, supports and a field of that size.
 class CsrbfSolver {
 public:
   static constexpr Eigen::Index lean_size = 32;
+  /// Beyond this, supports that hold more than an eighth of the start points are too_dense; so is a
+  /// factor of more than `most_factor_entries`, which take 800 MB.
+  static constexpr Eigen::Index most_dense_points = 4096;
+  static constexpr Eigen::Index most_factor_entries = Eigen::Index{1} << 26;
+  /// So many pairs of an own function and a start point in its reach; more are too_dense, too.
+  static constexpr std::size_t most_own_values = std::size_t{1} << 23;
 
-  explicit CsrbfSolver(CsrbfOptions options) : options_(options) {}
+  explicit CsrbfSolver(CsrbfOptions options);
+  ~CsrbfSolver();
+  CsrbfSolver(CsrbfSolver&&) noexcept;
+  CsrbfSolver& operator=(CsrbfSolver&&) noexcept;
 
-  /// Allocates for this many points, so that already the first build() need not.
+  /// Allocates for this many points with one radius each, so that already the first build() need
+  /// not.
   void reserve(Eigen::Index points);
-  /// Assembles and factorises: Cholesky of A and the Schur complement of the polynomial part where
-  /// all radii are equal, LU with a condition check where they are not (A is then unsymmetric and
-  /// singular for some poses). starts: 3 by n; radii: n, all > 0.
+  /// Orders, assembles and factorises: Cholesky of M (supports.hpp), then the Schur complement of
+  /// the polynomial part. starts: 3 by n; the supports' points are below n.
+  FieldStatus build(const Points& starts, const Supports& supports);
+  /// A radius each, n: with_common() of them.
   FieldStatus build(const Points& starts, const Eigen::VectorXd& radii);
-  /// displacements: 3 by n, g_i. Writes the whole field. Needs a successful build().
+  /// displacements: 3 by n, g_i. Writes the whole field: the shared functions of the first support,
+  /// a start point each, then those of the next, then the own ones. Needs a successful build().
   FieldStatus solve(const Points& displacements, CsrbfField& field);
 
-private:
-  void assemble();
-  void orthonormalise(const Eigen::Matrix4d& normalise);
-  void merge_near();
-  bool factorise_symmetric();
-  bool factorise_general();
-  void solve_in_place(Eigen::MatrixX3d& values);
-  FieldStatus status_if_solved() const { return merged_ ? FieldStatus::merged : FieldStatus::ok; }
+  const SolverEffort& effort() const noexcept;
 
-  CsrbfOptions options_;
-  Points starts_;
-  Eigen::VectorXd radii_;
-  bool symmetric_ = true; ///< all radii are equal
-  bool merged_ = false;
-  bool usable_ = false;
-  Eigen::MatrixXd saddle_;               ///< [A Q; Q^T U]
-  Eigen::Matrix4d world_to_basis_;       ///< q(x) from (1, x, y, z)
-  Eigen::LLT<Eigen::MatrixXd> cholesky_; ///< of A
-  Eigen::MatrixX4d solved_basis_;        ///< A^-1 Q
-  Eigen::LLT<Eigen::Matrix4d> schur_;    ///< of Q^T A^-1 Q + U
-  Eigen::FullPivLU<Eigen::MatrixXd>
-      elimination_; ///< of the saddle-point matrix where A is unsymmetric
-  Eigen::MatrixX3d right_side_, solution_, correction_, scratch_;
+private:
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 } // namespace nendo::deform

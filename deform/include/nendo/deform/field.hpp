@@ -20,7 +20,8 @@ struct CsrbfField {
 };
 
 /// out = points + s(points), column by column; `out` is resized only if its size differs. May be
-/// `points` itself.
+/// `points` itself. Fields of 256 functions and more are evaluated by a grid over them, which
+/// allocates and changes no bit.
 void displace(const CsrbfField& field, const Points& points, Points& out);
 
 } // namespace nendo::deform

@@ -1,0 +1,67 @@
+#pragma once
+// Points sorted into cubes, so that those near a place are found without looking at all.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::deform {
+
+class PointGrid {
+public:
+  /// points: finite, at most 1e100. cell_edge > 0 is enlarged where there would be more than 2^21
+  /// cells along an axis. Allocates.
+  PointGrid(const Points& points, double cell_edge);
+
+  /// Of cells: x in the lowest 21 bits, then y, z. Places outside the points' box are those of its
+  /// border.
+  std::uint64_t cell_of(const Eigen::Vector3d& place) const noexcept;
+
+  /// visit(index) for every point within `reach` of the box, and for some others, in no order.
+  template <class Visit>
+  void visit_near(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double reach,
+                  const Visit& visit) const {
+    // What rounding may take from a distance that is computed as below `reach`.
+    const double margin =
+        reach * 1e-12 + 1e-15 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+    const Cell first = cell_at(low.array() - (reach + margin));
+    const Cell last = cell_at(high.array() + (reach + margin));
+    const std::uint64_t rows = (last[1] - first[1] + 1) * (last[2] - first[2] + 1);
+    if (rows >= sorted_.size()) {
+      for (const Entry& entry : sorted_)
+        visit(entry.point);
+      return;
+    }
+    for (std::uint64_t z = first[2]; z <= last[2]; ++z)
+      for (std::uint64_t y = first[1]; y <= last[1]; ++y) {
+        const std::uint64_t end = key_of({last[0], y, z});
+        auto at =
+            std::lower_bound(sorted_.begin(), sorted_.end(), key_of({first[0], y, z}),
+                             [](const Entry& entry, std::uint64_t key) { return entry.key < key; });
+        for (; at != sorted_.end() && at->key <= end; ++at)
+          visit(at->point);
+      }
+  }
+
+private:
+  static constexpr int bits = 21;
+  using Cell = std::array<std::uint64_t, 3>;
+  struct Entry {
+    std::uint64_t key;
+    std::uint32_t point;
+  };
+
+  static std::uint64_t key_of(const Cell& cell) noexcept {
+    return cell[2] << (2 * bits) | cell[1] << bits | cell[0];
+  }
+  Cell cell_at(const Eigen::Vector3d& place) const noexcept;
+
+  Eigen::Vector3d lowest_ = Eigen::Vector3d::Zero();
+  double cells_per_unit_ = 1.0;
+  std::vector<Entry> sorted_;
+};
+
+} // namespace nendo::deform

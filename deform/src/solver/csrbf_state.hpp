@@ -1,0 +1,59 @@
+#pragma once
+// What CsrbfSolver keeps between build() and solve(), and the paper's five steps in a row: order
+// and assembly and elimination (csrbf_build.cpp), displacements and the field (csrbf.cpp), whose
+// evaluation is field.hpp's.
+
+#include <array>
+#include <memory>
+
+#include <nendo/deform/csrbf.hpp>
+
+#include "solver/polynomial_part.hpp"
+
+namespace nendo::deform {
+
+class CsrbfSolver::State {
+public:
+  explicit State(const CsrbfOptions& options) : options_(options) {}
+
+  void reserve(Eigen::Index points);
+  /// Of `supports`. starts and supports: usable.
+  FieldStatus build(const Points& starts);
+  FieldStatus solve(const Points& displacements, CsrbfField& field);
+
+  Supports supports;
+  SolverEffort effort;
+
+private:
+  using Systems = std::array<std::unique_ptr<KernelSystem>, 3>; ///< lean, dense, sparse
+
+  bool has_polynomial() const noexcept { return options_.polynomial != Polynomial::none; }
+  /// p(x) cannot join M, or a solution for every choice would not be certain: it is what the shared
+  /// functions alone would make it, and all functions together carry the rest.
+  bool is_polynomial_apart() const noexcept { return has_polynomial() && own_.size() > 0; }
+  void put_in_order(const Points& starts);
+  KernelSystem::Assembled assemble(const OwnFunctions& own, Systems& systems,
+                                   KernelSystem*& system);
+  FieldStatus factorise(KernelSystem& system, double size);
+  FieldStatus factorise_polynomial(double size);
+  void solve_in_place(Rows& a, Eigen::Matrix4d& b, const Eigen::Matrix4d& sums);
+  bool write(CsrbfField& field, const Eigen::Matrix4d& b);
+
+  CsrbfOptions options_;
+  Points starts_;
+  std::vector<std::uint32_t> order_; ///< start points, in the order of elimination
+  Points ordered_starts_;
+  Supports ordered_supports_; ///< points are places in that order
+  OwnFunctions own_;
+  OwnFunctions no_own_;            ///< stays empty
+  Systems systems_;                ///< made when first needed
+  KernelSystem* system_ = nullptr; ///< of M
+  Systems shared_systems_;         ///< of its shared part, for a polynomial apart
+  KernelSystem* shared_system_ = nullptr;
+  PolynomialPart polynomial_;
+  bool merged_ = false;
+  bool usable_ = false;
+  Rows right_side_, solution_, correction_, own_coefficients_;
+};
+
+} // namespace nendo::deform

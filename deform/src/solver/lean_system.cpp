@@ -1,0 +1,106 @@
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "solver/dense_assembly.hpp"
+#include "solver/kernel_system.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+constexpr Eigen::Index most = CsrbfSolver::lean_size;
+
+class LeanSystem final : public KernelSystem {
+public:
+  void reserve(Eigen::Index points) override {
+    assert(points <= most);
+    n_ = points;
+    lower_.resize(n_, n_);
+    diagonal_.resize(n_);
+  }
+
+  Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
+                     const OwnFunctions& own) override {
+    reserve(starts.cols());
+    const bool merged = assemble_dense(options, starts, supports, own, lower_, diagonal_);
+    return merged ? Assembled::merged : Assembled::ok;
+  }
+
+  /// Right-looking: each finished column is taken from those after it, which are contiguous.
+  bool factorise(double ridge) override {
+    for (Eigen::Index j = 0; j < n_; ++j) {
+      for (Eigen::Index i = j; i < n_; ++i)
+        factor_[index(i, j)] = lower_(i, j);
+      factor_[index(j, j)] += ridge;
+    }
+    for (Eigen::Index k = 0; k < n_; ++k) {
+      double* const column = &factor_[index(0, k)];
+      if (!(column[k] > 0.0)) return false;
+      const double inverse = 1.0 / std::sqrt(column[k]);
+      inverse_diagonal_[static_cast<std::size_t>(k)] = inverse;
+      for (Eigen::Index i = k + 1; i < n_; ++i)
+        column[i] *= inverse;
+      for (Eigen::Index j = k + 1; j < n_; ++j) {
+        double* const target = &factor_[index(0, j)];
+        const double value = column[j];
+        for (Eigen::Index i = j; i < n_; ++i)
+          target[i] -= value * column[i];
+      }
+    }
+    return true;
+  }
+
+  void solve_in_place(Rows& rows) noexcept override {
+    for (Eigen::Index k = 0; k < n_; ++k) {
+      const double* const column = &factor_[index(0, k)];
+      const Row solved = Row(rows.row(k)) * inverse_diagonal_[static_cast<std::size_t>(k)];
+      rows.row(k) = solved;
+      for (Eigen::Index i = k + 1; i < n_; ++i)
+        rows.row(i) -= column[i] * solved;
+    }
+    for (Eigen::Index k = n_ - 1; k >= 0; --k) {
+      const double* const column = &factor_[index(0, k)];
+      Row sum = rows.row(k);
+      for (Eigen::Index i = k + 1; i < n_; ++i)
+        sum -= column[i] * rows.row(i);
+      rows.row(k) = sum * inverse_diagonal_[static_cast<std::size_t>(k)];
+    }
+  }
+
+  void subtract_product(const Rows& x, Rows& residual) const noexcept override {
+    for (Eigen::Index j = 0; j < n_; ++j) {
+      const Row own = x.row(j);
+      Row sum = lower_(j, j) * own;
+      for (Eigen::Index i = j + 1; i < n_; ++i) {
+        const double value = lower_(i, j);
+        sum += value * x.row(i);
+        residual.row(i) -= value * own;
+      }
+      residual.row(j) -= sum;
+    }
+  }
+
+  Eigen::Index matrix_entries() const noexcept override { return n_ * (n_ + 1) / 2; }
+  Eigen::Index factor_entries() const noexcept override { return matrix_entries(); }
+
+private:
+  using Row = Eigen::RowVector4d;
+  static std::size_t index(Eigen::Index row, Eigen::Index column) noexcept {
+    return static_cast<std::size_t>(column * most + row);
+  }
+
+  Eigen::Index n_ = 0;
+  Eigen::MatrixXd lower_;
+  Eigen::VectorXd diagonal_;
+  alignas(16) std::array<double, static_cast<std::size_t>(most* most)> factor_{};
+  std::array<double, static_cast<std::size_t>(most)> inverse_diagonal_{};
+};
+
+} // namespace
+
+std::unique_ptr<KernelSystem> make_lean_system() {
+  return std::make_unique<LeanSystem>();
+}
+
+} // namespace nendo::deform

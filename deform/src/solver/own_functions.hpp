@@ -1,0 +1,50 @@
+#pragma once
+// Psi of supports.hpp: each own function at the start points within its radius, and what it adds to
+// the matrix and to the field.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <nendo/deform/csrbf.hpp>
+
+#include "solver/rows.hpp"
+
+namespace nendo::deform {
+
+class OwnFunctions {
+public:
+  struct Value {
+    std::uint32_t point;
+    double psi;
+  };
+
+  /// Evaluates; by a grid if there are many points. Allocates unless as many values fitted before.
+  /// False if there are more than CsrbfSolver::most_own_values.
+  bool evaluate(Wendland kernel, const Points& starts, const Supports& supports);
+
+  std::size_t size() const noexcept { return weights_.size(); }
+  /// Of one function, points ascending.
+  std::span<const Value> values(std::size_t function) const noexcept {
+    return {values_.data() + begins_[function], begins_[function + 1] - begins_[function]};
+  }
+  double weight(std::size_t function) const noexcept { return weights_[function]; }
+  /// Pairs of points that share a function, at most; a bound of the work and of the entries.
+  double pairs() const noexcept;
+  /// Of Psi W Psi^T.
+  double trace() const noexcept;
+  /// Of Psi W Psi^T, one a point.
+  void diagonal(Eigen::VectorXd& out) const noexcept;
+  /// The function's coefficient: w_e sum_i psi_e(c_i) a_i.
+  Eigen::RowVector4d coefficient(std::size_t function, const Rows& a) const noexcept;
+
+private:
+  void add_function(Wendland kernel, const Points& starts, const OwnSupport& own,
+                    std::uint32_t point);
+
+  std::vector<std::size_t> begins_{0};
+  std::vector<Value> values_;
+  std::vector<double> weights_;
+};
+
+} // namespace nendo::deform

@@ -1,0 +1,40 @@
+#pragma once
+// The paper's partial elimination: p(x) joins the equations as [M Q; Q^T U], with the basis of p at
+// the start points in Q's rows, and Cholesky of M leaves a 4 by 4 Schur complement for its weights.
+
+#include <Eigen/Cholesky>
+
+#include "solver/kernel_system.hpp"
+
+namespace nendo::deform {
+
+class PolynomialPart {
+public:
+  /// Allocates for this many points.
+  void reserve(Eigen::Index points);
+  /// Chooses a basis that is orthonormal on the start points. Terms that they do not determine (of
+  /// coplanar points: along the normal) become zero columns of Q with a 1 in U: weight 0.
+  void assemble(const Points& starts, Polynomial polynomial);
+  /// Needs `system`'s factor.
+  bool eliminate(KernelSystem& system);
+  /// a = M^-1 g on entry; what M and p do together on return. Returns p's weights, by term.
+  /// sums: what Q^T a + U b is to be, 0 but for a correction.
+  Eigen::Matrix4d solve(Rows& a, const Eigen::Matrix4d& sums) const noexcept;
+  /// residual -= Q b.
+  void subtract(const Eigen::Matrix4d& b, Rows& residual) const noexcept;
+  /// What solve() is to be given for a correction of this solution: -(Q^T a + U b).
+  Eigen::Matrix4d missing_sums(const Rows& a, const Eigen::Matrix4d& b) const noexcept;
+  /// The coefficients of 1, x, y, z.
+  Eigen::Matrix<double, 3, 4> in_world(const Eigen::Matrix4d& b) const noexcept;
+
+private:
+  void orthonormalise(const Eigen::Matrix4d& normalise);
+
+  Rows basis_;                        ///< Q
+  Rows solved_basis_;                 ///< M^-1 Q
+  Eigen::Vector4d undetermined_;      ///< U's diagonal
+  Eigen::Matrix4d world_to_basis_;    ///< q(x) from (1, x, y, z)
+  Eigen::LLT<Eigen::Matrix4d> schur_; ///< of Q^T M^-1 Q + U
+};
+
+} // namespace nendo::deform

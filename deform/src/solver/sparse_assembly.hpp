@@ -1,0 +1,31 @@
+#pragma once
+// M with its ties where most start points are out of each other's supports.
+
+#include <optional>
+#include <vector>
+
+#include "solver/own_functions.hpp"
+#include "solver/ties.hpp"
+
+namespace nendo::deform {
+
+/// The lower triangle, column by column, rows ascending, the diagonal entry first.
+struct SparseLower {
+  std::vector<int> begins{0}; ///< #columns + 1
+  std::vector<int> rows;
+  std::vector<double> values;
+
+  Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(begins.size()) - 1; }
+};
+
+struct SparseAssembly {
+  SparseLower lower;
+  bool merged = false;
+};
+
+/// Nothing if there would be more than `most_entries`.
+std::optional<SparseAssembly> assemble_sparse(const CsrbfOptions& options, const Points& starts,
+                                              const Supports& supports, const OwnFunctions& own,
+                                              std::size_t most_entries);
+
+} // namespace nendo::deform

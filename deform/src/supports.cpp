@@ -1,0 +1,104 @@
+#include <nendo/deform/supports.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "text.hpp"
+
+namespace nendo::deform {
+
+namespace {
+
+bool is_positive(double value) noexcept {
+  return value > 0.0 && value <= largest_number; // false for NaN
+}
+
+bool is_valid(const Support& support) noexcept {
+  return is_positive(support.radius) && is_positive(support.weight);
+}
+
+/// Expects `own` in its place. Own functions of the shared radius alone change nothing: with A the
+/// shared matrix, A (w a + W A a) = M a = g, so their sum is A^-1 g whatever W is.
+void share(Supports& supports, std::optional<Support> common) {
+  auto& own = supports.own;
+  assert(!own.empty());
+  const auto radius = [](const OwnSupport& one) { return one.support.radius; };
+  double least = radius(own.front());
+  for (const OwnSupport& one : own)
+    least = std::min(least, radius(one));
+  const Support shared = common.value_or(Support{least, default_common_weight});
+  const bool all_same = std::all_of(
+      own.begin(), own.end(), [&](const OwnSupport& one) { return radius(one) == shared.radius; });
+  supports.shared.assign(1, all_same ? Support{shared.radius, 1.0} : shared);
+  if (all_same) own.clear();
+}
+
+} // namespace
+
+Eigen::Index Supports::functions(Eigen::Index points) const noexcept {
+  return points * static_cast<Eigen::Index>(shared.size()) + static_cast<Eigen::Index>(own.size());
+}
+
+bool Supports::are_usable() const noexcept {
+  return std::all_of(shared.begin(), shared.end(), is_valid) &&
+         std::all_of(own.begin(), own.end(),
+                     [](const OwnSupport& one) { return is_valid(one.support); });
+}
+
+Supports with_common(std::vector<OwnSupport> own, std::optional<Support> common) {
+  Supports supports;
+  supports.own = std::move(own);
+  share(supports, common);
+  return supports;
+}
+
+void assign_radii(Supports& out, const Eigen::VectorXd& radii) {
+  if (radii.size() == 0) {
+    out.shared.assign(1, Support{});
+    out.own.clear();
+    return;
+  }
+  out.own.resize(static_cast<std::size_t>(radii.size()));
+  for (Eigen::Index i = 0; i < radii.size(); ++i)
+    out.own[static_cast<std::size_t>(i)] = {i, {radii[i], 1.0}};
+  share(out, {});
+}
+
+std::optional<std::vector<Support>> parse_supports(std::string_view text) {
+  std::vector<Support> supports;
+  for (bool more = true; more;) {
+    const std::size_t end = std::min(text.find('+'), text.size());
+    more = end < text.size();
+    std::string_view part = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::size_t colon = part.find(':');
+    const auto radius = to_number(part.substr(0, colon));
+    const auto weight =
+        colon == std::string_view::npos ? std::optional(1.0) : to_number(part.substr(colon + 1));
+    if (!radius || !weight || !is_valid({*radius, *weight})) return std::nullopt;
+    supports.push_back({*radius, *weight});
+  }
+  return supports;
+}
+
+std::optional<Supports> parse_supports_by_point(std::string_view text, Eigen::Index points) {
+  std::vector<std::vector<Support>> lists;
+  for (bool more = true; more;) {
+    const std::size_t end = std::min(text.find(','), text.size());
+    more = end < text.size();
+    auto list = parse_supports(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!list) return std::nullopt;
+    lists.push_back(std::move(*list));
+  }
+  if (lists.size() == 1) return Supports{std::move(lists.front()), {}};
+  if (points <= 0 || points % static_cast<Eigen::Index>(lists.size()) != 0) return std::nullopt;
+  std::vector<OwnSupport> own;
+  for (Eigen::Index point = 0; point < points; ++point)
+    for (const Support& support : lists[static_cast<std::size_t>(point) % lists.size()])
+      own.push_back({point, support});
+  return with_common(std::move(own));
+}
+
+} // namespace nendo::deform
