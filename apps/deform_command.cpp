@@ -1,6 +1,6 @@
 // nendo deform: the deformation alone, without gloves or clock.
 
-#include <iostream>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,6 +11,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "injective_deform.hpp"
 #include "kernel_options.hpp"
 
 namespace nendo::app {
@@ -24,6 +25,7 @@ struct Options {
   std::string out;
   std::string radius;
   std::string common_radius;
+  bool injective = false;
   KernelOptions kernel;
 };
 
@@ -61,6 +63,28 @@ Result<Supports> supports_for(const ControlVectors& vectors, const Options& opti
   return Supports{std::move(*shared), {}};
 }
 
+Result<FieldStatus> deform_at_once(Points& vertices, const ControlVectors& vectors,
+                                   const Supports& supports, const CsrbfOptions& csrbf,
+                                   const Options& options) {
+  CsrbfSolver solver(csrbf);
+  CsrbfField field;
+  FieldStatus status = solver.build(vectors.starts, supports);
+  if (is_solved(status)) status = std::max(status, solver.solve(vectors.displacements, field));
+  if (!is_solved(status))
+    return Error{Errc::bad_input, options.vectors + ": " + std::string(describe(status))};
+  displace(field, vertices, vertices);
+  return status;
+}
+
+Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vectors,
+                                    const Supports& supports, const CsrbfOptions& csrbf,
+                                    const Options& options) {
+  const auto done = deform_injectively(vertices, vectors, supports, csrbf, options.vectors);
+  if (!done) return done.error();
+  note("injective: " + done->report);
+  return done->status;
+}
+
 Result<void> deform_file(const Options& options) {
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
@@ -71,20 +95,14 @@ Result<void> deform_file(const Options& options) {
   const auto supports = supports_for(*vectors, options);
   if (!supports) return supports.error();
 
-  CsrbfSolver solver(*csrbf);
-  CsrbfField field;
-  FieldStatus status = solver.build(vectors->starts, *supports);
-  if (is_solved(status)) {
-    const FieldStatus solved = solver.solve(vectors->displacements, field);
-    if (solved != FieldStatus::ok) status = solved;
-  }
-  if (status == FieldStatus::merged) {
+  const auto status = options.injective
+                          ? deform_in_links(mesh->vertices, *vectors, *supports, *csrbf, options)
+                          : deform_at_once(mesh->vertices, *vectors, *supports, *csrbf, options);
+  if (!status) return status.error();
+  if (*status == FieldStatus::merged) {
     note(options.vectors +
          ": some start points coincide; they share the mean of their displacements");
-  } else if (status != FieldStatus::ok) {
-    return Error{Errc::bad_input, options.vectors + ": " + std::string(describe(status))};
   }
-  displace(field, mesh->vertices, mesh->vertices);
   if (!mesh->vertices.allFinite()) {
     return Error{Errc::bad_input,
                  options.vectors + ": " + std::string(describe(FieldStatus::not_finite))};
@@ -111,6 +129,9 @@ void add_deform(Command& program) {
       "Radius beside those of a radius column that all control vectors share, so that "
       "any choice has a solution; without it, the least of them with weight 0.01");
   add_kernel_options(command, options->kernel);
+  command.add_flag("--injective", options->injective,
+                   "Never fold: in links that each stay injective; vectors that cross are held "
+                   "apart");
   command.add_option("--out", options->out, "Where to write the result, .obj or .ply").required();
   command.on_chosen([options] {
     const auto done = deform_file(*options);

@@ -274,6 +274,61 @@ TEST_SUITE("deform") {
     CHECK(is_one_line_about(wide.err, "smaller radii or fewer points"));
   }
 
+  TEST_CASE("with --injective a plane that would fold does not, and what it took is told") {
+    const TemporaryFolder folder;
+    const Mesh mesh = plane(51);
+    const auto in = (folder.path() / "plane.ply").string();
+    const auto out = (folder.path() / "out.ply").string();
+    const auto vectors = (folder.path() / "vectors.csv").string();
+    REQUIRE(deform::write_mesh(in, mesh));
+    // Faces of the plane, pushed within it, that turned over.
+    const auto turned = [&] {
+      const auto result = deform::read_mesh(out);
+      REQUIRE(result);
+      int count = 0;
+      for (std::size_t at = 0; at < result->face_corners.size(); at += 4) {
+        const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
+          return result->vertices.col(result->face_corners[at + k]);
+        };
+        const Eigen::Vector3d area = (corner(2) - corner(0)).cross(corner(3) - corner(1));
+        if (area.z() <= 0.0) ++count;
+      }
+      return count;
+    };
+    const auto run = [&](const std::string& rows, std::vector<std::string> more) {
+      nendo::test::write_file(vectors, "x,y,z,dx,dy,dz\n" + rows);
+      std::vector<std::string> all{"deform",   in,   "--vectors", vectors,
+                                   "--radius", "20", "--out",     out};
+      all.insert(all.end(), more.begin(), more.end());
+      const auto done = nendo::test::nendo(all);
+      CHECK(done.exit_code == 0);
+      return done.err;
+    };
+    const std::string push = "25,25,0,18,3,0\n";
+    CHECK(run(push, {}).empty());
+    CHECK(turned() > 10);
+    const std::string told = run(push, {"--injective"});
+    CHECK(turned() == 0);
+    CHECK(is_one_line_about(told, "injective: "));
+    CHECK(told.find(" links, bound 0.9 (") != std::string::npos);
+    CHECK(told.find("least determinant 0.") != std::string::npos);
+    CHECK(told.find(", 0 pairs held apart") != std::string::npos);
+    const std::string crossing = "20,25,0,9,0,0\n5,5,0,1,1,0\n30,25,0,-9,0,0\n";
+    CHECK(run(crossing, {"--injective"}).find("1 pair held apart: 1-3") != std::string::npos);
+    CHECK(turned() == 0);
+
+    run("25,25,0,1,0,0\n", {});
+    const auto plain = deform::read_mesh(out);
+    CHECK(run("25,25,0,1,0,0\n", {"--injective"}).find(" 1 link, ") != std::string::npos);
+    CHECK(deform::read_mesh(out)->vertices == plain->vertices);
+
+    nendo::test::write_file(vectors, "x,y,z,dx,dy,dz\n25,25,0,1e30,0,0\n");
+    const auto far = nendo::test::nendo(
+        {"deform", in, "--vectors", vectors, "--radius", "20", "--injective", "--out", out});
+    CHECK(far.exit_code == 5);
+    CHECK(is_one_line_about(far.err, "vectors.csv"));
+  }
+
   TEST_CASE("wrong options are wrong usage") {
     const TemporaryFolder folder;
     const auto mesh = (folder.path() / "m.obj").string();

@@ -42,6 +42,24 @@ TEST_SUITE("wendland") {
     }
   }
 
+  TEST_CASE("the slope is what differences tend to, steepest where it is said to be") {
+    using nendo::deform::wendland_slope;
+    using nendo::deform::wendland_steepest_at;
+    for (const Wendland kernel : kernels) {
+      const double peak = wendland_steepest_at(kernel);
+      for (int i = 1; i < 1200; ++i) {
+        const double t = i * 1e-3;
+        const double slope = wendland_slope(kernel, t);
+        CHECK(slope ==
+              doctest::Approx((wendland(kernel, t + 1e-6) - wendland(kernel, t - 1e-6)) / 2e-6)
+                  .epsilon(1e-5));
+        CHECK(std::abs(slope) <= std::abs(wendland_slope(kernel, peak)));
+        const double next = wendland_slope(kernel, t + 1e-3);
+        CHECK((t < peak - 1e-3 ? next <= slope : t < peak || next >= slope));
+      }
+    }
+  }
+
   TEST_CASE("a name leads back to its function, and no other does") {
     using nendo::deform::name_of;
     using nendo::deform::wendland_named;

@@ -27,6 +27,39 @@ constexpr double wendland(Wendland kernel, double t) noexcept {
   return 0.0;
 }
 
+/// psi'(t), t >= 0; of c0, whose graph has a cone's tip there, the slope to the right at t = 0.
+constexpr double wendland_slope(Wendland kernel, double t) noexcept {
+  if (!(t < 1.0)) return 0.0;
+  const double u = 1.0 - t;
+  const double u2 = u * u;
+  switch (kernel) {
+  case Wendland::c0:
+    return -2.0 * u;
+  case Wendland::c2:
+    return -20.0 * t * u2 * u;
+  case Wendland::c4:
+    return -56.0 / 3.0 * t * u2 * u2 * u * (5.0 * t + 1.0);
+  case Wendland::c6:
+    return -22.0 * t * u2 * u2 * u2 * u * ((16.0 * t + 7.0) * t + 1.0);
+  }
+  return 0.0;
+}
+
+/// Where |psi'| is largest; it rises up to there and falls from there on.
+constexpr double wendland_steepest_at(Wendland kernel) noexcept {
+  switch (kernel) {
+  case Wendland::c0:
+    return 0.0;
+  case Wendland::c2:
+    return 0.25;
+  case Wendland::c4:
+    return 0.23557137138281137; // 35 t^2 - 4 t - 1 = 0
+  case Wendland::c6:
+    return 0.21528603787469894; // 160 t^3 + 15 t^2 - 6 t - 1 = 0
+  }
+  return 0.0;
+}
+
 /// "wendland-c2" and so on.
 std::string_view name_of(Wendland kernel) noexcept;
 std::optional<Wendland> wendland_named(std::string_view name) noexcept;

@@ -1,0 +1,95 @@
+#pragma once
+// Deforming without folding (the fourth item of the paper's outlook): the straight way of the start
+// points is cut into links. Each link is a field with its centres where the points then are, and
+// short enough that x -> x + s(x) is a homeomorphism; so is the chain of them. A map that tears
+// would need a link of no length; points whose paths cross are therefore held apart (LeastGap).
+
+#include <array>
+
+#include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/jacobian.hpp>
+#include <nendo/deform/least_gap.hpp>
+
+namespace nendo::deform {
+
+struct InjectiveOptions {
+  double most_bound = 0.9; ///< largest Lipschitz bound of a link; below 1
+  int most_links = 64;     ///< of one call
+  double least_gap = 0.05; ///< of a point's least radius; 0 lets points come as near as they like
+};
+
+struct ChainReport {
+  FieldStatus status = FieldStatus::ok;
+  int links = 0;
+  double whole_bound = 0.0; ///< Lipschitz bound of the first link's field, had it not been cut
+  double bound = 0.0;       ///< the largest of the links'
+  double least_determinant =
+      1.0;             ///< of the chain's Jacobian, round the points; see DeterminantProbe
+  int held_pairs = 0;  ///< that are kept from where they were told to go
+  bool reached = true; ///< false: `most_links` were not enough, the rest of the way is left
+};
+
+/// Call one of the two ways of going, then apply field() to the shape as long as next() is true:
+///   for (chain.from_start(ends); chain.next();) displace(chain.field(), shape, shape);
+/// After the constructor nothing allocates, locks or calls the system, up to CsrbfSolver::lean_size
+/// points; next() then takes a bounded time.
+class InjectiveChain {
+public:
+  InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
+                 InjectiveOptions options);
+
+  /// Freezes the start points (3 by points). Not on failure: the last good ones stay.
+  FieldStatus grab(const Points& starts);
+  /// Type-1: from the start points straight to `ends`; what is applied to the rest shape depends on
+  /// nothing else. Ends that are not finite are refused: the chain goes where it went last.
+  FieldStatus from_start(const Points& ends) noexcept;
+  /// Type-2: on from where the chain has come to, with the walls that stand, to be applied to the
+  /// shape as it is. At most `most_links` links. Ends that are not finite are refused: no link
+  /// follows.
+  FieldStatus from_here(const Points& ends, int most_links) noexcept;
+  FieldStatus from_here(const Points& ends) noexcept {
+    return from_here(ends, options_.most_links);
+  }
+
+  /// Makes the next link's field. False: there is none, the report is complete.
+  bool next() noexcept;
+
+  /// Of the link made last.
+  const CsrbfField& field() const noexcept { return field_; }
+  const ChainReport& report() const noexcept { return report_; }
+  /// Where the chain has come to: of points that are held, not where they were told to go.
+  const Points& places() const noexcept { return places_; }
+  /// A pair is held if its `push` is positive.
+  std::span<const HeldPair> walls() const noexcept { return gaps_.walls(); }
+
+private:
+  FieldStatus go(int most_links) noexcept;
+  FieldStatus make_link() noexcept;
+  void extend(double part, bool first) noexcept;
+  bool end(FieldStatus status) noexcept;
+
+  Supports supports_;
+  CsrbfOptions csrbf_;
+  InjectiveOptions options_;
+  std::array<CsrbfSolver, 2> solvers_; ///< one has the start points' factor, the other a link's
+  std::size_t kept_ = 0;               ///< which is the start points'
+  bool grabbed_ = false;
+  bool at_start_ = false; ///< places_ are the start points
+  bool ended_ = true;
+  int most_links_ = 0;
+  Points starts_;
+  Eigen::VectorXd radii_; ///< the least at each point
+  Points places_;
+  Points wanted_;  ///< the ends that were asked for
+  Points allowed_; ///< and those that the walls permit
+  Points step_;
+  Points tips_; ///< where the link leads that is being made
+  double link_bound_ = 0.0;
+  LeastGap gaps_;
+  DeterminantProbe probe_;
+  CsrbfField field_;
+  CsrbfField piece_; ///< up to the next corner of the way
+  ChainReport report_;
+};
+
+} // namespace nendo::deform

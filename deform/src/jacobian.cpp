@@ -1,0 +1,187 @@
+#include <nendo/deform/jacobian.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+namespace nendo::deform {
+
+namespace {
+
+/// -psi''(0): the squared norm, in the kernel's native space, of the functional that takes a
+/// function's derivative at a point, for r = 1. Infinite for c0.
+double derivative_norm_squared(Wendland kernel) noexcept {
+  switch (kernel) {
+  case Wendland::c0:
+    break;
+  case Wendland::c2:
+    return 20.0;
+  case Wendland::c4:
+    return 56.0 / 3.0;
+  case Wendland::c6:
+    return 22.0;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// At least the largest eigenvalue, and at most 3^(1/8) of it, of a symmetric matrix without
+/// negative ones.
+double largest_eigenvalue_bound(Eigen::Matrix3d matrix) noexcept {
+  const double scale = matrix.cwiseAbs().maxCoeff();
+  if (!(scale > 0.0)) return 0.0;
+  matrix /= scale;
+  for (int squaring = 0; squaring < 2; ++squaring)
+    matrix = (matrix * matrix).eval();
+  return scale * std::sqrt(std::sqrt(matrix.norm()));
+}
+
+double steepest(const CsrbfField& field, Eigen::Index i) noexcept {
+  const double slope = wendland_slope(field.kernel, wendland_steepest_at(field.kernel));
+  return field.coefficients.col(i).norm() * std::abs(slope) / field.radii[i];
+}
+
+/// Let c_i be the centre nearest to x: then |x - c_j| >= |c_i - c_j| / 2, and beyond its steepest
+/// place psi is the flatter, the farther.
+double sum_bound(const CsrbfField& field) noexcept {
+  const double peak = wendland_steepest_at(field.kernel);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < field.centres.cols(); ++j) {
+      const double apart = (field.centres.col(i) - field.centres.col(j)).norm();
+      const double t = 0.5 * apart / field.radii[j];
+      if (!(t < 1.0)) continue;
+      const double slope = wendland_slope(field.kernel, std::max(t, peak));
+      sum += field.coefficients.col(j).norm() * std::abs(slope) / field.radii[j];
+    }
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
+/// Of the centres with the same radius as c_first: v.s is in the kernel's native space, with the
+/// squared norm v^T (sum_ij a_i a_j^T psi_ij) v; the derivative of any f in it along a unit vector
+/// is at most |f| sqrt(-psi''(0)) / r, by Cauchy and Schwarz (Wendland, Scattered Data
+/// Approximation, chapters 10 and 11).
+double native_bound(const CsrbfField& field, Eigen::Index first) noexcept {
+  const double radius = field.radii[first];
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
+  double sum = 0.0;
+  double steepest_sum = 0.0;
+  double count = 0.0;
+  for (Eigen::Index i = first; i < field.centres.cols(); ++i) {
+    if (field.radii[i] != radius) continue;
+    Eigen::Vector3d weighted = 0.5 * field.coefficients.col(i); // the other half by symmetry
+    for (Eigen::Index j = first; j < i; ++j) {
+      if (field.radii[j] != radius) continue;
+      const double apart = (field.centres.col(i) - field.centres.col(j)).norm();
+      weighted += wendland(field.kernel, apart / radius) * field.coefficients.col(j);
+    }
+    const Eigen::Matrix3d product = field.coefficients.col(i) * weighted.transpose();
+    gram += product + product.transpose();
+    sum += field.coefficients.col(i).norm();
+    steepest_sum += steepest(field, i);
+    count += 1.0;
+  }
+  // What rounding may have taken away where large coefficients cancel.
+  gram.diagonal().array() += 8.0 * count * std::numeric_limits<double>::epsilon() * sum * sum;
+  const double native =
+      std::sqrt(derivative_norm_squared(field.kernel) * largest_eigenvalue_bound(gram)) / radius;
+  return std::min(native, steepest_sum);
+}
+
+double native_bound(const CsrbfField& field) noexcept {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < field.radii.size(); ++i) {
+    bool is_first = true;
+    for (Eigen::Index j = 0; is_first && j < i; ++j)
+      is_first = field.radii[j] != field.radii[i];
+    if (is_first) sum += native_bound(field, i);
+  }
+  return sum;
+}
+
+struct Place {
+  Eigen::Vector3d displacement;
+  Eigen::Matrix3d jacobian;
+};
+
+Place look_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
+  Place place{field.polynomial.col(0) + field.polynomial.rightCols<3>() * x,
+              field.polynomial.rightCols<3>()};
+  place.jacobian.diagonal().array() += 1.0;
+  for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
+    const Eigen::Vector3d offset = x - field.centres.col(i);
+    const double radius = field.radii[i];
+    const double squared = offset.squaredNorm();
+    if (!(squared < radius * radius)) continue;
+    const Eigen::Vector3d coefficient = field.coefficients.col(i);
+    const double distance = std::sqrt(squared);
+    place.displacement += wendland(field.kernel, distance / radius) * coefficient;
+    if (squared == 0.0) continue;
+    const double slope = wendland_slope(field.kernel, distance / radius) / (radius * distance);
+    place.jacobian.noalias() += coefficient * (slope * offset).transpose();
+  }
+  return place;
+}
+
+} // namespace
+
+Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
+  return look_at(field, x).jacobian;
+}
+
+double lipschitz_bound(const CsrbfField& field) noexcept {
+  const double affine = field.polynomial.rightCols<3>().norm();
+  const double sum = sum_bound(field);
+  const double bound = affine + std::min(sum, native_bound(field));
+  const bool finite = std::isfinite(affine + sum) && field.coefficients.allFinite();
+  return finite ? bound : std::numeric_limits<double>::infinity();
+}
+
+void DeterminantProbe::reserve(Eigen::Index points) {
+  if (places_.cols() >= points) return;
+  places_.resize(3, points);
+  determinants_.resize(points);
+}
+
+void DeterminantProbe::start(const Points& points) {
+  reserve(points.cols());
+  used_ = points.cols();
+  places_.leftCols(used_) = points;
+  determinants_.head(used_).setOnes();
+  least_ = 1.0;
+}
+
+void DeterminantProbe::start_round(const Points& starts, const Eigen::VectorXd& radii,
+                                   Wendland kernel) noexcept {
+  used_ = ring_size * starts.cols();
+  assert(used_ <= places_.cols());
+  const double part = kernel == Wendland::c0 ? 0.125 : wendland_steepest_at(kernel);
+  for (Eigen::Index i = 0; i < starts.cols(); ++i) {
+    auto ring = places_.middleCols<ring_size>(ring_size * i);
+    ring.colwise() = starts.col(i);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      ring(axis, 1 + 2 * axis) += part * radii[i];
+      ring(axis, 2 + 2 * axis) -= part * radii[i];
+    }
+  }
+  determinants_.head(used_).setOnes();
+  least_ = 1.0;
+}
+
+void DeterminantProbe::advance(const CsrbfField& field) noexcept {
+  double least = used_ > 0 ? std::numeric_limits<double>::infinity() : 1.0;
+  for (Eigen::Index i = 0; i < used_; ++i) {
+    const Place place = look_at(field, places_.col(i));
+    determinants_[i] *= place.jacobian.determinant();
+    places_.col(i) += place.displacement;
+    least = std::min(least, determinants_[i]);
+  }
+  least_ = least;
+}
+
+} // namespace nendo::deform
