@@ -33,8 +33,7 @@ std::string report_of(const InjectiveChain& chain, double least_determinant) {
 } // namespace
 
 Result<InjectiveDeformation> deform_injectively(Points& vertices, const ControlVectors& vectors,
-                                                const Supports& supports,
-                                                const CsrbfOptions& csrbf,
+                                                const Supports& supports, const CsrbfOptions& csrbf,
                                                 const std::string& name) {
   InjectiveChain chain(vectors.starts.cols(), supports, csrbf, {.most_links = most_links});
   FieldStatus status = chain.grab(vectors.starts);

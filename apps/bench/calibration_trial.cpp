@@ -9,6 +9,7 @@
 #include <nendo/hand/calibration_fit.hpp>
 #include <nendo/hand/pose_capture.hpp>
 #include <nendo/hand/range_adaptation.hpp>
+#include <nendo/hand/range_capture.hpp>
 
 #include "bench/wearers.hpp"
 
@@ -54,35 +55,35 @@ Result<std::vector<PoseReading>> hold_all(Wearer& wearer, std::mt19937_64& rando
   return readings;
 }
 
-/// What half a minute of free motion teaches.
-struct FromMotion {
-  Calibration min_max;
+/// What half a minute of free motion shows: the ranges, to the fit and to min_max alike, and what
+/// is learned from them as they come.
+struct Watched {
+  hand::CountRanges ranges;
   Calibration adaptive;
 };
 
-FromMotion watch(Wearer& wearer, std::uint64_t seed) {
+Watched watch(Wearer& wearer, std::uint64_t seed) {
   const FreeMotion motion(seed, wearer.ranges());
+  hand::RangeCapture capture;
   hand::RangeAdaptation adaptation;
-  std::array<double, sensor_slots> low, high;
-  low.fill(255.0);
-  high.fill(0.0);
   for (double time_s = 0.0; time_s < 30.0; time_s += 1.0 / rate_hz) {
     GloveSample sample = wearer.read(motion.angles_rad(time_s));
     sample.arrival = sample.measured = at_time(time_s);
+    capture.push(sample);
     adaptation.push(sample);
-    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-      low[slot] = std::min(low[slot], static_cast<double>(sample.raw[slot].value));
-      high[slot] = std::max(high[slot], static_cast<double>(sample.raw[slot].value));
-    }
   }
+  return {capture.seen(), adaptation.calibration()};
+}
+
+Calibration min_max_calibration(const hand::CountRanges& ranges) {
   Calibration calibration = hand::default_calibration({1, true});
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     auto& [gain, offset] = calibration.sensors[slot];
-    const double span = std::max(high[slot] - low[slot], 1.0);
+    const double span = std::max(ranges.high_counts[slot] - ranges.low_counts[slot], 1.0);
     gain /= span;
-    offset = low[slot] + offset * span;
+    offset = ranges.low_counts[slot] + offset * span;
   }
-  return {calibration, adaptation.calibration()};
+  return calibration;
 }
 
 void add_errors(const JointAngles& told, const JointAngles& truth,
@@ -118,9 +119,11 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
     const auto quick = hand::quick_poses();
     if (std::find(quick.begin(), quick.end(), reading.pose) != quick.end()) two.push_back(reading);
   }
-  // The fit is not told how large the hand is.
+  const Watched watched = watch(wearer, random());
+  hand::FitOptions full_options; // which is not told how large the hand is
+  full_options.free_motion = watched.ranges;
   const auto begin = std::chrono::steady_clock::now();
-  const auto full = hand::fit_calibration(*readings, wearer.side(), sensors_22);
+  const auto full = hand::fit_calibration(*readings, wearer.side(), sensors_22, full_options);
   errors.fit_ms.push_back(1e3 * to_seconds(std::chrono::steady_clock::now() - begin));
   if (!full) return full.error();
   hand::FitOptions quick;
@@ -129,9 +132,9 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
   if (!two_pose) return two_pose.error();
   errors.condition.push_back(full->condition);
 
-  const FromMotion watched = watch(wearer, random());
   const std::array<Calibration, method_names.size()> calibrations{
-      full->calibration, two_pose->calibration, watched.min_max, watched.adaptive, wearer.truth()};
+      full->calibration, two_pose->calibration, min_max_calibration(watched.ranges),
+      watched.adaptive, wearer.truth()};
   const FreeMotion motion(random(), wearer.ranges());
   for (double time_s = 0.0; time_s < 60.0; time_s += 0.2) {
     const hand::SensorAngles angles = motion.angles_rad(time_s);

@@ -51,7 +51,9 @@ PlainPose plain_pose(const hand::HandSkeleton& skeleton, const hand::JointAngles
   at(Joint::palm) = wrist * bone(Joint::palm) * along(skeleton.rest_offset(Joint::middle_proximal));
   at(Joint::thumb_metacarpal) =
       wrist * bone(Joint::thumb_metacarpal) * turn(z_axis, angles.thumb_roll_rad) *
-      turn(y_axis, from_degrees(15) + angles.thumb_abduction_rad) * turn(z_axis, from_degrees(60));
+      turn(y_axis, from_degrees(15) + angles.thumb_abduction_rad) *
+      turn(z_axis,
+           from_degrees(47) - 0.41 * angles.thumb_roll_rad - 0.27 * angles.thumb_abduction_rad);
   at(Joint::thumb_proximal) = at(Joint::thumb_metacarpal) * bone(Joint::thumb_proximal) *
                               turn(x_axis, -angles.thumb_mcp_flexion_rad);
   at(Joint::thumb_distal) = at(Joint::thumb_proximal) * bone(Joint::thumb_distal) *

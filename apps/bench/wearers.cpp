@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace nendo::app {
@@ -53,6 +54,8 @@ constexpr double noise_counts = 0.35;
 
 // Pads do not meet at the same place each time.
 constexpr double slip_deviation_m = 0.0015;
+// Nor is the palm touched where nobody sees a mark.
+constexpr double palm_slip_deviation_m = 0.004;
 
 // How far the ends of a joint's range differ between people: as a part of it, but not less than.
 constexpr double range_deviation = 0.06;
@@ -74,11 +77,35 @@ SensorAngles lines_of(const SensorAngles& angles, const hand::Calibration& truth
   return lines;
 }
 
-/// The joints that a wearer moves to bring the pads together.
-std::array<std::size_t, 7> joints_for(const hand::Touch& touch) {
-  const std::size_t first =
-      slot_of(touch.with == Joint::index_tip ? Sensor::index_mcp : Sensor::middle_mcp);
-  return {0, 1, 2, 3, first, first + 1, first + 2};
+/// The joints that a wearer moves to bring the pads together, and the angles from which a hand
+/// begins, in degrees. The palm at the little finger's base is touched by the thumb alone.
+struct TouchJoints {
+  std::vector<std::size_t> slots;
+  std::vector<double> liked_deg;
+};
+TouchJoints joints_for(PoseId id) {
+  constexpr std::array<std::size_t, 4> firsts{
+      slot_of(Sensor::index_mcp), slot_of(Sensor::middle_mcp), slot_of(Sensor::ring_mcp),
+      slot_of(Sensor::pinky_mcp)};
+  const auto with_finger = [&](std::size_t finger, std::vector<double> liked_deg) {
+    const std::size_t first = firsts[finger];
+    return TouchJoints{{0, 1, 2, 3, first, first + 1, first + 2}, std::move(liked_deg)};
+  };
+  // Thumb roll, MCP, IP and abduction, and the finger's three joints.
+  switch (id) {
+  case PoseId::pinch_index_flat:
+    return with_finger(0, {60, 25, 10, 32, 60, 18, 6});
+  case PoseId::pinch_index:
+    return with_finger(0, {60, 25, 25, 35, 45, 50, 25});
+  case PoseId::pinch_middle:
+    return with_finger(1, {65, 25, 25, 35, 48, 50, 25});
+  case PoseId::pinch_ring:
+    return with_finger(2, {72, 38, 25, 38, 52, 52, 25});
+  case PoseId::pinch_little:
+    return with_finger(3, {75, 48, 25, 38, 55, 50, 25});
+  default:
+    return {{0, 1, 2, 3}, {45, 48, 48, 10}};
+  }
 }
 
 } // namespace
@@ -124,6 +151,7 @@ Wearer::Wearer(std::uint64_t seed)
   pad_depth_m_ = uniform(0.004, 0.009);
   pad_behind_tip_m_ = uniform(0.0, 0.007);
   draw_sensors();
+  palm_depth_m_ = uniform(0.008, 0.016);
 }
 
 double Wearer::clamped(std::size_t slot, double angle_rad) const {
@@ -210,6 +238,11 @@ SensorAngles Wearer::perform(PoseId id) {
 Eigen::Vector3d Wearer::gap(const hand::Touch& touch, const SensorAngles& angles) const {
   const hand::HandPose pose = skeleton_.pose(joints_of(angles), Eigen::Isometry3d::Identity());
   const Eigen::Vector3d pad(0.0, -pad_depth_m_, pad_behind_tip_m_);
+  if (hand::parent_of(touch.with) == Joint::little_metacarpal) {
+    const Eigen::Vector3d skin(0.0, -palm_depth_m_, 0.0);
+    return pose[Joint::thumb_tip] * pad - pose[touch.with].translation() -
+           pose[Joint::little_metacarpal].linear() * skin;
+  }
   return pose[Joint::thumb_tip] * pad - pose[touch.with] * pad;
 }
 
@@ -218,11 +251,10 @@ double Wearer::gap_m(PoseId pose, const SensorAngles& angles_rad) const {
   return touch ? gap(*touch, angles_rad).norm() : 0.0;
 }
 
-void Wearer::approach(const hand::Touch& touch, const Eigen::Vector3d& slip_m,
-                      SensorAngles& angles) const {
-  const auto slots = joints_for(touch);
+void Wearer::approach(const hand::Touch& touch, const std::vector<std::size_t>& slots,
+                      const Eigen::Vector3d& slip_m, SensorAngles& angles) const {
   const Eigen::Vector3d apart = gap(touch, angles) - slip_m;
-  Eigen::Matrix<double, 3, 7> slopes;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> slopes(3, static_cast<Eigen::Index>(slots.size()));
   for (std::size_t n = 0; n < slots.size(); ++n) {
     SensorAngles moved = angles;
     moved[slots[n]] += 1e-5;
@@ -232,7 +264,7 @@ void Wearer::approach(const hand::Touch& touch, const Eigen::Vector3d& slip_m,
   // and the others do their part.
   for (int round = 0; round < 3; ++round) {
     const Eigen::Matrix3d square = slopes * slopes.transpose() + 1e-6 * Eigen::Matrix3d::Identity();
-    const Eigen::Matrix<double, 7, 1> step = -0.6 * slopes.transpose() * (square.inverse() * apart);
+    const Eigen::VectorXd step = -0.6 * slopes.transpose() * (square.inverse() * apart);
     SensorAngles next = angles;
     bool stopped = false;
     for (std::size_t n = 0; n < slots.size(); ++n) {
@@ -251,14 +283,11 @@ void Wearer::approach(const hand::Touch& touch, const Eigen::Vector3d& slip_m,
 
 void Wearer::make_touch(PoseId id, SensorAngles& angles) {
   const hand::Touch& touch = *hand::pose_of(id).touch;
-  const auto slots = joints_for(touch);
-  // Thumb roll, MCP, IP and abduction, and the finger's three joints, as a hand begins.
-  constexpr std::array<double, 7> ring_deg{60, 25, 25, 40, 45, 50, 25};
-  constexpr std::array<double, 7> flat_deg{65, 20, 10, 40, 60, 18, 6};
-  const auto& liked_deg = id == PoseId::pinch_index_flat ? flat_deg : ring_deg;
+  const auto [slots, liked_deg] = joints_for(id);
+  const bool palm = slots.size() == 4;
   Eigen::Vector3d slip_m;
   for (double& coordinate : slip_m)
-    coordinate = normal(0.0, slip_deviation_m);
+    coordinate = normal(0.0, palm ? palm_slip_deviation_m : slip_deviation_m);
   SensorAngles best = angles;
   double best_gap_m = 1.0;
   for (int attempt = 0; attempt < 40 && best_gap_m > 0.002; ++attempt) {
@@ -266,7 +295,7 @@ void Wearer::make_touch(PoseId id, SensorAngles& angles) {
     for (std::size_t n = 0; n < slots.size(); ++n)
       now[slots[n]] = clamped(slots[n], from_degrees(normal(liked_deg[n], 8)));
     for (int turn = 0; turn < 60; ++turn)
-      approach(touch, slip_m, now);
+      approach(touch, slots, slip_m, now);
     const double apart_m = (gap(touch, now) - slip_m).norm();
     if (apart_m >= best_gap_m) continue;
     best = now;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <random>
+#include <vector>
 
 #include <nendo/hand/calibration_poses.hpp>
 #include <nendo/hand/joint_angles.hpp>
@@ -59,8 +60,8 @@ private:
   void draw_sensors();
   void make_touch(hand::PoseId pose, hand::SensorAngles& angles);
   /// One step of the joints that bring the pads together.
-  void approach(const hand::Touch& touch, const Eigen::Vector3d& slip_m,
-                hand::SensorAngles& angles) const;
+  void approach(const hand::Touch& touch, const std::vector<std::size_t>& slots,
+                const Eigen::Vector3d& slip_m, hand::SensorAngles& angles) const;
   Eigen::Vector3d gap(const hand::Touch& touch, const hand::SensorAngles& angles) const;
   double count_of(std::size_t slot, const hand::SensorAngles& lines) const;
 
@@ -74,6 +75,7 @@ private:
   std::array<double, sensor_slots> habit_rad_{};
   double pad_depth_m_ = 0.0;
   double pad_behind_tip_m_ = 0.0;
+  double palm_depth_m_ = 0.0;
 };
 
 /// The joints of these sensors' angles, with a straight middle finger.

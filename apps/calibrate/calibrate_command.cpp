@@ -68,7 +68,11 @@ hand::HandSize size_of(const Options& options) {
 }
 
 hand::FitOptions fit_options(const Options& options, CountScale counts) {
-  return {counts, options.quick ? hand::FitMode::quick : hand::FitMode::full, size_of(options)};
+  hand::FitOptions fitting;
+  fitting.scale = counts;
+  fitting.mode = options.quick ? hand::FitMode::quick : hand::FitMode::full;
+  fitting.size = size_of(options);
+  return fitting;
 }
 
 std::span<const hand::PoseId> poses_for(const Options& options) {
@@ -100,10 +104,11 @@ fs::path unfinished_path(const Wearer& wearer) {
   return wearer.path.string() + ".unfinished";
 }
 
-int fit_and_write(const Options& options, Wearer& wearer,
-                  std::span<const hand::PoseReading> readings) {
-  const auto fit = hand::fit_calibration(readings, wearer.about.side, wearer.sensors,
-                                         fit_options(options, wearer.about.counts));
+int fit_and_write(const Options& options, Wearer& wearer, const CalibrationGuide& guide) {
+  const auto readings = guide.readings();
+  hand::FitOptions fitting = fit_options(options, wearer.about.counts);
+  fitting.free_motion = guide.free_motion();
+  const auto fit = hand::fit_calibration(readings, wearer.about.side, wearer.sensors, fitting);
   if (!fit) return report(fit.error());
   print_report(std::cout, *fit, readings, wearer.sensors);
   wearer.about.calibration = fit->calibration;
@@ -141,6 +146,7 @@ int calibrate_from_capture(const Options& options) {
   bool doubted = false; // one pose that was missed shifts all that follow
   for (const GloveSample& sample : capture->samples) {
     sensors.bits |= sample.present.bits;
+    if (guide.readings().empty()) guide.see_free_motion(sample);
     if (guide.see(sample) == CalibrationGuide::Event::implausible && !std::exchange(doubted, true))
       note(options.from + ": a pose that was held is not " +
            std::string(hand::pose_of(guide.asked()).name) + ", by " +
@@ -151,7 +157,7 @@ int calibrate_from_capture(const Options& options) {
          " was held");
   Wearer wearer = describe(options, capture->side, capture->counts, sensors);
   set_path(wearer, options);
-  return fit_and_write(options, wearer, guide.readings());
+  return fit_and_write(options, wearer, guide);
 }
 
 /// Keeps what was taken, so that the same command goes on from there.
@@ -190,8 +196,7 @@ int calibrate_glove(const Options& options) {
       run_calibration_session(**glove, options.user, fit_options(options, info.counts), guide);
   if (!end) return report(end.error());
   if (*end == SessionEnd::quit) return keep_for_later(wearer, guide);
-  const auto readings = guide.readings();
-  const int code = fit_and_write(options, wearer, readings);
+  const int code = fit_and_write(options, wearer, guide);
   return code == 0 ? 0 : (keep_for_later(wearer, guide), code);
 }
 

@@ -10,6 +10,7 @@
 #include <nendo/hand/calibration_fit.hpp>
 #include <nendo/hand/calibration_poses.hpp>
 #include <nendo/hand/pose_capture.hpp>
+#include <nendo/hand/range_capture.hpp>
 
 namespace nendo::app {
 
@@ -23,6 +24,10 @@ public:
     captured,    ///< the pose was held and is kept; the next one is asked for
     implausible, ///< a pose was held that cannot be the one asked for; see doubted()
   };
+  /// A sample of the free motion that comes before the poses.
+  void see_free_motion(const GloveSample& sample) { free_motion_.push(sample); }
+  const hand::CountRanges& free_motion() const noexcept { return free_motion_.seen(); }
+
   /// The next sample in time. Nothing once is_done().
   Event see(const GloveSample& sample);
 
@@ -52,6 +57,7 @@ private:
   std::vector<std::optional<hand::HeldPose>> kept_; ///< by number
   std::size_t at_ = 0;
   hand::PoseCapture capture_;
+  hand::RangeCapture free_motion_;
   std::optional<Sensor> doubted_;
 };
 

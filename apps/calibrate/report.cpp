@@ -86,7 +86,10 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
                        kept_text(quality));
   });
   print_readings(out, fit, readings);
-  out << fmt::format("condition {:.0f}; {} poses\n", fit.condition, readings.size());
+  // Where the poses leave a sensor's gain or offset to the default, a condition says nothing.
+  if (fit.undetermined.bits == 0)
+    out << fmt::format("condition {:.0f} (above 1000, poses are missing); ", fit.condition);
+  out << fmt::format("{} poses\n", readings.size());
 }
 
 Result<void> write_report_picture(const std::filesystem::path& path,

@@ -43,25 +43,36 @@ JointAngles assumed_angles(const hand::CalibrationPose& pose) {
   return hand::joint_angles(sample, calibration);
 }
 
-/// The tips of thumb and finger brought together, from where a half closed hand has them, or, if
-/// the pose asks for a `straight` finger, one that is bent at its base alone.
+/// The pads of thumb and finger brought together, from where a half closed hand has them, or, if
+/// the pose asks for a `straight` finger, one that is bent at its base alone; or the thumb's pad
+/// laid on the palm at the base of a finger.
 JointAngles touching(JointAngles angles, Joint with, bool straight,
                      const hand::HandSkeleton& skeleton) {
   const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3d pad(0.0, -hand::pad_depth_m, hand::pad_behind_tip_m);
   const auto found = std::find(hand::fingertips.begin(), hand::fingertips.end(), with);
-  const auto finger = static_cast<std::size_t>(found - hand::fingertips.begin());
-  angles.thumb_roll_rad = 0.9;
-  angles.thumb_abduction_rad = 0.5;
-  angles.fingers[finger - 1] =
-      straight ? hand::FingerAngles{1.0, 0.0, 0.2, 0.1} : hand::FingerAngles{0.8, 0.0, 0.8, 0.4};
-  const auto tips = skeleton.pose(angles, origin).fingertip_positions();
-  const Eigen::Vector3d thumb = tips.col(0);
-  const Eigen::Vector3d tip = tips.col(static_cast<Eigen::Index>(finger));
-  const Eigen::Vector3d half_gap = hand::pad_depth_m * (thumb - tip).stableNormalized();
-  hand::FingertipTargets targets{};
-  targets[0] = {0.5 * (thumb + tip) + half_gap, 1.0};
-  targets[finger] = {0.5 * (thumb + tip) - half_gap, 1.0};
-  return hand::inverse_kinematics(skeleton, origin, targets, angles).angles;
+  const bool palm = found == hand::fingertips.end();
+  const auto finger = palm ? 0 : static_cast<std::size_t>(found - hand::fingertips.begin());
+  angles.thumb_roll_rad = palm ? 0.8 : 1.2;
+  angles.thumb_abduction_rad = palm ? 0.2 : 0.6;
+  angles.thumb_mcp_flexion_rad = palm ? 0.8 : 0.2 * static_cast<double>(finger);
+  angles.thumb_ip_flexion_rad = palm ? 0.8 : 0.2;
+  if (!palm)
+    angles.fingers[finger - 1] =
+        straight ? hand::FingerAngles{1.0, 0.0, 0.2, 0.1} : hand::FingerAngles{0.9, 0.0, 0.8, 0.4};
+  for (int turn = 0; turn < 10; ++turn) { // tips turn as they move
+    const hand::HandPose pose = skeleton.pose(angles, origin);
+    const Eigen::Isometry3d& thumb = pose[Joint::thumb_tip];
+    const Eigen::Isometry3d& other = pose[with];
+    const Eigen::Vector3d meets =
+        palm ? other * Eigen::Vector3d(0.0, -hand::palm_depth_m, 0.0) : other * pad;
+    const Eigen::Vector3d gap = meets - thumb * pad;
+    hand::FingertipTargets targets{};
+    targets[0] = {thumb.translation() + (palm ? 1.0 : 0.5) * gap, 1.0};
+    if (!palm) targets[finger] = {other.translation() - 0.5 * gap, 1.0};
+    angles = hand::inverse_kinematics(skeleton, origin, targets, angles).angles;
+  }
+  return angles;
 }
 
 std::string fitted(std::string text, int width) {
@@ -78,7 +89,7 @@ std::string state_text(const CalibrationPicture& picture) {
     }
     return std::string("a sensor");
   };
-  if (!picture.begun) return "Put the glove on. SPACE begins; then each pose is taken by itself.";
+  if (!picture.begun) return "Bend and stretch every joint fully, a few times. Then SPACE begins.";
   if (picture.sample == nullptr || picture.age_s > silent_after_s) return "The glove is silent.";
   switch (capture.state()) {
   case CaptureState::waiting:

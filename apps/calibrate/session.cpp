@@ -32,13 +32,16 @@ struct Session {
     while (ring.try_pop(sample)) {
       seen.see(sample);
       latest = sample;
+      if (!begun) guide.see_free_motion(sample);
       if (begun && guide.see(sample) == CalibrationGuide::Event::captured) look_what_is_known();
     }
   }
   void look_what_is_known() {
     const auto readings = guide.readings();
     const auto sensors = glove.info().sensors;
-    const auto fitted = hand::fit_calibration(readings, glove.info().side, sensors, fit);
+    hand::FitOptions options = fit;
+    options.free_motion = guide.free_motion();
+    const auto fitted = hand::fit_calibration(readings, glove.info().side, sensors, options);
     undetermined = fitted ? fitted->undetermined : sensors;
   }
   void show() {

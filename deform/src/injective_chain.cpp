@@ -37,10 +37,10 @@ CsrbfField field_of_size(Eigen::Index functions, Wendland kernel) {
 
 InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
                                InjectiveOptions options)
-    : supports_(std::move(supports)), csrbf_(csrbf), options_(options),
-      solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)}, starts_(Points::Zero(3, points)),
-      radii_(least_radii(supports_, points)), places_(starts_), wanted_(starts_), allowed_(starts_),
-      step_(starts_), tips_(starts_), gaps_(options.least_gap),
+    : supports_(std::move(supports)), csrbf_(csrbf),
+      options_(options), solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)},
+      starts_(Points::Zero(3, points)), radii_(least_radii(supports_, points)), places_(starts_),
+      wanted_(starts_), allowed_(starts_), step_(starts_), tips_(starts_), gaps_(options.least_gap),
       field_(field_of_size(supports_.functions(points), csrbf.kernel)), piece_(field_) {
   assert(options.most_bound > 0.0 && options.most_bound < 1.0);
   // The first of a size allocates.

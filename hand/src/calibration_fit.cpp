@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include <nendo/base/units.hpp>
 
 #include "fit_problem.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double most_left_open = 0.8;
 // Deviations stay below 15 degrees; a sensor that is off by twice that on average is dead, or its
 // poses were others than those named.
-constexpr double contradiction_rad = 30.0 * std::numbers::pi / 180.0;
+constexpr double contradiction_rad = from_degrees(30);
 // No sensor needs five times the default's counts for its joint.
 constexpr double least_gain_ratio = 0.2;
 
@@ -89,7 +90,15 @@ Free first_unknowns(SensorMask sensors, const FitOptions& options) {
   return free;
 }
 
-Eigen::MatrixXd columns_of(const Eigen::MatrixXd& matrix, const Free& free) {
+/// How many of these are the calibration's; they come first.
+Eigen::Index lines_in(const Free& free) {
+  return std::count_if(free.begin(), free.end(), [](Eigen::Index unknown) {
+    return unknown < static_cast<Eigen::Index>(line_unknowns);
+  });
+}
+
+template <class Matrix>
+Eigen::MatrixXd columns_of(const Matrix& matrix, const Free& free) {
   Eigen::MatrixXd chosen(matrix.rows(), static_cast<Eigen::Index>(free.size()));
   for (std::size_t at = 0; at < free.size(); ++at)
     chosen.col(static_cast<Eigen::Index>(at)) = matrix.col(free[at]);
@@ -150,13 +159,13 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
 /// Takes out the unknown that is determined least, if any is not determined; those of which the
 /// poses say nothing at all go together.
 bool drop_undetermined(Free& free, const Eigen::MatrixXd& information, Unknowns& at) {
-  const Eigen::VectorXd open = covariance_of(information).diagonal();
+  const Eigen::VectorXd open = covariance_of(information).diagonal().head(lines_in(free));
   Eigen::Index worst = 0;
-  if (free.empty() || open.maxCoeff(&worst) <= most_left_open) return false;
+  if (open.size() == 0 || open.maxCoeff(&worst) <= most_left_open) return false;
   Free kept;
   for (std::size_t n = 0; n < free.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(n);
-    if (row == worst || open[row] > 0.999)
+    if (row < open.size() && (row == worst || open[row] > 0.999))
       at[free[n]] = 0.0;
     else
       kept.push_back(free[n]);
@@ -169,6 +178,7 @@ struct Solution {
   Unknowns at = Unknowns::Zero();
   Free free;
   Eigen::MatrixXd information;
+  Eigen::MatrixXd covariance; ///< of those free unknowns that are the calibration's
 };
 
 Solution solve(const FitProblem& problem, Free free) {
@@ -177,23 +187,27 @@ Solution solve(const FitProblem& problem, Free free) {
   do {
     solution.information = minimise(problem, solution.free, solution.at);
   } while (drop_undetermined(solution.free, solution.information, solution.at));
+  const Eigen::Index lines = lines_in(solution.free);
+  solution.covariance = covariance_of(solution.information).topLeftCorner(lines, lines);
   return solution;
 }
 
-double condition_of(const Eigen::MatrixXd& information) {
-  if (information.rows() == 0) return 1.0;
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(information, Eigen::EigenvaluesOnly)
+/// Of the calibration, whatever the wearer's own unknowns are.
+double condition_of(const Eigen::MatrixXd& covariance) {
+  if (covariance.rows() == 0) return 1.0;
+  const Eigen::VectorXd open =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance, Eigen::EigenvaluesOnly)
           .eigenvalues();
-  // Rounding may leave the smallest a little below zero.
-  return std::sqrt(values.maxCoeff() / std::max(values.minCoeff(), 1e-12 * values.maxCoeff()));
+  // What the poses say is what is beyond the prior's 1; rounding may leave that a little below 0.
+  const Eigen::ArrayXd said = (open.array().cwiseMax(1e-15).inverse() - 1.0).cwiseMax(0.0);
+  return std::sqrt(said.maxCoeff() / std::max(said.minCoeff(), 1e-12 * said.maxCoeff()));
 }
 
 void describe_sensors(CalibrationFit& fit, std::span<const PoseReading> readings,
                       SensorMask sensors, const FitProblem& problem, const Solution& solution) {
-  const Eigen::MatrixXd covariance = covariance_of(solution.information);
   std::array<double, sensor_slots> squares{};
   std::array<std::size_t, sensor_slots> counted{};
+  const Free lines(solution.free.begin(), solution.free.begin() + lines_in(solution.free));
   for (std::size_t n = 0; n < readings.size(); ++n) {
     FitProblem::AngleJacobian jacobian;
     const SensorAngles angles = problem.angles_rad(solution.at, n, &jacobian);
@@ -201,8 +215,9 @@ void describe_sensors(CalibrationFit& fit, std::span<const PoseReading> readings
       squares[slot] += std::pow(angles[slot] - assumed.angle_rad, 2);
       ++counted[slot];
     }
-    const Eigen::MatrixXd slopes = columns_of(jacobian, solution.free);
-    const Eigen::VectorXd variances = (slopes * covariance).cwiseProduct(slopes).rowwise().sum();
+    const Eigen::MatrixXd slopes = columns_of(jacobian, lines);
+    const Eigen::VectorXd variances =
+        (slopes * solution.covariance).cwiseProduct(slopes).rowwise().sum();
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       SensorFit& sensor = fit.sensors[slot];
       if (!sensors.has(static_cast<Sensor>(slot))) continue;
@@ -225,14 +240,13 @@ void describe_readings(CalibrationFit& fit, std::span<const PoseReading> reading
   Eigen::VectorXd residuals;
   problem.evaluate(solution.at, residuals, nullptr);
   for (std::size_t n = 0; n < readings.size(); ++n) {
-    const auto [begin, touch, end] = problem.rows(n);
+    const auto rows = problem.rows(n);
+    const auto begin = rows.begin, end = rows.end;
     ReadingFit& reading = fit.readings.emplace_back();
     if (end > begin)
       reading.misfit = std::sqrt(residuals.segment(begin, end - begin).squaredNorm() /
                                  static_cast<double>(end - begin));
-    if (end > touch)
-      reading.gap_m = residuals.segment(touch, end - touch).norm() *
-                      pose_of(readings[n].pose).touch->deviation_m;
+    reading.gap_m = problem.gap_m(solution.at, n);
   }
 }
 
@@ -260,10 +274,13 @@ Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Si
                                        SensorMask sensors, const FitOptions& options) {
   if (auto fine = check(readings, sensors, options); !fine) return fine.error();
   const FitProblem problem(readings, side, sensors, options);
-  const Solution solution = solve(problem, first_unknowns(sensors, options));
+  Free free = first_unknowns(sensors, options);
+  for (const Eigen::Index unknown : problem.wearers_unknowns())
+    free.push_back(unknown);
+  const Solution solution = solve(problem, std::move(free));
   CalibrationFit fit;
   fit.calibration = problem.calibration(solution.at);
-  fit.condition = condition_of(solution.information);
+  fit.condition = condition_of(solution.covariance);
   const auto determined = [&](std::size_t unknown) {
     return std::find(solution.free.begin(), solution.free.end(),
                      static_cast<Eigen::Index>(unknown)) != solution.free.end();

@@ -1,14 +1,11 @@
 #include <nendo/hand/calibration_poses.hpp>
 
 #include <algorithm>
-#include <numbers>
+
+#include <nendo/base/units.hpp>
 
 namespace nendo::hand {
 namespace {
-
-constexpr double degrees(double d) noexcept {
-  return d * std::numbers::pi / 180.0;
-}
 
 // Degrees, and how far wearers are off. The angles of bent joints are means of active ranges of
 // motion (American Academy of Orthopaedic Surgeons: MCP 90, PIP 100, DIP 70 to 80, thumb MCP 50,
@@ -33,8 +30,8 @@ public:
     pose_.instruction = instruction;
   }
   constexpr Described& of(Sensor sensor, Asked asked) {
-    pose_.assumed[static_cast<std::size_t>(sensor)] = {degrees(asked.angle_deg),
-                                                       degrees(asked.deviation_deg)};
+    pose_.assumed[static_cast<std::size_t>(sensor)] = {from_degrees(asked.angle_deg),
+                                                       from_degrees(asked.deviation_deg)};
     return *this;
   }
   constexpr Described& finger(std::size_t number, Asked mcp, Asked pip, Asked dip) {
@@ -114,8 +111,7 @@ constexpr std::array<CalibrationPose, pose_count> poses{{
         .thumb_bends({0, 8}, {0, 8}),
     Described("thumb_across", "Fingers straight; touch the base of the little finger.")
         .fingers(about_straight, about_straight, about_straight)
-        .thumb({65, 15}, {10, 12})
-        .thumb_bends({45, 12}, {45, 15}),
+        .touching({Joint::little_proximal, 0.006}),
     flat_fingers("thumb_bent", "Fingers straight; bend both joints of the thumb.")
         .thumb_bends({50, 7}, {72, 8}),
     Described("table_top", "Keep the fingers straight and closed, bent at the knuckles only.")
@@ -146,10 +142,10 @@ constexpr std::array<CalibrationPose, pose_count> poses{{
     Described("pinch_middle", "Touch the tip of the middle finger with the thumb.")
         .touching({Joint::middle_tip}),
     Described("pinch_ring", "Touch the tip of the ring finger with the thumb.")
-        .thumb({75, 12}, {42, 12}),
+        .touching({Joint::ring_tip}),
     Described("pinch_little", "Touch the tip of the little finger with the thumb.")
-        .thumb({80, 12}, {38, 12})
-        .arch({18, 8}),
+        .arch({15, 8})
+        .touching({Joint::little_tip}),
     Described("wrist_down", "Bend the wrist towards the palm.").wrist({70, 8}, {0, 6}),
     Described("wrist_back", "Bend the wrist towards the back of the hand.").wrist({-60, 8}, {0, 6}),
     Described("wrist_inwards", "Turn the hand at the wrist towards the thumb.")

@@ -63,26 +63,32 @@ Fingertip FingerChain::finger_tip(const FourAngles& angles) const noexcept {
 }
 
 Fingertip FingerChain::thumb_tip(const FourAngles& angles) const noexcept {
-  const auto t = turns(Eigen::Array4d(angles[0], thumb_rest_abduction_rad + angles[1], angles[2],
-                                      angles[2] + angles[3]));
+  Eigen::Array<double, 6, 1> row;
+  row << angles[0], thumb_rest_abduction_rad + angles[1], thumb_pronation(angles[0], angles[1]),
+      angles[2], angles[2] + angles[3], 0.0;
+  const auto t = turns(row);
   const Turn roll = t[0];
   const Turn abduction = t[1];
-  const Reach distal = bone(bones_m_[2], t[3]);
-  const Reach from_mcp = bone(bones_m_[1], t[2]) + distal;
+  const Turn pronation = t[2];
+  const Reach distal = bone(bones_m_[2], t[4]);
+  const Reach from_mcp = bone(bones_m_[1], t[3]) + distal;
   const auto rolled = [&](double x, double y, double z) {
     return Eigen::Vector3d(roll.cos * x - roll.sin * y, roll.sin * x + roll.cos * y, z);
   };
-  const auto in_space = [&](Reach reach) {
-    const double x = reach.down_m * thumb_pronation.sin;
-    const double y = -reach.down_m * thumb_pronation.cos;
-    const double z = -reach.ahead_m;
+  const auto abducted = [&](double x, double y, double z) {
     return rolled(abduction.cos * x + abduction.sin * z, y, abduction.cos * z - abduction.sin * x);
+  };
+  const auto in_space = [&](Reach reach) {
+    return abducted(reach.down_m * pronation.sin, -reach.down_m * pronation.cos, -reach.ahead_m);
   };
   Fingertip tip;
   tip.position_m = in_space(Reach{bones_m_[0], 0.0} + from_mcp);
   const Eigen::Vector3d& p = tip.position_m;
   const double before_roll_x = roll.cos * p.x() + roll.sin * p.y();
-  tip.by_angle << Eigen::Vector3d(-p.y(), p.x(), 0.0), rolled(p.z(), 0.0, -before_roll_x),
+  const Eigen::Vector3d by_pronation =
+      abducted(from_mcp.down_m * pronation.cos, from_mcp.down_m * pronation.sin, 0.0);
+  tip.by_angle << Eigen::Vector3d(-p.y(), p.x(), 0.0) + pronation_by_roll * by_pronation,
+      rolled(p.z(), 0.0, -before_roll_x) + pronation_by_abduction * by_pronation,
       in_space(from_mcp.by_flexion()), in_space(distal.by_flexion());
   return tip;
 }

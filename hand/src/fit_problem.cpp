@@ -1,17 +1,13 @@
 #include "fit_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "fit_priors.hpp"
 
 namespace nendo::hand {
 namespace {
-
-// What the default leaves open. Published gains and offsets differ by half of this between gloves
-// and wearers, so that a pose or two outweigh it.
-constexpr double gain_deviation = 0.5; ///< of the gain's logarithm: its sign is known
-constexpr double offset_deviation_of_range = 40.0 / 255.0;
-// Thumb sensors mix strongly; published slope matrices have ratios up to 0.9.
-constexpr double thumb_mix_deviation = 0.5;
-constexpr double gap_mix_deviation = 0.2;
 
 double mix_deviation(std::size_t coupling) {
   const Sensor of = couplings[coupling].of;
@@ -23,45 +19,54 @@ std::size_t slot_of(Sensor sensor) {
   return static_cast<std::size_t>(sensor);
 }
 
+/// Of finger and thumb joints.
 bool is_flexion(std::size_t slot) {
-  switch (static_cast<Sensor>(slot)) {
-  case Sensor::thumb_mcp:
-  case Sensor::thumb_ip:
-  case Sensor::index_mcp:
-  case Sensor::index_pip:
-  case Sensor::index_dip:
-  case Sensor::middle_mcp:
-  case Sensor::middle_pip:
-  case Sensor::middle_dip:
-  case Sensor::ring_mcp:
-  case Sensor::ring_pip:
-  case Sensor::ring_dip:
-  case Sensor::pinky_mcp:
-  case Sensor::pinky_pip:
-  case Sensor::pinky_dip:
-    return true;
-  default:
-    return false;
-  }
+  const RangeEnds& ends = range_ends_of[slot];
+  return ends.high_deviation_deg > 0.0 && ends.low_deviation_deg == 0.0;
 }
 
-/// The joints that these angles make, by the rules for what no sensor measures: they pass through
-/// lines of gain 1.
+/// The joints that these angles make. What no sensor measures follows the rules, which is had by
+/// passing the angles through lines of gain 1; what is measured is taken without the soft stops,
+/// for a loop that a hand has closed is closed by the joints as they are.
 JointAngles joints_of(const SensorAngles& angles, SensorMask sensors) {
   Calibration passing;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
     passing.sensors[slot] = {1.0, -angles[slot]};
   GloveSample sample;
   sample.present = sensors;
-  return joint_angles(sample, passing);
+  JointAngles joints = joint_angles(sample, passing);
+  const auto take = [&](double& joint_rad, Sensor sensor) {
+    if (sensors.has(sensor)) joint_rad = angles[slot_of(sensor)];
+  };
+  take(joints.thumb_roll_rad, Sensor::thumb_roll);
+  take(joints.thumb_mcp_flexion_rad, Sensor::thumb_mcp);
+  take(joints.thumb_ip_flexion_rad, Sensor::thumb_ip);
+  take(joints.thumb_abduction_rad, Sensor::thumb_abduction);
+  take(joints.palm_arch_rad, Sensor::palm_arch);
+  for (std::size_t f = 0; f < joints.fingers.size(); ++f) {
+    const auto sensor = [&](Sensor of_index) {
+      return static_cast<Sensor>(slot_of(of_index) + 4 * f);
+    };
+    take(joints.fingers[f].mcp_flexion_rad, sensor(Sensor::index_mcp));
+    take(joints.fingers[f].pip_flexion_rad, sensor(Sensor::index_pip));
+    take(joints.fingers[f].dip_flexion_rad, sensor(Sensor::index_dip));
+  }
+  double middle_ring = 0.0, ring_little = 0.0;
+  take(joints[Finger::index].mcp_abduction_rad, Sensor::index_middle_abduction);
+  take(middle_ring, Sensor::middle_ring_abduction);
+  take(ring_little, Sensor::ring_pinky_abduction);
+  joints[Finger::ring].mcp_abduction_rad = -middle_ring;
+  joints[Finger::little].mcp_abduction_rad = -middle_ring - ring_little;
+  return joints;
 }
 
 } // namespace
 
 FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorMask sensors,
                        const FitOptions& options)
-    : readings_(readings), sensors_(sensors), skeleton_(side, options.size),
-      start_(default_calibration(options.scale)) {
+    : readings_(readings), full_(options.mode == FitMode::full), sensors_(sensors),
+      skeleton_(side, options.size), start_(default_calibration(options.scale)),
+      most_counts_(options.scale.most) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     if (!sensors_.has(static_cast<Sensor>(slot))) continue;
     double mean = 0.0;
@@ -71,31 +76,70 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
     lines_[slot] = {gain, gain * (mean - offset),
                     gain * offset_deviation_of_range * options.scale.most, mean};
   }
-  const bool full = options.mode == FitMode::full;
-  Eigen::Index row = 0;
   for (const auto& reading : readings_) {
     const CalibrationPose& pose = pose_of(reading.pose);
     auto& assumptions = assumptions_.emplace_back();
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       // Without couplings, a fist says nothing of the gaps between fingers.
-      const bool speaks = full || is_flexion(slot) || reading.pose == PoseId::flat;
+      const bool speaks = full_ || is_flexion(slot) || reading.pose == PoseId::flat;
       if (sensors_.has(static_cast<Sensor>(slot)) && pose.assumed[slot].known() && speaks)
         assumptions.push_back({slot, pose.assumed[slot]});
     }
-    const Eigen::Index touch = row + static_cast<Eigen::Index>(assumptions.size());
-    const bool touches = full && pose.touch && usable(*pose.touch);
-    rows_.push_back({row, touch, touch + (touches ? 3 : 0)});
-    row = rows_.back().end;
+    const Eigen::Index touch = height_ + static_cast<Eigen::Index>(assumptions.size());
+    const bool touches = full_ && pose.touch && usable(*pose.touch);
+    rows_.push_back({height_, touch, touch + (touches ? 3 : 0)});
+    height_ = rows_.back().end;
   }
+  if (full_) find_range_ends(options.free_motion);
+}
+
+void FitProblem::find_range_ends(const CountRanges& free_motion) {
+  constexpr double rad = std::numbers::pi / 180.0;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!sensors_.has(sensor) || !free_motion.present.has(sensor)) continue;
+    double least = readings_.front().held.mean_counts[slot], most = least;
+    for (const auto& reading : readings_) {
+      least = std::min(least, reading.held.mean_counts[slot]);
+      most = std::max(most, reading.held.mean_counts[slot]);
+    }
+    const auto [low_deg, low_deviation_deg, high_deg, high_deviation_deg] = range_ends_of[slot];
+    const double short_of_poses = short_of_poses_rad / lines_[slot].gain;
+    const double low = free_motion.low_counts[slot], high = free_motion.high_counts[slot];
+    // Written so that a NaN is refused.
+    if (low_deviation_deg > 0.0 && low >= 0.0 && low <= least + short_of_poses)
+      range_ends_.push_back({slot, low, {low_deg * rad, low_deviation_deg * rad}});
+    if (high_deviation_deg > 0.0 && high <= most_counts_ && high >= most - short_of_poses)
+      range_ends_.push_back({slot, high, {high_deg * rad, high_deviation_deg * rad}});
+  }
+  height_ += static_cast<Eigen::Index>(range_ends_.size());
+}
+
+std::vector<Eigen::Index> FitProblem::wearers_unknowns() const {
+  std::vector<Eigen::Index> chosen;
+  const bool touches = std::any_of(rows_.begin(), rows_.end(),
+                                   [](const Rows& rows) { return rows.end > rows.touch; });
+  for (std::size_t k = line_unknowns; k < unknown_count && touches; ++k)
+    chosen.push_back(static_cast<Eigen::Index>(k));
+  return chosen;
 }
 
 bool FitProblem::usable(const Touch& touch) const noexcept {
   // What is filled in by rule is no measurement: a loop needs sensors all the way around.
   const bool whole = sensors_.has(Sensor::thumb_roll) && sensors_.has(Sensor::thumb_abduction) &&
                      sensors_.has(Sensor::thumb_mcp) && sensors_.has(Sensor::thumb_ip);
-  const bool index = touch.with == Joint::index_tip;
-  return whole && sensors_.has(index ? Sensor::index_mcp : Sensor::middle_mcp) &&
-         sensors_.has(index ? Sensor::index_pip : Sensor::middle_pip);
+  switch (touch.with) {
+  case Joint::index_tip:
+    return whole && sensors_.has(Sensor::index_mcp) && sensors_.has(Sensor::index_pip);
+  case Joint::middle_tip:
+    return whole && sensors_.has(Sensor::middle_mcp) && sensors_.has(Sensor::middle_pip);
+  case Joint::ring_tip:
+    return whole && sensors_.has(Sensor::ring_mcp) && sensors_.has(Sensor::ring_pip);
+  case Joint::little_tip:
+    return whole && sensors_.has(Sensor::pinky_mcp) && sensors_.has(Sensor::pinky_pip);
+  default:
+    return whole;
+  }
 }
 
 FitProblem::Line FitProblem::line(const Unknowns& at, std::size_t slot) const noexcept {
@@ -149,46 +193,111 @@ SensorAngles FitProblem::angles_rad(const Unknowns& at, std::size_t reading,
   return angles;
 }
 
-Eigen::Vector3d FitProblem::gap_m(const SensorAngles& angles, const Touch& touch) const {
+FitProblem::Flesh FitProblem::flesh_m(const Unknowns& at) noexcept {
+  constexpr auto first = static_cast<Eigen::Index>(line_unknowns);
+  return {pad_depth_m + pad_depth_deviation_m * at[first],
+          pad_behind_tip_m + pad_behind_deviation_m * at[first + 1],
+          palm_depth_m + palm_depth_deviation_m * at[first + 2]};
+}
+
+Eigen::Vector3d FitProblem::gap_m(const SensorAngles& angles, const Touch& touch,
+                                  const Flesh& flesh_m) const {
   const HandPose pose = skeleton_.pose(joints_of(angles, sensors_), Eigen::Isometry3d::Identity());
-  const Eigen::Vector3d pad(0.0, -pad_depth_m, pad_behind_tip_m);
-  return pose[Joint::thumb_tip] * pad - pose[touch.with] * pad;
+  const Eigen::Vector3d pad(0.0, -flesh_m.pad_depth, flesh_m.pad_behind);
+  const Eigen::Vector3d thumb = pose[Joint::thumb_tip] * pad;
+  const bool finger =
+      std::find(fingertips.begin(), fingertips.end(), touch.with) != fingertips.end();
+  if (finger) return thumb - pose[touch.with] * pad;
+  const auto metacarpal = static_cast<Joint>(index_of(touch.with) - 1);
+  return thumb - pose[touch.with].translation() +
+         flesh_m.palm_depth * pose[metacarpal].linear().col(1);
+}
+
+double FitProblem::gap_m(const Unknowns& at, std::size_t reading) const {
+  const auto [begin, touch, end] = rows_[reading];
+  if (end == touch) return 0.0;
+  return gap_m(angles_rad(at, reading, nullptr), *pose_of(readings_[reading].pose).touch,
+               flesh_m(at))
+      .norm();
+}
+
+void FitProblem::add_assumptions(std::size_t reading, const SensorAngles& angles,
+                                 const AngleJacobian& by_unknowns, Eigen::VectorXd& residuals,
+                                 Eigen::MatrixXd* jacobian) const {
+  Eigen::Index row = rows_[reading].begin;
+  for (const auto& [slot, assumed] : assumptions_[reading]) {
+    const Robust result = robust((angles[slot] - assumed.angle_rad) / assumed.deviation_rad);
+    residuals[row] = result.residual;
+    if (jacobian != nullptr)
+      jacobian->row(row).head<line_unknowns>() =
+          result.slope / assumed.deviation_rad * by_unknowns.row(static_cast<Eigen::Index>(slot));
+    ++row;
+  }
+}
+
+void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles angles,
+                           const AngleJacobian& by_unknowns, Eigen::VectorXd& residuals,
+                           Eigen::MatrixXd* jacobian) const {
+  const Eigen::Index row = rows_[reading].touch;
+  const Touch& touch = *pose_of(readings_[reading].pose).touch;
+  const Flesh flesh = flesh_m(at);
+  const Eigen::Vector3d off = gap_m(angles, touch, flesh) / touch.deviation_m;
+  Eigen::Vector3d slopes;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Robust result = robust(off[k]);
+    residuals[row + k] = result.residual;
+    slopes[k] = result.slope / touch.deviation_m;
+  }
+  if (jacobian == nullptr) return;
+  constexpr double step_rad = 1e-5;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!sensors_.has(static_cast<Sensor>(slot))) continue;
+    const double angle = angles[slot];
+    angles[slot] = angle + step_rad;
+    const Eigen::Vector3d above = gap_m(angles, touch, flesh);
+    angles[slot] = angle - step_rad;
+    const Eigen::Vector3d slope = (above - gap_m(angles, touch, flesh)) / (2.0 * step_rad);
+    angles[slot] = angle;
+    jacobian->block<3, line_unknowns>(row, 0) +=
+        slopes.cwiseProduct(slope) * by_unknowns.row(static_cast<Eigen::Index>(slot));
+  }
+  for (std::size_t k = line_unknowns; k < unknown_count; ++k) { // linear: any step will do
+    Unknowns next = at;
+    next[static_cast<Eigen::Index>(k)] += 1.0;
+    jacobian->block<3, 1>(row, static_cast<Eigen::Index>(k)) =
+        slopes.cwiseProduct(gap_m(angles, touch, flesh_m(next)) - off * touch.deviation_m);
+  }
+}
+
+void FitProblem::add_range_ends(const Unknowns& at, Eigen::VectorXd& residuals,
+                                Eigen::MatrixXd* jacobian) const {
+  Eigen::Index row = height_ - static_cast<Eigen::Index>(range_ends_.size());
+  for (const auto& [slot, counts, end] : range_ends_) {
+    const Line now = line(at, slot);
+    const double turn_rad = now.gain * (counts - now.mean_counts);
+    const Robust result = robust((now.level + turn_rad - end.angle_rad) / end.deviation_rad);
+    residuals[row] = result.residual;
+    if (jacobian != nullptr) {
+      const double slope = result.slope / end.deviation_rad;
+      (*jacobian)(row, static_cast<Eigen::Index>(gain_of(slot))) =
+          slope * gain_deviation * turn_rad;
+      (*jacobian)(row, static_cast<Eigen::Index>(level_of(slot))) = slope * now.level_unit;
+    }
+    ++row;
+  }
 }
 
 void FitProblem::evaluate(const Unknowns& at, Eigen::VectorXd& residuals,
                           Eigen::MatrixXd* jacobian) const {
-  const Eigen::Index height = rows_.empty() ? 0 : rows_.back().end;
-  residuals.resize(height);
-  if (jacobian != nullptr) jacobian->setZero(height, unknown_count);
+  residuals.resize(height_);
+  if (jacobian != nullptr) jacobian->setZero(height_, unknown_count);
   AngleJacobian by_unknowns;
   for (std::size_t n = 0; n < readings_.size(); ++n) {
-    SensorAngles angles = angles_rad(at, n, jacobian == nullptr ? nullptr : &by_unknowns);
-    Eigen::Index row = rows_[n].begin;
-    for (const auto& [slot, assumed] : assumptions_[n]) {
-      residuals[row] = (angles[slot] - assumed.angle_rad) / assumed.deviation_rad;
-      if (jacobian != nullptr) {
-        jacobian->row(row) =
-            by_unknowns.row(static_cast<Eigen::Index>(slot)) / assumed.deviation_rad;
-      }
-      ++row;
-    }
-    if (rows_[n].end == rows_[n].touch) continue;
-    const Touch& touch = *pose_of(readings_[n].pose).touch;
-    residuals.segment<3>(row) = gap_m(angles, touch) / touch.deviation_m;
-    if (jacobian == nullptr) continue;
-    constexpr double step_rad = 1e-5;
-    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-      if (!sensors_.has(static_cast<Sensor>(slot))) continue;
-      const double angle = angles[slot];
-      angles[slot] = angle + step_rad;
-      const Eigen::Vector3d above = gap_m(angles, touch);
-      angles[slot] = angle - step_rad;
-      const Eigen::Vector3d slope = (above - gap_m(angles, touch)) / (2.0 * step_rad);
-      angles[slot] = angle;
-      jacobian->middleRows<3>(row) +=
-          slope / touch.deviation_m * by_unknowns.row(static_cast<Eigen::Index>(slot));
-    }
+    const SensorAngles angles = angles_rad(at, n, jacobian == nullptr ? nullptr : &by_unknowns);
+    add_assumptions(n, angles, by_unknowns, residuals, jacobian);
+    if (rows_[n].end > rows_[n].touch) add_touch(n, at, angles, by_unknowns, residuals, jacobian);
   }
+  add_range_ends(at, residuals, jacobian);
 }
 
 } // namespace nendo::hand

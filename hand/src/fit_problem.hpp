@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -10,9 +11,12 @@
 
 namespace nendo::hand {
 
-/// Unknowns, in units of the default's standard deviation and 0 at the default: of each slot the
-/// gain's logarithm and the angle at the mean of its counts, then the couplings.
-inline constexpr std::size_t unknown_count = 2 * sensor_slots + couplings.size();
+/// Unknowns, in units of their prior's standard deviation and 0 at its mean: of each slot the
+/// gain's logarithm and the angle at the mean of its counts, then the couplings. These are the
+/// calibration. What follows is the wearer's, and not told: how deep the pads are, how far behind
+/// the tips, and how deep the palm's flesh.
+inline constexpr std::size_t line_unknowns = 2 * sensor_slots + couplings.size();
+inline constexpr std::size_t unknown_count = line_unknowns + 3;
 constexpr std::size_t gain_of(std::size_t slot) noexcept {
   return 2 * slot;
 }
@@ -49,13 +53,31 @@ public:
   const std::vector<Assumption>& assumptions(std::size_t reading) const {
     return assumptions_[reading];
   }
+  /// Those that are no calibration, but are solved with it.
+  std::vector<Eigen::Index> wearers_unknowns() const;
+  /// Between the pads that should touch in this reading.
+  double gap_m(const Unknowns& at, std::size_t reading) const;
+
   /// Angles of one reading, and their derivatives by the unknowns.
-  using AngleJacobian = Eigen::Matrix<double, sensor_slots, unknown_count, Eigen::RowMajor>;
+  using AngleJacobian = Eigen::Matrix<double, sensor_slots, line_unknowns, Eigen::RowMajor>;
   SensorAngles angles_rad(const Unknowns& at, std::size_t reading, AngleJacobian* jacobian) const;
 
 private:
   bool usable(const Touch& touch) const noexcept;
-  Eigen::Vector3d gap_m(const SensorAngles& angles, const Touch& touch) const;
+  struct Flesh {
+    double pad_depth, pad_behind, palm_depth;
+  };
+  static Flesh flesh_m(const Unknowns& at) noexcept;
+  Eigen::Vector3d gap_m(const SensorAngles& angles, const Touch& touch, const Flesh& flesh_m) const;
+  void add_assumptions(std::size_t reading, const SensorAngles& angles,
+                       const AngleJacobian& by_unknowns, Eigen::VectorXd& residuals,
+                       Eigen::MatrixXd* jacobian) const;
+  void add_touch(std::size_t reading, const Unknowns& at, SensorAngles angles,
+                 const AngleJacobian& by_unknowns, Eigen::VectorXd& residuals,
+                 Eigen::MatrixXd* jacobian) const;
+  void add_range_ends(const Unknowns& at, Eigen::VectorXd& residuals,
+                      Eigen::MatrixXd* jacobian) const;
+  void find_range_ends(const CountRanges& free_motion);
 
   struct Line {
     double gain, level; ///< of the default, in radians
@@ -64,13 +86,24 @@ private:
   };
   Line line(const Unknowns& at, std::size_t slot) const noexcept;
 
+  /// A joint was turned as far as it goes.
+  struct RangeEnd {
+    std::size_t slot;
+    double counts;
+    AssumedAngle end;
+  };
+
   std::span<const PoseReading> readings_;
+  bool full_;
   SensorMask sensors_;
   HandSkeleton skeleton_;
   Calibration start_;
+  double most_counts_;
   std::array<Line, sensor_slots> lines_{};
   std::vector<std::vector<Assumption>> assumptions_;
   std::vector<Rows> rows_;
+  std::vector<RangeEnd> range_ends_;
+  Eigen::Index height_ = 0;
 };
 
 } // namespace nendo::hand

@@ -7,12 +7,13 @@
 namespace nendo::hand {
 namespace {
 
-// The rules of the header. The thumb's were chosen with this skeleton: of the ends from 50 to 70
-// degrees, and ratios of 0.3 to 1, these bring the tips together.
+// The rules of the header. The thumb's were chosen with this skeleton: of the ends from 20 to 90
+// degrees of roll and 10 to 65 of abduction, these bring the tips together.
 constexpr double pip_of_mcp = 1.1;
 constexpr double thumb_ip_of_mcp = 0.5;
 constexpr double resting_opposition = from_degrees(20);
-constexpr double full_opposition = from_degrees(60);
+constexpr double most_roll = from_degrees(30);
+constexpr double most_abduction = from_degrees(35);
 constexpr double fully_bent_thumb_mcp = from_degrees(55);
 
 constexpr double bent(double angle_rad) noexcept {
@@ -23,9 +24,10 @@ constexpr double estimated_dip(double pip_rad) noexcept {
   return 0.32 * bent(pip_rad) * bent(pip_rad) + 0.17 * bent(pip_rad);
 }
 
-constexpr double estimated_opposition(double thumb_mcp_rad) noexcept {
+/// Of thumb roll or abduction, which reaches `most_rad`.
+constexpr double estimated_opposition(double thumb_mcp_rad, double most_rad) noexcept {
   const double part = std::min(bent(thumb_mcp_rad) / fully_bent_thumb_mcp, 1.0);
-  return resting_opposition + part * (full_opposition - resting_opposition);
+  return resting_opposition + part * (most_rad - resting_opposition);
 }
 
 /// A sample seen through a calibration.
@@ -90,9 +92,11 @@ void set_thumb(JointAngles& angles, const Measured& measured) noexcept {
           : 0.0;
   set(Angle::thumb_mcp_flexion, Sensor::thumb_mcp, mcp_guess);
   const double mcp = angles.thumb_mcp_flexion_rad;
-  const double opposition = bends ? estimated_opposition(mcp) : 0.0;
-  set(Angle::thumb_roll, Sensor::thumb_roll, opposition);
-  set(Angle::thumb_abduction, Sensor::thumb_abduction, opposition);
+  const auto opposition = [&](double most_rad) {
+    return bends ? estimated_opposition(mcp, most_rad) : 0.0;
+  };
+  set(Angle::thumb_roll, Sensor::thumb_roll, opposition(most_roll));
+  set(Angle::thumb_abduction, Sensor::thumb_abduction, opposition(most_abduction));
   set(Angle::thumb_ip_flexion, Sensor::thumb_ip, thumb_ip_of_mcp * bent(mcp));
 }
 

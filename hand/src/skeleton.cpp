@@ -97,20 +97,29 @@ enum : Eigen::Index {
   pitch_turn,
   roll_turn,
   thumb_abduction_turn,
+  pronation_turn,
   thumb_mcp_turn,
   thumb_ip_turn,
   arch_turns, // of ring and little finger
   finger_turns = arch_turns + 2,
-  turn_count = finger_turns + 16
+  spare_turn = finger_turns + 16, // for turns() takes them by twos
+  turn_count
 };
+
+double finite_or_zero(double angle_rad) noexcept {
+  return std::isfinite(angle_rad) ? angle_rad : 0.0;
+}
 
 /// Signed as turns about +X, +Y, +Z of a right hand.
 Turns<turn_count> turns_of(const JointAngles& angles) noexcept {
   Eigen::Array<double, turn_count, 1> row;
   row[yaw_turn] = angles.wrist_yaw_rad;
   row[pitch_turn] = -angles.wrist_pitch_rad;
-  row[roll_turn] = angles.thumb_roll_rad;
-  row[thumb_abduction_turn] = thumb_rest_abduction_rad + angles.thumb_abduction_rad;
+  const double roll_rad = finite_or_zero(angles.thumb_roll_rad);
+  const double abduction_rad = finite_or_zero(angles.thumb_abduction_rad);
+  row[roll_turn] = roll_rad;
+  row[thumb_abduction_turn] = thumb_rest_abduction_rad + abduction_rad;
+  row[pronation_turn] = thumb_pronation(roll_rad, abduction_rad);
   row[thumb_mcp_turn] = -angles.thumb_mcp_flexion_rad;
   row[thumb_ip_turn] = -angles.thumb_ip_flexion_rad;
   row[arch_turns] = -arch_share[first_arched] * angles.palm_arch_rad;
@@ -122,6 +131,7 @@ Turns<turn_count> turns_of(const JointAngles& angles) noexcept {
     row[at++] = -finger.pip_flexion_rad;
     row[at++] = -finger.dip_flexion_rad;
   }
+  row[spare_turn] = 0.0;
   return turns(row);
 }
 
@@ -246,7 +256,7 @@ struct HandSkeleton::Walk {
     frame.move(hand.thumb_base_m_);
     frame.turn_z(sideways(turns[roll_turn]));
     frame.turn_y(sideways(turns[thumb_abduction_turn]));
-    frame.turn_z(sideways(thumb_pronation));
+    frame.turn_z(sideways(turns[pronation_turn]));
     place(Joint::thumb_metacarpal, frame);
     go_along(Joint::thumb_metacarpal, frame);
     bend(Joint::thumb_proximal, turns[thumb_mcp_turn], frame);

@@ -77,14 +77,17 @@ HeldPose held(const SensorAngles& angles, const Calibration& truth,
   return pose;
 }
 
-/// Without the touches, because what is asked of the angles need not close a loop. `times`: more
-/// evidence, for which the default's pull vanishes.
+SensorAngles touching(PoseId id, const HandSkeleton& skeleton);
+
+/// With loops that close. `times`: more evidence, for which the default's pull vanishes.
 std::vector<PoseReading> exact_readings(const Calibration& truth, int times = 1) {
+  const HandSkeleton skeleton(Side::right);
   std::mt19937 random(4);
   std::vector<PoseReading> readings;
   for (int n = 0; n < times; ++n) {
     for (const PoseId id : full_poses()) {
-      if (!pose_of(id).touch) readings.push_back({id, held(exact(id, random), truth)});
+      const bool touch = pose_of(id).touch.has_value();
+      readings.push_back({id, held(touch ? touching(id, skeleton) : exact(id, random), truth)});
     }
   }
   return readings;
@@ -120,33 +123,53 @@ double largest_difference_rad(const Calibration& a, const Calibration& b,
   return largest;
 }
 
-/// The thumb's angles that bring the pads together, by Newton's steps on the forward kinematics.
-SensorAngles touching(PoseId id, const HandSkeleton& skeleton, SensorAngles angles) {
+/// The angles that bring the pads together, by Newton's steps on the forward kinematics. The palm
+/// at the little finger's base is touched by the thumb alone.
+SensorAngles touching(PoseId id, const HandSkeleton& skeleton) {
   const Touch& touch = *pose_of(id).touch;
+  const auto tip = std::find(fingertips.begin(), fingertips.end(), touch.with);
+  const bool palm = tip == fingertips.end();
   const auto gap = [&](const SensorAngles& at) -> Eigen::Vector3d {
     JointAngles joints;
     joints.thumb_roll_rad = at[0];
     joints.thumb_mcp_flexion_rad = at[1];
     joints.thumb_ip_flexion_rad = at[2];
     joints.thumb_abduction_rad = at[3];
+    joints.palm_arch_rad = at[slot_of(Sensor::palm_arch)];
     for (std::size_t f = 0; f < 4; ++f)
       joints.fingers[f] = {at[4 * f + 4], 0.0, at[4 * f + 5], at[4 * f + 6]};
     const HandPose pose = skeleton.pose(joints, Eigen::Isometry3d::Identity());
-    return pose[Joint::thumb_tip] * Eigen::Vector3d(0, -pad_depth_m, pad_behind_tip_m) -
-           pose[touch.with] * Eigen::Vector3d(0, -pad_depth_m, pad_behind_tip_m);
+    const Eigen::Vector3d pad(0, -pad_depth_m, pad_behind_tip_m);
+    const Eigen::Vector3d thumb = pose[Joint::thumb_tip] * pad;
+    if (!palm) return thumb - pose[touch.with] * pad;
+    return thumb - pose[touch.with].translation() -
+           pose[Joint::little_metacarpal].linear() * Eigen::Vector3d(0, -palm_depth_m, 0);
   };
-  const std::size_t first = 4 * (index_of(touch.with) - index_of(Joint::index_tip)) / 5 + 4;
-  const std::array<std::size_t, 6> moved{0, 1, 2, 3, first, first + 1};
+  SensorAngles angles{};
+  const std::size_t finger = palm ? 0 : static_cast<std::size_t>(tip - fingertips.begin());
+  angles[roll] = (palm ? 45.0 : 60.0 + 4.0 * static_cast<double>(finger)) * rad;
+  angles[web] = (palm ? 10.0 : 35.0) * rad;
+  angles[1] = angles[2] = palm ? 45.0 * rad : (15.0 + 8.0 * static_cast<double>(finger)) * rad;
+  for (std::size_t f = 0; f < 4 && !palm; ++f) {
+    angles[4 * f + 4] = angles[4 * f + 5] = 45.0 * rad;
+    angles[4 * f + 6] = 25.0 * rad;
+  }
+  const auto& assumed = pose_of(id).assumed;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (assumed[slot].known()) angles[slot] = assumed[slot].angle_rad;
+  std::vector<std::size_t> moved{0, 1, 2, 3};
+  for (const std::size_t slot : {4 * finger, 4 * finger + 1})
+    if (!palm && !assumed[slot].known()) moved.push_back(slot);
   for (int turn = 0; turn < 100; ++turn) {
     const Eigen::Vector3d apart = gap(angles);
-    Eigen::Matrix<double, 3, 6> slopes;
+    Eigen::Matrix<double, 3, Eigen::Dynamic> slopes(3, static_cast<Eigen::Index>(moved.size()));
     for (std::size_t n = 0; n < moved.size(); ++n) {
       SensorAngles next = angles;
       next[moved[n]] += 1e-6;
       slopes.col(static_cast<Eigen::Index>(n)) = (gap(next) - apart) / 1e-6;
     }
     const Eigen::Matrix3d square = slopes * slopes.transpose() + 1e-7 * Eigen::Matrix3d::Identity();
-    const Eigen::Matrix<double, 6, 1> step = slopes.transpose() * (square.inverse() * apart);
+    const Eigen::VectorXd step = slopes.transpose() * (square.inverse() * apart);
     for (std::size_t n = 0; n < moved.size(); ++n)
       angles[moved[n]] -= 0.5 * step[static_cast<Eigen::Index>(n)];
   }
@@ -255,16 +278,10 @@ TEST_SUITE("calibration_fit") {
       reading.held = held(angles, truth);
     }
     std::vector<PoseReading> touched;
-    for (const PoseId id : {PoseId::pinch_index, PoseId::pinch_index_flat, PoseId::pinch_middle}) {
-      SensorAngles angles{};
-      angles[roll] = angles[web] = 45.0 * rad;
-      angles[1] = angles[2] = 25.0 * rad;
-      for (std::size_t f = 0; f < 4; ++f) {
-        angles[4 * f + 4] = angles[4 * f + 5] = 45.0 * rad;
-        angles[4 * f + 6] = 25.0 * rad;
-      }
-      touched.push_back({id, held(touching(id, skeleton, angles), truth)});
+    for (const PoseId id : full_poses()) {
+      if (pose_of(id).touch) touched.push_back({id, held(touching(id, skeleton), truth)});
     }
+    std::erase_if(readings, [](const auto& reading) { return pose_of(reading.pose).touch; });
     auto with_touches = readings;
     with_touches.insert(with_touches.end(), touched.begin(), touched.end());
     const Calibration without = fitted(readings);
@@ -274,6 +291,68 @@ TEST_SUITE("calibration_fit") {
           0.75 * largest_difference_rad(without, truth, touched));
     for (std::size_t n = readings.size(); n < with_touches.size(); ++n)
       CHECK(with->readings[n].gap_m < 0.004);
+  }
+
+  TEST_CASE("loops that were closed stay closed") {
+    const auto fit = fit_calibration(exact_readings(some_truth(18)), Side::right, sensors_22);
+    REQUIRE(fit);
+    for (const ReadingFit& reading : fit->readings)
+      CHECK(reading.gap_m < 0.004);
+  }
+
+  TEST_CASE("the ends of a free motion mend fists that were held too loosely") {
+    const Calibration truth = some_truth(19);
+    std::mt19937 random(20);
+    std::vector<PoseReading> loose;
+    for (const PoseId id : full_poses()) {
+      if (pose_of(id).touch) continue;
+      SensorAngles angles = exact(id, random);
+      for (std::size_t slot = 4; slot < 20; ++slot)
+        if (angles[slot] > 50.0 * rad) angles[slot] -= 8.0 * rad;
+      loose.push_back({id, held(angles, truth)});
+    }
+    SensorAngles fully_bent{}; // as the tables say
+    fully_bent[1] = 58.0 * rad;
+    fully_bent[2] = 79.0 * rad;
+    for (std::size_t f = 0; f < 4; ++f) {
+      fully_bent[4 * f + 4] = 93.0 * rad;
+      fully_bent[4 * f + 5] = 103.0 * rad;
+      fully_bent[4 * f + 6] = 81.0 * rad;
+    }
+    FitOptions options;
+    options.free_motion.present = sensors_22;
+    options.free_motion.high_counts = counts_at(fully_bent, truth);
+    options.free_motion.low_counts.fill(200.0); // which no pose stays above: says nothing
+    const std::vector<PoseReading> bent{{PoseId::fist, held(fully_bent, truth)}};
+    const double without = largest_difference_rad(fitted(loose), truth, bent);
+    CHECK(largest_difference_rad(fitted(loose, options), truth, bent) < without);
+    // A motion that stayed behind the poses says nothing, whatever it holds.
+    const Calibration plain = fitted(loose);
+    for (const double counts : {30.0, -1e300, std::numeric_limits<double>::quiet_NaN()}) {
+      options.free_motion.high_counts.fill(counts);
+      CHECK(largest_difference_rad(fitted(loose, options), plain, loose) == 0.0);
+    }
+  }
+
+  TEST_CASE("one pose that was another one does less harm than by least squares") {
+    const Calibration truth = some_truth(21);
+    auto readings = exact_readings(truth, 2);
+    constexpr std::size_t slot = slot_of(Sensor::ring_pip);
+    for (auto& reading : readings) {
+      if (reading.pose != PoseId::hook) continue;
+      reading.held.mean_counts[slot] = readings[0].held.mean_counts[slot]; // straight
+      break;
+    }
+    const auto fit = fit_calibration(readings, Side::right, sensors_22);
+    REQUIRE(fit);
+    const auto whole = fit_calibration(exact_readings(truth, 2), Side::right, sensors_22);
+    REQUIRE(whole);
+    // The mean of the bent poses, of which there are a dozen, would be off by their twelfth part.
+    const double counts = readings[1].held.mean_counts[slot] /* the fist's */;
+    const auto angle = [&](const Calibration& of) {
+      return of.sensors[slot].gain_rad_per_count * (counts - of.sensors[slot].offset_counts);
+    };
+    CHECK(std::abs(angle(fit->calibration) - angle(whole->calibration)) < 98.0 * rad / 12.0 / 2.0);
   }
 
   TEST_CASE("the order of the readings is of no consequence") {

@@ -88,7 +88,8 @@ Matrices product_of_matrices(const HandSkeleton& skeleton, const JointAngles& a,
   const double deg = std::numbers::pi / 180.0;
   at(Joint::thumb_metacarpal) =
       at(Joint::wrist) * offset(Joint::thumb_metacarpal) * rot(z_axis, a.thumb_roll_rad) *
-      rot(y_axis, 15 * deg + a.thumb_abduction_rad) * rot(z_axis, 60 * deg);
+      rot(y_axis, 15 * deg + a.thumb_abduction_rad) *
+      rot(z_axis, 47 * deg - 0.41 * a.thumb_roll_rad - 0.27 * a.thumb_abduction_rad);
   at(Joint::thumb_proximal) = at(Joint::thumb_metacarpal) * offset(Joint::thumb_proximal) *
                               rot(x_axis, -a.thumb_mcp_flexion_rad);
   at(Joint::thumb_distal) = at(Joint::thumb_proximal) * offset(Joint::thumb_distal) *

@@ -119,6 +119,17 @@ Pose wave(const Character& hand, double time_s) noexcept {
   return add;
 }
 
+/// What brings the pads of the thumb and of one finger together, from the relaxed hand, by the
+/// hand's kinematics: the farther the finger, the more the thumb rolls and bends across the palm.
+struct Pinch {
+  double mcp, pip;
+  double roll, abduction, thumb_mcp, thumb_ip, arch;
+};
+constexpr std::array<Pinch, fingers.size()> pinches{{{26, 18, 5, -2, 11, 16, 0},
+                                                     {26, 23, 20, 0, 19, 19, 3},
+                                                     {23, 26, 32, 5, 26, 23, 3},
+                                                     {27, 29, 35, 0, 40, 25, 3}}};
+
 Pose pinch(const Character& hand, double time_s) noexcept {
   constexpr double period_s = 6.0;
   const double cycle = time_s * hand.tempo / period_s + hand.phase;
@@ -126,14 +137,14 @@ Pose pinch(const Character& hand, double time_s) noexcept {
   for (std::size_t k = 0; k < fingers.size(); ++k) {
     const double number = static_cast<double>(k);
     const double touch = plateau(cycle - 0.25 * number, 0.01, 0.09, 0.15, 0.23);
-    slot(add, fingers[k].mcp) = hand.amplitude[k] * 28.0 * touch;
-    slot(add, fingers[k].pip) = hand.amplitude[k] * 22.0 * touch;
-    // The farther the finger, the more the thumb rolls across the palm and the palm hollows.
-    slot(add, Sensor::thumb_roll) += (8.0 + 7.0 * number) * touch;
-    slot(add, Sensor::thumb_mcp) += (12.0 + 4.0 * number) * touch;
-    slot(add, Sensor::thumb_ip) += (15.0 + 4.0 * number) * touch;
-    slot(add, Sensor::thumb_abduction) -= 3.0 * number * touch;
-    slot(add, Sensor::palm_arch) += 4.0 * number * touch;
+    const Pinch& by = pinches[k];
+    slot(add, fingers[k].mcp) = hand.amplitude[k] * by.mcp * touch;
+    slot(add, fingers[k].pip) = hand.amplitude[k] * by.pip * touch;
+    slot(add, Sensor::thumb_roll) += by.roll * touch;
+    slot(add, Sensor::thumb_abduction) += by.abduction * touch;
+    slot(add, Sensor::thumb_mcp) += by.thumb_mcp * touch;
+    slot(add, Sensor::thumb_ip) += by.thumb_ip * touch;
+    slot(add, Sensor::palm_arch) += by.arch * touch;
   }
   return add;
 }

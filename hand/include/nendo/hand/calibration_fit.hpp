@@ -14,6 +14,7 @@
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/calibration_poses.hpp>
 #include <nendo/hand/pose_capture.hpp>
+#include <nendo/hand/range_capture.hpp>
 #include <nendo/hand/skeleton.hpp>
 
 namespace nendo::hand {
@@ -35,6 +36,9 @@ struct FitOptions {
   FitMode mode = FitMode::full;
   /// Not fitted: touches close at the same angles in a larger hand, up to the pads' thickness.
   HandSize size{};
+  /// Of a free motion in which every joint went from end to end; empty without one. A sensor that
+  /// reached less there than in the poses is taken not to have been at its end.
+  CountRanges free_motion{};
 };
 
 /// What became of a sensor.

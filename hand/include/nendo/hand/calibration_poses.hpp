@@ -49,16 +49,17 @@ struct AssumedAngle {
   constexpr bool known() const noexcept { return deviation_rad > 0.0; }
 };
 
-/// The pad of the thumb touches the pad of a finger. Bones end where the skeleton's tips are, and
-/// soft pads lie between them: they meet `pad_depth_m` to the palmar side of either tip and
-/// `pad_behind_tip_m` behind it. Index and middle finger alone: the skeleton's thumb, which has no
-/// carpus to roll on, reaches the others only in postures that no hand takes.
+/// The pad of the thumb touches the pad of a finger, or the palm at the base of one. Bones end
+/// where the skeleton's tips are, and soft pads lie between them: pads meet `pad_depth_m` to the
+/// palmar side of either tip and `pad_behind_tip_m` behind it; at a finger's base, a proximal
+/// joint, flesh is `palm_depth_m` deep to the palmar side, by the axes of its metacarpal.
 struct Touch {
   Joint with = Joint::index_tip;
-  double deviation_m = 0.003; ///< of each coordinate, between wearers and touches
+  double deviation_m = 0.002; ///< of each coordinate, between touches of one wearer
 };
 inline constexpr double pad_depth_m = 0.006;
 inline constexpr double pad_behind_tip_m = 0.003;
+inline constexpr double palm_depth_m = 0.012;
 
 struct CalibrationPose {
   std::string_view name;        ///< "pinch_index" and so on

@@ -54,9 +54,9 @@ struct JointAngles {
 /// - finger MCP: the measured PIP / 1.1, for the same reason;
 /// - thumb IP: 0.5 MCP, of a bent MCP; thumb MCP: 2 times the measured IP. In a pinch the IP joint
 ///   bends about half as much, and pulp meets pulp;
-/// - thumb roll and abduction: each from 20 degrees, as a hand at rest has them, to 60 with the
-///   thumb bent by 55 degrees (MCP). So a thumb that has one sensor opposes the index finger as it
-///   bends: its tip comes within 5 mm of the path of a curling index finger's;
+/// - thumb roll and abduction: from 20 degrees each, as a hand at rest has them, to 30 and 35 with
+///   the thumb bent by 55 degrees (MCP). So a thumb that has one sensor opposes the index finger as
+///   it bends: its tip comes within 5 mm of the path of a curling index finger's;
 /// - all others, and a thumb without any flexion sensor: zero, that is closed fingers, a flat palm,
 ///   a straight wrist.
 /// Wait-free; the result is finite.

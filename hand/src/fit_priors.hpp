@@ -1,0 +1,69 @@
+#pragma once
+// What a calibration's fit takes for granted before it has seen a pose: how far gloves and wearers
+// are from the default, how far joints go, and how much a single residual may say.
+
+#include <array>
+#include <cmath>
+
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::hand {
+
+// What the default leaves open. Published gains and offsets differ by half of this between gloves
+// and wearers, so that a pose or two outweigh it.
+inline constexpr double gain_deviation = 0.5; ///< of the gain's logarithm: its sign is known
+inline constexpr double offset_deviation_of_range = 40.0 / 255.0;
+// Thumb sensors mix strongly; published slope matrices have ratios up to 0.9.
+inline constexpr double thumb_mix_deviation = 0.5;
+inline constexpr double gap_mix_deviation = 0.2;
+
+// How pads differ between wearers.
+inline constexpr double pad_depth_deviation_m = 0.002;
+inline constexpr double pad_behind_deviation_m = 0.003;
+inline constexpr double palm_depth_deviation_m = 0.003;
+
+// Beyond so many deviations a residual counts by its size and no more by its square: a pose badly
+// done, or another one than was asked for, does not bend what the others agree on.
+inline constexpr double unusual = 3.0;
+
+// A free motion that stays so far behind the poses did not reach the end.
+inline constexpr double short_of_poses_rad = 0.05;
+
+// How far joints go, and how far people and published tables differ: means of the American Academy
+// of Orthopaedic Surgeons' (MCP 90, PIP 100, DIP 80; thumb 50 and 80; wrist 80 and -70, 20 and -30)
+// and those of M. C. Hume and others, "Functional range of motion of the joints of the hand",
+// J. Hand Surg. 15A, 1990 (100, 105, 85; thumb 56 and 73); of 300 hands' thumb MCP joints, 59, from
+// 16 to 90; of wrists, D. C. Boone and S. P. Azen's, J. Bone Joint Surg. 61-A, 1979 (76, -75, 21,
+// -36, with deviations of 6 and 4). Of PIP joints tables say up to 120. What is straight, poses
+// tell better.
+struct RangeEnds {
+  double low_deg, low_deviation_deg, high_deg, high_deviation_deg; // deviation 0: not used
+};
+inline constexpr RangeEnds mcp_ends{0, 0, 93, 7};
+inline constexpr RangeEnds pip_ends{0, 0, 103, 10};
+inline constexpr RangeEnds dip_ends{0, 0, 81, 8};
+inline constexpr RangeEnds no_ends{};
+inline constexpr std::array<RangeEnds, sensor_slots> range_ends_of{{
+    no_ends,  {0, 0, 58, 13},  {0, 0, 79, 9},   no_ends, // thumb
+    mcp_ends, pip_ends,        dip_ends,        no_ends, // index
+    mcp_ends, pip_ends,        dip_ends,        no_ends, // middle
+    mcp_ends, pip_ends,        dip_ends,        no_ends, // ring
+    mcp_ends, pip_ends,        dip_ends,        no_ends, // little
+    no_ends,  {-72, 7, 78, 7}, {-33, 5, 21, 4}, no_ends, // palm, wrist
+}};
+
+/// What pseudo-Huber's loss makes of a residual, so that its square is the loss, and the slope of
+/// that (P. Charbonnier and others, 1997).
+struct Robust {
+  double residual, slope;
+};
+inline Robust robust(double residual) noexcept {
+  const double part = residual / unusual;
+  const double root = std::sqrt(1.0 + part * part);
+  const double loss = 2.0 * unusual * unusual * (part * part / (root + 1.0));
+  if (loss < 1e-20) return {residual, 1.0};
+  const double size = std::sqrt(loss);
+  return {std::copysign(size, residual), std::abs(residual) / (root * size)};
+}
+
+} // namespace nendo::hand
