@@ -6,6 +6,7 @@
 namespace nendo::app {
 
 void add_calibration_bench(Command& bench);
+void add_deform_bench(Command& bench);
 void add_latency_bench(Command& bench);
 void add_faults_bench(Command& bench);
 void add_hand_bench(Command& bench);

@@ -21,13 +21,16 @@ bool are_usable(const Points& tips) {
 } // namespace
 
 Type2Deformer::Type2Deformer(Points shape, Eigen::Index control_points, double radius,
-                             double piece_length, CsrbfOptions options)
-    : shape_(std::move(shape)), current_(Points::Zero(3, control_points)), target_(current_),
-      step_(current_), radii_(Eigen::VectorXd::Constant(control_points, radius)),
+                             double piece_length, CsrbfOptions options,
+                             const EvaluationOptions& evaluation)
+    : layout_(std::move(shape)), shape_(layout_.pack()), current_(Points::Zero(3, control_points)),
+      target_(current_), step_(current_), rounded_(current_),
+      radii_(Eigen::VectorXd::Constant(control_points, layout_.rounded_radius(radius))),
       piece_length_(piece_length), solver_(options), field_{.kernel = options.kernel,
                                                             .centres = current_,
                                                             .radii = radii_,
-                                                            .coefficients = step_} {
+                                                            .coefficients = step_},
+      evaluator_(layout_, control_points, evaluation) {
   assert(piece_length > 0.0);
   solver_.reserve(control_points);
 }
@@ -77,16 +80,23 @@ StrokeResult Type2Deformer::advance_to_target(int pieces) {
 StrokeResult Type2Deformer::advance(int pieces) {
   StrokeResult result;
   for (int piece = 0; piece < pieces; ++piece) {
-    FieldStatus status = solver_.build(current_, radii_);
-    if (is_solved(status)) status = solver_.solve(step_, field_);
-    if (is_solved(status)) {
-      displace(field_, shape_, shape_);
-      ++result.pieces;
-    }
+    const FieldStatus status = apply_piece();
+    result.pieces += is_solved(status) ? 1 : 0;
     if (status > result.status) result.status = status; // ordered from good to bad
     current_ += step_;
   }
   return result;
+}
+
+/// From current_ by step_.
+FieldStatus Type2Deformer::apply_piece() {
+  for (Eigen::Index i = 0; i < current_.cols(); ++i)
+    rounded_.col(i) = layout_.rounded(current_.col(i));
+  FieldStatus status = solver_.build(rounded_, radii_);
+  if (is_solved(status)) status = solver_.solve(step_, field_);
+  if (!is_solved(status)) return status;
+  const bool applied = evaluator_.set_field(field_) && evaluator_.displace(shape_);
+  return applied ? status : FieldStatus::not_finite;
 }
 
 } // namespace nendo::deform

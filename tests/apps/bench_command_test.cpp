@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
@@ -118,6 +119,36 @@ TEST_SUITE("bench") {
     const auto text = nendo::test::nendo({"bench", "solve", "--points", "200", "--rounds", "1"});
     CHECK(text.exit_code == 0);
     CHECK(text.out.find("times as long as") != std::string::npos);
+  }
+
+  TEST_CASE("bench deform tells each cell's times and ratios, and a large model's floors") {
+    const auto done = nendo::test::nendo({"bench", "deform", "--short", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 11); // two meshes, five radii, and the large model
+    for (std::size_t at = 0; at < 10; ++at) {
+      const auto cell = nlohmann::json::parse(lines[at]);
+      CAPTURE(lines[at]);
+      const auto number = [&](const char* key) { return cell[key].get<double>(); };
+      CHECK(number("vertices") == (at < 5 ? 1089 : 4225));
+      for (const char* key : {"type1_us", "type1_evaluated_us", "type2_us", "type1_two_threads_us",
+                              "type2_two_threads_us", "grab_us"})
+        CHECK(number(key) > 0.0);
+      CHECK(cell["ratio"]["type1"].get<double>() ==
+            doctest::Approx(number("plain_type1_us") / number("type1_us")));
+      CHECK(number("apart_of_diagonal") < 1e-5);
+      CHECK(number("weight_bytes") > 0.0);
+    }
+    const auto large = nlohmann::json::parse(lines[10]);
+    CHECK(large["reached"].get<int>() > 0);
+    CHECK(large["influences"] > large["reached"].get<int>() / 4);
+    const double floor_us = std::max(large["memory_floor_us"].get<double>(),
+                                     large["arithmetic_floor_us"].get<double>());
+    CHECK(large["of_floor"]["type2"].get<double>() ==
+          doctest::Approx(large["type2_us"].get<double>() / floor_us));
+    const auto unknown = nendo::test::nendo({"bench", "deform", "--simd", "abacus"});
+    CHECK(unknown.exit_code == 2);
+    CHECK(is_one_line_about(unknown.err, "abacus"));
   }
 
   TEST_CASE("guided poses calibrate strangers: nearer than two poses do, farther than the truth") {

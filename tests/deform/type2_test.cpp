@@ -31,6 +31,15 @@ TEST_SUITE("type2") {
     return points.cwiseAbs().maxCoeff();
   }
 
+  static Points shape_of(const Type2Deformer& deformer) {
+    Points shape;
+    deformer.layout().unpack(deformer.shape(), shape);
+    return shape;
+  }
+
+  /// What a shape in float may be off after some pieces in a model of this size.
+  constexpr double float_gap = 1e-5;
+
   /// A straight stroke in so many pieces.
   static Points stroked(const Points& ends, int pieces) {
     const double length = (ends - start_points()).colwise().norm().maxCoeff();
@@ -42,7 +51,7 @@ TEST_SUITE("type2") {
           deformer.stroke_to(start_points() + (ends - start_points()) * (part / 16.0)).pieces;
     applied += deformer.finish().pieces;
     CHECK(applied == pieces);
-    return deformer.shape();
+    return shape_of(deformer);
   }
 
   TEST_CASE("a stroke of no length leaves the shape alone") {
@@ -50,7 +59,7 @@ TEST_SUITE("type2") {
     deformer.begin(start_points());
     CHECK(deformer.stroke_to(start_points()).pieces == 0);
     CHECK(deformer.finish().pieces == 0);
-    CHECK(deformer.shape() == clay);
+    CHECK(shape_of(deformer) == clay);
   }
 
   TEST_CASE("a vertex under a fingertip is carried along any curve to its end") {
@@ -62,9 +71,9 @@ TEST_SUITE("type2") {
       CHECK(is_solved(deformer.stroke_to(tips).status));
     }
     const Vector3d end = shifted({std::sin(10.0), 1.0 - std::cos(10.0), 1.0}).col(0);
-    CHECK((deformer.shape().col(100) - end).norm() < 0.1);
+    CHECK((shape_of(deformer).col(100) - end).norm() < 0.1);
     deformer.finish();
-    CHECK((deformer.shape().col(100) - end).norm() < 1e-6);
+    CHECK((shape_of(deformer).col(100) - end).norm() < float_gap);
   }
 
   TEST_CASE("the fastest fingertip sets the cuts, what is left waits") {
@@ -74,15 +83,16 @@ TEST_SUITE("type2") {
     tips(0, 0) += 2.5;
     tips(1, 1) += 0.5;
     CHECK(deformer.stroke_to(tips).pieces == 2);
-    CHECK((deformer.shape().col(100) - start_points().col(0) - Vector3d(2, 0, 0)).norm() < 1e-6);
+    CHECK((shape_of(deformer).col(100) - start_points().col(0) - Vector3d(2, 0, 0)).norm() <
+          float_gap);
     CHECK((deformer.field().centres.col(1) - start_points().col(1) - Vector3d(0, 0.2, 0)).norm() <
-          1e-12);
+          float_gap); // a centre is where float holds it
     tips(0, 0) += 0.4;
     CHECK(deformer.stroke_to(tips).pieces == 0);
     tips(0, 0) += 0.2;
     CHECK(deformer.stroke_to(tips).pieces == 1);
     CHECK(deformer.finish().pieces == 1);
-    CHECK((deformer.shape().col(100) - tips.col(0)).norm() < 1e-6);
+    CHECK((shape_of(deformer).col(100) - tips.col(0)).norm() < float_gap);
     CHECK(deformer.finish().pieces == 0);
   }
 
@@ -103,9 +113,11 @@ TEST_SUITE("type2") {
     // difference.
     const auto gap_to_type1 = [&](double scale) {
       Type1Deformer type1(clay, 10, 6.0, {});
+      BlockShape shape;
       Points once;
       type1.grab(start_points());
-      type1.apply(start_points() + scale * way, once);
+      type1.apply(start_points() + scale * way, shape);
+      type1.layout().unpack(shape, once);
       return largest(stroked(start_points() + scale * way, 16) - once);
     };
     CHECK(gap_to_type1(0.01) < 0.02 * gap_to_type1(0.1));
@@ -116,10 +128,10 @@ TEST_SUITE("type2") {
     Type2Deformer deformer(clay, 10, 6.0, 1e-6, {});
     deformer.begin(start_points());
     CHECK(deformer.stroke_to(shifted({3, 0, 0})).pieces == Type2Deformer::most_pieces);
-    CHECK((deformer.shape().col(100) - shifted({3, 0, 0}).col(0)).norm() < 1e-6);
+    CHECK((shape_of(deformer).col(100) - shifted({3, 0, 0}).col(0)).norm() < float_gap);
     CHECK(deformer.finish().pieces == 0);
     CHECK(is_solved(deformer.stroke_to(shifted({1e30, 0, 0})).status));
-    CHECK(deformer.shape().allFinite());
+    CHECK(shape_of(deformer).allFinite());
   }
 
   TEST_CASE("fingertips that are not finite are refused, and the stroke goes on after them") {
@@ -134,10 +146,10 @@ TEST_SUITE("type2") {
       CHECK(result.status == FieldStatus::not_finite);
       CHECK(result.pieces == 0);
     }
-    CHECK(deformer.shape() == clay);
+    CHECK(shape_of(deformer) == clay);
     CHECK(deformer.stroke_to(shifted({0.5, 0, 0})).status == FieldStatus::ok);
     deformer.finish();
-    CHECK((deformer.shape().col(100) - shifted({0.5, 0, 0}).col(0)).norm() < 1e-6);
+    CHECK((shape_of(deformer).col(100) - shifted({0.5, 0, 0}).col(0)).norm() < float_gap);
   }
 
   TEST_CASE("two fingertips may cross on their way") {
@@ -155,7 +167,7 @@ TEST_SUITE("type2") {
       shared = shared || result.status == FieldStatus::merged;
     }
     CHECK(shared);
-    CHECK(largest(deformer.shape() - clay) < 10.0);
+    CHECK(largest(shape_of(deformer) - clay) < 10.0);
   }
 
   TEST_CASE("a stroke does not allocate") {

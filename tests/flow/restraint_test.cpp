@@ -72,8 +72,9 @@ TEST_SUITE("restraint") {
       constexpr auto index_mcp = static_cast<std::size_t>(Sensor::index_mcp);
       CHECK((test.loop->stats().ranges[0][index_mcp].turns > 0) == adapts);
       CHECK((test.loop->stats().filter_moving.count() > 0) == (filter != FilterKind::off));
-      CHECK((test.loop->frames().front().vertices - test.model.vertices).cwiseAbs().maxCoeff() >
-            1e-3);
+      CHECK((test.vertices_of(test.loop->frames().front()) - test.model.vertices)
+                .cwiseAbs()
+                .maxCoeff() > 1e-3);
     }
   }
 

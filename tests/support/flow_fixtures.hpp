@@ -15,6 +15,9 @@ inline deform::Mesh ball(std::uint32_t rings) {
   return sphere(rings, 2 * rings, 1.0);
 }
 
+/// What a shape of the ball, kept in float, may be off after a few strokes.
+inline constexpr double float_gap = 2e-6;
+
 /// A hand in a relaxed pose, bent further by so many counts at every finger's MCP and PIP.
 inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
   GloveSample sample;
@@ -77,6 +80,12 @@ struct LoopUnderTest {
   void bend(int counts, HostTime arrival) {
     rings[0]->try_push(bent_sample(Side::left, counts, arrival));
     rings[1]->try_push(bent_sample(Side::right, counts, arrival));
+  }
+  /// A frame's shape, in the model's order.
+  deform::Points vertices_of(const flow::Frame& frame) const {
+    deform::Points vertices;
+    loop->layout().unpack(frame.shape, vertices);
+    return vertices;
   }
   const flow::Frame& frame_after_tick(std::uint64_t number) {
     loop->tick(number, HostClock::now());

@@ -14,10 +14,11 @@ using deform::Points;
 
 namespace {
 
-Frame first_frame(const Points& vertices, Eigen::Index control_points, double units_per_metre) {
+Frame first_frame(const deform::BlockShape& shape, Eigen::Index control_points,
+                  double units_per_metre) {
   Frame frame;
   frame.units_per_metre = units_per_metre;
-  frame.vertices = vertices;
+  frame.shape = shape;
   frame.field.centres = Points::Zero(3, control_points);
   frame.field.coefficients = Points::Zero(3, control_points);
   frame.field.radii = Eigen::VectorXd::Ones(control_points);
@@ -43,7 +44,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
       sculptor_(model.vertices, tips_.cols(), options.sculptor),
       held_(options.switch_action != SwitchAction::grab), hold_wanted_(held_),
-      frames_(first_frame(model.vertices, tips_.cols(), placement.units_per_metre)) {
+      frames_(first_frame(sculptor_.rest(), tips_.cols(), placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
@@ -107,13 +108,13 @@ deform::FieldStatus DeformLoop::shape(Frame& frame) noexcept {
     if (held_) ++stats_.grabs;
   }
   if (!held_) {
-    frame.vertices = sculptor_.rest();
+    frame.shape.follow(sculptor_.rest());
     frame.field = sculptor_.field();
     return deform::FieldStatus::ok;
   }
   const bool commits = commit_due_ || !hold_wanted_; // letting go keeps what has been shaped
   const deform::FieldStatus status =
-      commits ? sculptor_.finish(tips_, frame.vertices) : sculptor_.update(tips_, frame.vertices);
+      commits ? sculptor_.finish(tips_, frame.shape) : sculptor_.update(tips_, frame.shape);
   frame.field = sculptor_.field();
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_.commit(tips_))) {
@@ -176,10 +177,11 @@ void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) no
 }
 
 Points DeformLoop::final_shape() {
-  if (!held_) return sculptor_.rest();
-  Points shape = frames_.back().vertices;
-  sculptor_.finish(tips_, shape);
-  return shape;
+  deform::BlockShape shape = sculptor_.rest();
+  if (held_) sculptor_.finish(tips_, shape);
+  Points vertices;
+  layout().unpack(shape, vertices);
+  return vertices;
 }
 
 } // namespace nendo::flow

@@ -4,6 +4,7 @@
 
 namespace nendo::flow {
 
+using deform::BlockShape;
 using deform::FieldStatus;
 using deform::Points;
 using deform::Type1Deformer;
@@ -14,10 +15,11 @@ namespace {
 std::variant<Type1Deformer, Type2Deformer> make(Points rest, Eigen::Index control_points,
                                                 const SculptorOptions& options) {
   if (options.mode == Mode::type1) {
-    return Type1Deformer(std::move(rest), control_points, options.radius, options.csrbf);
+    return Type1Deformer(std::move(rest), control_points, options.radius, options.csrbf,
+                         options.evaluation);
   }
   return Type2Deformer(std::move(rest), control_points, options.radius, options.piece_length,
-                       options.csrbf);
+                       options.csrbf, options.evaluation);
 }
 
 } // namespace
@@ -41,20 +43,20 @@ FieldStatus Sculptor::grab(const Points& tips) noexcept {
   return FieldStatus::ok;
 }
 
-FieldStatus Sculptor::update(const Points& tips, Points& out) noexcept {
+FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->apply(tips, out);
   auto* type2 = std::get_if<Type2Deformer>(&deformer_);
   const FieldStatus status = type2->stroke_to(tips).status;
-  out = type2->shape();
+  out.follow(type2->shape());
   return status;
 }
 
-FieldStatus Sculptor::finish(const Points& tips, Points& out) noexcept {
+FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
   const FieldStatus status = update(tips, out);
   auto* type2 = std::get_if<Type2Deformer>(&deformer_);
   if (type2 == nullptr) return status;
   const FieldStatus last = type2->finish().status;
-  out = type2->shape();
+  out.follow(type2->shape());
   return last;
 }
 
@@ -64,9 +66,14 @@ FieldStatus Sculptor::commit(const Points& tips) noexcept {
   return FieldStatus::ok;
 }
 
-const Points& Sculptor::rest() const noexcept {
+const BlockShape& Sculptor::rest() const noexcept {
   const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
   return type1 != nullptr ? type1->rest() : std::get_if<Type2Deformer>(&deformer_)->shape();
+}
+
+const deform::BlockLayout& Sculptor::layout() const noexcept {
+  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
+  return type1 != nullptr ? type1->layout() : std::get_if<Type2Deformer>(&deformer_)->layout();
 }
 
 const deform::CsrbfField& Sculptor::field() const noexcept {

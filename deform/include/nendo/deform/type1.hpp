@@ -1,36 +1,60 @@
 #pragma once
 // Type-1 (the paper, 2.4): the start points are frozen when the operator grabs. Every tick only the
-// end points move, so the factor is kept and the rest shape is deformed anew: nothing accumulates.
+// end points move, so everything that depends on start points alone is kept, down to what each
+// vertex gets of each displacement, and the rest shape is deformed anew: nothing accumulates.
 
+#include <memory>
+
+#include <nendo/deform/block_evaluator.hpp>
 #include <nendo/deform/csrbf.hpp>
 
 namespace nendo::deform {
 
+class CardinalWeights;
+
+/// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
+/// in double. grab(), apply() and commit() allocate nothing, if `out` has the layout's size.
 class Type1Deformer {
 public:
   /// rest: 3 by #vertices. radius > 0 in model units. Allocates for `control_points` start points.
-  Type1Deformer(Points rest, Eigen::Index control_points, double radius, CsrbfOptions options);
+  Type1Deformer(Points rest, Eigen::Index control_points, double radius, CsrbfOptions options,
+                const EvaluationOptions& evaluation = {});
+  ~Type1Deformer();
+  Type1Deformer(Type1Deformer&&) noexcept;
+  Type1Deformer& operator=(Type1Deformer&&) noexcept;
 
-  /// Freezes the start points (3 by control_points). Not on failure: the last good grab stays. No
-  /// allocation.
+  /// Freezes the start points (3 by control_points); nothing is displaced any more. Not on failure:
+  /// the last good grab stays.
   FieldStatus grab(const Points& starts);
-  /// Deforms the rest shape so that the start points go to `ends`, into `out`. On failure `out` is
-  /// the last good shape's field applied again; before the first grab, singular and the rest shape.
-  /// No allocation if `out` has the size of the rest shape.
-  FieldStatus apply(const Points& ends, Points& out);
+  /// Deforms the rest shape so that the start points go to `ends`, into `out`. Where no support
+  /// reaches, `out` is written only if it is not the rest shape there already. On failure `out` is
+  /// the last good shape; before the first grab, singular and the rest shape.
+  FieldStatus apply(const Points& ends, BlockShape& out);
   /// The shape that apply() last gave becomes the rest shape, and `ends` the new start points.
   FieldStatus commit(const Points& ends);
 
-  const Points& rest() const noexcept { return rest_; }
+  const BlockLayout& layout() const noexcept { return layout_; }
+  const BlockShape& rest() const noexcept { return rest_.shape; }
+  /// Its centres are the start points as float holds them (BlockLayout::rounded).
   const CsrbfField& field() const noexcept { return field_; }
+  /// Bytes of weights in use; 0 if fields are evaluated instead.
+  std::size_t weight_bytes() const noexcept;
 
 private:
-  Points rest_;
+  void take_hold();
+  void draw(BlockShape& out);
+
+  BlockLayout layout_;
+  BoundedShape rest_;
   Points starts_;
-  Points displacements_;
+  Points rounded_;       ///< the start points as float holds them
+  Points displacements_; ///< the last that had a solution
+  Points asked_;
   Eigen::VectorXd radii_;
   CsrbfSolver solver_;
   CsrbfField field_;
+  BlockEvaluator evaluator_;
+  std::unique_ptr<CardinalWeights> weights_;
   bool grabbed_ = false;
 };
 

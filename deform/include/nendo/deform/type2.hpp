@@ -3,6 +3,7 @@
 // The curve is cut at a constant arc length; each piece deforms the current shape, which becomes
 // the start of the next.
 
+#include <nendo/deform/block_evaluator.hpp>
 #include <nendo/deform/csrbf.hpp>
 
 namespace nendo::deform {
@@ -12,11 +13,13 @@ struct StrokeResult {
   int pieces = 0; ///< how many pieces were cut and applied
 };
 
+/// The shape is in blocks, in float, and within 1e-5 of the model's diagonal of what displace()
+/// makes in double of the same piece.
 class Type2Deformer {
 public:
   /// shape: 3 by #vertices. radius > 0 and piece_length > 0 in model units.
   Type2Deformer(Points shape, Eigen::Index control_points, double radius, double piece_length,
-                CsrbfOptions options);
+                CsrbfOptions options, const EvaluationOptions& evaluation = {});
 
   /// Starts a curve at these fingertips (3 by control_points) without deforming anything.
   void begin(const Points& tips);
@@ -29,8 +32,11 @@ public:
   /// Applies what is left of the stroke.
   StrokeResult finish();
 
-  const Points& shape() const noexcept { return shape_; }
-  /// The field of the piece applied last.
+  const BlockLayout& layout() const noexcept { return layout_; }
+  /// A copy is brought up to date by BlockShape::follow().
+  const BlockShape& shape() const noexcept { return shape_.shape; }
+  /// The field of the piece applied last. Its centres are the fingertips as float holds them
+  /// (BlockLayout::rounded).
   const CsrbfField& field() const noexcept { return field_; }
 
   static constexpr int most_pieces = 16;
@@ -38,15 +44,19 @@ public:
 private:
   StrokeResult advance_to_target(int pieces);
   StrokeResult advance(int pieces);
+  FieldStatus apply_piece();
 
-  Points shape_;
+  BlockLayout layout_;
+  BoundedShape shape_;
   Points current_; ///< where the curves have been cut last
   Points target_;  ///< where the fingertips are
   Points step_;
+  Points rounded_; ///< current_, as float holds it
   Eigen::VectorXd radii_;
   double piece_length_;
   CsrbfSolver solver_;
   CsrbfField field_;
+  BlockEvaluator evaluator_;
   bool begun_ = false;
 };
 

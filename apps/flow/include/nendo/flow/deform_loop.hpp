@@ -81,6 +81,8 @@ public:
   /// One reader thread may poll it while the loop runs.
   FrameExchange& frames() noexcept { return frames_; }
   const LoopStats& stats() const noexcept { return stats_; }
+  /// Makes points in the mesh's order of a frame's shape. Any thread.
+  const deform::BlockLayout& layout() const noexcept { return sculptor_.layout(); }
   /// The shape as it stands when the loop has ended, nothing of a stroke left out. 3 by #vertices.
   deform::Points final_shape();
 

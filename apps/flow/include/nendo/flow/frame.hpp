@@ -7,6 +7,7 @@
 
 #include <nendo/base/latest_value.hpp>
 #include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/hand/skeleton.hpp>
@@ -33,7 +34,9 @@ struct Frame {
   std::array<HandFrame, 2> hands; ///< by Placement::index_of(side)
   deform::FieldStatus status = deform::FieldStatus::ok;
   deform::CsrbfField field; ///< model units
-  deform::Points vertices;  ///< 3 by #vertices, model units
+  /// The deformed vertices; DeformLoop::layout() makes points of them. Its stamps tell which blocks
+  /// differ from those of an earlier frame.
+  deform::BlockShape shape;
 };
 
 using FrameExchange = LatestValue<Frame>;

@@ -23,6 +23,7 @@ struct SculptorOptions {
   double radius = 1.0;        ///< of every control point's support, in model units
   double piece_length = 0.05; ///< of a cut of type 2, in model units
   deform::CsrbfOptions csrbf;
+  deform::EvaluationOptions evaluation;
 };
 
 class Sculptor {
@@ -31,17 +32,20 @@ public:
 
   /// The fingertips take hold of the model here (3 by control_points, model units).
   deform::FieldStatus grab(const deform::Points& tips) noexcept;
-  /// The shape for the fingertips' present places, into `out`. Wait-free; no allocation if `out`
-  /// has the size.
-  deform::FieldStatus update(const deform::Points& tips, deform::Points& out) noexcept;
+  /// The shape for the fingertips' present places, into `out`; what `out` has of it already is not
+  /// written again. Wait-free (with a second thread: no longer than that needs); no allocation if
+  /// `out` has the size.
+  deform::FieldStatus update(const deform::Points& tips, deform::BlockShape& out) noexcept;
   /// As update(), and nothing of a stroke is left waiting.
-  deform::FieldStatus finish(const deform::Points& tips, deform::Points& out) noexcept;
+  deform::FieldStatus finish(const deform::Points& tips, deform::BlockShape& out) noexcept;
   /// To be called after finish() with the same tips: the shape that it gave becomes the rest shape,
   /// and the fingertips hold that where they are. Unless solved, nothing changes. No allocation.
   deform::FieldStatus commit(const deform::Points& tips) noexcept;
 
   /// The shape that nobody holds: the rest shape, or where the last stroke ended.
-  const deform::Points& rest() const noexcept;
+  const deform::BlockShape& rest() const noexcept;
+  /// Makes points in the mesh's order of shapes in blocks.
+  const deform::BlockLayout& layout() const noexcept;
 
   const deform::CsrbfField& field() const noexcept;
 

@@ -1,0 +1,140 @@
+// nendo bench deform: both types of deformation beside a plain loop that the compiler vectorises,
+// on the meshes and radii of the paper's Table 1, and a model of a million vertices beside two
+// floors.
+
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/deform/simd.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/deform_trial.hpp"
+#include "bench/table1.hpp"
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct Options {
+  std::string simd;
+  bool short_form = false;
+  bool json = false;
+};
+
+struct TableMesh {
+  int cells;
+  bool with_middles;
+};
+constexpr std::array table_meshes{TableMesh{32, false}, TableMesh{64, false}, TableMesh{128, false},
+                                  TableMesh{128, true}};
+
+/// 0 where there is no plain loop to compare with.
+double ratio(double plain_us, double us) {
+  return us > 0.0 ? plain_us / us : 0.0;
+}
+
+void print_cell_json(Eigen::Index vertices, double radius, const CellTimes& times) {
+  const nlohmann::ordered_json object{
+      {"vertices", vertices},
+      {"radius", radius},
+      {"plain_type1_us", times.plain1_us},
+      {"plain_type2_us", times.plain2_us},
+      {"type1_us", times.type1_us},
+      {"type1_evaluated_us", times.evaluated1_us},
+      {"type2_us", times.type2_us},
+      {"type1_two_threads_us", times.type1_2threads_us},
+      {"type2_two_threads_us", times.type2_2threads_us},
+      {"grab_us", times.grab_us},
+      {"weight_bytes", times.weight_bytes},
+      {"apart_of_diagonal", times.apart},
+      {"ratio",
+       {{"type1", ratio(times.plain1_us, times.type1_us)},
+        {"type1_evaluated", ratio(times.plain1_us, times.evaluated1_us)},
+        {"type2", ratio(times.plain2_us, times.type2_us)}}}};
+  std::cout << object.dump() << std::endl;
+}
+
+void print_cell_text(Eigen::Index vertices, double radius, const CellTimes& times) {
+  std::printf("%8lld %6.0f %9.1f %9.1f %9.1f %9.1f %9.1f %8.1f x %6.1f x %6.1f x %9.0f %7.1f\n",
+              static_cast<long long>(vertices), radius, times.plain1_us, times.type1_us,
+              times.type1_2threads_us, times.type2_us, times.type2_2threads_us,
+              ratio(times.plain1_us, times.type1_us), ratio(times.plain1_us, times.evaluated1_us),
+              ratio(times.plain2_us, times.type2_us), times.grab_us,
+              static_cast<double>(times.weight_bytes) / 1024.0);
+  std::fflush(stdout);
+}
+
+void print_large(const LargeTimes& times, bool json) {
+  const double floor_us = std::max(times.memory_us, times.arithmetic_us);
+  if (json) {
+    const nlohmann::ordered_json object{{"vertices", times.vertices},
+                                        {"reached", times.reached},
+                                        {"influences", times.influences},
+                                        {"type1_us", times.type1_us},
+                                        {"type1_evaluated_us", times.evaluated1_us},
+                                        {"type2_us", times.type2_us},
+                                        {"memory_floor_us", times.memory_us},
+                                        {"arithmetic_floor_us", times.arithmetic_us},
+                                        {"of_floor",
+                                         {{"type1", times.type1_us / floor_us},
+                                          {"type1_evaluated", times.evaluated1_us / floor_us},
+                                          {"type2", times.type2_us / floor_us}}}};
+    std::cout << object.dump() << std::endl;
+    return;
+  }
+  std::printf("\n%zu vertices, ten supports of a fifth of the model: %zu vertices reached, %zu "
+              "influences\n",
+              times.vertices, times.reached, times.influences);
+  std::printf("  floors: memory %.0f us (24 bytes a reached vertex), arithmetic %.0f us\n",
+              times.memory_us, times.arithmetic_us);
+  std::printf(
+      "  type 1 %.0f us, %.2f of the larger floor; evaluated %.0f us, %.2f; type 2 %.0f us, "
+      "%.2f\n",
+      times.type1_us, times.type1_us / floor_us, times.evaluated1_us,
+      times.evaluated1_us / floor_us, times.type2_us, times.type2_us / floor_us);
+}
+
+int bench_deform(const Options& options) {
+  if (!deform::use_simd(options.simd)) {
+    std::string names;
+    for (const auto name : deform::simd_names())
+      names += " " + std::string(name);
+    return report({Errc::usage, "--simd " + options.simd + ": this machine has" + names});
+  }
+  const int repetitions = options.short_form ? 3 : 60;
+  if (!options.json) {
+    std::printf("microseconds a frame, the best of many; x: times as fast as the plain loop\n"
+                "vertices radius     plain    type 1  2 threads   type 2  2 threads   type 1 "
+                "evaluated  type 2      grab kB kept\n");
+  }
+  for (const TableMesh& mesh : table_meshes) {
+    if (options.short_form && mesh.cells > 64) continue;
+    const deform::Points plane = table1_plane(mesh.cells, mesh.with_middles);
+    for (const double radius : table1_radii) {
+      const CellTimes times = measure_cell(plane, radius, repetitions);
+      options.json ? print_cell_json(plane.cols(), radius, times)
+                   : print_cell_text(plane.cols(), radius, times);
+    }
+  }
+  print_large(measure_large(options.short_form ? 150 : 1000, repetitions), options.json);
+  return 0;
+}
+
+} // namespace
+
+void add_deform_bench(Command& bench) {
+  auto options = std::make_shared<Options>();
+  Command command = bench.add_command(
+      "deform", "Both types of deformation, beside a plain loop and the machine's floors");
+  command.add_option("--simd", options->simd,
+                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
+  command.add_flag("--short", options->short_form, "The two smaller meshes, a few repetitions");
+  command.add_flag("--json", options->json, "One JSON object a line");
+  command.on_chosen([options] { return bench_deform(*options); });
+}
+
+} // namespace nendo::app

@@ -1,0 +1,42 @@
+#pragma once
+// What `nendo bench deform` measures: the deformers beside a plain loop, on the plane of the
+// paper's Table 1, and on a model of a million vertices beside what the machine can do at best.
+
+#include <cstddef>
+
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::app {
+
+/// Microseconds a frame, the best of many: new displacements, solving, and all vertices; for Type-2
+/// assembling and factorising, too.
+struct CellTimes {
+  double plain1_us = 0.0; ///< 0 if the processor has no AVX2
+  double plain2_us = 0.0;
+  double type1_us = 0.0;
+  double evaluated1_us = 0.0; ///< Type-1 without weights
+  double type2_us = 0.0;
+  double type1_2threads_us = 0.0;
+  double type2_2threads_us = 0.0;
+  double grab_us = 0.0;
+  double apart = 0.0; ///< the most that Type-1 differs from double, of the model's diagonal
+  std::size_t weight_bytes = 0;
+};
+
+CellTimes measure_cell(const deform::Points& mesh, double radius, int repetitions);
+
+/// A large model of which ten supports, a fifth of its size, reach a part.
+struct LargeTimes {
+  std::size_t vertices = 0;
+  std::size_t reached = 0;    ///< in blocks that some support reaches
+  std::size_t influences = 0; ///< vertices within a support, summed over supports
+  double type1_us = 0.0;
+  double evaluated1_us = 0.0;
+  double type2_us = 0.0;
+  double memory_us = 0.0;     ///< to read and write 24 bytes for each reached vertex
+  double arithmetic_us = 0.0; ///< the influences, at the pace of a model that fits the first cache
+};
+
+LargeTimes measure_large(int cells, int repetitions);
+
+} // namespace nendo::app

@@ -1,0 +1,61 @@
+#pragma once
+// Evaluates fields on shapes in blocks, with vector instructions: what Type-1 and Type-2 have in
+// common.
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <nendo/deform/field.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
+
+namespace nendo::deform {
+
+struct EvaluationOptions {
+  /// 1 or 2. The second one spins from construction on and keeps a core busy; results are the same.
+  /// Models of less than 8192 vertices keep to one.
+  int threads = 1;
+  /// Most memory for Type-1's weights; where they need more, fields are evaluated instead, in about
+  /// twice the time. Weights that leave the processor's caches gain nothing.
+  std::size_t weight_bytes = std::size_t{8} << 20;
+};
+
+/// A shape that knows its blocks' bounds.
+struct BoundedShape {
+  explicit BoundedShape(BlockShape blocks);
+
+  BlockShape shape;
+  std::vector<BlockBounds> bounds; ///< one a block
+  double extent = 0.0;             ///< no coordinate is larger
+};
+
+/// Not for two threads at a time. Functions without a word on it neither allocate nor wait.
+class BlockEvaluator {
+public:
+  /// Allocates for fields of so many entries.
+  BlockEvaluator(const BlockLayout& layout, Eigen::Index entries, const EvaluationOptions& options);
+  ~BlockEvaluator();
+  BlockEvaluator(BlockEvaluator&&) noexcept;
+  BlockEvaluator& operator=(BlockEvaluator&&) noexcept;
+
+  /// The field for the next calls; false, and the zero field, if it has a number that is not finite
+  /// or too large for float. Allocates only for more entries than ever before.
+  bool set_field(const CsrbfField& field) noexcept;
+  /// to = from + s(from). Blocks that nothing reaches are copied only where `to` differs from
+  /// `from`. False, and `to` is `from`, if the result might not be finite.
+  bool displace(const BoundedShape& from, BlockShape& to) noexcept;
+  /// shape += s(shape), bounds and stamps included. False, and nothing, if that might not be
+  /// finite.
+  bool displace(BoundedShape& shape) noexcept;
+
+  struct Parts;
+  /// Of the library's own: what Type-1's weights share.
+  Parts& parts() noexcept { return *parts_; }
+
+private:
+  bool fits(const BoundedShape& shape) const noexcept;
+
+  std::unique_ptr<Parts> parts_;
+};
+
+} // namespace nendo::deform

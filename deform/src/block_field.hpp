@@ -1,0 +1,55 @@
+#pragma once
+// A field in a layout's coordinates, as the vector code takes it.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <hwy/aligned_allocator.h>
+
+#include <nendo/deform/field.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
+
+#include "simd/field_kernels.hpp"
+
+namespace nendo::deform {
+
+/// Numbers for whole vectors.
+template <class T>
+using VectorArray = hwy::AlignedFreeUniquePtr<T[]>;
+
+class BlockField {
+public:
+  /// Reserves for so many entries.
+  BlockField(const BlockLayout& layout, Eigen::Index entries);
+
+  /// Takes a field over. False if a number in it is not finite, or too large for float: then it is
+  /// the zero field. Allocates only for more entries than ever before.
+  bool assign(const CsrbfField& field);
+  /// Whether sums are made in double, because in float the coefficients' rounding errors would be
+  /// seen.
+  bool is_precise() const noexcept { return view_.precise_entries != nullptr; }
+  const FieldView& view() const noexcept { return view_; }
+  const FieldEntry<double>* precise_entries() const noexcept { return precise_entries_.data(); }
+  /// No coordinate of s(x) is larger, where none of x is larger than `extent`.
+  double bound(double extent) const noexcept;
+
+private:
+  void reserve(Eigen::Index entries);
+  bool assign_entries(const CsrbfField& field);
+
+  Eigen::Vector3d origin_;
+  double unit_;
+  double tolerance_; ///< of the error of float sums, in units
+  Eigen::Index capacity_ = 0;
+  Eigen::Index size_ = 0;
+  VectorArray<float> x_, y_, z_, squared_radius_;
+  std::vector<FieldEntry<float>> entries_;
+  std::vector<FieldEntry<double>> precise_entries_;
+  std::array<std::array<double, 4>, 3> polynomial_{};
+  double sum_of_coefficients_ = 0.0;
+  double largest_coefficient_ = 0.0;
+  FieldView view_{};
+};
+
+} // namespace nendo::deform

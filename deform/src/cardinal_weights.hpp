@@ -1,0 +1,63 @@
+#pragma once
+// Type-1's weights (simd/weight_kernels.hpp): built when the start points are frozen, applied each
+// tick.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <nendo/deform/block_evaluator.hpp>
+#include <nendo/deform/csrbf.hpp>
+
+#include "block_field.hpp"
+#include "simd/weight_kernels.hpp"
+
+namespace nendo::deform {
+
+class CardinalWeights {
+public:
+  /// Takes all memory that it will ever use: at most weight_bytes, and what the start points need.
+  CardinalWeights(const BlockLayout& layout, Eigen::Index starts, std::size_t weight_bytes);
+
+  /// Makes the weights of the rest shape for what `solver` was built for. False if there is no room
+  /// for them, or none for so many start points. Allocates only if the solver makes more entries
+  /// than start points.
+  bool build(CsrbfSolver& solver, const BoundedShape& rest, BlockEvaluator& evaluator) noexcept;
+  bool is_built() const noexcept { return built_; }
+  std::size_t bytes_used() const noexcept { return cache_.used * bytes_a_weight; }
+
+  /// Whether displacements (3 by #starts, model units) keep the rest shape finite.
+  bool fits(const Points& displacements, const BoundedShape& rest) const noexcept;
+  /// to = rest + W displacements, which must fit. `to` may be the rest's own blocks.
+  void apply(const Points& displacements, const BlockShape& rest, BlockShape& to,
+             BlockEvaluator& evaluator) noexcept;
+  /// After apply() to the rest shape itself.
+  void update_rest_bounds(const Points& displacements, BoundedShape& rest) const noexcept;
+
+private:
+  /// 64 weights and the number of their start point.
+  static constexpr std::size_t bytes_a_weight = block_size * sizeof(float) + sizeof(std::uint16_t);
+
+  bool solve_units(CsrbfSolver& solver) noexcept;
+  void take_coefficients(Eigen::Index start, Eigen::Index axis) noexcept;
+  double bound(const Points& displacements) const noexcept;
+
+  Eigen::Vector3d origin_;
+  double unit_;
+  std::size_t starts_;
+  Points unit_displacements_;
+  CsrbfField unit_field_;
+  std::vector<double> map_;
+  std::vector<double> polynomial_;
+  VectorArray<double> room_for_kernels_;
+  std::size_t entries_room_;
+  std::vector<WeightedBlock> blocks_;
+  VectorArray<float> weights_;
+  std::vector<std::uint16_t> weight_starts_;
+  std::vector<std::uint8_t> reached_;
+  std::vector<std::array<float, 4>> displacements_; ///< in units
+  WeightCache cache_{};
+  bool built_ = false;
+};
+
+} // namespace nendo::deform

@@ -1,0 +1,74 @@
+#pragma once
+// What evaluates a field and what computes weights share: the field, lists for each thread, and the
+// second thread.
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <nendo/deform/block_evaluator.hpp>
+
+#include "block_field.hpp"
+#include "spin_worker.hpp"
+
+namespace nendo::deform {
+
+/// Lists of centres, for one thread.
+class ListRoom {
+public:
+  void reserve(std::size_t entries);
+  ListScratch scratch() const noexcept {
+    return {indices_[0].get(), indices_[1].get(), indices_[2].get(), numbers_[0].get(),
+            numbers_[1].get(), numbers_[2].get(), numbers_[3].get()};
+  }
+
+private:
+  std::size_t entries_ = 0;
+  std::array<VectorArray<std::uint32_t>, 3> indices_;
+  std::array<VectorArray<float>, 4> numbers_;
+};
+
+struct BlockEvaluator::Parts {
+  Parts(const BlockLayout& layout, Eigen::Index entries, int threads);
+
+  BlockField field;
+  std::array<ListRoom, 2> lists;
+  std::vector<std::uint8_t> reached;
+  std::optional<SpinWorker> worker;
+
+  /// Calls range(begin, end, thread) for pieces of [0, count), by whichever thread is free; each
+  /// piece's result must depend on nothing but the piece.
+  template <class Range>
+  void in_pieces(std::size_t count, std::size_t piece, const Range& range) noexcept;
+};
+
+template <class Range>
+void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t piece,
+                                      const Range& range) noexcept {
+  constexpr std::size_t least_pieces = 8; // less is done before the other thread has begun
+  if (!worker || count < least_pieces * piece) {
+    range(std::size_t{0}, count, std::size_t{0});
+    return;
+  }
+  struct Shared {
+    const Range& range;
+    std::size_t count, piece;
+    std::atomic<std::size_t> next{0};
+
+    void work(std::size_t thread) noexcept {
+      for (;;) {
+        const std::size_t begin = next.fetch_add(piece, std::memory_order_relaxed);
+        if (begin >= count) return;
+        range(begin, std::min(begin + piece, count), thread);
+      }
+    }
+  } shared{range, count, piece};
+  worker->run([](void* context) noexcept { static_cast<Shared*>(context)->work(1); }, &shared);
+  shared.work(0);
+  worker->end();
+}
+
+} // namespace nendo::deform

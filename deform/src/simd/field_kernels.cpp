@@ -1,0 +1,168 @@
+// Evaluation of a field on blocks: for each block the centres that reach it, then for each vector
+// of vertices all of those, so that sums stay in registers. What it costs is told by `nendo bench
+// deform`.
+
+#include "simd/field_kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/field_kernels.cpp"
+#include "simd/targets.hpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "simd/kernels-inl.hpp"
+#include "simd/lists-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace nendo::deform::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class V>
+struct Vectors3 {
+  V x, y, z;
+};
+
+// Coordinates are stored in float, whatever the sums are in.
+template <class D>
+HWY_INLINE hn::Vec<D> load_as(D d, const float* from) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
+    return hn::Load(d, from);
+  } else {
+    return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), from));
+  }
+}
+template <class D>
+HWY_INLINE void store_from(D d, hn::Vec<D> values, float* to) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
+    hn::Store(values, d, to);
+  } else {
+    const hn::Rebind<float, D> df;
+    hn::Store(hn::DemoteTo(df, values), df, to);
+  }
+}
+
+/// Vectors of vertices that go through the centres together: one alone leaves AVX-512 waiting, two
+/// do not fit the registers of the others.
+constexpr std::size_t abreast = HWY_MAX_BYTES >= 64 ? 2 : 1;
+
+/// Adds the field of the listed centres at the places.
+template <Wendland kernel, class D, class V = hn::Vec<D>>
+HWY_INLINE void add_entries(D d, const FieldEntry<hn::TFromD<D>>* entries,
+                            const std::uint32_t* list, std::size_t count,
+                            const Vectors3<V> (&places)[abreast], Vectors3<V> (&sums)[abreast]) {
+  using Real = hn::TFromD<D>;
+  const V one = hn::Set(d, Real(1));
+  for (std::size_t at = 0; at < count; ++at) {
+    const FieldEntry<Real>& entry = entries[list[at]];
+    for (std::size_t n = 0; n < abreast; ++n) {
+      const V x = hn::Sub(places[n].x, hn::Set(d, entry.x));
+      const V y = hn::Sub(places[n].y, hn::Set(d, entry.y));
+      const V z = hn::Sub(places[n].z, hn::Set(d, entry.z));
+      const V squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+      const V o = hn::NegMulAdd(hn::Sqrt(squared), hn::Set(d, entry.inverse_radius), one);
+      const V w = weight<kernel>(d, hn::Max(o, hn::Zero(d)));
+      sums[n].x = hn::MulAdd(w, hn::Set(d, entry.coefficient[0]), sums[n].x);
+      sums[n].y = hn::MulAdd(w, hn::Set(d, entry.coefficient[1]), sums[n].y);
+      sums[n].z = hn::MulAdd(w, hn::Set(d, entry.coefficient[2]), sums[n].z);
+    }
+  }
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V polynomial_row(D d, const std::array<double, 4>& row, const Vectors3<V>& place) {
+  using Real = hn::TFromD<D>;
+  V sum = hn::Set(d, static_cast<Real>(row[0]));
+  sum = hn::MulAdd(place.x, hn::Set(d, static_cast<Real>(row[1])), sum);
+  sum = hn::MulAdd(place.y, hn::Set(d, static_cast<Real>(row[2])), sum);
+  return hn::MulAdd(place.z, hn::Set(d, static_cast<Real>(row[3])), sum);
+}
+
+template <Wendland kernel, class Real>
+HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* entries,
+                               const std::uint32_t* list, std::size_t size, const VertexBlock& from,
+                               VertexBlock& to) {
+  const hn::ScalableTag<Real> d;
+  using V = hn::Vec<decltype(d)>;
+  for (std::size_t lane = 0; lane < block_size; lane += abreast * hn::Lanes(d)) {
+    Vectors3<V> places[abreast];
+    Vectors3<V> sums[abreast];
+    for (std::size_t n = 0; n < abreast; ++n) {
+      const std::size_t at = lane + n * hn::Lanes(d);
+      places[n] = {load_as(d, from.x.data() + at), load_as(d, from.y.data() + at),
+                   load_as(d, from.z.data() + at)};
+      sums[n] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+      if (field.polynomial == nullptr) continue;
+      sums[n] = {polynomial_row(d, (*field.polynomial)[0], places[n]),
+                 polynomial_row(d, (*field.polynomial)[1], places[n]),
+                 polynomial_row(d, (*field.polynomial)[2], places[n])};
+    }
+    add_entries<kernel>(d, entries, list, size, places, sums);
+    for (std::size_t n = 0; n < abreast; ++n) {
+      const std::size_t at = lane + n * hn::Lanes(d);
+      store_from(d, hn::Add(places[n].x, sums[n].x), to.x.data() + at);
+      store_from(d, hn::Add(places[n].y, sums[n].y), to.y.data() + at);
+      store_from(d, hn::Add(places[n].z, sums[n].z), to.z.data() + at);
+    }
+  }
+}
+
+template <Wendland kernel, class Real>
+struct Displacement {
+  const FieldView& field;
+  const FieldEntry<Real>* entries;
+  const BlockPass& pass;
+
+  HWY_INLINE void on_block(std::size_t block, const std::uint32_t* list, std::size_t size) {
+    const bool reached = size > 0 || field.polynomial != nullptr;
+    pass.reached[block] = reached ? 1 : 0;
+    if (!reached) return;
+    displace_block<kernel>(field, entries, list, size, pass.from[block], pass.to[block]);
+    if (pass.new_bounds == nullptr) return;
+    pass.new_bounds[block] = vector_bounds(hn::ScalableTag<float>(), pass.to[block]);
+  }
+};
+
+template <Wendland kernel, class Real>
+void displace_blocks(const FieldView& field, const FieldEntry<Real>* entries,
+                     const BlockPass& pass) {
+  Displacement<kernel, Real> work{field, entries, pass};
+  for_each_block(field.centres, pass, work);
+}
+
+template <Wendland kernel>
+void displace_with(const FieldView& field, const BlockPass& pass) {
+  if (field.precise_entries != nullptr) {
+    displace_blocks<kernel>(field, field.precise_entries, pass);
+  } else {
+    displace_blocks<kernel>(field, field.entries, pass);
+  }
+}
+
+void displace_any(const FieldView& field, const BlockPass& pass) {
+  switch (field.kernel) {
+  case Wendland::c0:
+    return displace_with<Wendland::c0>(field, pass);
+  case Wendland::c2:
+    return displace_with<Wendland::c2>(field, pass);
+  case Wendland::c4:
+    return displace_with<Wendland::c4>(field, pass);
+  case Wendland::c6:
+    return displace_with<Wendland::c6>(field, pass);
+  }
+}
+
+} // namespace nendo::deform::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace nendo::deform {
+
+HWY_EXPORT(displace_any);
+
+void displace_pass(const FieldView& field, const BlockPass& pass) noexcept {
+  HWY_DYNAMIC_DISPATCH(displace_any)(field, pass);
+}
+
+} // namespace nendo::deform
+#endif

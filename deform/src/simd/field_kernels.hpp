@@ -1,0 +1,77 @@
+#pragma once
+// What the vector code gets of a field, and its entry points, which choose the machine's best
+// instruction set at run time. All in a layout's coordinates (BlockLayout).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <nendo/deform/vertex_blocks.hpp>
+#include <nendo/deform/wendland.hpp>
+
+namespace nendo::deform {
+
+/// One centre: what a vertex's evaluation needs. The coefficients contain the kernel's constant
+/// factor (kernel_factor).
+template <class Real>
+struct FieldEntry {
+  Real x, y, z;
+  Real inverse_radius;
+  std::array<Real, 3> coefficient;
+  Real unused;
+};
+
+/// psi = factor * o^p * (polynomial in o) with o = 1 - t: what the vector code leaves out.
+constexpr double kernel_factor(Wendland kernel) noexcept {
+  if (kernel == Wendland::c2) return 4.0;
+  return kernel == Wendland::c4 ? 1.0 / 3.0 : 1.0;
+}
+
+/// Centres coordinates apart, to find those that reach a block. Arrays are padded to whole vectors
+/// with a negative radius.
+struct CentreArrays {
+  const float* x;
+  const float* y;
+  const float* z;
+  const float* squared_radius;
+  std::size_t count;
+};
+
+/// Room for lists of centres while a pass runs; one a thread. Each array has list_room(count).
+struct ListScratch {
+  std::uint32_t* words;
+  std::uint32_t* list;
+  std::uint32_t* candidate;
+  float* x;
+  float* y;
+  float* z;
+  float* squared_radius;
+};
+constexpr std::size_t list_room(std::size_t entries) noexcept {
+  return (entries + 2 * block_size - 1) / block_size * block_size;
+}
+
+struct FieldView {
+  Wendland kernel;
+  CentreArrays centres;
+  const FieldEntry<float>* entries;
+  const FieldEntry<double>* precise_entries; ///< used instead if not null: sums in double
+  /// p(x) = P (1, x, y, z), or null.
+  const std::array<std::array<double, 4>, 3>* polynomial;
+};
+
+/// Blocks [begin, end) of a shape; `to` may be `from`. A block that nothing reaches is neither read
+/// nor written, and reached[block] = 0; otherwise it is 1.
+struct BlockPass {
+  const VertexBlock* from;
+  VertexBlock* to;
+  const BlockBounds* bounds; ///< of `from`
+  BlockBounds* new_bounds;   ///< of `to`, where blocks were written; may be `bounds`, may be null
+  std::uint8_t* reached;
+  std::size_t begin, end;
+  ListScratch scratch;
+};
+
+void displace_pass(const FieldView& field, const BlockPass& pass) noexcept;
+
+} // namespace nendo::deform

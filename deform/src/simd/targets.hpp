@@ -1,0 +1,10 @@
+#pragma once
+// Which instruction sets the vector code is compiled for. Left out: SSSE3, because few processors
+// have that and not SSE4; vectors whose size is not known when compiling, because kernels keep
+// arrays of them. The lowest of each architecture (SSE2, NEON or Highway's emulation) always stays.
+
+#include <hwy/detect_targets.h>
+
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS                                                                       \
+  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
