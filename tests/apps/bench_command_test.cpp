@@ -158,7 +158,8 @@ TEST_SUITE("bench") {
     const auto told = nlohmann::json::parse(lines_of(done.out).at(0));
     CHECK(told["wearers"] == 8);
     CHECK(told["refused"] == 0);
-    CHECK(told["touch_gap_m_p95"].get<double>() < 0.005); // the wearers do as they are asked
+    // The wearers do as they are asked, but for slips: of 1.5 mm an axis, and 4 at the palm.
+    CHECK(told["touch_gap_m_p95"].get<double>() < 0.012);
     CHECK(told["groups"].size() == 9);
     for (const auto& group : told["groups"].items()) {
       const std::string joints = group.key();
