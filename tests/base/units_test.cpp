@@ -25,8 +25,8 @@ TEST_SUITE("units") {
     CHECK(seconds_between(time, time + 250ms) == 0.25);
     CHECK(seconds_between(time + 250ms, time) == -0.25);
     using Limits = std::numeric_limits<HostClock::rep>;
-    const HostTime first(HostClock::duration(Limits::min()));
-    const HostTime last(HostClock::duration(Limits::max()));
+    const HostTime first{HostClock::duration(Limits::min())};
+    const HostTime last{HostClock::duration(Limits::max())};
     CHECK(std::isfinite(seconds_between(first, last)));
     CHECK(std::isfinite(seconds_between(last, first)));
   }
