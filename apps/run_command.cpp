@@ -26,6 +26,7 @@ struct CommandOptions {
   std::string switch_action = "none";
   FilterArguments filter;
   KernelOptions kernel;
+  bool injective = false;
 };
 
 std::string dated_name() {
@@ -73,7 +74,8 @@ Result<void> check(CommandOptions& options) {
   run.filter = *filter;
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
-  run.loop.sculptor.csrbf = *csrbf;
+  run.loop.sculptor.deformer.csrbf = *csrbf;
+  if (options.injective) run.loop.sculptor.deformer.injective.emplace();
   if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
         run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
     return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
@@ -81,9 +83,7 @@ Result<void> check(CommandOptions& options) {
   if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
     return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
   }
-  if (!std::isfinite(run.radius) || run.radius < 0.0) {
-    return Error{Errc::usage, "--radius: use a length > 0 in the mesh's units, or leave it out"};
-  }
+  if (const auto fine = check_radius(run.radius); !fine) return fine;
   if (const auto fine = run.length.check(); !fine) return fine;
   if (const auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
@@ -127,10 +127,14 @@ void add_run(Command& program) {
       "type1: the rest shape follows the fingertips; type2: strokes along their paths");
   command.add_option(
       "--radius", run_options.radius,
-      "Radius of a fingertip's influence, in the mesh's units; 0: 0.2 of its longest side");
+      "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
+      "or five with commas between, thumb to little finger; 10+40:0.5 is a mix");
   add_calibration_options(command, run_options.calibration);
   add_hand_length(command, run_options.length);
   add_kernel_options(command, options->kernel);
+  command.add_flag("--injective", options->injective,
+                   "Never fold: in links that each stay injective; fingertips whose ways cross are "
+                   "held apart");
   command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
   command.add_option("--switch", options->switch_action,
                      "What the wrist switch does. grab: the hands hold the model while it is on; "

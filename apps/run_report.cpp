@@ -137,13 +137,29 @@ void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stat
               filter.beta_hz_per_rad_s, milliseconds_of(stats.filter_worst.max()));
 }
 
+ordered_json injective_json(const RunOptions& options, const flow::LoopStats& stats) {
+  if (!options.loop.sculptor.deformer.injective) return nullptr;
+  return {{"most_links", stats.most_links},
+          {"most_bound", stats.most_bound},
+          {"least_determinant", stats.least_determinant},
+          {"held_apart_ticks", stats.held_apart_ticks}};
+}
+
+void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
+  if (!options.loop.sculptor.deformer.injective) return;
+  std::printf("  %-14s at most %d links a tick, bound in one step %.3g, least determinant %.3g; "
+              "fingertips held apart in %llu ticks\n",
+              "injective", stats.most_links, stats.most_bound, stats.least_determinant,
+              static_cast<unsigned long long>(stats.held_apart_ticks));
+}
+
 void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
   ordered_json line{{"event", "summary"},
                     {"elapsed_s", outcome.elapsed_s},
                     {"mode", flow::name_of(options.loop.sculptor.mode)},
-                    {"kernel", deform::name_of(options.loop.sculptor.csrbf.kernel)},
+                    {"kernel", deform::name_of(options.loop.sculptor.deformer.csrbf.kernel)},
                     {"radius", outcome.radius},
                     {"rate_hz", options.loop.rate_hz},
                     {"ticks", stats.ticks},
@@ -171,6 +187,7 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
     if (hand.known.adapt)
       of_hand["ranges"] = ranges_json(stats.ranges[slot], hand.glove->info().sensors);
   }
+  line["injective"] = injective_json(options, stats);
   line["filter"] = filter_json(options.filter, stats);
   line["end_to_end_ms"] = percentiles(stats.end_to_end);
   line["wake_latency_ms"] = percentiles(stats.wake_latency);
@@ -187,7 +204,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
   const auto& stats = outcome.stats;
   std::printf("\nnendo run: %.1f s, %s, %s, radius %.3g\n", outcome.elapsed_s,
               std::string(flow::name_of(options.loop.sculptor.mode)).c_str(),
-              std::string(deform::name_of(options.loop.sculptor.csrbf.kernel)).c_str(),
+              std::string(deform::name_of(options.loop.sculptor.deformer.csrbf.kernel)).c_str(),
               outcome.radius);
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
@@ -213,6 +230,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
   print_percentiles("end to end", stats.end_to_end);
   std::printf("  %-14s from a sample's last byte to the finished mesh\n", "");
   print_filter(options.filter, stats);
+  print_injective(options, stats);
   std::printf("  %-14s %s a second (%s in the model)\n", "vertices",
               thousands(static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) /
                         outcome.elapsed_s)

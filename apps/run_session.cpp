@@ -98,6 +98,36 @@ double longest_side(const deform::Mesh& model) {
   return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
 }
 
+Error bad_radius(const std::string& text, const std::string& why) {
+  return {Errc::usage, "--radius " + text + ": " + why +
+                           "; use a length > 0 in the mesh's units, five with commas between (or "
+                           "ten, left hand first), or leave it out"};
+}
+
+Result<deform::Supports> supports_for(const std::string& radius, Eigen::Index fingertips,
+                                      double model_size) {
+  if (radius.empty())
+    return deform::one_radius(default_radius_fraction * (model_size > 0.0 ? model_size : 1.0));
+  auto supports = deform::parse_supports_by_point(radius, fingertips);
+  if (!supports)
+    return bad_radius(radius, "does not fit " + std::to_string(fingertips) + " fingertips");
+  return *std::move(supports);
+}
+
+std::pair<double, double> least_and_largest(const deform::Supports& supports) {
+  double least = supports.shared.front().radius;
+  double largest = least;
+  const auto count = [&](const deform::Support& support) {
+    least = std::min(least, support.radius);
+    largest = std::max(largest, support.radius);
+  };
+  for (const auto& support : supports.shared)
+    count(support);
+  for (const auto& own : supports.own)
+    count(own.support);
+  return {least, largest};
+}
+
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
 // room elsewhere.
 Result<void> keep(const std::string& out, const deform::Mesh& shape) {
@@ -171,6 +201,11 @@ std::uint64_t ticks_for(const RunOptions& options) {
 
 } // namespace
 
+Result<void> check_radius(const std::string& text) {
+  if (text.empty() || deform::parse_supports_by_point(text, 10)) return {};
+  return bad_radius(text, "is none");
+}
+
 Result<std::vector<OpenHand>> open_hands(const RunOptions& options) {
   const bool named = !options.left.empty() || !options.right.empty();
   auto hands = named ? open_named(options) : open_any();
@@ -192,14 +227,16 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
-  sculptor.radius =
-      options.radius > 0.0 ? options.radius : default_radius_fraction * (size > 0.0 ? size : 1.0);
-  sculptor.piece_length = piece_fraction * sculptor.radius;
+  auto inputs = inputs_of(hands, options);
+  auto supports = supports_for(options.radius, 5 * static_cast<Eigen::Index>(inputs.size()), size);
+  if (!supports) return supports.error();
+  const auto [least_radius, largest_radius] = least_and_largest(*supports);
+  sculptor.deformer.supports = *std::move(supports);
+  sculptor.piece_length = piece_fraction * least_radius;
   // Live fingertips meet; the exact solution for two that nearly touch would tear the surface
   // between them.
-  sculptor.csrbf.merge_fraction = 0.05;
+  sculptor.deformer.csrbf.merge_fraction = 0.05;
 
-  auto inputs = inputs_of(hands, options);
   const auto placement = placement_for(inputs, model);
   flow::DeformLoop loop(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop.grab_status())) {
@@ -225,7 +262,7 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
 
   model.vertices = loop.final_shape();
   if (const auto kept = keep(options.out, model); !kept) return kept.error();
-  return RunOutcome{loop.stats(), elapsed_s, model.vertices.cols(), sculptor.radius, options.out};
+  return RunOutcome{loop.stats(), elapsed_s, model.vertices.cols(), largest_radius, options.out};
 }
 
 } // namespace nendo::app

@@ -22,7 +22,7 @@ struct RunOptions {
   std::string mesh;        ///< empty: the shipped model
   std::string out;         ///< empty: a name made of date and time
   double duration_s = 0.0; ///< 0: until a stop signal
-  double radius = 0.0;     ///< 0: a fraction of the model's size
+  std::string radius;      ///< as deform::parse_supports_by_point; empty: of the model's size
   bool json = false;
   CalibrationOptions calibration;
   HandLength length;
@@ -35,12 +35,15 @@ struct RunOptions {
 /// no_device if no sample comes; as known_hands().
 Result<std::vector<OpenHand>> open_hands(const RunOptions& options);
 
+/// Whether a --radius is one, for hands at all. Error: usage.
+Result<void> check_radius(const std::string& text);
+
 /// What the summary is made of.
 struct RunOutcome {
   flow::LoopStats stats;
   double elapsed_s = 0.0;
   Eigen::Index vertices = 0;
-  double radius = 0.0;
+  double radius = 0.0; ///< the largest
   std::string result;
 };
 

@@ -29,6 +29,12 @@ BoundedShape::BoundedShape(BlockShape blocks) : shape(std::move(blocks)) {
   extent = extent_of(bounds);
 }
 
+void BoundedShape::follow(const BoundedShape& other) {
+  shape.follow(other.shape);
+  bounds = other.bounds;
+  extent = other.extent;
+}
+
 void ListRoom::reserve(std::size_t entries) {
   if (indices_[0] != nullptr && entries <= entries_) return;
   entries_ = entries;

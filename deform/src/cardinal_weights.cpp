@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "evaluator_parts.hpp"
 
@@ -20,22 +21,18 @@ constexpr std::size_t blocks_a_piece = 16;
 
 } // namespace
 
-CardinalWeights::CardinalWeights(const BlockLayout& layout, Eigen::Index starts,
+CardinalWeights::CardinalWeights(const BlockLayout& layout, Eigen::Index starts, CsrbfField field,
                                  std::size_t weight_bytes)
     : origin_(layout.origin()), unit_(layout.unit()), starts_(static_cast<std::size_t>(starts)),
-      unit_displacements_(Points::Zero(3, starts)), unit_field_{.centres = Points::Zero(3, starts),
-                                                                .radii =
-                                                                    Eigen::VectorXd::Ones(starts),
-                                                                .coefficients =
-                                                                    Points::Zero(3, starts)},
-      entries_room_(starts_), displacements_(starts_) {
+      unit_displacements_(Points::Zero(3, starts)), unit_field_(std::move(field)),
+      entries_(static_cast<std::size_t>(unit_field_.centres.cols())), displacements_(starts_) {
   const std::size_t blocks = layout.block_count();
   if (starts_ == 0 || starts_ > most_starts) return;
   const std::size_t room = std::min(blocks * starts_, weight_bytes / bytes_a_weight);
   if (room == 0) return;
-  map_.resize(starts_ * starts_);
+  map_.resize(entries_ * starts_);
   polynomial_.resize(4 * starts_);
-  room_for_kernels_ = hwy::AllocateAligned<double>(block_size * entries_room_);
+  room_for_kernels_ = hwy::AllocateAligned<double>(block_size * entries_);
   blocks_.resize(blocks);
   weight_starts_.resize(room);
   reached_.resize(blocks);
@@ -54,12 +51,6 @@ bool CardinalWeights::solve_units(CsrbfSolver& solver) noexcept {
     for (Eigen::Index axis = 0; axis < count; ++axis)
       unit_displacements_(axis, first + axis) = 1.0;
     if (!is_solved(solver.solve(unit_displacements_, unit_field_))) return false;
-    const auto entries = static_cast<std::size_t>(unit_field_.centres.cols());
-    if (entries > entries_room_) {
-      entries_room_ = entries;
-      map_.resize(entries * starts_);
-      room_for_kernels_ = hwy::AllocateAligned<double>(block_size * entries);
-    }
     for (Eigen::Index axis = 0; axis < count; ++axis)
       take_coefficients(first + axis, axis);
   }

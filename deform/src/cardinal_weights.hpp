@@ -17,11 +17,12 @@ namespace nendo::deform {
 class CardinalWeights {
 public:
   /// Takes all memory that it will ever use: at most weight_bytes, and what the start points need.
-  CardinalWeights(const BlockLayout& layout, Eigen::Index starts, std::size_t weight_bytes);
+  /// field: as large as those that the solver makes.
+  CardinalWeights(const BlockLayout& layout, Eigen::Index starts, CsrbfField field,
+                  std::size_t weight_bytes);
 
   /// Makes the weights of the rest shape for what `solver` was built for. False if there is no room
-  /// for them, or none for so many start points. Allocates only if the solver makes more entries
-  /// than start points.
+  /// for them, or none for so many start points.
   bool build(CsrbfSolver& solver, const BoundedShape& rest, BlockEvaluator& evaluator) noexcept;
   bool is_built() const noexcept { return built_; }
   std::size_t bytes_used() const noexcept { return cache_.used * bytes_a_weight; }
@@ -50,7 +51,7 @@ private:
   std::vector<double> map_;
   std::vector<double> polynomial_;
   VectorArray<double> room_for_kernels_;
-  std::size_t entries_room_;
+  std::size_t entries_;
   std::vector<WeightedBlock> blocks_;
   VectorArray<float> weights_;
   std::vector<std::uint16_t> weight_starts_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver_room.hpp"
 #include "text.hpp"
 
 namespace nendo::deform {
@@ -15,24 +16,6 @@ bool are_usable(const Points& points) {
   return (points.array().abs() <= largest_number).all(); // false for NaN
 }
 
-/// Of the functions whose centre a point is.
-Eigen::VectorXd least_radii(const Supports& supports, Eigen::Index points) {
-  double shared = supports.shared.front().radius;
-  for (const Support& support : supports.shared)
-    shared = std::min(shared, support.radius);
-  Eigen::VectorXd radii = Eigen::VectorXd::Constant(points, shared);
-  for (const OwnSupport& own : supports.own)
-    radii[own.point] = std::min(radii[own.point], own.support.radius);
-  return radii;
-}
-
-CsrbfField field_of_size(Eigen::Index functions, Wendland kernel) {
-  return {.kernel = kernel,
-          .centres = Points::Zero(3, functions),
-          .radii = Eigen::VectorXd::Ones(functions),
-          .coefficients = Points::Zero(3, functions)};
-}
-
 } // namespace
 
 InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
@@ -41,15 +24,10 @@ InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOpti
       options_(options), solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)},
       starts_(Points::Zero(3, points)), radii_(least_radii(supports_, points)), places_(starts_),
       wanted_(starts_), allowed_(starts_), step_(starts_), tips_(starts_), gaps_(options.least_gap),
-      field_(field_of_size(supports_.functions(points), csrbf.kernel)), piece_(field_) {
+      field_(room_for_field(supports_, points, csrbf.kernel)), piece_(field_) {
   assert(options.most_bound > 0.0 && options.most_bound < 1.0);
-  // The first of a size allocates.
-  for (Eigen::Index i = 0; i < points; ++i)
-    places_.col(i).setConstant(static_cast<double>(i));
-  for (CsrbfSolver& solver : solvers_) {
-    solver.build(places_, supports_);
-    solver.solve(starts_, field_);
-  }
+  for (CsrbfSolver& solver : solvers_)
+    make_room(solver, supports_, points);
   gaps_.reserve(points);
   probe_.reserve(DeterminantProbe::ring_size * points);
 }

@@ -1,25 +1,27 @@
 #include <nendo/deform/type1.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
 #include "cardinal_weights.hpp"
+#include "solver_room.hpp"
 
 namespace nendo::deform {
 
-Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points, double radius,
-                             CsrbfOptions options, const EvaluationOptions& evaluation)
+Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
+                             const DeformerOptions& options)
     : layout_(std::move(rest)), rest_(layout_.pack()), starts_(Points::Zero(3, control_points)),
       rounded_(starts_), displacements_(starts_), asked_(starts_),
-      radii_(Eigen::VectorXd::Constant(control_points, layout_.rounded_radius(radius))),
-      solver_(options), field_{.kernel = options.kernel,
-                               .centres = starts_,
-                               .radii = radii_,
-                               .coefficients = displacements_},
-      evaluator_(layout_, control_points, evaluation),
-      weights_(
-          std::make_unique<CardinalWeights>(layout_, control_points, evaluation.weight_bytes)) {
-  solver_.reserve(control_points);
+      supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
+      field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
+      evaluator_(layout_, field_.centres.cols(), options.evaluation),
+      weights_(std::make_unique<CardinalWeights>(layout_, control_points, field_,
+                                                 options.evaluation.weight_bytes)) {
+  make_room(solver_, supports_, control_points);
+  if (!options.injective) return;
+  chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
+  linked_ = rest_;
 }
 
 Type1Deformer::~Type1Deformer() = default;
@@ -28,22 +30,31 @@ Type1Deformer& Type1Deformer::operator=(Type1Deformer&&) noexcept = default;
 
 FieldStatus Type1Deformer::grab(const Points& starts) {
   assert(starts.cols() == starts_.cols());
+  const FieldStatus status = build(starts);
+  if (is_solved(status)) take_hold();
+  return status;
+}
+
+/// On failure everything is as it was.
+FieldStatus Type1Deformer::build(const Points& starts) {
   for (Eigen::Index i = 0; i < starts.cols(); ++i)
     asked_.col(i) = layout_.rounded(starts.col(i));
-  const FieldStatus status = solver_.build(asked_, radii_);
-  if (is_solved(status)) {
-    starts_ = starts;
-    rounded_ = asked_;
-    take_hold();
-  } else if (grabbed_ && status == FieldStatus::singular) {
-    solver_.build(rounded_, radii_); // the failed build took the place of the good one
+  FieldStatus status = solver_.build(asked_, supports_);
+  if (is_solved(status) && chain_) status = std::max(status, chain_->grab(asked_));
+  if (!is_solved(status)) {
+    // The failed build took the place of the good one.
+    if (grabbed_ && status != FieldStatus::not_finite) solver_.build(rounded_, supports_);
+    return status;
   }
+  starts_ = starts;
+  rounded_ = asked_;
   return status;
 }
 
 /// Of the rest shape, where the solver has been built for.
 void Type1Deformer::take_hold() {
   grabbed_ = true;
+  in_links_ = false;
   displacements_.setZero();
   field_.coefficients.setZero();
   field_.polynomial.setZero();
@@ -52,6 +63,7 @@ void Type1Deformer::take_hold() {
 
 FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
   assert(ends.cols() == starts_.cols());
+  if (grabbed_ && chain_) return apply_links(ends, out);
   FieldStatus status = FieldStatus::singular;
   if (grabbed_) {
     asked_ = ends - starts_;
@@ -69,7 +81,44 @@ FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
   return status;
 }
 
+/// A single link is the plain field, for which there are weights.
+FieldStatus Type1Deformer::apply_links(const Points& ends, BlockShape& out) {
+  asked_ = rounded_ + (ends - starts_);
+  FieldStatus status = chain_->from_start(asked_);
+  if (is_solved(status)) {
+    const bool any = chain_->next();
+    in_links_ = any && chain_->places() != asked_;
+    field_ = chain_->field();
+    if (in_links_) {
+      status = follow_links();
+    } else {
+      displacements_ = asked_ - rounded_;
+      while (chain_->next()) {
+      }
+    }
+    status = std::max(status, chain_->report().status);
+  }
+  draw(out);
+  return status;
+}
+
+/// From the first, which is made.
+FieldStatus Type1Deformer::follow_links() {
+  FieldStatus status = FieldStatus::ok;
+  linked_->follow(rest_);
+  do {
+    field_ = chain_->field();
+    if (!evaluator_.set_field(field_) || !evaluator_.displace(*linked_))
+      status = FieldStatus::not_finite;
+  } while (chain_->next());
+  return status;
+}
+
 void Type1Deformer::draw(BlockShape& out) {
+  if (in_links_) {
+    out.follow(linked_->shape);
+    return;
+  }
   if (!weights_->is_built()) {
     evaluator_.set_field(field_);
     evaluator_.displace(rest_, out);
@@ -81,22 +130,17 @@ void Type1Deformer::draw(BlockShape& out) {
 
 FieldStatus Type1Deformer::commit(const Points& ends) {
   assert(ends.cols() == starts_.cols());
-  for (Eigen::Index i = 0; i < ends.cols(); ++i)
-    asked_.col(i) = layout_.rounded(ends.col(i));
-  const FieldStatus status = solver_.build(asked_, radii_);
-  if (!is_solved(status)) {
-    if (grabbed_ && status == FieldStatus::singular) solver_.build(rounded_, radii_);
-    return status;
-  }
-  if (weights_->is_built()) {
+  const FieldStatus status = build(ends);
+  if (!is_solved(status)) return status;
+  if (in_links_) {
+    rest_.follow(*linked_);
+  } else if (weights_->is_built()) {
     weights_->apply(displacements_, rest_.shape, rest_.shape, evaluator_);
     weights_->update_rest_bounds(displacements_, rest_);
   } else {
     evaluator_.set_field(field_);
     evaluator_.displace(rest_);
   }
-  starts_ = ends;
-  rounded_ = asked_;
   take_hold();
   return status;
 }

@@ -99,6 +99,25 @@ TEST_SUITE("run") {
     CHECK(traffic.find("4c 00", lit) != std::string::npos);
   }
 
+  TEST_CASE("each finger has its radius, and the model never folds, if so asked") {
+    const TemporaryFolder folder;
+    const auto out = (folder.path() / "shape.ply").string();
+    for (const std::string mode : {"type1", "type2"}) {
+      const auto done = nendo::test::nendo(
+          {"run", "--left", "sim:sculpt", "--right", "sim:sculpt", "--mode", mode, "--radius",
+           "0.5,0.3,0.3,0.3,0.25", "--injective", "--duration", "1", "--json", "--out", out});
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const json summary = summary_of(done);
+      CHECK(summary["radius"] == 0.5);
+      CHECK(summary["failed"] == 0);
+      const json& links = summary["injective"];
+      CHECK(links["most_links"].get<int>() >= 1);
+      CHECK(links["most_bound"].get<double>() > 0.0);
+      CHECK(links["least_determinant"].get<double>() > 0.0);
+      CHECK(links["held_apart_ticks"].get<int>() >= 0);
+    }
+  }
+
   TEST_CASE("a filter is named in the summary with its latency, and none is none") {
     const TemporaryFolder folder;
     const auto out = (folder.path() / "shape.ply").string();
@@ -258,6 +277,8 @@ TEST_SUITE("run") {
           Case{{"--rate", "1e9"}, 2, "--rate"},
           Case{{"--duration", "-1"}, 2, "--duration"},
           Case{{"--radius", "-1"}, 2, "--radius"},
+          Case{{"--radius", "1,2,3"}, 2, "--radius"},
+          Case{{"--radius", "1e999"}, 2, "--radius"},
           Case{{"--kernel", "gauss"}, 2, "gauss"},
           Case{{"--switch", "press"}, 2, "press"},
           Case{{"--filter", "kalman"}, 2, "kalman"},

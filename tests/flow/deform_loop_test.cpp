@@ -202,7 +202,7 @@ TEST_SUITE("deform_loop") {
       HandInput input{&ring, hand::HandSkeleton(Side::right), slow_first ? slow : fast, first};
       input.swapped = slow_first ? fast : slow;
       flow::LoopOptions options;
-      options.sculptor.radius = 0.5;
+      options.sculptor.deformer.supports = deform::one_radius(0.5);
       flow::DeformLoop loop(nendo::test::ball(12), {}, {input}, options);
       int sample = 0;
       for (const auto& [side, counts] : {std::pair{Side::right, 40},
@@ -275,7 +275,7 @@ TEST_SUITE("deform_loop") {
             .fingertip_positions();
     const auto placement = flow::place_hands(model, tips);
     flow::LoopOptions options;
-    options.sculptor.radius = 0.5;
+    options.sculptor.deformer.supports = deform::one_radius(0.5);
     flow::DeformLoop loop(model, placement, {{&ring, skeleton, own, first, false, {}, swapped}},
                           options);
     std::uint64_t number = 0;

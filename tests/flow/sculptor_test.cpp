@@ -17,7 +17,7 @@ const Points tips = (Points(3, 2) << 1.0, -1.0, 0.0, 0.0, 0.0, 0.0).finished();
 SculptorOptions options_for(Mode mode) {
   SculptorOptions options;
   options.mode = mode;
-  options.radius = 0.6;
+  options.deformer.supports = deform::one_radius(0.6);
   options.piece_length = 0.03;
   return options;
 }
@@ -75,7 +75,7 @@ TEST_SUITE("sculptor") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       SculptorOptions options = options_for(mode);
       Sculptor one(ball, 2, options);
-      options.evaluation.threads = 2;
+      options.deformer.evaluation.threads = 2;
       Sculptor two(ball, 2, options);
       deform::BlockShape by_one;
       deform::BlockShape by_two;

@@ -71,9 +71,9 @@ struct LoopUnderTest {
     options.rate_hz = rate_hz;
     options.switch_action = switch_action;
     options.sculptor.mode = mode;
-    options.sculptor.radius = 0.5;
+    options.sculptor.deformer.supports = deform::one_radius(0.5);
     options.sculptor.piece_length = 0.02;
-    options.sculptor.csrbf.merge_fraction = 0.05;
+    options.sculptor.deformer.csrbf.merge_fraction = 0.05;
     loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), options);
   }
 

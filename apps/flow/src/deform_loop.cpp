@@ -14,14 +14,12 @@ using deform::Points;
 
 namespace {
 
-Frame first_frame(const deform::BlockShape& shape, Eigen::Index control_points,
+Frame first_frame(const deform::BlockShape& shape, const deform::CsrbfField& field,
                   double units_per_metre) {
   Frame frame;
   frame.units_per_metre = units_per_metre;
   frame.shape = shape;
-  frame.field.centres = Points::Zero(3, control_points);
-  frame.field.coefficients = Points::Zero(3, control_points);
-  frame.field.radii = Eigen::VectorXd::Ones(control_points);
+  frame.field = field;
   for (auto& hand : frame.hands)
     hand.pose.joints.fill(Eigen::Isometry3d::Identity());
   return frame;
@@ -44,7 +42,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
       sculptor_(model.vertices, tips_.cols(), options.sculptor),
       held_(options.switch_action != SwitchAction::grab), hold_wanted_(held_),
-      frames_(first_frame(sculptor_.rest(), tips_.cols(), placement.units_per_metre)) {
+      frames_(first_frame(sculptor_.rest(), sculptor_.field(), placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
@@ -110,12 +108,14 @@ deform::FieldStatus DeformLoop::shape(Frame& frame) noexcept {
   if (!held_) {
     frame.shape.follow(sculptor_.rest());
     frame.field = sculptor_.field();
+    frame.chain = {};
     return deform::FieldStatus::ok;
   }
   const bool commits = commit_due_ || !hold_wanted_; // letting go keeps what has been shaped
   const deform::FieldStatus status =
       commits ? sculptor_.finish(tips_, frame.shape) : sculptor_.update(tips_, frame.shape);
   frame.field = sculptor_.field();
+  record_chain(frame.chain);
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_.commit(tips_))) {
     ++stats_.commits;
@@ -123,6 +123,14 @@ deform::FieldStatus DeformLoop::shape(Frame& frame) noexcept {
     held_ = hold_wanted_;
   }
   return status;
+}
+
+void DeformLoop::record_chain(deform::ChainReport& chain) noexcept {
+  chain = sculptor_.report();
+  stats_.most_links = std::max(stats_.most_links, chain.links);
+  stats_.most_bound = std::max(stats_.most_bound, chain.whole_bound);
+  stats_.least_determinant = std::min(stats_.least_determinant, chain.least_determinant);
+  if (chain.held_pairs > 0) ++stats_.held_apart_ticks;
 }
 
 void DeformLoop::tick(std::uint64_t number, HostTime scheduled) noexcept {

@@ -15,11 +15,9 @@ namespace {
 std::variant<Type1Deformer, Type2Deformer> make(Points rest, Eigen::Index control_points,
                                                 const SculptorOptions& options) {
   if (options.mode == Mode::type1) {
-    return Type1Deformer(std::move(rest), control_points, options.radius, options.csrbf,
-                         options.evaluation);
+    return Type1Deformer(std::move(rest), control_points, options.deformer);
   }
-  return Type2Deformer(std::move(rest), control_points, options.radius, options.piece_length,
-                       options.csrbf, options.evaluation);
+  return Type2Deformer(std::move(rest), control_points, options.piece_length, options.deformer);
 }
 
 } // namespace
@@ -39,8 +37,7 @@ Sculptor::Sculptor(Points rest, Eigen::Index control_points, const SculptorOptio
 
 FieldStatus Sculptor::grab(const Points& tips) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->grab(tips);
-  std::get_if<Type2Deformer>(&deformer_)->begin(tips);
-  return FieldStatus::ok;
+  return std::get_if<Type2Deformer>(&deformer_)->begin(tips);
 }
 
 FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
@@ -62,8 +59,7 @@ FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->commit(tips);
-  std::get_if<Type2Deformer>(&deformer_)->begin(tips);
-  return FieldStatus::ok;
+  return std::get_if<Type2Deformer>(&deformer_)->begin(tips);
 }
 
 const BlockShape& Sculptor::rest() const noexcept {
@@ -79,6 +75,11 @@ const deform::BlockLayout& Sculptor::layout() const noexcept {
 const deform::CsrbfField& Sculptor::field() const noexcept {
   const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
   return type1 != nullptr ? type1->field() : std::get_if<Type2Deformer>(&deformer_)->field();
+}
+
+deform::ChainReport Sculptor::report() const noexcept {
+  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
+  return type1 != nullptr ? type1->report() : std::get_if<Type2Deformer>(&deformer_)->report();
 }
 
 } // namespace nendo::flow

@@ -17,7 +17,7 @@ int main() {
   nendo::deform::Mesh model;
   model.vertices = nendo::deform::Points::Random(3, 100);
   nendo::flow::LoopOptions options;
-  options.sculptor.radius = 0.5;
+  options.sculptor.deformer.supports = nendo::deform::one_radius(0.5);
   nendo::flow::DeformLoop loop(model, {},
                                {{&ring, nendo::hand::HandSkeleton(nendo::Side::right),
                                  nendo::hand::default_calibration(), first}},

@@ -23,6 +23,8 @@ struct EvaluationOptions {
 /// A shape that knows its blocks' bounds.
 struct BoundedShape {
   explicit BoundedShape(BlockShape blocks);
+  /// Becomes equal to `other`. Allocates only where the sizes differ.
+  void follow(const BoundedShape& other);
 
   BlockShape shape;
   std::vector<BlockBounds> bounds; ///< one a block

@@ -48,6 +48,10 @@ struct Supports {
   bool are_usable() const noexcept;
 };
 
+inline Supports one_radius(double radius) {
+  return {{Support{radius}}, {}};
+}
+
 inline constexpr double default_common_weight = 0.01;
 
 /// Every start point its own radii beside a common one. Without `common` that is the least of them,

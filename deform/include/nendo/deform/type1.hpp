@@ -4,21 +4,29 @@
 // vertex gets of each displacement, and the rest shape is deformed anew: nothing accumulates.
 
 #include <memory>
+#include <optional>
+#include <utility>
 
-#include <nendo/deform/block_evaluator.hpp>
-#include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/deformer_options.hpp>
 
 namespace nendo::deform {
 
 class CardinalWeights;
 
 /// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
-/// in double. grab(), apply() and commit() allocate nothing, if `out` has the layout's size.
+/// in double. grab(), apply() and commit() allocate nothing, if `out` has the layout's size and
+/// there are at most CsrbfSolver::lean_size start points.
 class Type1Deformer {
 public:
-  /// rest: 3 by #vertices. radius > 0 in model units. Allocates for `control_points` start points.
-  Type1Deformer(Points rest, Eigen::Index control_points, double radius, CsrbfOptions options,
-                const EvaluationOptions& evaluation = {});
+  /// rest: 3 by #vertices. Allocates for `control_points` start points. With `injective` every
+  /// apply() goes straight from the start points in as many links as it takes: the shape depends on
+  /// the ends alone, also where a pair is held apart.
+  Type1Deformer(Points rest, Eigen::Index control_points, const DeformerOptions& options);
+  /// One radius > 0 for all, in model units.
+  Type1Deformer(Points rest, Eigen::Index control_points, double radius, CsrbfOptions csrbf,
+                const EvaluationOptions& evaluation = {})
+      : Type1Deformer(std::move(rest), control_points,
+                      {one_radius(radius), csrbf, evaluation, {}}) {}
   ~Type1Deformer();
   Type1Deformer(Type1Deformer&&) noexcept;
   Type1Deformer& operator=(Type1Deformer&&) noexcept;
@@ -35,12 +43,18 @@ public:
 
   const BlockLayout& layout() const noexcept { return layout_; }
   const BlockShape& rest() const noexcept { return rest_.shape; }
-  /// Its centres are the start points as float holds them (BlockLayout::rounded).
+  /// Its centres are the start points as float holds them (BlockLayout::rounded). Of several links
+  /// it is the last one's, which starts from what the others made.
   const CsrbfField& field() const noexcept { return field_; }
+  /// What the last apply() took; all 0 unless it is injective.
+  ChainReport report() const noexcept { return chain_ ? chain_->report() : ChainReport{}; }
   /// Bytes of weights in use; 0 if fields are evaluated instead.
   std::size_t weight_bytes() const noexcept;
 
 private:
+  FieldStatus apply_links(const Points& ends, BlockShape& out);
+  FieldStatus follow_links();
+  FieldStatus build(const Points& starts);
   void take_hold();
   void draw(BlockShape& out);
 
@@ -50,11 +64,14 @@ private:
   Points rounded_;       ///< the start points as float holds them
   Points displacements_; ///< the last that had a solution
   Points asked_;
-  Eigen::VectorXd radii_;
+  Supports supports_; ///< with radii as float holds them
   CsrbfSolver solver_;
   CsrbfField field_;
   BlockEvaluator evaluator_;
   std::unique_ptr<CardinalWeights> weights_;
+  std::optional<InjectiveChain> chain_;
+  std::optional<BoundedShape> linked_; ///< the shape that a chain of several links makes
+  bool in_links_ = false;              ///< the last apply() made it so
   bool grabbed_ = false;
 };
 

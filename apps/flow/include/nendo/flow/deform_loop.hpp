@@ -53,6 +53,10 @@ struct LoopStats {
   std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
   std::uint64_t grabs = 0;                    ///< times the hands took hold again
   std::uint64_t commits = 0;                  ///< times the shape became the rest shape
+  int most_links = 0;                         ///< of a tick; 0 unless the sculptor is injective
+  double most_bound = 0.0;                    ///< Lipschitz bound of a tick, had it been one link
+  double least_determinant = 1.0;             ///< ChainReport::least_determinant of any tick
+  std::uint64_t held_apart_ticks = 0;         ///< in which fingertips were held apart
   Histogram wake_latency;                     ///< from the deadline to the loop's running
   Histogram work;                             ///< from there to the published frame
   Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it
@@ -91,6 +95,7 @@ private:
   void compute_hands(Frame& frame) noexcept;
   void record_latencies(HostTime scheduled, HostTime woke, HostTime done) noexcept;
   deform::FieldStatus shape(Frame& frame) noexcept;
+  void record_chain(deform::ChainReport& chain) noexcept;
 
   struct Hand {
     /// Makes `latest` and `angles` of the next sample.

@@ -7,6 +7,7 @@
 
 #include <nendo/base/latest_value.hpp>
 #include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/placement.hpp>
@@ -33,7 +34,8 @@ struct Frame {
   double units_per_metre = 1.0;   ///< from the stage to the model
   std::array<HandFrame, 2> hands; ///< by Placement::index_of(side)
   deform::FieldStatus status = deform::FieldStatus::ok;
-  deform::CsrbfField field; ///< model units
+  deform::CsrbfField field;  ///< model units; of several links the last one's
+  deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   /// The deformed vertices; DeformLoop::layout() makes points of them. Its stamps tell which blocks
   /// differ from those of an earlier frame.
   deform::BlockShape shape;

@@ -20,10 +20,8 @@ std::optional<Mode> mode_named(std::string_view name) noexcept;
 
 struct SculptorOptions {
   Mode mode = Mode::type1;
-  double radius = 1.0;        ///< of every control point's support, in model units
   double piece_length = 0.05; ///< of a cut of type 2, in model units
-  deform::CsrbfOptions csrbf;
-  deform::EvaluationOptions evaluation;
+  deform::DeformerOptions deformer;
 };
 
 class Sculptor {
@@ -48,6 +46,8 @@ public:
   const deform::BlockLayout& layout() const noexcept;
 
   const deform::CsrbfField& field() const noexcept;
+  /// What the last update() took to stay injective; all 0 if that is not asked for.
+  deform::ChainReport report() const noexcept;
 
 private:
   std::variant<deform::Type1Deformer, deform::Type2Deformer> deformer_;
