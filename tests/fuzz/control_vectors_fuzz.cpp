@@ -26,7 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   require(vectors->starts.cols() > 0 && vectors->starts.cols() == vectors->displacements.cols());
   require(vectors->starts.allFinite() && vectors->displacements.allFinite());
-  require(vectors->radii.size() == 0 || (vectors->radii.size() == vectors->starts.cols() &&
-                                         (vectors->radii.array() > 0.0).all()));
+  const auto rows = static_cast<std::size_t>(vectors->starts.cols());
+  require(vectors->own.empty() || vectors->own.size() >= rows);
+  for (const auto& own : vectors->own)
+    require(own.point >= 0 && own.point < vectors->starts.cols());
+  if (!vectors->own.empty()) require(nendo::deform::with_common(vectors->own).are_usable());
   return 0;
 }
