@@ -25,7 +25,7 @@ void PolynomialPart::assemble(const Points& starts, Polynomial polynomial) {
   for (Eigen::Index i = 0; i < n; ++i)
     basis_.row(i) << 1.0, (starts.col(i) - middle).transpose() / spread;
   if (polynomial == Polynomial::none) basis_.setZero();
-  if (polynomial == Polynomial::constant) basis_.rightCols<3>().setZero();
+  if (polynomial == Polynomial::constant && n > 0) basis_.rightCols<3>().setZero();
   Eigen::Matrix4d normalise = Eigen::Matrix4d::Zero(); // (1, x) -> (1, (x - middle) / spread)
   normalise(0, 0) = 1.0;
   normalise.block<3, 1>(1, 0) = -middle / spread;
