@@ -17,7 +17,7 @@ struct EvaluationOptions {
   int threads = 1;
   /// Most memory for Type-1's weights; where they need more, fields are evaluated instead, in about
   /// twice the time. Weights that leave the processor's caches gain nothing.
-  std::size_t weight_bytes = std::size_t{8} << 20;
+  std::size_t weight_bytes = std::size_t{4} << 20;
 };
 
 /// A shape that knows its blocks' bounds.
