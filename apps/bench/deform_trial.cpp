@@ -117,6 +117,23 @@ void stroke(Type2Deformer& deformer, const Points& starts, const std::array<Poin
   deformer.finish();
 }
 
+/// What is measured side by side, the hands holding the mesh.
+struct Deformers {
+  Deformers(const Points& mesh, const Points& starts, double radius)
+      : type1(mesh, 10, radius, {}), evaluated1(mesh, 10, radius, {}, {.weight_bytes = 0}),
+        type2(mesh, 10, radius, one_piece, {}) {
+    type1.grab(starts);
+    evaluated1.grab(starts);
+    type2.begin(starts);
+  }
+
+  Type1Deformer type1;
+  Type1Deformer evaluated1;
+  Type2Deformer type2;
+  BlockShape out; ///< type1's
+  BlockShape other;
+};
+
 double apart_from_double(Type1Deformer& deformer, const Points& ends) {
   BlockShape shape;
   Points in_blocks;
@@ -157,17 +174,11 @@ CellTimes measure_cell(const Points& mesh, double radius, int repetitions) {
   const auto vertices = static_cast<std::size_t>(mesh.cols());
   PlainDeformer plain1(mesh, starts, radius);
   PlainDeformer plain2(mesh, starts, radius);
-  Type1Deformer type1(mesh, 10, radius, {});
-  Type1Deformer evaluated1(mesh, 10, radius, {}, {.weight_bytes = 0});
-  Type2Deformer type2(mesh, 10, radius, one_piece, {});
-  type1.grab(starts);
-  evaluated1.grab(starts);
-  type2.begin(starts);
+  Deformers deformers(mesh, starts, radius);
+  auto& [type1, evaluated1, type2, out, other] = deformers;
   CellTimes times;
   times.apart = apart_from_double(type1, ends[0]);
   times.weight_bytes = type1.weight_bytes();
-  BlockShape out;
-  BlockShape other;
   Best p1, p2, t1, e1, t2, grab;
   for (int n = 0; n < repetitions; ++n) {
     if (can_run_plain()) {
@@ -242,14 +253,8 @@ LargeTimes measure_large(int cells, int repetitions) {
   LargeTimes times;
   times.vertices = static_cast<std::size_t>(mesh.cols());
   times.influences = influences_of(mesh, starts, radius);
-  Type1Deformer type1(mesh, 10, radius, {});
-  Type1Deformer evaluated1(mesh, 10, radius, {}, {.weight_bytes = 0});
-  Type2Deformer type2(mesh, 10, radius, one_piece, {});
-  type1.grab(starts);
-  evaluated1.grab(starts);
-  type2.begin(starts);
-  BlockShape out;
-  BlockShape other;
+  Deformers deformers(mesh, starts, radius);
+  auto& [type1, evaluated1, type2, out, other] = deformers;
   evaluated1.apply(ends[0], other);
   std::size_t reached = 0;
   for (std::size_t block = 0; block < other.block_count(); ++block)

@@ -18,6 +18,7 @@
 #include <nendo/deform/csrbf.hpp>
 
 #include "bench/bench.hpp"
+#include "bench/bumpy_sheet.hpp"
 #include "cli.hpp"
 
 namespace nendo::app {
@@ -95,23 +96,10 @@ struct Measured {
   double solve_s = std::numeric_limits<double>::infinity();
 };
 
-/// A bumpy sheet of side 1, as points on a surface are, in no order.
-Points sheet(std::uint64_t count) {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> place(0.0, 1.0);
-  Points points(3, static_cast<Eigen::Index>(count));
-  for (auto point : points.colwise()) {
-    const double x = place(random);
-    const double y = place(random);
-    point << x, y, 0.05 * std::sin(7.0 * x) * std::cos(5.0 * y);
-  }
-  return points;
-}
-
 /// The best round of each, with the pieces of that round.
 Measured measure(const Method& method, const Points& starts, double radius, std::uint64_t rounds) {
   CsrbfSolver solver({.order = method.order, .storage = method.storage});
-  const Supports supports{{{radius, 1.0}}, {}};
+  const Supports supports = one_radius(radius);
   CsrbfField field;
   Measured best{.method = method.name};
   for (std::uint64_t round = 0; round < rounds; ++round) {
@@ -179,7 +167,8 @@ void print_text(std::uint64_t points, std::uint64_t neighbours,
 }
 
 void measure_many(std::uint64_t points, const Options& options) {
-  const Points starts = sheet(points);
+  std::mt19937 random(2);
+  const Points starts = bumpy_sheet(random, static_cast<Eigen::Index>(points));
   const double radius = std::sqrt(static_cast<double>(options.neighbours) /
                                   (std::numbers::pi * static_cast<double>(points)));
   std::vector<Measured> measured;

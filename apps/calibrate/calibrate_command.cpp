@@ -20,6 +20,7 @@
 #include "cli.hpp"
 #include "commands.hpp"
 #include "glove_calibration.hpp"
+#include "hand_length.hpp"
 #include "printable.hpp"
 
 namespace nendo::app {
@@ -50,11 +51,8 @@ Result<void> check(const Options& options) {
   if (options.glove.empty() == options.from.empty())
     return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
   if (options.user.empty())
-    return Error{Errc::usage,
-                 "--user is missing: whose hand is it? e.g. --user " + std::string("anna")};
-  if (!(options.length_mm >= 100.0 && options.length_mm <= 250.0))
-    return Error{Errc::usage, "--hand-length: use 100 to 250 millimetres, from the wrist's crease "
-                              "to the tip of the middle finger"};
+    return Error{Errc::usage, "--user is missing: whose hand is it? e.g. --user anna"};
+  if (const auto fine = HandLength{options.length_mm}.check(); !fine) return fine;
   if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
     return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
   const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
@@ -146,7 +144,7 @@ int calibrate_from_capture(const Options& options) {
   bool doubted = false; // one pose that was missed shifts all that follow
   for (const GloveSample& sample : capture->samples) {
     sensors.bits |= sample.present.bits;
-    if (guide.readings().empty()) guide.see_free_motion(sample);
+    if (!guide.has_any()) guide.see_free_motion(sample);
     if (guide.see(sample) == CalibrationGuide::Event::implausible && !std::exchange(doubted, true))
       note(options.from + ": a pose that was held is not " +
            std::string(hand::pose_of(guide.asked()).name) + ", by " +

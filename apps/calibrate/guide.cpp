@@ -80,6 +80,10 @@ std::vector<hand::PoseReading> CalibrationGuide::readings() const {
   return readings;
 }
 
+bool CalibrationGuide::has_any() const noexcept {
+  return std::any_of(kept_.begin(), kept_.end(), [](const auto& kept) { return kept.has_value(); });
+}
+
 const HeldPose* CalibrationGuide::kept(PoseId pose) const {
   for (std::size_t k = 0; k < poses_.size(); ++k)
     if (poses_[k] == pose && kept_[k]) return &*kept_[k];

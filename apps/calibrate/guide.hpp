@@ -47,6 +47,8 @@ public:
 
   /// In the order in which they are asked for.
   std::vector<hand::PoseReading> readings() const;
+  /// Whether there are readings.
+  bool has_any() const noexcept;
 
 private:
   void advance();

@@ -9,6 +9,7 @@
 #include <nendo/base/files.hpp>
 
 #include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
 

@@ -2,18 +2,9 @@
 #include <cassert>
 
 #include "solver/csrbf_state.hpp"
-#include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
-
-namespace {
-
-template <class Derived>
-bool all_usable(const Eigen::DenseBase<Derived>& values, double largest = largest_number) {
-  return (values.derived().array().abs() <= largest).all(); // false for NaN
-}
-
-} // namespace
 
 void CsrbfSolver::State::solve_in_place(Rows& a, Eigen::Matrix4d& b, const Eigen::Matrix4d& sums) {
   system_->solve_in_place(a);

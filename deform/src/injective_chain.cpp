@@ -6,17 +6,9 @@
 #include <utility>
 
 #include "solver_room.hpp"
-#include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
-
-namespace {
-
-bool are_usable(const Points& points) {
-  return (points.array().abs() <= largest_number).all(); // false for NaN
-}
-
-} // namespace
 
 InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
                                InjectiveOptions options)
@@ -51,7 +43,7 @@ FieldStatus InjectiveChain::grab(const Points& starts) {
 
 FieldStatus InjectiveChain::from_start(const Points& ends) noexcept {
   assert(ends.cols() == starts_.cols());
-  const bool usable = are_usable(ends);
+  const bool usable = all_usable(ends);
   if (usable) wanted_ = ends;
   places_ = starts_;
   at_start_ = true;
@@ -63,7 +55,7 @@ FieldStatus InjectiveChain::from_start(const Points& ends) noexcept {
 
 FieldStatus InjectiveChain::from_here(const Points& ends, int most_links) noexcept {
   assert(ends.cols() == starts_.cols());
-  const bool usable = are_usable(ends);
+  const bool usable = all_usable(ends);
   if (usable) {
     wanted_ = ends;
     gaps_.release(wanted_);

@@ -7,6 +7,8 @@
 
 #include <Eigen/LU>
 
+#include "field_terms.hpp"
+
 namespace nendo::deform {
 
 namespace {
@@ -110,8 +112,7 @@ struct Place {
 };
 
 Place look_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
-  Place place{field.polynomial.col(0) + field.polynomial.rightCols<3>() * x,
-              field.polynomial.rightCols<3>()};
+  Place place{polynomial_at(field, x), field.polynomial.rightCols<3>()};
   place.jacobian.diagonal().array() += 1.0;
   for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
     const Eigen::Vector3d offset = x - field.centres.col(i);

@@ -1,8 +1,21 @@
 #include <nendo/deform/mesh.hpp>
 
+#include <limits>
+
 #include <Eigen/Geometry>
 
 namespace nendo::deform {
+
+Box finite_box_of(const Points& points) noexcept {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box box{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!points.col(i).allFinite()) continue;
+    box.lowest = box.lowest.cwiseMin(points.col(i));
+    box.highest = box.highest.cwiseMax(points.col(i));
+  }
+  return box;
+}
 
 double diagonal_of(const Points& points) noexcept {
   if (points.cols() == 0) return 0.0;

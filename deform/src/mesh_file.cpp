@@ -7,6 +7,7 @@
 
 #include "mesh_formats.hpp"
 #include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
 
@@ -31,7 +32,7 @@ Result<Mesh> parse_text(std::string_view text, std::string_view name) {
 
 Eigen::Index first_unusable_vertex(const Points& vertices) noexcept {
   Eigen::Index at = 0;
-  while (at < vertices.cols() && (vertices.col(at).array().abs() <= largest_number).all())
+  while (at < vertices.cols() && all_usable(vertices.col(at)))
     ++at;
   return at;
 }

@@ -7,6 +7,7 @@
 
 #include "mesh_formats.hpp"
 #include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
 

@@ -26,14 +26,7 @@ struct Cube {
 };
 
 Cube bounding_cube(const Points& points) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d lowest = Eigen::Vector3d::Constant(infinity);
-  Eigen::Vector3d highest = -lowest;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (!points.col(i).allFinite()) continue;
-    lowest = lowest.cwiseMin(points.col(i));
-    highest = highest.cwiseMax(points.col(i));
-  }
+  const auto [lowest, highest] = finite_box_of(points);
   return {lowest, (highest / 2.0 - lowest / 2.0).maxCoeff()};
 }
 

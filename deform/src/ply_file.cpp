@@ -10,6 +10,7 @@
 #include "mesh_formats.hpp"
 #include "ply_header.hpp"
 #include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
 

@@ -5,13 +5,14 @@
 #include <utility>
 
 #include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
 
 namespace {
 
 bool is_positive(double value) noexcept {
-  return value > 0.0 && value <= largest_number; // false for NaN
+  return value > 0.0 && is_usable(value);
 }
 
 bool is_valid(const Support& support) noexcept {

@@ -13,9 +13,6 @@
 
 namespace nendo::deform {
 
-/// No model is that large; below it, squares, cubes and sums of coordinates stay finite.
-inline constexpr double largest_number = 1e100;
-
 /// Of a mesh or of control vectors.
 inline constexpr std::uint64_t most_file_bytes = std::uint64_t{4} << 30;
 
@@ -23,10 +20,6 @@ inline constexpr std::uint64_t most_file_bytes = std::uint64_t{4} << 30;
 /// through.
 std::optional<double> to_number(std::string_view field) noexcept;
 std::optional<std::int64_t> to_integer(std::string_view field) noexcept;
-/// False for NaN, too.
-constexpr bool is_usable(double value) noexcept {
-  return value <= largest_number && value >= -largest_number;
-}
 
 /// A field for an error message: in quotes, shortened, without control characters.
 std::string quoted(std::string_view field);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "solver_room.hpp"
-#include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
 
@@ -14,10 +14,6 @@ namespace {
 
 double farthest(const Points& displacements) {
   return displacements.cols() == 0 ? 0.0 : displacements.colwise().stableNorm().maxCoeff();
-}
-
-bool are_usable(const Points& tips) {
-  return (tips.array().abs() <= largest_number).all(); // false for NaN
 }
 
 } // namespace
@@ -39,7 +35,7 @@ Type2Deformer::Type2Deformer(Points shape, Eigen::Index control_points, double p
 
 FieldStatus Type2Deformer::begin(const Points& tips) {
   assert(tips.cols() == current_.cols());
-  begun_ = are_usable(tips);
+  begun_ = all_usable(tips);
   if (!begun_) return FieldStatus::not_finite;
   current_ = tips;
   target_ = tips;
@@ -52,7 +48,7 @@ FieldStatus Type2Deformer::begin(const Points& tips) {
 StrokeResult Type2Deformer::stroke_to(const Points& tips) {
   assert(tips.cols() == current_.cols());
   report_ = {};
-  if (!are_usable(tips)) return {FieldStatus::not_finite, 0};
+  if (!all_usable(tips)) return {FieldStatus::not_finite, 0};
   if (!begun_) {
     return {begin(tips), 0};
   }

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <nendo/deform/octree_order.hpp>
@@ -39,14 +38,7 @@ void BlockShape::follow(const BlockShape& other) {
 BlockLayout::BlockLayout(Points vertices)
     : original_(std::move(vertices)), diagonal_(diagonal_of(original_)),
       order_(octree_order(original_)) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d lowest = Eigen::Vector3d::Constant(infinity);
-  Eigen::Vector3d highest = -lowest;
-  for (Eigen::Index i = 0; i < original_.cols(); ++i) {
-    if (!original_.col(i).allFinite()) continue;
-    lowest = lowest.cwiseMin(original_.col(i));
-    highest = highest.cwiseMax(original_.col(i));
-  }
+  const auto [lowest, highest] = finite_box_of(original_);
   if (!(lowest[0] <= highest[0])) return;
   origin_ = lowest / 2.0 + highest / 2.0;
   const double half = (highest / 2.0 - lowest / 2.0).maxCoeff();

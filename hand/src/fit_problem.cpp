@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include <nendo/base/units.hpp>
 
 #include "fit_priors.hpp"
 
@@ -94,7 +95,6 @@ FitProblem::FitProblem(std::span<const PoseReading> readings, Side side, SensorM
 }
 
 void FitProblem::find_range_ends(const CountRanges& free_motion) {
-  constexpr double rad = std::numbers::pi / 180.0;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
     if (!sensors_.has(sensor) || !free_motion.present.has(sensor)) continue;
@@ -108,9 +108,10 @@ void FitProblem::find_range_ends(const CountRanges& free_motion) {
     const double low = free_motion.low_counts[slot], high = free_motion.high_counts[slot];
     // Written so that a NaN is refused.
     if (low_deviation_deg > 0.0 && low >= 0.0 && low <= least + short_of_poses)
-      range_ends_.push_back({slot, low, {low_deg * rad, low_deviation_deg * rad}});
+      range_ends_.push_back({slot, low, {from_degrees(low_deg), from_degrees(low_deviation_deg)}});
     if (high_deviation_deg > 0.0 && high <= most_counts_ && high >= most - short_of_poses)
-      range_ends_.push_back({slot, high, {high_deg * rad, high_deviation_deg * rad}});
+      range_ends_.push_back(
+          {slot, high, {from_degrees(high_deg), from_degrees(high_deviation_deg)}});
   }
   height_ += static_cast<Eigen::Index>(range_ends_.size());
 }

@@ -24,13 +24,9 @@ TEST_SUITE("injective chain") {
     return VectorXd::Constant(count, radius);
   }
 
-  static Supports one_radius() {
-    return {{Support{radius}}, {}};
-  }
-
   static InjectiveChain grabbed(const Points& starts, InjectiveOptions options = {},
                                 CsrbfOptions csrbf = {}) {
-    InjectiveChain chain(starts.cols(), one_radius(), csrbf, options);
+    InjectiveChain chain(starts.cols(), one_radius(radius), csrbf, options);
     REQUIRE(is_solved(chain.grab(starts)));
     return chain;
   }
@@ -302,7 +298,7 @@ TEST_SUITE("injective chain") {
     const Points starts = random_points(random, 10, radius);
     const Points ends = starts + random_points(random, 10, radius);
     const Points shape = random_points(random, 100, radius);
-    InjectiveChain chain(10, one_radius(), {}, {});
+    InjectiveChain chain(10, one_radius(radius), {}, {});
     CHECK(chain.from_start(ends) == FieldStatus::singular); // before the first grab
     CHECK_FALSE(chain.next());
     REQUIRE(is_solved(chain.grab(starts)));
@@ -332,7 +328,7 @@ TEST_SUITE("injective chain") {
     Points ends = starts + random_points(random, 10, radius);
     ends.leftCols<2>() << starts.col(1), starts.col(0);
     Points shape = random_points(random, 100, radius);
-    InjectiveChain chain(10, one_radius(), {}, {});
+    InjectiveChain chain(10, one_radius(radius), {}, {});
     ChainReport report;
     nendo::test::RestraintCounts counts;
     {

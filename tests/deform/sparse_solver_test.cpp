@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/bumpy_sheet.hpp"
 #include "support/fields.hpp"
 #include "support/test_meshes.hpp"
 
@@ -17,18 +18,6 @@ using nendo::test::values;
 
 namespace {
 
-/// A bumpy sheet of side 1, as control points on a surface are, in no order.
-Points sheet(std::mt19937& random, Eigen::Index count) {
-  std::uniform_real_distribution<double> place(0.0, 1.0);
-  Points points(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double x = place(random);
-    const double y = place(random);
-    points.col(i) << x, y, 0.05 * std::sin(7.0 * x) * std::cos(5.0 * y);
-  }
-  return points;
-}
-
 /// At which so many of the sheet's points lie within reach of one.
 double radius_for(double neighbours, Eigen::Index count) {
   return std::sqrt(neighbours / (3.14159 * static_cast<double>(count)));
@@ -39,7 +28,7 @@ double radius_for(double neighbours, Eigen::Index count) {
 TEST_SUITE("sparse solver") {
   TEST_CASE("sparse and dense give one field, for every kernel, polynomial and order") {
     std::mt19937 random(1);
-    const Points starts = sheet(random, 150);
+    const Points starts = nendo::app::bumpy_sheet(random, 150);
     const Points g = random_points(random, 150, 1.0);
     const Points points = random_points(random, 100, 1.2);
     VectorXd radii = VectorXd::Constant(150, radius_for(15.0, 150));
@@ -74,7 +63,7 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("an octree's order keeps the factor sparse, minimum degree more so") {
     std::mt19937 random(2);
-    const Points starts = sheet(random, 2000);
+    const Points starts = nendo::app::bumpy_sheet(random, 2000);
     const VectorXd radii = VectorXd::Constant(2000, radius_for(9.0, 2000));
     const auto entries = [&](PointOrder order) {
       CsrbfSolver solver({.order = order});
@@ -90,7 +79,7 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("thousands of start points go where their control vectors say") {
     std::mt19937 random(3);
-    const Points starts = sheet(random, 5000);
+    const Points starts = nendo::app::bumpy_sheet(random, 5000);
     const Points g = random_points(random, 5000, 1.0);
     for (const Polynomial polynomial : {Polynomial::none, Polynomial::linear}) {
       CsrbfSolver solver({.polynomial = polynomial});
@@ -105,11 +94,11 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("few points, and wide supports, are solved densely") {
     std::mt19937 random(4);
-    const Points few = sheet(random, 40);
+    const Points few = nendo::app::bumpy_sheet(random, 40);
     CsrbfSolver solver({});
     REQUIRE(is_solved(solver.build(few, VectorXd::Constant(40, 0.1).eval())));
     CHECK_FALSE(solver.effort().sparse);
-    const Points many = sheet(random, 300);
+    const Points many = nendo::app::bumpy_sheet(random, 300);
     REQUIRE(is_solved(solver.build(many, VectorXd::Constant(300, 0.1).eval())));
     CHECK(solver.effort().sparse);
     REQUIRE(is_solved(solver.build(many, VectorXd::Constant(300, 2.0).eval())));
@@ -123,7 +112,7 @@ TEST_SUITE("sparse solver") {
   TEST_CASE("too many points in each other's supports are refused, and the old field stays") {
     std::mt19937 random(5);
     const Eigen::Index n = CsrbfSolver::most_dense_points + 1;
-    const Points starts = sheet(random, n);
+    const Points starts = nendo::app::bumpy_sheet(random, n);
     CsrbfSolver solver({});
     CsrbfField field;
     CHECK(solver.build(starts, VectorXd::Constant(n, 2.0).eval()) == FieldStatus::too_dense);
@@ -137,7 +126,7 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("points of all scales, and outliers, are solved or refused, never without an answer") {
     std::mt19937 random(6);
-    Points starts = sheet(random, 400);
+    Points starts = nendo::app::bumpy_sheet(random, 400);
     starts.col(7) << 1e90, -1e90, 3.0;
     const Points g = random_points(random, 400, 1.0);
     CsrbfSolver solver({.storage = Storage::sparse});

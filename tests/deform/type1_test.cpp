@@ -10,10 +10,12 @@
 #include <nendo/deform/simd.hpp>
 
 #include "bench/table1.hpp"
+#include "support/fields.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
 using namespace nendo::deform;
+using nendo::test::largest;
 using nendo::test::random_points;
 
 TEST_SUITE("type1") {
@@ -30,10 +32,6 @@ TEST_SUITE("type1") {
   static Points end_points(double length) {
     std::mt19937 random(22);
     return start_points() + random_points(random, 10, length);
-  }
-
-  static double largest(const Points& points) {
-    return points.cwiseAbs().maxCoeff();
   }
 
   static Points unpacked(const Type1Deformer& deformer, const BlockShape& shape) {

@@ -6,11 +6,13 @@
 #include <doctest/doctest.h>
 
 #include "nendo/deform/type1.hpp"
+#include "support/fields.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
 using namespace nendo::deform;
 using Eigen::Vector3d;
+using nendo::test::largest;
 using nendo::test::random_points;
 
 TEST_SUITE("type2") {
@@ -25,10 +27,6 @@ TEST_SUITE("type2") {
 
   static Points shifted(const Vector3d& by) {
     return start_points().colwise() + by;
-  }
-
-  static double largest(const Points& points) {
-    return points.cwiseAbs().maxCoeff();
   }
 
   static Points shape_of(const Type2Deformer& deformer) {

@@ -72,7 +72,7 @@ Points at_once(const Stroke& stroke, Points shape) {
 }
 
 Followed in_chains(const Stroke& stroke, const Points& shape) {
-  deform::InjectiveChain chain(fingertips, {{deform::Support{stroke.radius}}, {}}, {}, {});
+  deform::InjectiveChain chain(fingertips, deform::one_radius(stroke.radius), {}, {});
   Followed followed{.shape = shape};
   deform::DeterminantProbe probe;
   probe.start(shape);

@@ -8,111 +8,14 @@
 
 #include <doctest/doctest.h>
 
+#include "support/hand_targets.hpp"
 #include "support/restraint.hpp"
 
 using namespace nendo;
 using namespace nendo::hand;
+using namespace nendo::test;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-namespace {
-
-constexpr double tenth_mm = 1e-4;
-
-/// Every angle, in one row, by reference: what the tests need to walk over a hand.
-std::vector<double*> angles_in(JointAngles& a) {
-  std::vector<double*> row{&a.thumb_roll_rad, &a.thumb_abduction_rad, &a.thumb_mcp_flexion_rad,
-                           &a.thumb_ip_flexion_rad};
-  for (auto& f : a.fingers) {
-    row.insert(row.end(),
-               {&f.mcp_flexion_rad, &f.mcp_abduction_rad, &f.pip_flexion_rad, &f.dip_flexion_rad});
-  }
-  row.insert(row.end(), {&a.palm_arch_rad, &a.wrist_pitch_rad, &a.wrist_yaw_rad});
-  return row;
-}
-constexpr std::size_t shared_at = 20; // palm arch, wrist pitch, wrist yaw
-
-JointAngles random_angles(std::mt19937& random) {
-  AngleLimits limits = default_angle_limits();
-  JointAngles angles;
-  const auto low = angles_in(limits.low);
-  const auto high = angles_in(limits.high);
-  const auto all = angles_in(angles);
-  for (std::size_t k = 0; k < all.size(); ++k)
-    *all[k] = std::uniform_real_distribution<double>(*low[k], *high[k])(random);
-  return angles;
-}
-
-bool within(AngleLimits limits, JointAngles angles) {
-  const auto low = angles_in(limits.low);
-  const auto high = angles_in(limits.high);
-  const auto all = angles_in(angles);
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (!(*all[k] >= *low[k] && *all[k] <= *high[k])) return false;
-  }
-  return true;
-}
-
-double farthest_apart(JointAngles a, JointAngles b) {
-  const auto as = angles_in(a);
-  const auto bs = angles_in(b);
-  double farthest = 0.0;
-  for (std::size_t k = 0; k < as.size(); ++k)
-    farthest = std::max(farthest, std::abs(*as[k] - *bs[k]));
-  return farthest;
-}
-
-Isometry3d random_pose(std::mt19937& random) {
-  std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const Eigen::Quaterniond q(u(random), u(random), u(random), u(random));
-  Isometry3d pose = Isometry3d::Identity();
-  pose.linear() = q.normalized().toRotationMatrix();
-  pose.translation() = Vector3d(u(random), u(random), u(random));
-  return pose;
-}
-
-FingertipTargets targets_at(const Eigen::Matrix<double, 3, 5>& places) {
-  FingertipTargets targets;
-  for (std::size_t f = 0; f < finger_count; ++f)
-    targets[f] = {places.col(static_cast<Eigen::Index>(f)), 1.0};
-  return targets;
-}
-
-/// What forward kinematics says of a solution: from each tip to its target.
-std::array<double, finger_count> distances(const HandSkeleton& skeleton, const Isometry3d& base,
-                                           const FingertipTargets& targets,
-                                           const JointAngles& angles) {
-  const auto tips = skeleton.pose(angles, base).fingertip_positions();
-  std::array<double, finger_count> all{};
-  for (std::size_t f = 0; f < finger_count; ++f) {
-    if (targets[f].weight > 0.0)
-      all[f] = (tips.col(static_cast<Eigen::Index>(f)) - targets[f].position_m).norm();
-  }
-  return all;
-}
-
-double most(const std::array<double, finger_count>& all) {
-  return *std::max_element(all.begin(), all.end());
-}
-
-/// The start keeps palm and wrist where the targets were made: nothing else moves them.
-JointAngles resting_with_wrist_of(const JointAngles& angles) {
-  JointAngles rest;
-  rest.palm_arch_rad = angles.palm_arch_rad;
-  rest.wrist_pitch_rad = angles.wrist_pitch_rad;
-  rest.wrist_yaw_rad = angles.wrist_yaw_rad;
-  return rest;
-}
-
-JointAngles near(JointAngles angles, double by_rad, std::mt19937& random) {
-  std::uniform_real_distribution<double> off(-by_rad, by_rad);
-  const auto all = angles_in(angles);
-  for (std::size_t k = 0; k < shared_at; ++k)
-    *all[k] += off(random);
-  return angles;
-}
-
-} // namespace
 
 TEST_SUITE("inverse_kinematics") {
   TEST_CASE("what a hand can reach is reached to 0.1 mm, from the rest pose and from nearby") {
@@ -120,7 +23,7 @@ TEST_SUITE("inverse_kinematics") {
     for (int round = 0; round < 2000; ++round) {
       const Side side = round % 2 == 0 ? Side::left : Side::right;
       const HandSkeleton skeleton(side);
-      const JointAngles made_of = random_angles(random);
+      const JointAngles made_of = random_angles_within_limits(random);
       const Isometry3d base = random_pose(random);
       const auto targets = targets_at(skeleton.pose(made_of, base).fingertip_positions());
       for (const JointAngles& start :
@@ -152,7 +55,7 @@ TEST_SUITE("inverse_kinematics") {
     InverseOptions options;
     options.limits = narrow;
     for (int round = 0; round < 500; ++round) {
-      JointAngles inside = random_angles(random);
+      JointAngles inside = random_angles_within_limits(random);
       std::uniform_real_distribution<double> bend(0.1, 0.9);
       for (auto& f : inside.fingers)
         f = {bend(random), f.mcp_abduction_rad, bend(random), bend(random)};
@@ -172,7 +75,7 @@ TEST_SUITE("inverse_kinematics") {
     const Isometry3d base = Isometry3d::Identity();
     std::vector<Eigen::Matrix<double, 3, 5>> elsewhere;
     for (int k = 0; k < 5000; ++k) {
-      JointAngles angles = random_angles(random);
+      JointAngles angles = random_angles_within_limits(random);
       angles.palm_arch_rad = angles.wrist_pitch_rad = angles.wrist_yaw_rad = 0.0;
       elsewhere.push_back(skeleton.pose(angles, base).fingertip_positions());
     }
@@ -205,8 +108,8 @@ TEST_SUITE("inverse_kinematics") {
     std::mt19937 random(4);
     const HandSkeleton skeleton(Side::left);
     for (int round = 0; round < 100; ++round) {
-      const JointAngles start = random_angles(random);
-      JointAngles there = random_angles(random);
+      const JointAngles start = random_angles_within_limits(random);
+      JointAngles there = random_angles_within_limits(random);
       there.palm_arch_rad = start.palm_arch_rad;
       there.wrist_pitch_rad = start.wrist_pitch_rad;
       there.wrist_yaw_rad = start.wrist_yaw_rad;
@@ -291,7 +194,7 @@ TEST_SUITE("inverse_kinematics") {
     int farther = 0;
     int reached = 0;
     for (int round = 0; round < 300; ++round) {
-      const JointAngles made_of = random_angles(random);
+      const JointAngles made_of = random_angles_within_limits(random);
       const Isometry3d base = random_pose(random);
       const auto targets = targets_at(skeleton.pose(made_of, base).fingertip_positions());
       JointAngles start = made_of;
@@ -318,7 +221,7 @@ TEST_SUITE("inverse_kinematics") {
     std::mt19937 random(9);
     for (int round = 0; round < 200; ++round) {
       const HandSkeleton skeleton(round % 2 == 0 ? Side::left : Side::right);
-      const JointAngles made_of = random_angles(random);
+      const JointAngles made_of = random_angles_within_limits(random);
       const Isometry3d base = random_pose(random);
       const HandPose made = skeleton.pose(made_of, base);
       InverseOptions options;
@@ -437,8 +340,9 @@ TEST_SUITE("inverse_kinematics") {
   TEST_CASE("solving allocates nothing and takes no lock") {
     const HandSkeleton skeleton(Side::right);
     std::mt19937 random(8);
-    const auto targets = targets_at(
-        skeleton.pose(random_angles(random), Isometry3d::Identity()).fingertip_positions());
+    const auto targets =
+        targets_at(skeleton.pose(random_angles_within_limits(random), Isometry3d::Identity())
+                       .fingertip_positions());
     InverseOptions options;
     options.solve_wrist = options.solve_palm_arch = true;
     const test::Restraint restraint;

@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "text.hpp"
+#include "usable.hpp"
 
 namespace nendo::deform {
 

@@ -26,6 +26,13 @@ struct Mesh {
   std::size_t face_count() const noexcept { return face_starts.size() - 1; }
 };
 
+struct Box {
+  Eigen::Vector3d lowest, highest; ///< lowest[0] > highest[0] if there is nothing in it
+};
+
+/// The axis-aligned bounding box of the points that are finite.
+Box finite_box_of(const Points& points) noexcept;
+
 /// Length of the diagonal of the axis-aligned bounding box; 0 for no points.
 double diagonal_of(const Points& points) noexcept;
 

@@ -1,0 +1,21 @@
+#pragma once
+// Which numbers are taken from outside.
+
+#include <Eigen/Core>
+
+namespace nendo::deform {
+
+/// No model is that large; below it, squares, cubes and sums of coordinates stay finite.
+inline constexpr double largest_number = 1e100;
+
+/// False for NaN, too.
+constexpr bool is_usable(double value) noexcept {
+  return value <= largest_number && value >= -largest_number;
+}
+
+template <class Derived>
+bool all_usable(const Eigen::DenseBase<Derived>& values, double largest = largest_number) noexcept {
+  return (values.derived().array().abs() <= largest).all();
+}
+
+} // namespace nendo::deform
