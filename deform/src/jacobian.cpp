@@ -5,9 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
-
-#include "field_terms.hpp"
+#include "simd/probe_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -106,33 +104,21 @@ double native_bound(const CsrbfField& field) noexcept {
   return sum;
 }
 
-struct Place {
-  Eigen::Vector3d displacement;
-  Eigen::Matrix3d jacobian;
-};
+} // namespace
 
-Place look_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
-  Place place{polynomial_at(field, x), field.polynomial.rightCols<3>()};
-  place.jacobian.diagonal().array() += 1.0;
+Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
+  Eigen::Matrix3d jacobian = field.polynomial.rightCols<3>();
+  jacobian.diagonal().array() += 1.0;
   for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
     const Eigen::Vector3d offset = x - field.centres.col(i);
     const double radius = field.radii[i];
     const double squared = offset.squaredNorm();
-    if (!(squared < radius * radius)) continue;
-    const Eigen::Vector3d coefficient = field.coefficients.col(i);
+    if (!(squared < radius * radius) || squared == 0.0) continue;
     const double distance = std::sqrt(squared);
-    place.displacement += wendland(field.kernel, distance / radius) * coefficient;
-    if (squared == 0.0) continue;
     const double slope = wendland_slope(field.kernel, distance / radius) / (radius * distance);
-    place.jacobian.noalias() += coefficient * (slope * offset).transpose();
+    jacobian.noalias() += field.coefficients.col(i) * (slope * offset).transpose();
   }
-  return place;
-}
-
-} // namespace
-
-Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
-  return look_at(field, x).jacobian;
+  return jacobian;
 }
 
 double lipschitz_bound(const CsrbfField& field) noexcept {
@@ -144,45 +130,53 @@ double lipschitz_bound(const CsrbfField& field) noexcept {
 }
 
 void DeterminantProbe::reserve(Eigen::Index points) {
-  if (places_.cols() >= points) return;
-  places_.resize(3, points);
-  determinants_.resize(points);
+  constexpr auto vector = static_cast<Eigen::Index>(probe_vector);
+  const Eigen::Index room = (points + vector - 1) / vector * vector;
+  if (places_.rows() < room) places_.resize(room, 4);
 }
 
 void DeterminantProbe::start(const Points& points) {
   reserve(points.cols());
-  used_ = points.cols();
-  places_.leftCols(used_) = points;
-  determinants_.head(used_).setOnes();
-  least_ = 1.0;
+  begin(points.cols());
+  places_.topLeftCorner(points.cols(), 3) = points.transpose();
+  fill_last_vector(points.cols());
 }
 
 void DeterminantProbe::start_round(const Points& starts, const Eigen::VectorXd& radii,
                                    Wendland kernel) noexcept {
-  used_ = ring_size * starts.cols();
-  assert(used_ <= places_.cols());
+  const Eigen::Index count = ring_size * starts.cols();
+  begin(count);
   const double part = kernel == Wendland::c0 ? 0.125 : wendland_steepest_at(kernel);
   for (Eigen::Index i = 0; i < starts.cols(); ++i) {
-    auto ring = places_.middleCols<ring_size>(ring_size * i);
-    ring.colwise() = starts.col(i);
+    auto ring = places_.block<ring_size, 3>(ring_size * i, 0);
+    ring.rowwise() = starts.col(i).transpose();
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      ring(axis, 1 + 2 * axis) += part * radii[i];
-      ring(axis, 2 + 2 * axis) -= part * radii[i];
+      ring(1 + 2 * axis, axis) += part * radii[i];
+      ring(2 + 2 * axis, axis) -= part * radii[i];
     }
   }
-  determinants_.head(used_).setOnes();
+  fill_last_vector(count);
+}
+
+void DeterminantProbe::begin(Eigen::Index count) noexcept {
+  constexpr auto vector = static_cast<Eigen::Index>(probe_vector);
+  used_ = (count + vector - 1) / vector * vector;
+  assert(used_ <= places_.rows());
+  places_.col(3).head(used_).setOnes();
   least_ = 1.0;
 }
 
+/// By repeating the last point.
+void DeterminantProbe::fill_last_vector(Eigen::Index count) noexcept {
+  for (Eigen::Index at = count; at < used_; ++at)
+    places_.row(at) = places_.row(count - 1);
+}
+
 void DeterminantProbe::advance(const CsrbfField& field) noexcept {
-  double least = used_ > 0 ? std::numeric_limits<double>::infinity() : 1.0;
-  for (Eigen::Index i = 0; i < used_; ++i) {
-    const Place place = look_at(field, places_.col(i));
-    determinants_[i] *= place.jacobian.determinant();
-    places_.col(i) += place.displacement;
-    least = std::min(least, determinants_[i]);
-  }
-  least_ = least;
+  if (used_ == 0) return;
+  least_ =
+      advance_probes(field, {places_.col(0).data(), places_.col(1).data(), places_.col(2).data(),
+                             places_.col(3).data(), static_cast<std::size_t>(used_)});
 }
 
 } // namespace nendo::deform

@@ -18,10 +18,12 @@ Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
       evaluator_(layout_, field_.centres.cols(), options.evaluation),
       weights_(std::make_unique<CardinalWeights>(layout_, control_points, field_,
                                                  options.evaluation.weight_bytes)) {
-  make_room(solver_, supports_, control_points);
-  if (!options.injective) return;
-  chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
-  linked_ = rest_;
+  if (options.injective) {
+    chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
+    linked_ = rest_;
+  } else {
+    make_room(solver_, supports_, control_points);
+  }
 }
 
 Type1Deformer::~Type1Deformer() = default;
@@ -39,11 +41,11 @@ FieldStatus Type1Deformer::grab(const Points& starts) {
 FieldStatus Type1Deformer::build(const Points& starts) {
   for (Eigen::Index i = 0; i < starts.cols(); ++i)
     asked_.col(i) = layout_.rounded(starts.col(i));
-  FieldStatus status = solver_.build(asked_, supports_);
-  if (is_solved(status) && chain_) status = std::max(status, chain_->grab(asked_));
+  const FieldStatus status = chain_ ? chain_->grab(asked_) : solver_.build(asked_, supports_);
   if (!is_solved(status)) {
     // The failed build took the place of the good one.
-    if (grabbed_ && status != FieldStatus::not_finite) solver_.build(rounded_, supports_);
+    if (!chain_ && grabbed_ && status != FieldStatus::not_finite)
+      solver_.build(rounded_, supports_);
     return status;
   }
   starts_ = starts;
@@ -58,7 +60,7 @@ void Type1Deformer::take_hold() {
   displacements_.setZero();
   field_.coefficients.setZero();
   field_.polynomial.setZero();
-  weights_->build(solver_, rest_, evaluator_);
+  weights_->build(solver(), rest_, evaluator_);
 }
 
 FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/simd.hpp>
 
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
@@ -197,6 +198,31 @@ TEST_SUITE("jacobian") {
     probe.advance(first);
     probe.advance(second);
     CHECK(probe.least() == doctest::Approx(least).epsilon(1e-3));
+  }
+
+  TEST_CASE("probes of every kernel and instruction set go with the field and know its Jacobian") {
+    std::mt19937 random(47);
+    for (const Wendland kernel : kernels)
+      for (const bool with_polynomial : {false, true}) {
+        const CsrbfField field = any_field(random, kernel, with_polynomial);
+        Points places = random_points(random, 61, 8.0); // not a whole number of vectors
+        places.col(7) = field.centres.col(3);
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& place : places.colwise()) {
+          const Vector3d next = moved(field, place);
+          least = std::min(least, (jacobian_at(field, place) * jacobian_at(field, next))
+                                      .determinant()); // det AB = det A det B
+        }
+        for (const auto& name : simd_names()) {
+          REQUIRE(use_simd(name));
+          DeterminantProbe probe;
+          probe.start(places);
+          probe.advance(field);
+          probe.advance(field);
+          CHECK(probe.least() == doctest::Approx(least).epsilon(1e-9));
+        }
+        use_simd("");
+      }
   }
 
   TEST_CASE(

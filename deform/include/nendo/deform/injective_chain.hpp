@@ -54,6 +54,8 @@ public:
   /// Makes the next link's field. False: there is none, the report is complete.
   bool next() noexcept;
 
+  /// Built for the start points; whoever solves with it does not disturb the chain.
+  CsrbfSolver& start_solver() noexcept { return solvers_[kept_]; }
   /// Of the link made last.
   const CsrbfField& field() const noexcept { return field_; }
   const ChainReport& report() const noexcept { return report_; }

@@ -37,9 +37,11 @@ public:
   static constexpr Eigen::Index ring_size = 7;
 
 private:
-  Points places_;
-  Eigen::VectorXd determinants_;
-  Eigen::Index used_ = 0;
+  void begin(Eigen::Index count) noexcept;
+  void fill_last_vector(Eigen::Index count) noexcept;
+
+  Eigen::Matrix<double, Eigen::Dynamic, 4> places_; ///< x, y, z, determinant
+  Eigen::Index used_ = 0;                           ///< in whole vectors
   double least_ = 1.0;
 };
 

@@ -55,6 +55,7 @@ private:
   FieldStatus apply_links(const Points& ends, BlockShape& out);
   FieldStatus follow_links();
   FieldStatus build(const Points& starts);
+  CsrbfSolver& solver() noexcept { return chain_ ? chain_->start_solver() : solver_; }
   void take_hold();
   void draw(BlockShape& out);
 
@@ -65,7 +66,7 @@ private:
   Points displacements_; ///< the last that had a solution
   Points asked_;
   Supports supports_; ///< with radii as float holds them
-  CsrbfSolver solver_;
+  CsrbfSolver solver_; ///< of the start points, unless the chain has it
   CsrbfField field_;
   BlockEvaluator evaluator_;
   std::unique_ptr<CardinalWeights> weights_;
