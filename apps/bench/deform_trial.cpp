@@ -19,7 +19,7 @@ namespace {
 using namespace nendo::deform;
 
 constexpr std::size_t poses = 16; ///< different ones, so that nothing is learnt by heart
-/// A stroke that finish() applies in one piece, however long.
+/// A stroke that end_at() applies in one piece, however long.
 constexpr double one_piece = 1e9;
 
 /// The best time of a block of frames, over repetitions that several measurements take in turn.
@@ -113,8 +113,7 @@ std::array<Points, poses> random_ends(const Points& starts) {
 /// There and back, so that the shape stays a plane more or less.
 void stroke(Type2Deformer& deformer, const Points& starts, const std::array<Points, poses>& ends,
             std::size_t n) {
-  deformer.stroke_to(n % 2 == 0 ? ends[n % poses] : starts);
-  deformer.finish();
+  deformer.end_at(n % 2 == 0 ? ends[n % poses] : starts);
 }
 
 /// What is measured side by side, the hands holding the mesh.
@@ -140,7 +139,7 @@ double apart_from_double(Type1Deformer& deformer, const Points& ends) {
   Points in_double;
   deformer.apply(ends, shape);
   deformer.layout().unpack(shape, in_blocks);
-  displace(deformer.field(), deformer.layout().original(), in_double);
+  displace(deformer.fields().fields().front(), deformer.layout().original(), in_double);
   return (in_blocks - in_double).colwise().norm().maxCoeff() / deformer.layout().diagonal();
 }
 

@@ -61,7 +61,7 @@ BlockEvaluator& BlockEvaluator::operator=(BlockEvaluator&&) noexcept = default;
 bool BlockEvaluator::set_field(const CsrbfField& field) noexcept {
   for (auto& room : parts_->lists)
     room.reserve(static_cast<std::size_t>(field.centres.cols()));
-  return parts_->field.assign(field);
+  return parts_->field.assign(field, BlockField::Zeros::left_out);
 }
 
 bool BlockEvaluator::fits(const BoundedShape& shape) const noexcept {

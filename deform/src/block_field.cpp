@@ -39,9 +39,9 @@ void BlockField::reserve(Eigen::Index entries) {
   precise_entries_.resize(static_cast<std::size_t>(entries));
 }
 
-bool BlockField::assign(const CsrbfField& field) {
+bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
   reserve(field.centres.cols());
-  size_ = field.centres.cols();
+  size_ = 0;
   sum_of_coefficients_ = 0.0;
   largest_coefficient_ = 0.0;
   const Eigen::Matrix<double, 3, 3> slope = field.polynomial.rightCols<3>();
@@ -50,7 +50,7 @@ bool BlockField::assign(const CsrbfField& field) {
     polynomial_[static_cast<std::size_t>(axis)] = {constant[axis], slope(axis, 0), slope(axis, 1),
                                                    slope(axis, 2)};
   const bool usable =
-      assign_entries(field) && field.polynomial.allFinite() && bound(1.0) <= most_units;
+      assign_entries(field, zeros) && field.polynomial.allFinite() && bound(1.0) <= most_units;
   if (!usable) {
     size_ = 0;
     sum_of_coefficients_ = 0.0;
@@ -73,11 +73,12 @@ bool BlockField::assign(const CsrbfField& field) {
   return usable;
 }
 
-bool BlockField::assign_entries(const CsrbfField& field) {
+bool BlockField::assign_entries(const CsrbfField& field, Zeros zeros) {
   const double factor = kernel_factor(field.kernel);
   bool finite = true;
-  for (Eigen::Index i = 0; i < size_; ++i) {
-    const auto at = static_cast<std::size_t>(i);
+  for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
+    if (zeros == Zeros::left_out && field.coefficients.col(i).isZero(0.0)) continue;
+    const auto at = static_cast<std::size_t>(size_++);
     const Eigen::Vector3d centre = (field.centres.col(i) - origin_) / unit_;
     const Eigen::Vector3d coefficient = field.coefficients.col(i) / unit_;
     const double radius = field.radii[i] / unit_;

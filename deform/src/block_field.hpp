@@ -23,9 +23,13 @@ public:
   /// Reserves for so many entries.
   BlockField(const BlockLayout& layout, Eigen::Index entries);
 
+  /// Functions whose coefficients are all zero: fingertips that rest, out of reach of those that
+  /// move.
+  enum class Zeros { left_out, kept };
+
   /// Takes a field over. False if a number in it is not finite, or too large for float: then it is
   /// the zero field. Allocates only for more entries than ever before.
-  bool assign(const CsrbfField& field);
+  bool assign(const CsrbfField& field, Zeros zeros);
   /// Whether sums are made in double, because in float the coefficients' rounding errors would be
   /// seen.
   bool is_precise() const noexcept { return view_.precise_entries != nullptr; }
@@ -36,7 +40,7 @@ public:
 
 private:
   void reserve(Eigen::Index entries);
-  bool assign_entries(const CsrbfField& field);
+  bool assign_entries(const CsrbfField& field, Zeros zeros);
 
   Eigen::Vector3d origin_;
   double unit_;

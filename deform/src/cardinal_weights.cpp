@@ -74,8 +74,10 @@ bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
                             BlockEvaluator& evaluator) noexcept {
   built_ = false;
   cache_.used = 0;
-  if (cache_.room == 0 || !solve_units(solver) || !evaluator.set_field(unit_field_)) return false;
   BlockEvaluator::Parts& parts = evaluator.parts();
+  if (cache_.room == 0 || !solve_units(solver) ||
+      !parts.field.assign(unit_field_, BlockField::Zeros::kept))
+    return false;
   FieldView view = parts.field.view();
   view.precise_entries = parts.field.precise_entries();
   const bool global =

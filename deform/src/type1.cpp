@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cardinal_weights.hpp"
+#include "shape_history.hpp"
 #include "solver_room.hpp"
 
 namespace nendo::deform {
@@ -15,9 +16,12 @@ Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
       rounded_(starts_), displacements_(starts_), asked_(starts_),
       supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
+      fields_(options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1,
+              field_),
       evaluator_(layout_, field_.centres.cols(), options.evaluation),
       weights_(std::make_unique<CardinalWeights>(layout_, control_points, field_,
-                                                 options.evaluation.weight_bytes)) {
+                                                 options.evaluation.weight_bytes)),
+      history_(std::make_unique<ShapeHistory>(rest_.shape, options.undo_bytes)) {
   if (options.injective) {
     chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
     linked_ = rest_;
@@ -60,6 +64,7 @@ void Type1Deformer::take_hold() {
   displacements_.setZero();
   field_.coefficients.setZero();
   field_.polynomial.setZero();
+  fields_.clear();
   weights_->build(solver(), rest_, evaluator_);
 }
 
@@ -77,7 +82,11 @@ FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
       status = FieldStatus::not_finite;
       solver_.solve(displacements_, field_);
     }
-    if (is_solved(status)) displacements_ = asked_;
+    if (is_solved(status)) {
+      displacements_ = asked_;
+      fields_.clear();
+      fields_.push(field_);
+    }
   }
   draw(out);
   return status;
@@ -88,12 +97,14 @@ FieldStatus Type1Deformer::apply_links(const Points& ends, BlockShape& out) {
   asked_ = rounded_ + (ends - starts_);
   FieldStatus status = chain_->from_start(asked_);
   if (is_solved(status)) {
+    fields_.clear();
     const bool any = chain_->next();
     in_links_ = any && chain_->places() != asked_;
-    field_ = chain_->field();
     if (in_links_) {
       status = follow_links();
     } else {
+      field_ = chain_->field();
+      if (any) fields_.push(field_);
       displacements_ = asked_ - rounded_;
       while (chain_->next()) {
       }
@@ -109,8 +120,10 @@ FieldStatus Type1Deformer::follow_links() {
   FieldStatus status = FieldStatus::ok;
   linked_->follow(rest_);
   do {
-    field_ = chain_->field();
-    if (!evaluator_.set_field(field_) || !evaluator_.displace(*linked_))
+    const CsrbfField& link = chain_->field();
+    if (evaluator_.set_field(link) && evaluator_.displace(*linked_))
+      fields_.push(link);
+    else
       status = FieldStatus::not_finite;
   } while (chain_->next());
   return status;
@@ -143,8 +156,22 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
     evaluator_.set_field(field_);
     evaluator_.displace(rest_);
   }
+  history_->keep(rest_.shape);
   take_hold();
   return status;
+}
+
+FieldStatus Type1Deformer::undo(const Points& tips) {
+  assert(tips.cols() == starts_.cols());
+  const FieldStatus status = build(tips);
+  if (!is_solved(status)) return status;
+  history_->undo(rest_);
+  take_hold();
+  return status;
+}
+
+std::size_t Type1Deformer::undo_steps() const noexcept {
+  return history_->steps();
 }
 
 std::size_t Type1Deformer::weight_bytes() const noexcept {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <utility>
 
+#include "shape_history.hpp"
 #include "solver_room.hpp"
 #include "usable.hpp"
 
@@ -12,33 +12,40 @@ namespace nendo::deform {
 
 namespace {
 
-double farthest(const Points& displacements) {
-  return displacements.cols() == 0 ? 0.0 : displacements.colwise().stableNorm().maxCoeff();
+/// Of one call.
+std::size_t most_fields(const DeformerOptions& options) {
+  return static_cast<std::size_t>(options.injective ? options.injective->most_links
+                                                    : FingertipCurve::most_pieces);
 }
 
 } // namespace
 
 Type2Deformer::Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                              const DeformerOptions& options)
-    : layout_(std::move(shape)), shape_(layout_.pack()), current_(Points::Zero(3, control_points)),
-      target_(current_), step_(current_), rounded_(current_), asked_(current_),
-      supports_(rounded(options.supports, layout_)), piece_length_(piece_length),
-      solver_(options.csrbf),
+    : layout_(std::move(shape)), shape_(layout_.pack()), curve_(control_points, piece_length),
+      current_(Points::Zero(3, control_points)), next_(current_), step_(current_),
+      rounded_(current_), supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
-      evaluator_(layout_, field_.centres.cols(), options.evaluation) {
-  assert(piece_length > 0.0);
+      fields_(most_fields(options), field_),
+      evaluator_(layout_, field_.centres.cols(), options.evaluation),
+      history_(std::make_unique<ShapeHistory>(shape_.shape, options.undo_bytes)) {
   make_room(solver_, supports_, control_points);
   if (!options.injective) return;
   chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
   most_links_ = options.injective->most_links;
 }
 
+Type2Deformer::~Type2Deformer() = default;
+Type2Deformer::Type2Deformer(Type2Deformer&&) noexcept = default;
+Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
+
 FieldStatus Type2Deformer::begin(const Points& tips) {
   assert(tips.cols() == current_.cols());
+  history_->keep(shape_.shape);
   begun_ = all_usable(tips);
   if (!begun_) return FieldStatus::not_finite;
   current_ = tips;
-  target_ = tips;
+  curve_.begin(tips);
   if (!chain_) return FieldStatus::ok;
   const FieldStatus status = chain_->grab(tips);
   begun_ = is_solved(status);
@@ -46,72 +53,61 @@ FieldStatus Type2Deformer::begin(const Points& tips) {
 }
 
 StrokeResult Type2Deformer::stroke_to(const Points& tips) {
+  return follow(tips, &FingertipCurve::extend);
+}
+
+StrokeResult Type2Deformer::end_at(const Points& tips) {
+  return follow(tips, &FingertipCurve::end_at);
+}
+
+FieldStatus Type2Deformer::undo(const Points& tips) {
+  history_->keep(shape_.shape);
+  history_->undo(shape_);
+  fields_.clear();
+  return begin(tips);
+}
+
+std::size_t Type2Deformer::undo_steps() const noexcept {
+  return history_->steps();
+}
+
+/// A piece without a usable field leaves the shape alone; the curve goes on behind it.
+StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   assert(tips.cols() == current_.cols());
   report_ = {};
+  fields_.clear();
   if (!all_usable(tips)) return {FieldStatus::not_finite, 0};
-  if (!begun_) {
-    return {begin(tips), 0};
-  }
-  target_ = tips;
-  step_ = target_ - current_;
-  const double length = farthest(step_);
-  if (length > most_pieces * piece_length_) return advance_to_target(most_pieces);
-  const int pieces = static_cast<int>(length / piece_length_);
-  if (pieces == 0) return {};
-  step_ *= piece_length_ / length;
-  return advance(pieces);
-}
-
-StrokeResult Type2Deformer::finish() {
-  report_ = {};
-  if (!begun_) return {};
-  step_ = target_ - current_;
-  if (farthest(step_) == 0.0) return {};
-  return advance_to_target(1);
-}
-
-/// In equal pieces; step_ is the whole way.
-StrokeResult Type2Deformer::advance_to_target(int pieces) {
-  step_ /= pieces;
-  const StrokeResult result = advance(pieces);
-  current_ = target_; // what rounding left
-  return result;
-}
-
-/// By step_, so many times. A piece without a usable field leaves the shape alone; the curve goes
-/// on behind it.
-StrokeResult Type2Deformer::advance(int pieces) {
+  if (!begun_) return {begin(tips), 0};
   StrokeResult result;
-  for (int piece = 0; piece < pieces; ++piece) {
-    const FieldStatus status = apply_piece();
+  for ((curve_.*lead)(tips); curve_.next_cut(next_); current_ = next_) {
+    const FieldStatus status = chain_ ? apply_links() : apply_piece();
     result.pieces += is_solved(status) ? 1 : 0;
-    if (status > result.status) result.status = status; // ordered from good to bad
-    current_ += step_;
+    result.status = std::max(result.status, status); // ordered from good to bad
   }
   return result;
 }
 
-/// From current_ by step_.
+/// From current_ to next_.
 FieldStatus Type2Deformer::apply_piece() {
-  if (chain_) return apply_links();
   for (Eigen::Index i = 0; i < current_.cols(); ++i)
     rounded_.col(i) = layout_.rounded(current_.col(i));
+  step_ = next_ - current_;
   FieldStatus status = solver_.build(rounded_, supports_);
   if (is_solved(status)) status = solver_.solve(step_, field_);
-  if (!is_solved(status)) return status;
-  const bool applied = evaluator_.set_field(field_) && evaluator_.displace(shape_);
-  return applied ? status : FieldStatus::not_finite;
+  return is_solved(status) ? std::max(status, apply(field_)) : status;
+}
+
+FieldStatus Type2Deformer::apply(const CsrbfField& field) {
+  if (!evaluator_.set_field(field) || !evaluator_.displace(shape_)) return FieldStatus::not_finite;
+  fields_.push(field);
+  return FieldStatus::ok;
 }
 
 /// Fingertips that are held stay where they are; the next piece tells them anew where to go.
 FieldStatus Type2Deformer::apply_links() {
-  asked_ = current_ + step_;
-  FieldStatus status = chain_->from_here(asked_, most_links_ - report_.links);
-  while (is_solved(status) && chain_->next()) {
-    field_ = chain_->field();
-    if (!evaluator_.set_field(field_) || !evaluator_.displace(shape_))
-      status = FieldStatus::not_finite;
-  }
+  FieldStatus status = chain_->from_here(next_, most_links_ - report_.links);
+  while (is_solved(status) && chain_->next())
+    status = std::max(status, apply(chain_->field()));
   const ChainReport& piece = chain_->report();
   report_.links += piece.links;
   report_.whole_bound = std::max(report_.whole_bound, piece.whole_bound);

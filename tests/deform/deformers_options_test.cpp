@@ -11,11 +11,13 @@
 #include <nendo/deform/type1.hpp>
 #include <nendo/deform/type2.hpp>
 
+#include "support/fields.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
 using namespace nendo::deform;
 using Eigen::Vector3d;
+using nendo::test::largest;
 
 TEST_SUITE("deformers") {
   constexpr double radius = 15.0;
@@ -138,35 +140,82 @@ TEST_SUITE("deformers") {
     }
   }
 
-  TEST_CASE("Type-2 in links does not fold under a violent stroke, and says what it took") {
+  struct Stroke {
+    Points shape;
+    int links = 0;
+    double reported = 1.0; ///< least determinant
+    double found = 1.0;    ///< at the vertices
+  };
+
+  static Stroke violent_stroke(const DeformerOptions& options) {
     std::mt19937 random(91);
-    int folded = 0;
-    for (const bool on : {false, true}) {
+    std::uniform_real_distribution<double> anywhere(-5.0, 5.0);
+    Type2Deformer deformer(plane().vertices, 10, 4.0, options);
+    REQUIRE(deformer.begin(start_points()) == FieldStatus::ok);
+    DeterminantProbe everywhere;
+    everywhere.start(plane().vertices);
+    Stroke stroke;
+    for (int turn = 0; turn < 6; ++turn) {
+      Points tips = start_points();
+      for (double& coordinate : tips.topRows<2>().reshaped())
+        coordinate += anywhere(random);
+      CHECK(is_solved(deformer.end_at(tips).status));
+      stroke.links += deformer.report().links;
+      stroke.reported = std::min(stroke.reported, deformer.report().least_determinant);
+      for (const CsrbfField& field : deformer.fields().fields())
+        everywhere.advance(field);
+    }
+    deformer.layout().unpack(deformer.shape(), stroke.shape);
+    stroke.found = everywhere.least();
+    return stroke;
+  }
+
+  TEST_CASE("Type-2 in links does not fold under a violent stroke, and says what it took") {
+    DeformerOptions options = injective();
+    const Stroke on = violent_stroke(options);
+    options.injective.reset();
+    const Stroke off = violent_stroke(options);
+    CHECK(off.shape.allFinite());
+    CHECK(off.links == 0);
+    CHECK(off.found < 0.0);
+    CHECK(on.shape.allFinite());
+    CHECK(on.links > 6);
+    CHECK(on.found > 0.0);
+    CHECK(on.reported > 0.0);
+    // Nothing folds, but edges are chords: where the map is steep a face may still turn.
+    CHECK(turned_faces(off.shape) > 50);
+    CHECK(3 * turned_faces(on.shape) < turned_faces(off.shape));
+  }
+
+  TEST_CASE(
+      "the fields that a call applied make the same of a copy, of either type, in links or not") {
+    for (const bool links : {false, true}) {
       DeformerOptions options = injective();
-      if (!on) options.injective.reset();
-      Type2Deformer deformer(plane().vertices, 10, 4.0, options);
-      REQUIRE(deformer.begin(start_points()) == FieldStatus::ok);
-      int links = 0;
-      double least_determinant = 1.0;
-      for (int turn = 0; turn < 6; ++turn) {
-        Points tips = start_points();
-        for (double& coordinate : tips.topRows<2>().reshaped())
-          coordinate += std::uniform_real_distribution<double>(-5.0, 5.0)(random);
-        CHECK(is_solved(deformer.stroke_to(tips).status));
-        links += deformer.report().links;
-        least_determinant = std::min(least_determinant, deformer.report().least_determinant);
-        if (!on) CHECK(deformer.report().links == 0);
+      if (!links) options.injective.reset();
+      const Points rest = plane().vertices;
+      Type1Deformer type1(rest, 10, options);
+      Type2Deformer type2(rest, 10, 0.5, options);
+      Points copy1, copy2 = rest;
+      BlockShape shape;
+      REQUIRE(is_solved(type1.grab(start_points())));
+      REQUIRE(is_solved(type2.begin(start_points())));
+      CHECK(type1.fields().fields().empty());
+      for (const double part : {0.01, 0.2, 0.25, 1.0}) {
+        const Points tips = start_points() + part * (far_ends() - start_points());
+        type1.apply(tips, shape);
+        copy1 = rest;
+        for (const CsrbfField& field : type1.fields().fields())
+          displace(field, copy1, copy1);
+        CHECK(largest(copy1 - shape_of(type1, shape)) < float_gap);
+        CHECK((type1.fields().fields().size() > 1) == (links && part > 0.1));
+        type2.stroke_to(tips);
+        for (const CsrbfField& field : type2.fields().fields())
+          displace(field, copy2, copy2);
+        Points now;
+        type2.layout().unpack(type2.shape(), now);
+        CHECK(largest(copy2 - now) < float_gap);
       }
-      deformer.finish();
-      Points shape;
-      deformer.layout().unpack(deformer.shape(), shape);
-      CHECK(shape.allFinite());
-      // Nothing folds, but edges are chords: where the map is steep a face may still turn.
-      if (on) CHECK(5 * turned_faces(shape) < folded);
-      folded = turned_faces(shape);
-      if (!on) CHECK(folded > 50);
-      CHECK(least_determinant > 0.0);
-      CHECK((links > 6) == on);
+      CHECK(largest(copy2 - rest) > 1.0);
     }
   }
 
@@ -185,8 +234,7 @@ TEST_SUITE("deformers") {
       REQUIRE(is_solved(type1.apply(ends, shape)));
       const Points first = shape_of(type1, shape);
       REQUIRE(is_solved(type2.begin(start_points())));
-      type2.stroke_to(ends);
-      type2.finish();
+      type2.end_at(ends);
       Points second;
       type2.layout().unpack(type2.shape(), second);
       for (Eigen::Index i = 0; i < 10; ++i) {
@@ -204,6 +252,7 @@ TEST_SUITE("deformers") {
     for (Eigen::Index i = 0; i < 10; ++i)
       own.push_back({i, {10.0 + static_cast<double>(i), 1.0}});
     DeformerOptions options = injective();
+    options.undo_bytes = std::size_t{1} << 20;
     for (const Supports& supports : {one_radius(radius), with_common(own)}) {
       options.supports = supports;
       Type1Deformer type1(plane().vertices, 10, options);
@@ -220,7 +269,9 @@ TEST_SUITE("deformers") {
         type1.apply(starts, out);
         type2.begin(starts);
         type2.stroke_to(ends);
-        type2.finish();
+        type2.end_at(starts);
+        type2.undo(ends);
+        type1.undo(ends);
         counts = restraint.counts();
       }
       CHECK(counts.allocations == 0);

@@ -1,9 +1,11 @@
 #include <nendo/deform/type1.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -170,7 +172,7 @@ TEST_SUITE("type1") {
         Points out;
         REQUIRE(is_solved(apply(deformer, ends, out)));
         Points expected;
-        displace(deformer.field(), rest, expected);
+        displace(deformer.fields().fields().front(), rest, expected);
         CHECK(largest(out - expected) < float_gap);
       }
   }
@@ -221,8 +223,51 @@ TEST_SUITE("type1") {
     }
   }
 
-  TEST_CASE("neither grab nor apply nor commit allocates") {
-    Type1Deformer deformer(rest, 10, 6.0, {.polynomial = Polynomial::linear});
+  /// Room for two commits of ten, or for none.
+  static DeformerOptions with_undo(std::size_t steps) {
+    DeformerOptions options;
+    options.supports = one_radius(6.0);
+    const std::size_t blocks = (static_cast<std::size_t>(rest.cols()) + 63) / 64;
+    options.undo_bytes = steps * blocks * 832;
+    return options;
+  }
+
+  TEST_CASE(
+      "undo gives the rest shape before a commit back, bit for bit, as far as there is room") {
+    for (const std::size_t room : {0U, 2U, 10U}) {
+      Type1Deformer deformer(rest, 10, with_undo(room));
+      std::vector<Points> shapes;
+      Points out;
+      REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
+      for (const double length : {1.0, 0.5, 2.0, 1.5}) {
+        shapes.push_back(unpacked(deformer, deformer.rest()));
+        REQUIRE(apply(deformer, end_points(length), out) == FieldStatus::ok);
+        REQUIRE(deformer.commit(end_points(length)) == FieldStatus::ok);
+      }
+      CHECK(deformer.undo_steps() == std::min<std::size_t>(room, 4));
+      apply(deformer, start_points(), out); // is dropped
+      while (deformer.undo_steps() > 0) {
+        REQUIRE(deformer.undo(start_points()) == FieldStatus::ok);
+        CHECK(unpacked(deformer, deformer.rest()) == shapes.back());
+        apply(deformer, start_points(), out);
+        CHECK(out == shapes.back());
+        shapes.pop_back();
+      }
+      CHECK(shapes.size() == 4 - std::min<std::size_t>(room, 4));
+      const Points last = unpacked(deformer, deformer.rest());
+      CHECK(deformer.undo(end_points(1.0)) == FieldStatus::ok);
+      CHECK(unpacked(deformer, deformer.rest()) == last);
+      Points nowhere = start_points();
+      nowhere(0, 0) = std::nan("");
+      CHECK(deformer.undo(nowhere) == FieldStatus::not_finite);
+      CHECK(unpacked(deformer, deformer.rest()) == last);
+    }
+  }
+
+  TEST_CASE("no function allocates") {
+    DeformerOptions options = with_undo(2);
+    options.csrbf.polynomial = Polynomial::linear;
+    Type1Deformer deformer(rest, 10, options);
     const Points starts = start_points();
     const Points ends = end_points(1.0);
     BlockShape out;
@@ -234,6 +279,7 @@ TEST_SUITE("type1") {
       deformer.apply(ends, out);
       deformer.commit(ends);
       deformer.apply(starts, out);
+      deformer.undo(starts);
       counts = restraint.counts();
     }
     CHECK(counts.allocations == 0);

@@ -38,14 +38,15 @@ TEST_SUITE("deform_loop") {
     }
   }
 
-  TEST_CASE("a frame's field is enough to deform a copy of the model elsewhere") {
+  TEST_CASE("a frame's fields are enough to deform a copy of the model elsewhere") {
     LoopUnderTest test(Mode::type1);
     test.bend(15, HostClock::now());
     const Frame& frame = test.frame_after_tick(0);
     deform::Points copy;
-    deform::displace(frame.field, test.model.vertices, copy);
+    REQUIRE(frame.fields.fields().size() == 1);
+    deform::displace(frame.fields.fields().front(), test.model.vertices, copy);
     CHECK((copy - test.vertices_of(frame)).cwiseAbs().maxCoeff() < test::float_gap);
-    CHECK(frame.field.centres.cols() == 10);
+    CHECK(frame.fields.fields().front().centres.cols() == 10);
   }
 
   TEST_CASE("a frame shows both hands, touching the model where they took hold of it") {

@@ -14,12 +14,12 @@ using deform::Points;
 
 namespace {
 
-Frame first_frame(const deform::BlockShape& shape, const deform::CsrbfField& field,
+Frame first_frame(const deform::BlockShape& shape, const deform::FieldSequence& fields,
                   double units_per_metre) {
   Frame frame;
   frame.units_per_metre = units_per_metre;
   frame.shape = shape;
-  frame.field = field;
+  frame.fields = fields;
   for (auto& hand : frame.hands)
     hand.pose.joints.fill(Eigen::Isometry3d::Identity());
   return frame;
@@ -42,7 +42,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
       sculptor_(model.vertices, tips_.cols(), options.sculptor),
       held_(options.switch_action != SwitchAction::grab), hold_wanted_(held_),
-      frames_(first_frame(sculptor_.rest(), sculptor_.field(), placement.units_per_metre)) {
+      frames_(first_frame(sculptor_.rest(), sculptor_.fields(), placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
@@ -107,14 +107,14 @@ deform::FieldStatus DeformLoop::shape(Frame& frame) noexcept {
   }
   if (!held_) {
     frame.shape.follow(sculptor_.rest());
-    frame.field = sculptor_.field();
+    frame.fields.clear();
     frame.chain = {};
     return deform::FieldStatus::ok;
   }
   const bool commits = commit_due_ || !hold_wanted_; // letting go keeps what has been shaped
   const deform::FieldStatus status =
       commits ? sculptor_.finish(tips_, frame.shape) : sculptor_.update(tips_, frame.shape);
-  frame.field = sculptor_.field();
+  frame.fields.follow(sculptor_.fields());
   record_chain(frame.chain);
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_.commit(tips_))) {

@@ -49,17 +49,24 @@ FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
 }
 
 FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
-  const FieldStatus status = update(tips, out);
   auto* type2 = std::get_if<Type2Deformer>(&deformer_);
-  if (type2 == nullptr) return status;
-  const FieldStatus last = type2->finish().status;
+  if (type2 == nullptr) return update(tips, out);
+  const FieldStatus status = type2->end_at(tips).status;
   out.follow(type2->shape());
-  return last;
+  return status;
 }
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->commit(tips);
   return std::get_if<Type2Deformer>(&deformer_)->begin(tips);
+}
+
+FieldStatus Sculptor::undo(const Points& tips) noexcept {
+  return std::visit([&](auto& deformer) { return deformer.undo(tips); }, deformer_);
+}
+
+std::size_t Sculptor::undo_steps() const noexcept {
+  return std::visit([](const auto& deformer) { return deformer.undo_steps(); }, deformer_);
 }
 
 const BlockShape& Sculptor::rest() const noexcept {
@@ -72,9 +79,9 @@ const deform::BlockLayout& Sculptor::layout() const noexcept {
   return type1 != nullptr ? type1->layout() : std::get_if<Type2Deformer>(&deformer_)->layout();
 }
 
-const deform::CsrbfField& Sculptor::field() const noexcept {
+const deform::FieldSequence& Sculptor::fields() const noexcept {
   const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
-  return type1 != nullptr ? type1->field() : std::get_if<Type2Deformer>(&deformer_)->field();
+  return type1 != nullptr ? type1->fields() : std::get_if<Type2Deformer>(&deformer_)->fields();
 }
 
 deform::ChainReport Sculptor::report() const noexcept {

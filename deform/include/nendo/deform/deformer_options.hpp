@@ -1,6 +1,7 @@
 #pragma once
 // What Type-1 and Type-2 have in common.
 
+#include <cstddef>
 #include <optional>
 
 #include <nendo/deform/block_evaluator.hpp>
@@ -16,6 +17,9 @@ struct DeformerOptions {
   EvaluationOptions evaluation{};
   /// Never fold: each step is made in links that are injective.
   std::optional<InjectiveOptions> injective{};
+  /// Memory for undo(), 832 bytes for each block of 64 vertices that a step changed; 0: no undo.
+  /// One more shape is kept with it.
+  std::size_t undo_bytes = 0;
 };
 
 } // namespace nendo::deform

@@ -8,13 +8,15 @@
 #include <utility>
 
 #include <nendo/deform/deformer_options.hpp>
+#include <nendo/deform/field_sequence.hpp>
 
 namespace nendo::deform {
 
 class CardinalWeights;
+class ShapeHistory;
 
 /// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
-/// in double. grab(), apply() and commit() allocate nothing, if `out` has the layout's size and
+/// in double. Functions allocate nothing, if `out` has the layout's size and
 /// there are at most CsrbfSolver::lean_size start points.
 class Type1Deformer {
 public:
@@ -40,12 +42,18 @@ public:
   FieldStatus apply(const Points& ends, BlockShape& out);
   /// The shape that apply() last gave becomes the rest shape, and `ends` the new start points.
   FieldStatus commit(const Points& ends);
+  /// The rest shape becomes what it was before the last commit, and `tips` the start points; what
+  /// apply() made of it since is dropped. Without a commit that can be undone, as grab().
+  FieldStatus undo(const Points& tips);
+  /// How many commits can be undone.
+  std::size_t undo_steps() const noexcept;
 
   const BlockLayout& layout() const noexcept { return layout_; }
   const BlockShape& rest() const noexcept { return rest_.shape; }
-  /// Its centres are the start points as float holds them (BlockLayout::rounded). Of several links
-  /// it is the last one's, which starts from what the others made.
-  const CsrbfField& field() const noexcept { return field_; }
+  /// What makes the last apply()'s shape of the rest shape: one field, or as many as it has links.
+  /// Centres are the start points as float holds them (BlockLayout::rounded); those of later links
+  /// are where the one before leads.
+  const FieldSequence& fields() const noexcept { return fields_; }
   /// What the last apply() took; all 0 unless it is injective.
   ChainReport report() const noexcept { return chain_ ? chain_->report() : ChainReport{}; }
   /// Bytes of weights in use; 0 if fields are evaluated instead.
@@ -65,11 +73,13 @@ private:
   Points rounded_;       ///< the start points as float holds them
   Points displacements_; ///< the last that had a solution
   Points asked_;
-  Supports supports_; ///< with radii as float holds them
+  Supports supports_;  ///< with radii as float holds them
   CsrbfSolver solver_; ///< of the start points, unless the chain has it
-  CsrbfField field_;
+  CsrbfField field_;   ///< unless the shape is in several links
+  FieldSequence fields_;
   BlockEvaluator evaluator_;
   std::unique_ptr<CardinalWeights> weights_;
+  std::unique_ptr<ShapeHistory> history_;
   std::optional<InjectiveChain> chain_;
   std::optional<BoundedShape> linked_; ///< the shape that a chain of several links makes
   bool in_links_ = false;              ///< the last apply() made it so

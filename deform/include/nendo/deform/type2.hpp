@@ -1,14 +1,19 @@
 #pragma once
-// Type-2 (the paper, 2.4): start and end points are neighbouring samples of each fingertip's curve.
-// The curve is cut at a constant arc length; each piece deforms the current shape, which becomes
-// the start of the next.
+// Type-2 (the paper, 2.4): the fingertips' samples are joined by a smooth curve, which is cut at a
+// constant arc length. Start and end points are neighbouring cuts; each piece deforms the current
+// shape, which becomes the start of the next.
 
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include <nendo/deform/deformer_options.hpp>
+#include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/fingertip_curve.hpp>
 
 namespace nendo::deform {
+
+class ShapeHistory;
 
 struct StrokeResult {
   FieldStatus status = FieldStatus::ok;
@@ -28,48 +33,57 @@ public:
                 CsrbfOptions csrbf, const EvaluationOptions& evaluation = {})
       : Type2Deformer(std::move(shape), control_points, piece_length,
                       {one_radius(radius), csrbf, evaluation, {}}) {}
+  ~Type2Deformer();
+  Type2Deformer(Type2Deformer&&) noexcept;
+  Type2Deformer& operator=(Type2Deformer&&) noexcept;
 
   /// Starts a curve at these fingertips (3 by control_points) without deforming anything. singular
   /// only if injective, when nothing could be held there; not_finite.
   FieldStatus begin(const Points& tips);
-  /// Extends the curves to `tips`, straight from the last cut: trembling by less than a piece
-  /// deforms nothing. The fingertip that travels farthest sets the cuts; what is left, less than
-  /// one piece, waits for the next call. A jump longer than `most_pieces` pieces is cut into that
-  /// many equal ones, so that the time of a call is bounded. No allocation. A piece without a
-  /// usable field is skipped; fingertips that are not finite are ignored, as not_finite.
+  /// Extends the curves to `tips` and deforms by the pieces that are whole (FingertipCurve): what
+  /// is left, less than one and a half pieces, waits for the next call; a jump is made in at most
+  /// FingertipCurve::most_pieces, so that the time of a call is bounded. No allocation. A piece
+  /// without a usable field is skipped; fingertips that are not finite are ignored, as not_finite.
   StrokeResult stroke_to(const Points& tips);
-  /// Applies what is left of the stroke.
-  StrokeResult finish();
+  /// As stroke_to(), but all the way.
+  StrokeResult end_at(const Points& tips);
+  /// The shape becomes what it was when the last stroke began that changed it, and a new one begins
+  /// at `tips`. Without one that can be undone, as begin().
+  FieldStatus undo(const Points& tips);
+  /// How many strokes can be undone, without the present one.
+  std::size_t undo_steps() const noexcept;
 
   const BlockLayout& layout() const noexcept { return layout_; }
   /// A copy is brought up to date by BlockShape::follow().
   const BlockShape& shape() const noexcept { return shape_.shape; }
-  /// The field of the piece applied last. Its centres are the fingertips as float holds them
+  /// What the last call applied to the shape. Centres are the fingertips as float holds them
   /// (BlockLayout::rounded).
-  const CsrbfField& field() const noexcept { return field_; }
+  const FieldSequence& fields() const noexcept { return fields_; }
   /// What the last call took, the worst of its pieces; all 0 unless it is injective.
   const ChainReport& report() const noexcept { return report_; }
 
-  static constexpr int most_pieces = 16;
-
 private:
-  StrokeResult advance_to_target(int pieces);
-  StrokeResult advance(int pieces);
+  /// Takes the samples' next tips to the curve.
+  using Lead = void (FingertipCurve::*)(const Points&);
+
+  StrokeResult follow(const Points& tips, Lead lead);
   FieldStatus apply_piece();
   FieldStatus apply_links();
+  FieldStatus apply(const CsrbfField& field);
 
   BlockLayout layout_;
   BoundedShape shape_;
+  FingertipCurve curve_;
   Points current_; ///< where the curves have been cut last
-  Points target_;  ///< where the fingertips are
+  Points next_;    ///< and where the piece leads
   Points step_;
-  Points rounded_; ///< current_, as float holds it
-  Points asked_;
+  Points rounded_;    ///< current_, as float holds it
   Supports supports_; ///< with radii as float holds them
-  double piece_length_;
   CsrbfSolver solver_;
   CsrbfField field_;
+  FieldSequence fields_;
   BlockEvaluator evaluator_;
+  std::unique_ptr<ShapeHistory> history_;
   std::optional<InjectiveChain> chain_;
   int most_links_ = 0;
   ChainReport report_;

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include <nendo/base/latest_value.hpp>
-#include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/field_sequence.hpp>
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/driver/sample.hpp>
@@ -26,7 +26,7 @@ struct Frame {
   std::uint64_t tick = 0;   ///< the number of the deadline on the grid
   std::uint64_t ticks = 0;  ///< how many have run
   std::uint64_t missed = 0; ///< how many deadlines were skipped
-  /// How often the shape became the rest shape; a commit of this frame's comes after its field.
+  /// How often the shape became the rest shape; a commit of this frame's comes after its fields.
   std::uint64_t commits = 0;
   bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
@@ -34,7 +34,9 @@ struct Frame {
   double units_per_metre = 1.0;   ///< from the stage to the model
   std::array<HandFrame, 2> hands; ///< by Placement::index_of(side)
   deform::FieldStatus status = deform::FieldStatus::ok;
-  deform::CsrbfField field;  ///< model units; of several links the last one's
+  /// Model units. Type-1: from the rest shape to this one; Type-2: from the frame before to this
+  /// one.
+  deform::FieldSequence fields;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   /// The deformed vertices; DeformLoop::layout() makes points of them. Its stamps tell which blocks
   /// differ from those of an earlier frame.

@@ -40,12 +40,19 @@ public:
   /// and the fingertips hold that where they are. Unless solved, nothing changes. No allocation.
   deform::FieldStatus commit(const deform::Points& tips) noexcept;
 
+  /// Back to the rest shape before the last commit, or to the one that the last stroke began with
+  /// (Type1Deformer::undo, Type2Deformer::undo); the fingertips hold it at `tips`. Unless solved,
+  /// nothing changes. No allocation.
+  deform::FieldStatus undo(const deform::Points& tips) noexcept;
+  std::size_t undo_steps() const noexcept;
+
   /// The shape that nobody holds: the rest shape, or where the last stroke ended.
   const deform::BlockShape& rest() const noexcept;
   /// Makes points in the mesh's order of shapes in blocks.
   const deform::BlockLayout& layout() const noexcept;
 
-  const deform::CsrbfField& field() const noexcept;
+  /// Of the last update: type 1, from the rest shape to this one; type 2, from the shape before.
+  const deform::FieldSequence& fields() const noexcept;
   /// What the last update() took to stay injective; all 0 if that is not asked for.
   deform::ChainReport report() const noexcept;
 
