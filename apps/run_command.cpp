@@ -27,7 +27,11 @@ struct CommandOptions {
   FilterArguments filter;
   KernelOptions kernel;
   bool injective = false;
+  bool not_injective = false;
 };
+
+// Up to this size a tick of 64 links takes less than a tick at 90 Hz has.
+constexpr Eigen::Index most_injective_unasked = 100'000;
 
 std::string dated_name() {
   const std::time_t now = std::time(nullptr);
@@ -75,7 +79,8 @@ Result<void> check(CommandOptions& options) {
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
   run.loop.sculptor.deformer.csrbf = *csrbf;
-  if (options.injective) run.loop.sculptor.deformer.injective.emplace();
+  if (options.injective && options.not_injective)
+    return Error{Errc::usage, "--injective and --no-injective: give one of them"};
   if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
         run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
     return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
@@ -95,6 +100,9 @@ int run(CommandOptions& options) {
   if (const auto fine = check(options); !fine) return report(fine.error());
   auto model = deform::read_mesh(options.run.mesh);
   if (!model) return report(model.error());
+  if (options.injective ||
+      (!options.not_injective && model->vertices.cols() <= most_injective_unasked))
+    options.run.loop.sculptor.deformer.injective.emplace();
   install_stop_signals();
   const auto hands = open_hands(options.run);
   if (!hands) return report(hands.error());
@@ -134,7 +142,9 @@ void add_run(Command& program) {
   add_kernel_options(command, options->kernel);
   command.add_flag("--injective", options->injective,
                    "Never fold: in links that each stay injective; fingertips whose ways cross are "
-                   "held apart");
+                   "held apart. By default with models of up to " +
+                       std::to_string(most_injective_unasked) + " vertices");
+  command.add_flag("--no-injective", options->not_injective, "Whatever the fingertips ask for");
   command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
   command.add_option("--switch", options->switch_action,
                      "What the wrist switch does. grab: the hands hold the model while it is on; "

@@ -53,7 +53,8 @@ void print_progress_json(const flow::Frame& frame, double elapsed_s) {
                     {"elapsed_s", elapsed_s},
                     {"ticks", frame.ticks},
                     {"missed", frame.missed},
-                    {"held", frame.held}};
+                    {"held", frame.held},
+                    {"pairs_held_apart", frame.chain.held_pairs}};
   for (std::size_t slot = 0; slot < sides.size(); ++slot) {
     if (!frame.hands[slot].present) continue;
     line[std::string(name_of(sides[slot]))] = {{"samples", frame.hands[slot].samples},
@@ -82,6 +83,7 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
     line += hand.silent ? "silent" : std::to_string(hand.samples) + " samples";
   }
   if (!frame.held) line += "  let go";
+  if (frame.chain.held_pairs > 0) line += "  fingertips held apart";
   return line;
 }
 

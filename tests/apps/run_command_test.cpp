@@ -99,23 +99,31 @@ TEST_SUITE("run") {
     CHECK(traffic.find("4c 00", lit) != std::string::npos);
   }
 
-  TEST_CASE("each finger has its radius, and the model never folds, if so asked") {
+  TEST_CASE("each finger has its radius, and the model never folds unless so asked") {
     const TemporaryFolder folder;
     const auto out = (folder.path() / "shape.ply").string();
-    for (const std::string mode : {"type1", "type2"}) {
-      const auto done = nendo::test::nendo(
-          {"run", "--left", "sim:sculpt", "--right", "sim:sculpt", "--mode", mode, "--radius",
-           "0.5,0.3,0.3,0.3,0.25", "--injective", "--duration", "1", "--json", "--out", out});
-      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-      const json summary = summary_of(done);
-      CHECK(summary["radius"] == 0.5);
-      CHECK(summary["failed"] == 0);
-      const json& links = summary["injective"];
-      CHECK(links["most_links"].get<int>() >= 1);
-      CHECK(links["most_bound"].get<double>() > 0.0);
-      CHECK(links["least_determinant"].get<double>() > 0.0);
-      CHECK(links["held_apart_ticks"].get<int>() >= 0);
-    }
+    for (const std::string mode : {"type1", "type2"})
+      for (const std::string injective : {"", "--injective", "--no-injective"}) {
+        std::vector<std::string> command{
+            "run",   "--left",   "sim:sculpt",           "--right",    "sim:sculpt", "--mode",
+            mode,    "--radius", "0.5,0.3,0.3,0.3,0.25", "--duration", "0.5",        "--json",
+            "--out", out};
+        if (!injective.empty()) command.push_back(injective);
+        const auto done = nendo::test::nendo(command);
+        REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+        const json summary = summary_of(done);
+        CHECK(summary["radius"] == 0.5);
+        CHECK(summary["failed"] == 0);
+        const json& links = summary["injective"];
+        CHECK(links.is_null() == (injective == "--no-injective"));
+        if (links.is_null()) continue;
+        CHECK(links["most_links"].get<int>() >= 1);
+        CHECK(links["most_bound"].get<double>() > 0.0);
+        CHECK(links["least_determinant"].get<double>() > 0.0);
+        CHECK(links["held_apart_ticks"].get<int>() >= 0);
+      }
+    const auto both = nendo::test::nendo({"run", "--injective", "--no-injective"});
+    CHECK(both.exit_code == 2);
   }
 
   TEST_CASE("a filter is named in the summary with its latency, and none is none") {
