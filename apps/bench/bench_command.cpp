@@ -15,8 +15,10 @@ void add_bench(Command& program) {
   add_latency_bench(bench);
   add_faults_bench(bench);
   add_hand_bench(bench);
+  add_scale_bench(bench);
   add_soak_bench(bench);
   add_solve_bench(bench);
+  add_table1_bench(bench);
 }
 
 } // namespace nendo::app

@@ -2,17 +2,15 @@
 // on the meshes and radii of the paper's Table 1, and a model of a million vertices beside two
 // floors.
 
-#include <array>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
 
-#include <nendo/deform/simd.hpp>
-
 #include "bench/bench.hpp"
 #include "bench/deform_trial.hpp"
+#include "bench/simd_choice.hpp"
 #include "bench/table1.hpp"
 #include "cli.hpp"
 
@@ -24,13 +22,6 @@ struct Options {
   bool short_form = false;
   bool json = false;
 };
-
-struct TableMesh {
-  int cells;
-  bool with_middles;
-};
-constexpr std::array table_meshes{TableMesh{32, false}, TableMesh{64, false}, TableMesh{128, false},
-                                  TableMesh{128, true}};
 
 /// 0 where there is no plain loop to compare with.
 double ratio(double plain_us, double us) {
@@ -99,19 +90,14 @@ void print_large(const LargeTimes& times, bool json) {
 }
 
 int bench_deform(const Options& options) {
-  if (!deform::use_simd(options.simd)) {
-    std::string names;
-    for (const auto name : deform::simd_names())
-      names += " " + std::string(name);
-    return report({Errc::usage, "--simd " + options.simd + ": this machine has" + names});
-  }
+  if (const auto chosen = choose_simd(options.simd); !chosen) return report(chosen.error());
   const int repetitions = options.short_form ? 3 : 60;
   if (!options.json) {
     std::printf("microseconds a frame, the best of many; x: times as fast as the plain loop\n"
                 "vertices radius     plain    type 1  2 threads   type 2  2 threads   type 1 "
                 "evaluated  type 2      grab kB kept\n");
   }
-  for (const TableMesh& mesh : table_meshes) {
+  for (const Table1Plane& mesh : table1_planes) {
     if (options.short_form && mesh.cells > 64) continue;
     const deform::Points plane = table1_plane(mesh.cells, mesh.with_middles);
     for (const double radius : table1_radii) {

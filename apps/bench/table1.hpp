@@ -1,6 +1,8 @@
 #pragma once
-// The plane of the paper's Table 1 with its ten control points: a layout that gives the paper's
-// counts of vertices within the supports, but for a few, and a crowded one, as ten fingertips are.
+// The benchmark of the paper's Table 1: a plane in four resolutions, with ten control points whose
+// places the paper does not tell. Those of `near` give its counts of vertices within the supports,
+// but for a few; those of `plane` lie in the plane itself, where a linear polynomial is not
+// determined.
 
 #include <array>
 #include <random>
@@ -11,8 +13,21 @@ namespace nendo::app {
 
 inline constexpr std::array<double, 5> table1_radii{10.0, 20.0, 40.0, 60.0, 80.0};
 
-/// 50 by 50. The paper's meshes have 32, 64 and 128 cells a side, and 128 with a vertex in each
-/// cell's middle.
+/// Cells a side; with a vertex in each cell's middle, four triangles a cell instead of two.
+struct Table1Plane {
+  int cells;
+  bool with_middles;
+};
+inline constexpr std::array<Table1Plane, 4> table1_planes{
+    {{32, false}, {64, false}, {128, false}, {128, true}}};
+
+struct Table1Layout {
+  const char* name;
+  double height; ///< over the plane
+};
+inline constexpr std::array<Table1Layout, 2> table1_layouts{{{"near", 2.0}, {"plane", 0.0}}};
+
+/// The vertices alone: 50 by 50 in z = 0.
 inline deform::Points table1_plane(int cells, bool with_middles = false) {
   const int side = cells + 1;
   deform::Points plane(3, side * side + (with_middles ? cells * cells : 0));
@@ -27,14 +42,22 @@ inline deform::Points table1_plane(int cells, bool with_middles = false) {
   return plane;
 }
 
-inline deform::Points table1_starts() {
+/// With its triangles, which face upwards.
+deform::Mesh table1_mesh(const Table1Plane& plane);
+
+inline deform::Points table1_starts(double height = table1_layouts[0].height) {
   deform::Points starts(3, 10);
   Eigen::Index at = 0;
   for (const double y : {15.0, 35.0})
     for (const double x : {-15.0, 5.0, 25.0, 45.0, 65.0})
-      starts.col(at++) << x, y, 2.0;
+      starts.col(at++) << x, y, height;
   return starts;
 }
+
+/// Pairs of a vertex and a control point that are less than the radius apart: what has to be
+/// evaluated a frame. Looks at every pair.
+std::size_t count_evaluations(const deform::Points& vertices, const deform::Points& starts,
+                              double radius);
 
 /// Two hands over the plane, fingertips 3 to 8 apart.
 inline deform::Points crowded_starts() {
@@ -42,6 +65,14 @@ inline deform::Points crowded_starts() {
   starts << 12, 14, 18, 22, 26, 38, 36, 32, 28, 27, //
       14, 20, 23, 23, 20, 34, 28, 25, 26, 33,       //
       2, 3, 2, 1, 2, 3, 1, 2, 3, 2;
+  return starts;
+}
+
+/// All within the plane: supports of radius 10 each reach a fifth of it at most.
+inline deform::Points spread_starts() {
+  deform::Points starts(3, 10);
+  for (Eigen::Index i = 0; i < 10; ++i)
+    starts.col(i) << 5.0 + 10.0 * static_cast<double>(i % 5), i < 5 ? 15.0 : 35.0, 2.0;
   return starts;
 }
 

@@ -1,10 +1,12 @@
 #include <nendo/deform/block_evaluator.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "evaluator_parts.hpp"
+#include "simd/normal_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -68,6 +70,42 @@ bool BlockEvaluator::fits(const BoundedShape& shape) const noexcept {
   return shape.extent + parts_->field.bound(shape.extent) <= most_units;
 }
 
+namespace {
+
+/// Of all blocks, without anything to write.
+BlockPass pass_over(const BoundedShape& from, BlockEvaluator::Parts& parts) noexcept {
+  return {.from = from.shape.data(),
+          .to = nullptr,
+          .bounds = from.bounds.data(),
+          .new_bounds = nullptr,
+          .reached = parts.reached.data(),
+          .begin = 0,
+          .end = from.shape.block_count(),
+          .scratch = parts.lists[0].scratch()};
+}
+
+/// In pieces; normals may be null; `after` is told of each block whether the field reaches it.
+template <class After>
+void run(const BlockPass& whole, const NormalPass* normals, BlockEvaluator::Parts& parts,
+         const After& after) noexcept {
+  parts.in_pieces(whole.end, blocks_a_piece,
+                  [&](std::size_t begin, std::size_t end, std::size_t thread) {
+                    BlockPass piece = whole;
+                    piece.begin = begin;
+                    piece.end = end;
+                    piece.scratch = parts.lists[thread].scratch();
+                    if (normals != nullptr) {
+                      displace_normals_pass(parts.field.view(), piece, *normals);
+                    } else {
+                      displace_pass(parts.field.view(), piece);
+                    }
+                    for (std::size_t block = begin; block < end; ++block)
+                      after(block, parts.reached[block] > 0);
+                  });
+}
+
+} // namespace
+
 bool BlockEvaluator::displace(const BoundedShape& from, BlockShape& to) noexcept {
   if (to.block_count() != from.shape.block_count()) to = from.shape;
   if (!fits(from)) {
@@ -75,40 +113,51 @@ bool BlockEvaluator::displace(const BoundedShape& from, BlockShape& to) noexcept
     return false;
   }
   const std::uint64_t stamp = BlockShape::new_stamp();
-  Parts& parts = *parts_;
-  parts.in_pieces(from.shape.block_count(), blocks_a_piece,
-                  [&](std::size_t begin, std::size_t end, std::size_t thread) {
-                    displace_pass(parts.field.view(),
-                                  {from.shape.data(), to.data(), from.bounds.data(), nullptr,
-                                   parts.reached.data(), begin, end,
-                                   parts.lists[thread].scratch()});
-                    for (std::size_t block = begin; block < end; ++block)
-                      if (parts.reached[block] > 0) {
-                        to.set_stamp(block, stamp);
-                      } else {
-                        to.follow(from.shape, block);
-                      }
-                  });
+  BlockPass pass = pass_over(from, *parts_);
+  pass.to = to.data();
+  run(pass, nullptr, *parts_, [&](std::size_t block, bool reached) {
+    reached ? to.set_stamp(block, stamp) : to.follow(from.shape, block);
+  });
   return true;
 }
 
-bool BlockEvaluator::displace(BoundedShape& shape) noexcept {
-  // Bounds on bounds grow with each step: measured before they are believed.
+/// Bounds on bounds grow with each step: measured before they are believed.
+bool BlockEvaluator::fits_measured(BoundedShape& shape) const noexcept {
   if (!fits(shape)) shape.extent = extent_of(shape.bounds);
-  if (!fits(shape)) return false;
+  return fits(shape);
+}
+
+bool BlockEvaluator::displace(BoundedShape& shape, BlockShape* normals) noexcept {
+  if (!fits_measured(shape)) return false;
   shape.extent += parts_->field.bound(shape.extent);
   const std::uint64_t stamp = BlockShape::new_stamp();
-  Parts& parts = *parts_;
-  parts.in_pieces(shape.shape.block_count(), blocks_a_piece,
-                  [&](std::size_t begin, std::size_t end, std::size_t thread) {
-                    displace_pass(parts.field.view(),
-                                  {shape.shape.data(), shape.shape.data(), shape.bounds.data(),
-                                   shape.bounds.data(), parts.reached.data(), begin, end,
-                                   parts.lists[thread].scratch()});
-                    for (std::size_t block = begin; block < end; ++block)
-                      if (parts.reached[block] > 0) shape.shape.set_stamp(block, stamp);
-                  });
+  const std::uint64_t normals_stamp = BlockShape::new_stamp();
+  BlockPass pass = pass_over(shape, *parts_);
+  pass.to = shape.shape.data();
+  pass.new_bounds = shape.bounds.data();
+  const NormalPass turning =
+      normals != nullptr ? NormalPass{normals->data(), normals->data()} : NormalPass{};
+  run(pass, normals != nullptr ? &turning : nullptr, *parts_, [&](std::size_t block, bool reached) {
+    if (!reached) return;
+    shape.shape.set_stamp(block, stamp);
+    if (normals != nullptr) normals->set_stamp(block, normals_stamp);
+  });
   return true;
+}
+
+void BlockEvaluator::turn(const BoundedShape& at, const BlockShape& normals,
+                          BlockShape& to) noexcept {
+  assert(normals.block_count() == at.shape.block_count());
+  if (to.block_count() != normals.block_count()) to = normals;
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  const NormalPass turning{normals.data(), to.data()};
+  run(pass_over(at, *parts_), &turning, *parts_, [&](std::size_t block, bool reached) {
+    reached ? to.set_stamp(block, stamp) : to.follow(normals, block);
+  });
+}
+
+std::size_t BlockEvaluator::count_pairs(const BoundedShape& shape) noexcept {
+  return deform::count_pairs(parts_->field.view(), pass_over(shape, *parts_));
 }
 
 } // namespace nendo::deform

@@ -88,14 +88,19 @@ bool BlockField::assign_entries(const CsrbfField& field, Zeros zeros) {
     sum_of_coefficients_ += largest;
     largest_coefficient_ = std::max(largest_coefficient_, largest);
     const Eigen::Vector3d scaled = factor * coefficient;
-    precise_entries_[at] = {
-        centre[0], centre[1], centre[2], inverse, {scaled[0], scaled[1], scaled[2]}, 0.0};
+    const Eigen::Vector3d steep = slope_factor(field.kernel) * inverse * inverse * coefficient;
+    precise_entries_[at] = {centre[0],
+                            centre[1],
+                            centre[2],
+                            inverse,
+                            {scaled[0], scaled[1], scaled[2]},
+                            {steep[0], steep[1], steep[2]}};
     entries_[at] = {as_float(centre[0]),
                     as_float(centre[1]),
                     as_float(centre[2]),
                     static_cast<float>(inverse),
                     {as_float(scaled[0]), as_float(scaled[1]), as_float(scaled[2])},
-                    0.0F};
+                    {as_float(steep[0]), as_float(steep[1]), as_float(steep[2])}};
     x_[at] = entries_[at].x;
     y_[at] = entries_[at].y;
     z_[at] = entries_[at].z;

@@ -41,7 +41,7 @@ Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
 
 FieldStatus Type2Deformer::begin(const Points& tips) {
   assert(tips.cols() == current_.cols());
-  history_->keep(shape_.shape);
+  history_->keep(shape_.shape, normals_);
   begun_ = all_usable(tips);
   if (!begun_) return FieldStatus::not_finite;
   current_ = tips;
@@ -61,8 +61,8 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
 }
 
 FieldStatus Type2Deformer::undo(const Points& tips) {
-  history_->keep(shape_.shape);
-  history_->undo(shape_);
+  history_->keep(shape_.shape, normals_);
+  history_->undo(shape_, normals_);
   fields_.clear();
   return begin(tips);
 }
@@ -87,6 +87,11 @@ StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   return result;
 }
 
+void Type2Deformer::carry_normals(const Points& normals) {
+  normals_ = layout_.pack_vectors(normals);
+  history_->carry(shape_.shape, normals_);
+}
+
 /// From current_ to next_.
 FieldStatus Type2Deformer::apply_piece() {
   for (Eigen::Index i = 0; i < current_.cols(); ++i)
@@ -98,7 +103,9 @@ FieldStatus Type2Deformer::apply_piece() {
 }
 
 FieldStatus Type2Deformer::apply(const CsrbfField& field) {
-  if (!evaluator_.set_field(field) || !evaluator_.displace(shape_)) return FieldStatus::not_finite;
+  BlockShape* const normals = normals_.block_count() > 0 ? &normals_ : nullptr;
+  if (!evaluator_.set_field(field) || !evaluator_.displace(shape_, normals))
+    return FieldStatus::not_finite;
   fields_.push(field);
   return FieldStatus::ok;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
@@ -149,6 +150,96 @@ TEST_SUITE("bench") {
     const auto unknown = nendo::test::nendo({"bench", "deform", "--simd", "abacus"});
     CHECK(unknown.exit_code == 2);
     CHECK(is_one_line_about(unknown.err, "abacus"));
+  }
+
+  TEST_CASE("bench table1 counts the paper's evaluations in 19 cells of 20, and draws them all") {
+    const nendo::test::TemporaryFolder folder;
+    const auto picture = folder.path() / "table1.svg";
+    const auto done = nendo::test::nendo({"bench", "table1", "--seconds-per-cell", "0.001",
+                                          "--json", "--picture", picture.string()});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 160); // layouts, meshes, radii, types, threads
+    std::vector<std::string> apart;
+    for (std::size_t at = 0; at < lines.size(); ++at) {
+      const auto cell = nlohmann::json::parse(lines[at]);
+      CAPTURE(lines[at]);
+      CHECK(cell["layout"] == (at < 80 ? "near" : "plane"));
+      CHECK(cell["type"] == at / 2 % 2 + 1);
+      CHECK(cell["threads"] == at % 2 + 1);
+      CHECK(cell["frames_per_second"].get<double>() > 0.0);
+      CHECK(cell["paper_frames_per_second"].get<double>() > 10.0);
+      const auto& plain = cell["plain_loop_frames_per_second"];
+      CHECK((plain.is_null() || plain.get<double>() > 0.0));
+      if (at >= 80 || at % 4 != 0) continue;
+      const double ratio =
+          cell["evaluations"].get<double>() / cell["paper_evaluations"].get<double>();
+      if (std::abs(ratio - 1.0) > 0.011) apart.push_back(lines[at]);
+    }
+    // The twentieth: 668 for the paper's 698.
+    REQUIRE(apart.size() == 1);
+    const auto twentieth = nlohmann::json::parse(apart[0]);
+    CHECK(twentieth["vertices"] == 1089);
+    CHECK(twentieth["radius"] == 10.0);
+    CHECK(twentieth["evaluations"] == 668);
+    const std::string drawn = nendo::test::contents(picture);
+    CHECK(drawn.starts_with("<svg"));
+    CHECK(drawn.ends_with("</svg>\n"));
+    std::size_t factors = 0;
+    for (std::size_t at = 0; (at = drawn.find(" x</text>", at)) != std::string::npos; ++at)
+      ++factors;
+    CHECK(factors == 40);
+  }
+
+  TEST_CASE("bench table1 refuses what it cannot measure or write") {
+    const auto endless = nendo::test::nendo({"bench", "table1", "--seconds-per-cell", "inf"});
+    CHECK(endless.exit_code == 2);
+    CHECK(is_one_line_about(endless.err, "--seconds-per-cell"));
+    const auto unknown = nendo::test::nendo({"bench", "table1", "--simd", "abacus"});
+    CHECK(unknown.exit_code == 2);
+    CHECK(is_one_line_about(unknown.err, "abacus"));
+    const auto nowhere = nendo::test::nendo(
+        {"bench", "table1", "--seconds-per-cell", "0.001", "--picture", "/nowhere/table1.svg"});
+    CHECK(nowhere.exit_code == 1);
+    CHECK(is_one_line_about(nowhere.err, "/nowhere/table1.svg"));
+  }
+
+  TEST_CASE("bench scale tells what vertices, centres and normals cost") {
+    const auto done =
+        nendo::test::nendo({"bench", "scale", "--short", "--repetitions", "1", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 8); // one size, two overlaps, five radii
+    const auto vertices = nlohmann::json::parse(lines[0]);
+    CHECK(vertices["measured"] == "vertices");
+    CHECK(vertices["vertices"] == 316 * 316);
+    for (const char* key : {"influences", "type1_evaluated_us", "type2_us"})
+      CHECK(vertices[key].get<double>() > 0.0);
+    double overlap = 9.0;
+    for (const std::size_t at : {1U, 2U}) {
+      const auto crowd = nlohmann::json::parse(lines[at]);
+      CAPTURE(lines[at]);
+      CHECK(crowd["measured"] == "centres");
+      CHECK(crowd["centres"] == 1000);
+      // The plane's border cuts a few supports off.
+      CHECK(crowd["influences"].get<double>() / crowd["vertices"].get<double>() ==
+            doctest::Approx(overlap).epsilon(0.15));
+      CHECK(crowd["list_us"].get<double>() > 0.0);
+      CHECK(crowd["evaluate_us"].get<double>() > crowd["list_us"].get<double>());
+      CHECK(crowd["ratio"]["influence_to_ten"].get<double>() ==
+            doctest::Approx(crowd["influence_ns"].get<double>() /
+                            crowd["influence_of_ten_ns"].get<double>()));
+      overlap = 26.0;
+    }
+    for (std::size_t at = 3; at < 8; ++at) {
+      const auto normals = nlohmann::json::parse(lines[at]);
+      CHECK(normals["measured"] == "normals");
+      for (const char* key : {"places_us", "normals_us", "both_us"})
+        CHECK(normals[key].get<double>() > 0.0);
+    }
+    const auto never = nendo::test::nendo({"bench", "scale", "--repetitions", "0"});
+    CHECK(never.exit_code == 2);
+    CHECK(is_one_line_about(never.err, "--repetitions"));
   }
 
   TEST_CASE("guided poses calibrate strangers: nearer than two poses do, farther than the truth") {

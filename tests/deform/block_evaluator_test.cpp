@@ -1,5 +1,6 @@
 #include <nendo/deform/block_evaluator.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -274,5 +275,31 @@ TEST_SUITE("block_evaluator") {
       }
       CHECK(counts.allocations + counts.locks == 0);
     }
+  }
+
+  TEST_CASE("pairs of blocks and supports are those that a look at every vertex finds, or more") {
+    const Points mesh = nendo::test::sphere(20, 30, 5.0).vertices;
+    const BlockLayout layout(mesh);
+    const BoundedShape rest(layout.pack());
+    const CsrbfField field = random_field(10, 4.0, 81);
+    std::size_t pairs = 0;
+    for (std::size_t block = 0; block < layout.block_count(); ++block)
+      for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
+        bool reached = false;
+        for (std::size_t at = block * block_size;
+             at < std::min((block + 1) * block_size, layout.vertex_count()); ++at) {
+          const auto vertex = static_cast<Eigen::Index>(layout.order()[at]);
+          reached = reached || (mesh.col(vertex) - field.centres.col(i)).norm() < field.radii[i];
+        }
+        pairs += reached ? 1U : 0U;
+      }
+    for (const auto name : simd_names()) {
+      REQUIRE(use_simd(name));
+      BlockEvaluator evaluator(layout, 10, {});
+      REQUIRE(evaluator.set_field(field));
+      CHECK(evaluator.count_pairs(rest) >= pairs);
+      CHECK(evaluator.count_pairs(rest) < 2 * pairs);
+    }
+    use_simd("");
   }
 }

@@ -232,15 +232,27 @@ TEST_SUITE("type1") {
     return options;
   }
 
+  /// Those of the rest shape, if nothing has been applied to it.
+  static Points normals_of(Type1Deformer & deformer) {
+    BlockShape normals;
+    Points out;
+    deformer.normals(normals);
+    deformer.layout().unpack_vectors(normals, out);
+    return out;
+  }
+
   TEST_CASE(
       "undo gives the rest shape before a commit back, bit for bit, as far as there is room") {
     for (const std::size_t room : {0U, 2U, 10U}) {
       Type1Deformer deformer(rest, 10, with_undo(room));
+      deformer.carry_normals(rest / 5.0);
       std::vector<Points> shapes;
+      std::vector<Points> normals;
       Points out;
       REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
       for (const double length : {1.0, 0.5, 2.0, 1.5}) {
         shapes.push_back(unpacked(deformer, deformer.rest()));
+        normals.push_back(normals_of(deformer));
         REQUIRE(apply(deformer, end_points(length), out) == FieldStatus::ok);
         REQUIRE(deformer.commit(end_points(length)) == FieldStatus::ok);
       }
@@ -251,7 +263,9 @@ TEST_SUITE("type1") {
         CHECK(unpacked(deformer, deformer.rest()) == shapes.back());
         apply(deformer, start_points(), out);
         CHECK(out == shapes.back());
+        CHECK(normals_of(deformer) == normals.back());
         shapes.pop_back();
+        normals.pop_back();
       }
       CHECK(shapes.size() == 4 - std::min<std::size_t>(room, 4));
       const Points last = unpacked(deformer, deformer.rest());

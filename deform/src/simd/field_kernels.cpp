@@ -18,30 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace nendo::deform::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class V>
-struct Vectors3 {
-  V x, y, z;
-};
-
-// Coordinates are stored in float, whatever the sums are in.
-template <class D>
-HWY_INLINE hn::Vec<D> load_as(D d, const float* from) {
-  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
-    return hn::Load(d, from);
-  } else {
-    return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), from));
-  }
-}
-template <class D>
-HWY_INLINE void store_from(D d, hn::Vec<D> values, float* to) {
-  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
-    hn::Store(values, d, to);
-  } else {
-    const hn::Rebind<float, D> df;
-    hn::Store(hn::DemoteTo(df, values), df, to);
-  }
-}
-
 /// Vectors of vertices that go through the centres together: one alone leaves AVX-512 waiting, two
 /// do not fit the registers of the others.
 constexpr std::size_t abreast = HWY_MAX_BYTES >= 64 ? 2 : 1;
@@ -69,15 +45,6 @@ HWY_INLINE void add_entries(D d, const FieldEntry<hn::TFromD<D>>* entries,
   }
 }
 
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V polynomial_row(D d, const std::array<double, 4>& row, const Vectors3<V>& place) {
-  using Real = hn::TFromD<D>;
-  V sum = hn::Set(d, static_cast<Real>(row[0]));
-  sum = hn::MulAdd(place.x, hn::Set(d, static_cast<Real>(row[1])), sum);
-  sum = hn::MulAdd(place.y, hn::Set(d, static_cast<Real>(row[2])), sum);
-  return hn::MulAdd(place.z, hn::Set(d, static_cast<Real>(row[3])), sum);
-}
-
 template <Wendland kernel, class Real>
 HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* entries,
                                const std::uint32_t* list, std::size_t size, const VertexBlock& from,
@@ -89,20 +56,15 @@ HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* e
     Vectors3<V> sums[abreast];
     for (std::size_t n = 0; n < abreast; ++n) {
       const std::size_t at = lane + n * hn::Lanes(d);
-      places[n] = {load_as(d, from.x.data() + at), load_as(d, from.y.data() + at),
-                   load_as(d, from.z.data() + at)};
+      places[n] = load_vectors(d, from, at);
       sums[n] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
       if (field.polynomial == nullptr) continue;
-      sums[n] = {polynomial_row(d, (*field.polynomial)[0], places[n]),
-                 polynomial_row(d, (*field.polynomial)[1], places[n]),
-                 polynomial_row(d, (*field.polynomial)[2], places[n])};
+      sums[n] = polynomial_at(d, *field.polynomial, places[n]);
     }
     add_entries<kernel>(d, entries, list, size, places, sums);
     for (std::size_t n = 0; n < abreast; ++n) {
       const std::size_t at = lane + n * hn::Lanes(d);
-      store_from(d, hn::Add(places[n].x, sums[n].x), to.x.data() + at);
-      store_from(d, hn::Add(places[n].y, sums[n].y), to.y.data() + at);
-      store_from(d, hn::Add(places[n].z, sums[n].z), to.z.data() + at);
+      store_vectors(d, sum_of(places[n], sums[n]), to, at);
     }
   }
 }
@@ -152,6 +114,18 @@ void displace_any(const FieldView& field, const BlockPass& pass) {
   }
 }
 
+struct PairCount {
+  std::size_t pairs = 0;
+
+  HWY_INLINE void on_block(std::size_t, const std::uint32_t*, std::size_t size) { pairs += size; }
+};
+
+std::size_t count_listed(const FieldView& field, const BlockPass& pass) {
+  PairCount work;
+  for_each_block(field.centres, pass, work);
+  return work.pairs;
+}
+
 } // namespace nendo::deform::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -159,9 +133,14 @@ HWY_AFTER_NAMESPACE();
 namespace nendo::deform {
 
 HWY_EXPORT(displace_any);
+HWY_EXPORT(count_listed);
 
 void displace_pass(const FieldView& field, const BlockPass& pass) noexcept {
   HWY_DYNAMIC_DISPATCH(displace_any)(field, pass);
+}
+
+std::size_t count_pairs(const FieldView& field, const BlockPass& pass) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count_listed)(field, pass);
 }
 
 } // namespace nendo::deform

@@ -12,19 +12,34 @@
 namespace nendo::deform {
 
 /// One centre: what a vertex's evaluation needs. The coefficients contain the kernel's constant
-/// factor (kernel_factor).
+/// factor (kernel_factor); the steep ones, for the field's derivative, slope_factor / r^2.
 template <class Real>
 struct FieldEntry {
   Real x, y, z;
   Real inverse_radius;
   std::array<Real, 3> coefficient;
-  Real unused;
+  std::array<Real, 3> steep;
 };
 
 /// psi = factor * o^p * (polynomial in o) with o = 1 - t: what the vector code leaves out.
 constexpr double kernel_factor(Wendland kernel) noexcept {
   if (kernel == Wendland::c2) return 4.0;
   return kernel == Wendland::c4 ? 1.0 / 3.0 : 1.0;
+}
+
+/// psi' / t = factor * o^p * (polynomial in o), of c0 divided by t.
+constexpr double slope_factor(Wendland kernel) noexcept {
+  switch (kernel) {
+  case Wendland::c0:
+    return -2.0;
+  case Wendland::c2:
+    return -20.0;
+  case Wendland::c4:
+    return -56.0 / 3.0;
+  case Wendland::c6:
+    return -22.0;
+  }
+  return 0.0;
 }
 
 /// Centres coordinates apart, to find those that reach a block. Arrays are padded to whole vectors
@@ -73,5 +88,7 @@ struct BlockPass {
 };
 
 void displace_pass(const FieldView& field, const BlockPass& pass) noexcept;
+/// Pairs of a block and a centre that reaches it; uses nothing but bounds and scratch.
+std::size_t count_pairs(const FieldView& field, const BlockPass& pass) noexcept;
 
 } // namespace nendo::deform

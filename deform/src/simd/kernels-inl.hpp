@@ -1,4 +1,4 @@
-// The Wendland functions in vectors. Included once for each instruction set (Highway's
+// The Wendland functions and vertices in vectors. Included once for each instruction set (Highway's
 // foreach_target).
 
 #if defined(NENDO_SIMD_KERNELS_INL) == defined(HWY_TARGET_TOGGLE)
@@ -8,6 +8,8 @@
 #define NENDO_SIMD_KERNELS_INL
 #endif
 
+#include <array>
+
 #include <hwy/highway.h>
 
 #include "simd/field_kernels.hpp"
@@ -15,6 +17,47 @@
 HWY_BEFORE_NAMESPACE();
 namespace nendo::deform::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+template <class V>
+struct Vectors3 {
+  V x, y, z;
+};
+
+// Coordinates are stored in float, whatever the sums are in.
+template <class D>
+HWY_INLINE hn::Vec<D> load_as(D d, const float* from) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
+    return hn::Load(d, from);
+  } else {
+    return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), from));
+  }
+}
+template <class D>
+HWY_INLINE void store_from(D d, hn::Vec<D> values, float* to) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
+    hn::Store(values, d, to);
+  } else {
+    const hn::Rebind<float, D> df;
+    hn::Store(hn::DemoteTo(df, values), df, to);
+  }
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vectors3<V> load_vectors(D d, const VertexBlock& block, std::size_t lane) {
+  return {load_as(d, block.x.data() + lane), load_as(d, block.y.data() + lane),
+          load_as(d, block.z.data() + lane)};
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store_vectors(D d, const Vectors3<V>& values, VertexBlock& to, std::size_t lane) {
+  store_from(d, values.x, to.x.data() + lane);
+  store_from(d, values.y, to.y.data() + lane);
+  store_from(d, values.z, to.z.data() + lane);
+}
+template <class V>
+HWY_INLINE Vectors3<V> sum_of(const Vectors3<V>& a, const Vectors3<V>& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
 
 /// psi / kernel_factor of o = 1 - t, which is not negative.
 template <Wendland kernel, class D, class V = hn::Vec<D>>
@@ -31,6 +74,22 @@ HWY_INLINE V weight(D d, V o) {
   const V linear = hn::MulAdd(hn::Set(d, Real(-32)), o, hn::Set(d, Real(121)));
   const V square = hn::MulAdd(linear, o, hn::Set(d, Real(-154)));
   return hn::Mul(hn::Mul(o4, o4), hn::MulAdd(square, o, hn::Set(d, Real(66))));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V polynomial_row(D d, const std::array<double, 4>& row, const Vectors3<V>& place) {
+  using Real = hn::TFromD<D>;
+  V sum = hn::Set(d, static_cast<Real>(row[0]));
+  sum = hn::MulAdd(place.x, hn::Set(d, static_cast<Real>(row[1])), sum);
+  sum = hn::MulAdd(place.y, hn::Set(d, static_cast<Real>(row[2])), sum);
+  return hn::MulAdd(place.z, hn::Set(d, static_cast<Real>(row[3])), sum);
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vectors3<V> polynomial_at(D d, const std::array<std::array<double, 4>, 3>& rows,
+                                     const Vectors3<V>& place) {
+  return {polynomial_row(d, rows[0], place), polynomial_row(d, rows[1], place),
+          polynomial_row(d, rows[2], place)};
 }
 
 /// The bounds of a block that has just been written.

@@ -1,0 +1,63 @@
+#pragma once
+// How frames of the deformation are timed: poses of ten fingertips, strokes there and back, and the
+// best time of many.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+
+#include <nendo/deform/type2.hpp>
+
+namespace nendo::app {
+
+inline constexpr std::size_t poses = 16; ///< different ones, so that nothing is learnt by heart
+/// A stroke that finish() applies in one piece, however long.
+inline constexpr double one_piece = 1e9;
+
+/// Where the fingertips go, at random but always the same.
+std::array<deform::Points, poses> random_ends(const deform::Points& starts);
+
+/// The n-th stroke: there and back, so that the shape stays a plane more or less.
+void stroke(deform::Type2Deformer& deformer, const deform::Points& starts,
+            const std::array<deform::Points, poses>& ends, std::size_t n);
+
+/// What the processor has given to this thread: what other work takes of the machine does not
+/// count.
+struct ThreadClock {
+  using duration = std::chrono::nanoseconds;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<ThreadClock>;
+  static constexpr bool is_steady = true;
+  static time_point now() noexcept;
+};
+
+/// The best time of a block of frames, over repetitions that several measurements take in turn.
+template <class Clock>
+class BestBy {
+public:
+  /// frame(n) makes the n-th frame.
+  template <class Frame>
+  void measure(std::size_t vertices, const Frame& frame) {
+    const std::size_t frames =
+        std::clamp<std::size_t>(100'000 / std::max<std::size_t>(vertices, 1), 2, 64);
+    const auto begin = Clock::now();
+    for (std::size_t n = 0; n < frames; ++n)
+      frame(n);
+    const std::chrono::duration<double, std::micro> took = Clock::now() - begin;
+    us_ = std::min(us_, took.count() / static_cast<double>(frames));
+  }
+  /// 0 if nothing was measured.
+  double us() const noexcept { return us_ < 1e300 ? us_ : 0.0; }
+  double per_second() const noexcept { return us_ < 1e300 ? 1e6 / us_ : 0.0; }
+
+private:
+  double us_ = 1e300;
+};
+
+using Best = BestBy<std::chrono::steady_clock>;
+/// For frames that take longer than the scheduler lets a thread alone.
+using BestOfThread = BestBy<ThreadClock>;
+
+} // namespace nendo::app

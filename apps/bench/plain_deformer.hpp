@@ -1,0 +1,40 @@
+#pragma once
+// Both types of deformation by the plain loop (plain_deform.hpp), solved as the deformers do it.
+
+#include <vector>
+
+#include <nendo/deform/csrbf.hpp>
+
+#include "bench/plain_deform.hpp"
+
+namespace nendo::app {
+
+/// Whether the processor has the instructions that the plain loop is compiled for.
+bool can_run_plain() noexcept;
+
+class PlainDeformer {
+public:
+  PlainDeformer(const deform::Points& mesh, const deform::Points& starts, double radius);
+
+  void type1(const deform::Points& ends);
+  void type2(const deform::Points& from, const deform::Points& to);
+
+private:
+  struct Arrays {
+    explicit Arrays(const deform::Points& points);
+    PlainPoints view() noexcept { return {x.data(), y.data(), z.data()}; }
+
+    std::vector<float> x, y, z;
+  };
+
+  void displace(Arrays& from, Arrays& to);
+
+  deform::Points starts_, step_;
+  Eigen::VectorXd radii_;
+  deform::CsrbfSolver solver_;
+  deform::CsrbfField field_;
+  Arrays rest_, shape_;
+  std::vector<PlainCentre> centres_;
+};
+
+} // namespace nendo::app

@@ -1,0 +1,146 @@
+// nendo bench scale: how the deformation's cost grows with vertices, control points and normals.
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/scale_trial.hpp"
+#include "bench/simd_choice.hpp"
+#include "bench/table1.hpp"
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct Options {
+  std::string simd;
+  std::uint64_t repetitions = 20;
+  bool short_form = false;
+  bool json = false;
+};
+
+double per(double what, std::size_t count) {
+  return what / static_cast<double>(count);
+}
+
+void print(const GrowthTimes& times, bool json) {
+  if (json) {
+    const nlohmann::ordered_json object{
+        {"measured", "vertices"},          {"vertices", times.vertices},
+        {"influences", times.influences},  {"type1_evaluated_us", times.type1_us},
+        {"type2_us", times.type2_us},      {"type1_bytes", times.type1_bytes},
+        {"type2_bytes", times.type2_bytes}};
+    std::cout << object.dump() << std::endl;
+    return;
+  }
+  std::printf("%9zu %11zu %9.0f %9.0f %9.2f %9.2f %9.0f %9.0f\n", times.vertices, times.influences,
+              times.type1_us, times.type2_us, per(1e3 * times.type1_us, times.vertices),
+              per(1e3 * times.type2_us, times.vertices),
+              per(static_cast<double>(times.type1_bytes), times.vertices),
+              per(static_cast<double>(times.type2_bytes), times.vertices));
+  std::fflush(stdout);
+}
+
+void print(const CrowdTimes& times, bool json) {
+  if (json) {
+    const nlohmann::ordered_json object{
+        {"measured", "centres"},
+        {"vertices", times.vertices},
+        {"centres", times.centres},
+        {"influences", times.influences},
+        {"build_us", times.build_us},
+        {"solve_us", times.solve_us},
+        {"list_us", times.list_us},
+        {"evaluate_us", times.evaluate_us},
+        {"influence_ns", times.ns_an_influence()},
+        {"influence_of_ten_ns", times.ten_ns},
+        {"ratio",
+         {{"influence_to_ten", times.ns_an_influence() / times.ten_ns},
+          {"list_to_evaluation", times.list_us / (times.evaluate_us - times.list_us)}}}};
+    std::cout << object.dump() << std::endl;
+    return;
+  }
+  std::printf("%9zu %8zu %11.1f %9.0f %9.0f %9.0f %9.0f %9.3f %9.3f %6.2f x\n", times.vertices,
+              times.centres, per(static_cast<double>(times.influences), times.vertices),
+              times.build_us, times.solve_us, times.list_us, times.evaluate_us,
+              times.ns_an_influence(), times.ten_ns, times.ns_an_influence() / times.ten_ns);
+  std::fflush(stdout);
+}
+
+void print(const NormalTimes& times, bool json) {
+  const double more = times.both_us - times.places_us;
+  if (json) {
+    const nlohmann::ordered_json object{{"measured", "normals"},
+                                        {"vertices", times.vertices},
+                                        {"radius", times.radius},
+                                        {"places_us", times.places_us},
+                                        {"normals_us", times.normals_us},
+                                        {"both_us", times.both_us},
+                                        {"ratio", {{"normals_to_places", more / times.places_us}}}};
+    std::cout << object.dump() << std::endl;
+    return;
+  }
+  std::printf("%9zu %6.0f %9.1f %9.1f %9.1f %8.2f x\n", times.vertices, times.radius,
+              times.places_us, times.normals_us, times.both_us, more / times.places_us);
+  std::fflush(stdout);
+}
+
+void heading(const Options& options, const char* text) {
+  if (!options.json) std::printf("%s", text);
+}
+
+void bench_growth(const Options& options, int repetitions) {
+  heading(
+      options,
+      "ten supports of a fifth of the model, microseconds a frame; memory of a deformer and the "
+      "shape it makes\n vertices  influences    type 1    type 2  ns/vert.  ns/vert.  B/vert.  "
+      "  B/vert.\n");
+  for (const int cells : {315, 999, 3161}) {
+    if (options.short_form && cells > 315) break;
+    if (const auto times = measure_growth(cells, repetitions)) {
+      print(*times, options.json);
+    } else {
+      note("bench scale: too little memory left for " + std::to_string((cells + 1) * (cells + 1)) +
+           " vertices");
+    }
+  }
+}
+
+int bench_scale(const Options& options) {
+  if (options.repetitions == 0 || options.repetitions > 10'000)
+    return report({Errc::usage, "--repetitions: from 1 to 10000"});
+  if (const auto chosen = choose_simd(options.simd); !chosen) return report(chosen.error());
+  const auto repetitions = static_cast<int>(options.repetitions);
+  bench_growth(options, repetitions);
+  heading(options,
+          "\nmany small supports, microseconds; an influence beside one of ten supports "
+          "that reach every vertex\n vertices  centres  infl./vert.    build     solve     "
+          "lists  evaluate  ns/infl.   of ten    ratio\n");
+  const int cells = options.short_form ? 199 : 999;
+  for (const double overlap : {9.0, 26.0})
+    print(measure_crowd(cells, 1000, overlap, repetitions), options.json);
+  heading(options, "\nnormals, microseconds; what they take beside the places\n vertices radius    "
+                   "places   normals      both    ratio\n");
+  for (const double radius : table1_radii)
+    print(measure_normals(options.short_form ? 64 : 181, radius, 4 * repetitions), options.json);
+  return 0;
+}
+
+} // namespace
+
+void add_scale_bench(Command& bench) {
+  auto options = std::make_shared<Options>();
+  Command command = bench.add_command(
+      "scale", "How the deformation grows: ten million vertices, a thousand centres, normals");
+  command.add_option("--simd", options->simd,
+                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
+  command.add_option("--repetitions", options->repetitions, "Take the best of so many");
+  command.add_flag("--short", options->short_form, "A hundred thousand vertices at most");
+  command.add_flag("--json", options->json, "A JSON object a line");
+  command.on_chosen([options] { return bench_scale(*options); });
+}
+
+} // namespace nendo::app

@@ -1,0 +1,160 @@
+#include "bench/scale_trial.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include <unistd.h>
+
+#include <nendo/deform/type1.hpp>
+
+#include "bench/deform_frames.hpp"
+#include "bench/table1.hpp"
+
+namespace nendo::app {
+namespace {
+
+using namespace nendo::deform;
+
+std::size_t resident_bytes() {
+  std::size_t all = 0;
+  std::size_t resident = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// 0 if the kernel does not say.
+std::size_t available_bytes() {
+  std::ifstream lines("/proc/meminfo");
+  std::string key;
+  std::size_t kilobytes = 0;
+  for (std::string unit; lines >> key >> kilobytes; std::getline(lines, unit))
+    if (key == "MemAvailable:") return kilobytes * 1024;
+  return 0;
+}
+
+/// Of which `overlap` reach a place within, on average.
+double radius_for(double overlap, std::size_t centres) {
+  constexpr double area = 50.0 * 50.0;
+  return std::sqrt(overlap * area / (std::numbers::pi * static_cast<double>(centres)));
+}
+
+} // namespace
+
+std::optional<GrowthTimes> measure_growth(int cells, int repetitions) {
+  constexpr std::size_t bytes_a_vertex = 250; // most of it while vertices are put in order
+  const auto side = static_cast<std::size_t>(cells) + 1;
+  if (available_bytes() < bytes_a_vertex * side * side) return std::nullopt;
+  const Points mesh = table1_plane(cells);
+  const Points starts = spread_starts();
+  const double radius = 10.0;
+  const auto ends = random_ends(starts);
+  GrowthTimes times;
+  times.vertices = static_cast<std::size_t>(mesh.cols());
+  times.influences = count_evaluations(mesh, starts, radius);
+  {
+    const std::size_t before = resident_bytes();
+    Type1Deformer type1(mesh, 10, radius, {}, {.weight_bytes = 0});
+    BlockShape out;
+    type1.grab(starts);
+    type1.apply(ends[0], out);
+    times.type1_bytes = resident_bytes() - before;
+    BestOfThread best;
+    for (int n = 0; n < repetitions; ++n)
+      best.measure(times.vertices, [&](std::size_t k) { type1.apply(ends[k % poses], out); });
+    times.type1_us = best.us();
+  }
+  const std::size_t before = resident_bytes();
+  Type2Deformer type2(mesh, 10, radius, one_piece, {});
+  type2.begin(starts);
+  BestOfThread best;
+  for (int n = 0; n < repetitions; ++n)
+    best.measure(times.vertices, [&](std::size_t k) { stroke(type2, starts, ends, k); });
+  times.type2_bytes = resident_bytes() - before;
+  times.type2_us = best.us();
+  return times;
+}
+
+CrowdTimes measure_crowd(int cells, std::size_t centres, double overlap, int repetitions) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(0.0, 50.0);
+  std::normal_distribution<double> move(0.0, 0.1);
+  const double radius = radius_for(overlap, centres);
+  Points starts(3, static_cast<Eigen::Index>(centres));
+  Points moves(3, starts.cols());
+  for (Eigen::Index i = 0; i < starts.cols(); ++i) {
+    starts.col(i) << place(random), place(random), 0.0;
+    moves.col(i) << move(random), move(random), move(random);
+  }
+  const Points mesh = table1_plane(cells);
+  const BlockLayout layout(mesh);
+  const BoundedShape rest(layout.pack());
+  BlockShape out = rest.shape;
+  BlockEvaluator evaluator(layout, starts.cols(), {});
+  CsrbfSolver solver({.merge_fraction = 0.05});
+  CsrbfField field;
+  const Eigen::VectorXd radii = Eigen::VectorXd::Constant(starts.cols(), radius);
+
+  CsrbfField ten;
+  ten.centres = spread_starts();
+  ten.radii = Eigen::VectorXd::Constant(10, 80.0);
+  ten.coefficients = random_ends(ten.centres)[0] - ten.centres;
+
+  CrowdTimes times{.vertices = layout.vertex_count(),
+                   .centres = centres,
+                   .influences = count_evaluations(mesh, starts, radius)};
+  BestOfThread build, solve, list, evaluate, by_ten;
+  for (int n = 0; n < repetitions; ++n) {
+    build.measure(times.vertices, [&](std::size_t) { solver.build(starts, radii); });
+    solve.measure(times.vertices, [&](std::size_t) { solver.solve(moves, field); });
+    evaluator.set_field(field);
+    std::size_t pairs = 0;
+    list.measure(times.vertices, [&](std::size_t) { pairs += evaluator.count_pairs(rest); });
+    evaluate.measure(times.vertices, [&](std::size_t) { evaluator.displace(rest, out); });
+    evaluator.set_field(ten);
+    by_ten.measure(times.vertices, [&](std::size_t) { evaluator.displace(rest, out); });
+  }
+  times.build_us = build.us();
+  times.solve_us = solve.us();
+  times.list_us = list.us();
+  times.evaluate_us = evaluate.us();
+  times.ten_ns = 1e3 * by_ten.us() / static_cast<double>(10 * times.vertices);
+  return times;
+}
+
+NormalTimes measure_normals(int cells, double radius, int repetitions) {
+  const Points mesh = table1_plane(cells);
+  const BlockLayout layout(mesh);
+  const BoundedShape rest(layout.pack());
+  Points up = Points::Zero(3, mesh.cols());
+  up.row(2).setOnes();
+  const BlockShape normals = layout.pack_vectors(up);
+  BlockShape turned = normals;
+  BlockShape out = rest.shape;
+  BoundedShape moving = rest;
+  BoundedShape moving_too = rest;
+  const Points starts = table1_starts();
+  CsrbfSolver solver({});
+  CsrbfField there;
+  solver.build(starts, Eigen::VectorXd::Constant(10, radius));
+  solver.solve(random_ends(starts)[0] - starts, there);
+  there.coefficients *= 1e-6; // the shape goes on and on
+  BlockEvaluator evaluator(layout, 10, {});
+  evaluator.set_field(there);
+  NormalTimes times{.vertices = layout.vertex_count(), .radius = radius};
+  BestOfThread places, alone, both;
+  for (int n = 0; n < repetitions; ++n) {
+    places.measure(times.vertices, [&](std::size_t) { evaluator.displace(moving); });
+    alone.measure(times.vertices, [&](std::size_t) { evaluator.turn(rest, normals, turned); });
+    both.measure(times.vertices, [&](std::size_t) { evaluator.displace(moving_too, &turned); });
+  }
+  times.places_us = places.us();
+  times.normals_us = alone.us();
+  times.both_us = both.us();
+  return times;
+}
+
+} // namespace nendo::app

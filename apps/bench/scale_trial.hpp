@@ -1,0 +1,54 @@
+#pragma once
+// How the deformation's cost grows: with the vertices, up to ten millions of them, with the control
+// points, up to a thousand, and with normals. Times are the thread's, the best of many.
+
+#include <cstddef>
+#include <optional>
+
+namespace nendo::app {
+
+/// Ten supports that each reach a fifth of the model.
+struct GrowthTimes {
+  std::size_t vertices = 0;
+  std::size_t influences = 0; ///< vertices within a support, summed over supports
+  double type1_us = 0.0;      ///< evaluated: weights of so many vertices leave the caches
+  double type2_us = 0.0;
+  /// What a deformer takes of memory, with the shape that it makes and its copy of the vertices.
+  std::size_t type1_bytes = 0;
+  std::size_t type2_bytes = 0;
+};
+
+/// The plane of Table 1 in so many cells a side. Nothing if the machine has too little memory left.
+std::optional<GrowthTimes> measure_growth(int cells, int repetitions);
+
+/// Many small supports beside ten that reach every vertex.
+struct CrowdTimes {
+  std::size_t vertices = 0;
+  std::size_t centres = 0;
+  std::size_t influences = 0;
+  double build_us = 0.0; ///< order, assembly, factor
+  double solve_us = 0.0;
+  double list_us = 0.0;     ///< which supports reach which blocks
+  double evaluate_us = 0.0; ///< that, and the evaluation
+  double ten_ns = 0.0;      ///< an influence's time, with the ten
+
+  double ns_an_influence() const noexcept {
+    return 1e3 * evaluate_us / static_cast<double>(influences);
+  }
+};
+
+/// Centres at random over the plane, about `overlap` of which reach a vertex.
+CrowdTimes measure_crowd(int cells, std::size_t centres, double overlap, int repetitions);
+
+/// Ten supports of this radius near the plane of Table 1: places alone, normals alone, and both.
+struct NormalTimes {
+  std::size_t vertices = 0;
+  double radius = 0.0;
+  double places_us = 0.0;
+  double normals_us = 0.0;
+  double both_us = 0.0;
+};
+
+NormalTimes measure_normals(int cells, double radius, int repetitions);
+
+} // namespace nendo::app

@@ -1,0 +1,138 @@
+// nendo bench table1: the paper's Table 1 on this machine, beside the paper's figures and a plain
+// loop that the compiler vectorises.
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/base/files.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/simd_choice.hpp"
+#include "bench/table1.hpp"
+#include "bench/table1_paper.hpp"
+#include "bench/table1_picture.hpp"
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct Options {
+  std::string simd;
+  std::string picture;
+  double seconds_per_cell = 1.0;
+  bool json = false;
+};
+
+/// One mesh of one layout.
+struct Place {
+  const Table1Layout& layout;
+  std::size_t plane;
+  std::size_t vertices, triangles;
+};
+
+void print_json(const Place& place, const Table1Entry& entry) {
+  const Table1Cell& cell = entry.cell;
+  for (std::size_t type = 0; type < 2; ++type)
+    for (const int threads : {1, 2}) {
+      nlohmann::ordered_json object{
+          {"layout", place.layout.name},
+          {"vertices", place.vertices},
+          {"triangles", place.triangles},
+          {"radius", table1_radii.at(entry.radius)},
+          {"type", type + 1},
+          {"threads", threads},
+          {"frames_per_second", threads == 1 ? cell.one_thread[type] : cell.two_threads[type]},
+          {"evaluations", cell.evaluations},
+          {"paper_frames_per_second",
+           (type == 0 ? paper_type1 : paper_type2).at(entry.plane).at(entry.radius)},
+          {"paper_evaluations", paper_evaluations.at(entry.plane).at(entry.radius)},
+          {"plain_loop_frames_per_second", nullptr}};
+      if (cell.plain_loop[type] > 0.0)
+        object["plain_loop_frames_per_second"] = cell.plain_loop[type];
+      std::cout << object.dump() << std::endl;
+    }
+}
+
+void print_heading() {
+  std::printf("The paper's Table 1 in frames a second. The paper: Athlon 64 3400+, drawing "
+              "included. Here: the best of\nmany, solving and moving all vertices; plain: a loop "
+              "that the compiler vectorises; 2 thr: two threads.\n");
+}
+
+void print_layout(const Table1Layout& layout) {
+  std::printf("\nlayout %s: ten control points at z = %.0f\n", layout.name, layout.height);
+  std::printf("%25s %17s  %35s  %35s\n", "", "evaluations", "------------- Type-1 --------------",
+              "------------- Type-2 --------------");
+  std::printf("%9s %8s %6s %8s %8s  %7s %8s %9s %8s  %7s %8s %9s %8s\n", "triangles", "vertices",
+              "radius", "here", "paper", "paper", "plain", "1 thread", "2 thr", "paper", "plain",
+              "1 thread", "2 thr");
+}
+
+void print_text(const Place& place, const Table1Entry& entry) {
+  const Table1Cell& cell = entry.cell;
+  std::printf("%9zu %8zu %6.0f %8zu %8zu", place.triangles, place.vertices,
+              table1_radii.at(entry.radius), cell.evaluations,
+              paper_evaluations.at(entry.plane).at(entry.radius));
+  for (std::size_t type = 0; type < 2; ++type)
+    std::printf("  %7.1f %8.0f %9.0f %8.0f",
+                (type == 0 ? paper_type1 : paper_type2).at(entry.plane).at(entry.radius),
+                cell.plain_loop[type], cell.one_thread[type], cell.two_threads[type]);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+std::vector<Table1Entry> measure_layout(const Table1Layout& layout, const Options& options) {
+  const deform::Points starts = table1_starts(layout.height);
+  std::vector<Table1Entry> entries;
+  for (std::size_t plane = 0; plane < table1_planes.size(); ++plane) {
+    const deform::Mesh mesh = table1_mesh(table1_planes.at(plane));
+    const Place place{layout, plane, static_cast<std::size_t>(mesh.vertices.cols()),
+                      mesh.face_count()};
+    for (std::size_t radius = 0; radius < table1_radii.size(); ++radius) {
+      const Table1Cell cell = measure_table1_cell(mesh.vertices, starts, table1_radii.at(radius),
+                                                  options.seconds_per_cell);
+      entries.push_back({plane, radius, cell});
+      options.json ? print_json(place, entries.back()) : print_text(place, entries.back());
+    }
+  }
+  return entries;
+}
+
+int bench_table1(const Options& options) {
+  constexpr double longest_s = 600.0;
+  if (!(options.seconds_per_cell > 0.0 && options.seconds_per_cell <= longest_s))
+    return report({Errc::usage, "--seconds-per-cell: more than 0, at most 600"});
+  if (const auto chosen = choose_simd(options.simd); !chosen) return report(chosen.error());
+  if (!options.json) print_heading();
+  for (const Table1Layout& layout : table1_layouts) {
+    if (!options.json) print_layout(layout);
+    const auto entries = measure_layout(layout, options);
+    if (options.picture.empty() || &layout != table1_layouts.data()) continue;
+    const auto written = replace_file(options.picture, table1_picture(entries, layout.name));
+    if (!written) return report(written.error());
+  }
+  return 0;
+}
+
+} // namespace
+
+void add_table1_bench(Command& bench) {
+  auto options = std::make_shared<Options>();
+  Command command = bench.add_command(
+      "table1", "The paper's Table 1 on this machine, beside the paper's figures and a plain loop");
+  command.add_option("--seconds-per-cell", options->seconds_per_cell,
+                     "Seconds for each mesh, radius and layout, of which there are forty");
+  command.add_option("--picture", options->picture,
+                     "Also draw the layout 'near' beside the paper's figures, as FILE.svg");
+  command.add_option("--simd", options->simd,
+                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
+  command.add_flag("--json", options->json, "A JSON object a line");
+  command.on_chosen([options] { return bench_table1(*options); });
+}
+
+} // namespace nendo::app

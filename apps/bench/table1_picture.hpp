@@ -1,0 +1,22 @@
+#pragma once
+// The paper's Table 1 and ours as a picture.
+
+#include <string>
+#include <vector>
+
+#include "bench/table1_trial.hpp"
+
+namespace nendo::app {
+
+/// A cell and where in the paper's table it stands.
+struct Table1Entry {
+  std::size_t plane;  ///< in table1_planes
+  std::size_t radius; ///< in table1_radii
+  Table1Cell cell;
+};
+
+/// An SVG of frames a second on a logarithmic scale, one panel a type: for each entry the paper's
+/// below, the plain loop's and ours with one thread and two above.
+std::string table1_picture(const std::vector<Table1Entry>& entries, const std::string& layout);
+
+} // namespace nendo::app

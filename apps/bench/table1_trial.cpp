@@ -1,0 +1,100 @@
+#include "bench/table1_trial.hpp"
+
+#include <chrono>
+
+#include <nendo/deform/type1.hpp>
+
+#include "bench/deform_frames.hpp"
+#include "bench/plain_deformer.hpp"
+#include "bench/table1.hpp"
+
+namespace nendo::app {
+namespace {
+
+using namespace nendo::deform;
+
+/// Calls `round` once, and again until the time is over.
+template <class Round>
+void for_seconds(double seconds, const Round& round) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto passed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  do
+    round();
+  while (passed() < seconds);
+}
+
+class Trial {
+public:
+  Trial(const Points& plane, const Points& starts, double radius)
+      : plane_(plane), starts_(starts), radius_(radius), ends_(random_ends(starts)),
+        vertices_(static_cast<std::size_t>(plane.cols())) {}
+
+  /// The plain loop and one thread take turns.
+  void measure_alone(double seconds, Table1Cell& cell) {
+    PlainDeformer plain1(plane_, starts_, radius_);
+    PlainDeformer plain2(plane_, starts_, radius_);
+    Type1Deformer type1(plane_, starts_.cols(), radius_, {});
+    Type2Deformer type2(plane_, starts_.cols(), radius_, one_piece, {});
+    type1.grab(starts_);
+    type2.begin(starts_);
+    BlockShape out;
+    Best p1, p2, t1, t2;
+    for_seconds(seconds, [&] {
+      if (can_run_plain()) {
+        p1.measure(vertices_, [&](std::size_t n) { plain1.type1(ends_[n % poses]); });
+        p2.measure(vertices_, [&](std::size_t n) {
+          const Points& end = ends_[n / 2 % poses];
+          n % 2 == 0 ? plain2.type2(starts_, end) : plain2.type2(end, starts_);
+        });
+      }
+      t1.measure(vertices_, [&](std::size_t n) { type1.apply(ends_[n % poses], out); });
+      t2.measure(vertices_, [&](std::size_t n) { stroke(type2, starts_, ends_, n); });
+    });
+    cell.plain_loop = {p1.per_second(), p2.per_second()};
+    cell.one_thread = {t1.per_second(), t2.per_second()};
+  }
+
+  /// The second thread spins as long as its deformer lives, so that nothing else is measured then.
+  double type1_by_two(double seconds) {
+    Type1Deformer type1(plane_, starts_.cols(), radius_, {}, {.threads = 2});
+    type1.grab(starts_);
+    BlockShape out;
+    Best best;
+    for_seconds(seconds, [&] {
+      best.measure(vertices_, [&](std::size_t n) { type1.apply(ends_[n % poses], out); });
+    });
+    return best.per_second();
+  }
+  double type2_by_two(double seconds) {
+    Type2Deformer type2(plane_, starts_.cols(), radius_, one_piece, {}, {.threads = 2});
+    type2.begin(starts_);
+    Best best;
+    for_seconds(seconds, [&] {
+      best.measure(vertices_, [&](std::size_t n) { stroke(type2, starts_, ends_, n); });
+    });
+    return best.per_second();
+  }
+
+private:
+  const Points& plane_;
+  const Points& starts_;
+  double radius_;
+  std::array<Points, poses> ends_;
+  std::size_t vertices_;
+};
+
+} // namespace
+
+Table1Cell measure_table1_cell(const Points& plane, const Points& starts, double radius,
+                               double seconds) {
+  Table1Cell cell;
+  cell.evaluations = count_evaluations(plane, starts, radius);
+  Trial trial(plane, starts, radius);
+  trial.measure_alone(0.6 * seconds, cell);
+  cell.two_threads = {trial.type1_by_two(0.2 * seconds), trial.type2_by_two(0.2 * seconds)};
+  return cell;
+}
+
+} // namespace nendo::app

@@ -1,0 +1,27 @@
+#pragma once
+// One cell of the paper's Table 1, measured: both types with one thread and two, and both by the
+// plain loop.
+
+#include <array>
+#include <cstddef>
+
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::app {
+
+/// Frames a second, the best of many; a frame takes new displacements, solves, and moves all
+/// vertices; one of Type-2 assembles and factorises, too. Nothing is drawn.
+struct Table1Cell {
+  using Types = std::array<double, 2>; ///< Type-1, Type-2
+
+  std::size_t evaluations = 0; ///< a frame, counted
+  Types one_thread{};
+  Types two_threads{};
+  Types plain_loop{}; ///< 0 if the processor has no AVX2
+};
+
+/// Takes about so many seconds, but at least one repetition of each measurement.
+Table1Cell measure_table1_cell(const deform::Points& plane, const deform::Points& starts,
+                               double radius, double seconds);
+
+} // namespace nendo::app
