@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -275,6 +276,42 @@ TEST_SUITE("bench") {
     CHECK(repeated["groups"] == told["groups"]); // the same seed is the same wearer
   }
 
+  TEST_CASE("bench rt tells the throughput of rings and the cost of publishing, beside baselines") {
+    const auto done = nendo::test::nendo({"bench", "rt", "--rounds", "2", "--json"});
+    if (std::thread::hardware_concurrency() < 2) {
+      CHECK(done.exit_code == 1);
+      CHECK(is_one_line_about(done.err, "two processors"));
+      return;
+    }
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    std::size_t rings = 0;
+    std::size_t frames = 0;
+    for (const auto& line : lines_of(done.out)) {
+      CAPTURE(line);
+      const auto told = nlohmann::json::parse(line);
+      if (told["part"] == "rings") {
+        ++rings;
+        CHECK(told["element_bytes"] == 64);
+        CHECK(told["samples"].get<int>() + told["dropped"].get<int>() == 2);
+        if (told["samples"] != 0) CHECK(told["elements_a_second"].get<double>() > 0.0);
+      } else {
+        ++frames;
+        CHECK(told["part"] == "handoff");
+        CHECK(told["publishes"] == 400);
+        CHECK(told["publish_p999_ns"] >= told["publish_p50_ns"]);
+        CHECK(told["notify_to_publish_p50"].get<double>() ==
+              doctest::Approx(told["notify_p50_ns"].get<double>() /
+                              told["publish_p50_ns"].get<double>()));
+      }
+    }
+    CHECK(rings >= 5); // more where other libraries are
+    CHECK(frames == 2);
+    const auto one = nendo::test::nendo({"bench", "rt", "--part", "rings", "--rounds", "1"});
+    CHECK(one.exit_code == 0);
+    CHECK(one.out.find("plain ring") != std::string::npos);
+    CHECK(one.out.find("publishing") == std::string::npos);
+  }
+
   TEST_CASE("bench says what cannot be measured") {
     const auto rate = nendo::test::nendo({"bench", "driver", "--rate", "1000"});
     CHECK(rate.exit_code == 2);
@@ -294,6 +331,12 @@ TEST_SUITE("bench") {
     const auto hermits = nendo::test::nendo({"bench", "solve", "--neighbours", "0"});
     CHECK(hermits.exit_code == 2);
     CHECK(is_one_line_about(hermits.err, "--neighbours"));
+    const auto never = nendo::test::nendo({"bench", "rt", "--rounds", "0"});
+    CHECK(never.exit_code == 2);
+    CHECK(is_one_line_about(never.err, "--rounds"));
+    const auto unheard = nendo::test::nendo({"bench", "rt", "--part", "gears"});
+    CHECK(unheard.exit_code == 2);
+    CHECK(is_one_line_about(unheard.err, "gears"));
     const auto few = nendo::test::nendo({"bench", "soak", "--records", "1"});
     CHECK(few.exit_code == 2);
     CHECK(is_one_line_about(few.err, "--records"));

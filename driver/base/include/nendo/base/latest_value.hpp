@@ -2,17 +2,20 @@
 // LatestValue: hands the newest value from one writer thread to one reader thread through three
 // buffers. The writer fills its buffer in place and publishes it with one exchange, whatever its
 // size; a reader that polls gets the newest value or learns that there is none. Both sides are
-// wait-free and never touch the same buffer.
+// wait-free and never touch the same buffer. Proof, bounds and figures: RINGS.md.
 
 #include <array>
-#include <atomic>
 #include <cstdint>
+
+#include <nendo/base/atomics.hpp>
 
 namespace nendo {
 
-template <class T>
+template <class T, class Atomics = StdAtomics>
 class LatestValue {
-  static_assert(std::atomic<std::uint8_t>::is_always_lock_free);
+  using Buffer = typename Atomics::template Plain<T>;
+  using Middle = typename Atomics::template Atomic<std::uint8_t>;
+  static_assert(Middle::is_always_lock_free);
 
 public:
   /// All three buffers start as copies of `initial`, so that sizes are set before the first
@@ -20,7 +23,7 @@ public:
   explicit LatestValue(const T& initial) : buffers_{initial, initial, initial} {}
 
   /// Writer only: the buffer to fill. It holds some older value; fill all of it.
-  T& back() noexcept { return buffers_[back_]; }
+  Buffer& back() noexcept { return buffers_[back_]; }
   /// Writer only, wait-free: makes back() the latest value. True if that replaced one that nobody
   /// had read.
   bool publish() noexcept {
@@ -37,16 +40,16 @@ public:
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & index_mask;
     return true;
   }
-  const T& front() const noexcept { return buffers_[front_]; }
+  const Buffer& front() const noexcept { return buffers_[front_]; }
 
 private:
   static constexpr std::uint8_t fresh = 4;
   static constexpr std::uint8_t index_mask = 3;
 
-  std::array<T, 3> buffers_;
-  alignas(128) std::uint8_t back_ = 0;
-  alignas(128) std::atomic<std::uint8_t> middle_{1};
-  alignas(128) std::uint8_t front_ = 2;
+  std::array<Buffer, 3> buffers_;
+  alignas(2 * cache_line_bytes) std::uint8_t back_ = 0;
+  alignas(2 * cache_line_bytes) Middle middle_{1};
+  alignas(2 * cache_line_bytes) std::uint8_t front_ = 2;
 };
 
 } // namespace nendo

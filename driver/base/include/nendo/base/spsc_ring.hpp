@@ -1,33 +1,26 @@
 #pragma once
 // SpscRing: one producer thread, one consumer thread, lock-free, fixed capacity. When it is full
-// the newest element is refused and counted; nobody ever waits. Indices run freely over 64 bits;
-// each side caches the other's index and looks at the shared one only when the cached value no
-// longer suffices.
+// the newest element is refused and counted; nobody ever waits. Each side caches the other's index
+// and looks at it again only when it must. Proof, bounds and figures: RINGS.md.
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <type_traits>
 #include <utility>
 
+#include <nendo/base/atomics.hpp>
+#include <nendo/base/ring_counters.hpp>
+
 namespace nendo {
 
-inline constexpr std::size_t cache_line_bytes = 64;
-
-/// Monotonic counts; once both sides are at rest: offered = consumed + refused + size().
-struct RingCounters {
-  std::uint64_t offered = 0;  ///< pushes tried
-  std::uint64_t refused = 0;  ///< pushes refused because the ring was full
-  std::uint64_t consumed = 0; ///< elements taken out
-};
-
-template <class T>
+template <class T, class Atomics = StdAtomics>
 class SpscRing {
-  static_assert(std::is_trivially_copyable_v<T>);
-  static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+  using Index = typename Atomics::template Atomic<std::uint64_t>;
+  using Element = typename Atomics::template Plain<T>;
+  static_assert(std::is_trivially_copyable_v<T> && Index::is_always_lock_free);
 
 public:
   /// Allocates once. The capacity is `at_least` rounded up to a power of two.
@@ -36,73 +29,93 @@ public:
         slots_(std::make_unique<Slot[]>(mask_ + 1)) {}
 
   /// Producer only, wait-free. False: full, the element was refused and counted.
-  bool try_push(const T& element) noexcept {
+  bool try_push(const T& element) noexcept { return push_n({&element, 1}) == 1; }
+
+  /// Producer only, wait-free: pushes as many of the first as fit and publishes them together.
+  /// Returns how many; the others were refused and counted.
+  std::size_t push_n(std::span<const T> elements) noexcept {
+    const std::size_t fitting = claim(elements.size());
+    for (std::size_t n = 0; n < fitting; ++n)
+      claimed(n) = elements[n];
+    if (fitting > 0) commit(fitting);
+    if (fitting < elements.size()) refuse(elements.size() - fitting);
+    return fitting;
+  }
+
+  /// Producer only, wait-free: push_n() in steps, to fill elements in their place. Says how many of
+  /// `wanted` slots are free; claimed(0) to claimed(that - 1) may be written until commit(), which
+  /// publishes the first `count` together. refuse() counts those that the producer had no slot for.
+  [[nodiscard]] std::size_t claim(std::size_t wanted) noexcept {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
-    if (tail - cached_head_ > mask_) {
-      cached_head_ = head_.load(std::memory_order_acquire);
-      if (tail - cached_head_ > mask_) {
-        refused_.store(refused_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-        return false;
-      }
+    if (wanted > capacity() - (tail - cached_head_)) look_at_head();
+    return std::min<std::size_t>(wanted, capacity() - (tail - cached_head_));
+  }
+  Element& claimed(std::size_t n) noexcept {
+    return slots_[(tail_.load(std::memory_order_relaxed) + n) & mask_].element;
+  }
+  void commit(std::size_t count) noexcept {
+    const std::uint64_t tail = tail_.load(std::memory_order_relaxed) + count;
+    const std::uint64_t high_water = high_water_.load(std::memory_order_relaxed);
+    if (tail - cached_head_ > high_water) { // or so it seems to one who has not looked lately
+      look_at_head();
+      high_water_.store(std::max(high_water, tail - cached_head_), std::memory_order_relaxed);
     }
-    slots_[tail & mask_].element = element;
-    tail_.store(tail + 1, std::memory_order_release);
-    return true;
+    tail_.store(tail, std::memory_order_release);
+  }
+  void refuse(std::size_t count) noexcept {
+    refused_.store(refused_.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
   }
 
   /// Consumer only, wait-free: hands every element present at the call to `sink`, oldest first, and
-  /// frees them together. Returns how many there were.
+  /// frees them together. Returns how many.
   template <class Sink>
   std::size_t drain(Sink&& sink) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
-    const std::uint64_t tail = tail_.load(std::memory_order_acquire);
-    for (std::uint64_t at = head; at != tail; ++at)
+    look_at_tail();
+    for (std::uint64_t at = head; at != cached_tail_; ++at)
       sink(std::as_const(slots_[at & mask_].element));
-    cached_tail_ = tail;
-    head_.store(tail, std::memory_order_release);
-    return static_cast<std::size_t>(tail - head);
+    if (cached_tail_ != head) head_.store(cached_tail_, std::memory_order_release);
+    return static_cast<std::size_t>(cached_tail_ - head);
   }
 
-  /// Consumer only, wait-free.
+  /// Consumer only, wait-free. False: empty.
   bool try_pop(T& element) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
-    if (head == cached_tail_) {
-      cached_tail_ = tail_.load(std::memory_order_acquire);
-      if (head == cached_tail_) return false;
-    }
+    if (head == cached_tail_) look_at_tail();
+    if (head == cached_tail_) return false;
     element = slots_[head & mask_].element;
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
 
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
-  /// Any thread; exact only while both sides are at rest.
+  /// Any thread, wait-free; exact only while both sides are at rest, and never less than none.
   [[nodiscard]] std::size_t size() const noexcept {
-    const std::uint64_t head = head_.load(std::memory_order_acquire);
-    return static_cast<std::size_t>(tail_.load(std::memory_order_acquire) - head);
+    const RingCounters now = counters();
+    return static_cast<std::size_t>(now.offered - now.refused - now.consumed);
   }
-  /// Any thread, wait-free.
   [[nodiscard]] RingCounters counters() const noexcept {
     const std::uint64_t consumed = head_.load(std::memory_order_acquire);
     const std::uint64_t refused = refused_.load(std::memory_order_relaxed);
-    return {tail_.load(std::memory_order_acquire) + refused, refused, consumed};
+    return {tail_.load(std::memory_order_relaxed) + refused, refused, consumed,
+            high_water_.load(std::memory_order_relaxed)};
   }
 
 private:
-  // A slot starts on a cache line where that does not waste most of it: neighbours then never share
-  // one.
-  struct alignas(sizeof(T) >= cache_line_bytes / 2 ? cache_line_bytes : alignof(T)) Slot {
-    T element;
+  // On a line of its own, where that does not waste most of it.
+  struct alignas(sizeof(T) >= cache_line_bytes / 2 ? cache_line_bytes : alignof(Element)) Slot {
+    Element element;
   };
 
+  void look_at_head() noexcept { cached_head_ = head_.load(std::memory_order_acquire); }
+  void look_at_tail() noexcept { cached_tail_ = tail_.load(std::memory_order_acquire); }
   const std::size_t mask_;
   std::unique_ptr<Slot[]> slots_;
-  // Written by the producer.
-  alignas(2 * cache_line_bytes) std::atomic<std::uint64_t> tail_{0};
+  alignas(2 * cache_line_bytes) Index tail_{0}; // these four are the producer's to write
   std::uint64_t cached_head_ = 0;
-  std::atomic<std::uint64_t> refused_{0};
-  // Written by the consumer.
-  alignas(2 * cache_line_bytes) std::atomic<std::uint64_t> head_{0};
+  Index refused_{0};
+  Index high_water_{0};
+  alignas(2 * cache_line_bytes) Index head_{0}; // these two the consumer's
   std::uint64_t cached_tail_ = 0;
 };
 

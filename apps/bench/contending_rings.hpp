@@ -1,0 +1,121 @@
+#pragma once
+// The rings of `nendo bench rt`, behind one face: send() waits until all of a batch is in the ring,
+// receive() hands over what it finds, and tells how much. Other libraries' take part where their
+// headers are installed.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <nendo/base/spsc_ring.hpp>
+
+#include "bench/plain_ring.hpp"
+
+#ifdef NENDO_READERWRITERQUEUE
+#include <readerwriterqueue/readerwriterqueue.h>
+#endif
+#ifdef NENDO_BOOST_LOCKFREE
+#include <boost/lockfree/spsc_queue.hpp>
+#endif
+
+namespace nendo::app {
+
+using Element = std::array<std::uint64_t, 8>;
+inline constexpr std::size_t contenders_capacity = 1024;
+
+template <std::size_t offset_bytes>
+struct PlainContender {
+  static constexpr const char* name =
+      offset_bytes == 0 ? "plain ring, slots on lines" : "plain ring";
+  void send(std::span<const Element> batch) noexcept {
+    for (const Element& element : batch)
+      while (!ring.try_push(element)) {
+      }
+  }
+  template <class Sink>
+  std::size_t receive(const Sink& sink) noexcept {
+    const Element* element = ring.front();
+    if (element == nullptr) return 0;
+    sink(*element);
+    ring.pop();
+    return 1;
+  }
+  PlainRing<Element> ring{contenders_capacity, offset_bytes};
+};
+
+struct SingleContender {
+  static constexpr const char* name = "SpscRing";
+  void send(std::span<const Element> batch) noexcept {
+    for (const Element& element : batch)
+      while (!ring.try_push(element)) {
+      }
+  }
+  template <class Sink>
+  std::size_t receive(const Sink& sink) noexcept {
+    Element element;
+    if (!ring.try_pop(element)) return 0;
+    sink(element);
+    return 1;
+  }
+  SpscRing<Element> ring{contenders_capacity};
+};
+
+/// As the loop uses it.
+struct DrainedContender : SingleContender {
+  static constexpr const char* name = "SpscRing, drained";
+  template <class Sink>
+  std::size_t receive(const Sink& sink) noexcept {
+    return ring.drain(sink);
+  }
+};
+
+struct BatchContender {
+  static constexpr const char* name = "SpscRing, batched";
+  void send(std::span<const Element> batch) noexcept {
+    while (!batch.empty())
+      batch = batch.subspan(ring.push_n(batch));
+  }
+  template <class Sink>
+  std::size_t receive(const Sink& sink) noexcept {
+    return ring.drain(sink);
+  }
+  SpscRing<Element> ring{contenders_capacity};
+};
+
+#ifdef NENDO_READERWRITERQUEUE
+struct ReaderWriterQueueContender {
+  static constexpr const char* name = "readerwriterqueue";
+  void send(std::span<const Element> batch) {
+    for (const Element& element : batch)
+      while (!queue.try_enqueue(element)) {
+      }
+  }
+  template <class Sink>
+  std::size_t receive(const Sink& sink) {
+    const Element* element = queue.peek();
+    if (element == nullptr) return 0;
+    sink(*element);
+    queue.pop();
+    return 1;
+  }
+  moodycamel::ReaderWriterQueue<Element> queue{contenders_capacity};
+};
+#endif
+
+#ifdef NENDO_BOOST_LOCKFREE
+struct BoostContender {
+  static constexpr const char* name = "boost::lockfree::spsc_queue";
+  void send(std::span<const Element> batch) {
+    for (const Element& element : batch)
+      while (!queue.push(element)) {
+      }
+  }
+  template <class Sink>
+  std::size_t receive(const Sink& sink) {
+    return queue.consume_one(sink);
+  }
+  boost::lockfree::spsc_queue<Element, boost::lockfree::capacity<contenders_capacity>> queue;
+};
+#endif
+
+} // namespace nendo::app

@@ -1,0 +1,50 @@
+// nendo bench rt: what real time rests on, part by part.
+
+#include "bench/rt_bench.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "bench/bench.hpp"
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct Part {
+  const char* name;
+  Result<void> (*measure)(const RtOptions& options);
+};
+constexpr std::array parts{Part{"rings", measure_rings}, Part{"handoff", measure_handoff}};
+
+struct Options {
+  RtOptions rt;
+  std::string part = "all";
+};
+
+int bench_rt(const Options& options) {
+  if (options.rt.rounds == 0 || options.rt.rounds > 10'000)
+    return report({Errc::usage, "--rounds: from 1 to 10000"});
+  for (const Part& part : parts) {
+    if (options.part != "all" && options.part != part.name) continue;
+    const auto done = part.measure(options.rt);
+    if (!done) return report(done.error());
+  }
+  return 0;
+}
+
+} // namespace
+
+void add_rt_bench(Command& bench) {
+  auto options = std::make_shared<Options>();
+  Command command =
+      bench.add_command("rt", "Rings and frame hand-off, beside others in the same run");
+  command.add_option("--part", options->part, "What to measure")
+      .one_of({"all", "rings", "handoff"});
+  command.add_option("--rounds", options->rt.rounds, "Measurements of each");
+  command.add_flag("--json", options->rt.json, "One JSON object a line");
+  command.on_chosen([options] { return bench_rt(*options); });
+}
+
+} // namespace nendo::app

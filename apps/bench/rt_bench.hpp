@@ -1,0 +1,22 @@
+#pragma once
+// The parts of nendo bench rt. Each measures one thing that real time depends on, beside a baseline
+// in the same run, and prints it.
+
+#include <cstdint>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::app {
+
+struct RtOptions {
+  std::uint64_t rounds = 20; ///< of every contender, in an order that rotates
+  bool json = false;         ///< one object a line in place of text
+};
+
+/// SpscRing, one element at a time and in batches, beside other rings. Takes some 0.2 s a round.
+Result<void> measure_rings(const RtOptions& options);
+/// What publishing a frame costs its writer: LatestValue beside a mutex and a condition variable.
+/// Takes some 0.6 s a round.
+Result<void> measure_handoff(const RtOptions& options);
+
+} // namespace nendo::app

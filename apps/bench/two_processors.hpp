@@ -1,0 +1,41 @@
+#pragma once
+// Two threads, each on a processor of its own, and how long a cache line takes from one to the
+// other and back. On a virtual machine that changes under one's feet, so it is measured beside
+// everything that depends on it.
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+#include <nendo/base/atomics.hpp>
+#include <nendo/base/result.hpp>
+
+namespace nendo::app {
+
+struct TwoProcessors {
+  int first = 0;
+  int second = 0;
+};
+
+/// The first two that this process may use; an error if there is only one.
+Result<TwoProcessors> two_processors();
+
+/// Runs each on its processor, at the same time, and returns when both are done.
+void run_on(const TwoProcessors& processors, const std::function<void()>& on_first,
+            const std::function<void()>& on_second);
+
+/// One cache line that goes to and fro.
+class PingPong {
+public:
+  /// The one side; as often as the other one calls measure_ns().
+  void answer() noexcept;
+  /// The other: the median time of a round trip.
+  double measure_ns();
+
+private:
+  alignas(2 * cache_line_bytes) std::atomic<std::uint64_t> ball_{0};
+  alignas(2 * cache_line_bytes) std::uint64_t answered_ = 0;
+  alignas(2 * cache_line_bytes) std::uint64_t measured_ = 0;
+};
+
+} // namespace nendo::app

@@ -1,0 +1,184 @@
+// Lock-free means: whoever is stopped, and wherever, the other one goes on. Here it is stopped 300
+// times at instructions that chance picks. The control is a queue behind a mutex, which must fail.
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <utility>
+
+#include <doctest/doctest.h>
+
+#include <nendo/base/frame_pool.hpp>
+#include <nendo/base/latest_value.hpp>
+#include <nendo/base/overwriting_ring.hpp>
+
+#include "support/parked.hpp"
+
+namespace {
+
+constexpr int parkings = 300;
+constexpr int operations = 100; ///< in each parking
+
+/// While the peer stands still, `operation` must say each time that it got on with its work.
+/// Returns how often it did not.
+template <class Operation>
+int stalls(std::function<void()> peers_work, Operation operation) {
+  nendo::test::ParkedPeer peer(std::move(peers_work));
+  int stalled = 0;
+  for (int n = 0; n < parkings; ++n) {
+    peer.park();
+    for (int k = 0; k < operations; ++k)
+      stalled += operation() ? 0 : 1;
+    peer.resume();
+  }
+  return stalled;
+}
+
+using Block = std::array<std::uint64_t, 64>; ///< long enough to be stopped in
+
+} // namespace
+
+TEST_SUITE("parked") {
+  TEST_CASE("the control: a mutex makes one side wait for the other") {
+    std::mutex mutex;
+    std::deque<Block> queue;
+    const auto peer = [&] {
+      const std::lock_guard lock(mutex);
+      if (!queue.empty()) queue.pop_front();
+      queue.push_back(Block{});
+    };
+    CHECK(stalls(peer, [&] {
+            const std::unique_lock lock(mutex, std::try_to_lock);
+            return lock.owns_lock();
+          }) > 0);
+  }
+
+  TEST_CASE("a producer goes on beside a consumer that stands still, until the ring is full") {
+    nendo::SpscRing<Block> ring(16);
+    std::uint64_t offered = 0;
+    std::uint64_t taken = 0;
+    const auto drain = [&] { taken += ring.drain([](const Block&) {}); };
+    CHECK(stalls(drain, [&] {
+            ++offered;
+            const bool full = ring.size() == ring.capacity();
+            return ring.try_push(Block{}) != full;
+          }) == 0);
+    drain();
+    CHECK(ring.counters().offered == offered);
+    CHECK(ring.counters().consumed == taken);
+    CHECK(offered == taken + ring.counters().refused);
+  }
+
+  TEST_CASE("a consumer goes on beside a producer that stands still, until the ring is empty") {
+    nendo::SpscRing<Block> ring(16);
+    std::uint64_t taken = 0;
+    CHECK(stalls([&] { ring.try_push(Block{}); },
+                 [&] {
+                   const bool empty = ring.size() == 0;
+                   Block block;
+                   const bool got = ring.try_pop(block);
+                   taken += got ? 1U : 0U;
+                   return got != empty;
+                 }) == 0);
+    CHECK(taken > 0);
+    CHECK(ring.counters().offered == taken + ring.counters().refused + ring.size());
+  }
+
+  TEST_CASE("a ring that overwrites takes every element, whatever its consumer does") {
+    nendo::OverwritingRing<Block> ring(16);
+    Block last{};
+    bool forward = true;
+    const auto drain = [&] {
+      ring.drain([&](const Block& block) {
+        forward = forward && block[0] > last[0] && block[0] == block[63];
+        last = block;
+      });
+    };
+    std::uint64_t number = 0;
+    CHECK(stalls(drain, [&] {
+            Block block;
+            block.fill(++number);
+            ring.push(block);
+            return ring.counters().pushed == number;
+          }) == 0);
+    drain();
+    CHECK(forward);
+    CHECK(last[0] == number);
+    CHECK(ring.counters().got + ring.counters().lost == number);
+  }
+
+  TEST_CASE("a consumer of overwritten elements goes on beside a producer in the middle of one") {
+    nendo::OverwritingRing<Block> ring(16);
+    Block block{};
+    std::uint64_t number = 0;
+    CHECK(stalls(
+              [&] {
+                Block next;
+                next.fill(++number);
+                ring.push(next);
+              },
+              [&] {
+                const auto before = ring.counters();
+                const bool got = ring.try_pop(block);
+                // All that was whole can be had but the one whose slot is being written.
+                const bool had_all = before.got + before.lost + 1 >= before.pushed;
+                return block[0] == block[63] &&
+                       (got || had_all || ring.counters().lost > before.lost);
+              }) == 0);
+    while (ring.try_pop(block)) {
+    }
+    CHECK(ring.counters().got + ring.counters().lost == ring.counters().pushed);
+  }
+
+  TEST_CASE("a writer publishes beside a reader that stands still, and the other way round") {
+    nendo::LatestValue<Block> value(Block{});
+    std::uint64_t number = 0;
+    std::uint64_t seen = 0;
+    bool forward = true;
+    const auto publish = [&] {
+      value.back().fill(++number);
+      value.publish();
+      return true;
+    };
+    const auto read = [&] {
+      value.update();
+      const Block& now = value.front();
+      forward = forward && now[0] >= seen && now[0] == now[63];
+      seen = now[0];
+      return forward;
+    };
+    CHECK(stalls(read, publish) == 0);
+    CHECK(stalls(publish, read) == 0);
+    read();
+    CHECK(seen == number);
+  }
+
+  TEST_CASE(
+      "a recorder's writer goes on beside a reader that stands still, and drops what it must") {
+    nendo::FramePool<Block> pool(8, Block{});
+    std::uint64_t offered = 0;
+    std::uint64_t taken = 0;
+    const auto read = [&] {
+      while (const Block* frame = pool.take()) {
+        ++taken;
+        pool.give_back(frame);
+      }
+    };
+    CHECK(stalls(read, [&] {
+            ++offered;
+            const auto before = pool.counters();
+            Block* frame = pool.claim();
+            if (frame == nullptr) return pool.counters().dropped == before.dropped + 1;
+            frame->fill(offered);
+            pool.publish();
+            return pool.counters().dropped == before.dropped;
+          }) == 0);
+    read();
+    const auto counters = pool.counters();
+    CHECK(counters.offered == offered);
+    CHECK(counters.taken == taken);
+    CHECK(counters.offered == counters.taken + counters.dropped);
+  }
+}

@@ -1,0 +1,284 @@
+#include "explorer/scenarios.hpp"
+
+#include <array>
+#include <memory>
+
+#include <nendo/base/frame_pool.hpp>
+#include <nendo/base/latest_value.hpp>
+#include <nendo/base/overwriting_ring.hpp>
+#include <nendo/base/spsc_ring.hpp>
+
+#include "explorer/atomics.hpp"
+
+namespace nendo::explorer {
+namespace {
+
+using Numbers = std::vector<Value>;
+
+/// What the two sides share, and what each of them notes for itself.
+struct Spsc {
+  SpscRing<Value, Explored> ring{2};
+  Numbers accepted; ///< the producer's
+  Numbers taken;    ///< the consumer's
+
+  void push(Value number) {
+    if (ring.try_push(number)) accepted.push_back(number);
+  }
+  void pop() {
+    Value number = 0;
+    if (ring.try_pop(number)) taken.push_back(number);
+  }
+  void drain() {
+    ring.drain([this](Value number) { taken.push_back(number); });
+  }
+  void check(Value offered) {
+    const std::size_t held = ring.size();
+    const RingCounters counters = ring.counters();
+    require(counters.offered == offered, "every push is counted");
+    require(counters.offered == counters.consumed + counters.refused + held,
+            "offered = consumed + refused + held");
+    require(counters.consumed == taken.size(), "every pop is counted");
+    require(counters.high_water >= held && counters.high_water <= 2, "the high water is a fill");
+    drain();
+    require(taken == accepted, "what was accepted comes out, once, whole and in order");
+  }
+};
+
+Program spsc_program(const std::shared_ptr<Spsc>& shared, Value offered,
+                     const std::function<void(Spsc&)>& producer,
+                     const std::function<void(Spsc&)>& consumer) {
+  return {{[=] { producer(*shared); }, [=] { consumer(*shared); }},
+          [=] { shared->check(offered); }};
+}
+
+struct Pair {
+  Value number = 0;
+  Value complement = 0;
+};
+
+struct Overwriting {
+  OverwritingRing<Pair, Explored> ring{2};
+  Explored::Atomic<Value> rests; ///< 1: the producer is done
+  Value got = 0;
+
+  void push(Value number) { ring.push({number, ~number}); }
+  void take(const Pair& pair) {
+    const OverwritingRingCounters counters = ring.counters();
+    require(pair.complement == ~pair.number, "an element is whole");
+    require(pair.number == counters.got + counters.lost - 1, "those before it were got or lost");
+    require(++got == counters.got, "every element is counted");
+    require(counters.got + counters.lost <= counters.pushed, "no more come out than went in");
+  }
+  void pop() {
+    Pair pair;
+    if (ring.try_pop(pair)) take(pair);
+  }
+  void drain() {
+    const bool last = rests.load(std::memory_order_acquire) == 1;
+    ring.drain([this](const Pair& pair) { take(pair); });
+    const OverwritingRingCounters counters = ring.counters();
+    if (last) require(counters.got + counters.lost == counters.pushed, "at rest it is emptied");
+  }
+  void check(Value pushed) {
+    drain();
+    const OverwritingRingCounters counters = ring.counters();
+    require(counters.pushed == pushed, "every push is counted");
+    require(counters.got + counters.lost == pushed, "got + lost = pushed");
+    require(pushed < 2 || got >= 1, "the newest are still there at the end");
+  }
+};
+
+Program overwriting_program(Value pushed, const std::function<void(Overwriting&)>& consumer) {
+  const auto shared = std::make_shared<Overwriting>();
+  return {{[=] {
+             for (Value number = 0; number < pushed; ++number)
+               shared->push(number);
+             shared->rests.store(1, std::memory_order_release);
+           },
+           [=] { consumer(*shared); }},
+          [=] { shared->check(pushed); }};
+}
+
+struct Latest {
+  LatestValue<Value, Explored> value{0};
+  Value overwritten = 0; ///< the writer's
+  Value seen = 0;        ///< the reader's
+  Value last = 0;
+
+  void publish(Value number) {
+    value.back() = number;
+    overwritten += value.publish() ? 1U : 0U;
+  }
+  void update() {
+    const bool fresh = value.update();
+    const Value now = value.front();
+    require(fresh ? now > last : now == last, "values go forward, and change by an update alone");
+    last = now;
+    seen += fresh ? 1U : 0U;
+  }
+};
+
+struct Pool {
+  FramePool<Value, Explored> pool{2, 0};
+  Numbers published;
+  Numbers taken;
+
+  void write(Value number) {
+    if (auto* frame = pool.claim()) {
+      *frame = number;
+      pool.publish();
+      published.push_back(number);
+    }
+  }
+  const Explored::Plain<Value>* take() {
+    const auto* frame = pool.take();
+    if (frame != nullptr) taken.push_back(*frame);
+    return frame;
+  }
+  void give_back(const Explored::Plain<Value>* frame) {
+    if (frame == nullptr) return;
+    require(*frame != 0, "a frame that is held is not written");
+    pool.give_back(frame);
+  }
+  void check(Value offered) {
+    while (const auto* frame = take())
+      give_back(frame);
+    const FramePoolCounters counters = pool.counters();
+    require(taken == published, "every frame published comes out, once, whole and in order");
+    require(counters.offered == offered, "every frame is counted");
+    require(counters.offered == counters.taken + counters.dropped, "offered = taken + dropped");
+    require(counters.high_water <= 2, "the high water is a fill");
+    Value empty = 0;
+    for (; pool.claim() != nullptr; ++empty)
+      pool.publish();
+    require(empty == 2, "no frame is lost");
+  }
+};
+
+} // namespace
+
+std::vector<Scenario> spsc_ring_scenarios() {
+  const auto ring = [] { return std::make_shared<Spsc>(); };
+  return {
+      {"one at a time, five into two slots",
+       [=] {
+         return spsc_program(
+             ring(), 5,
+             [](Spsc& shared) {
+               for (Value number = 1; number <= 5; ++number)
+                 shared.push(number);
+             },
+             [](Spsc& shared) {
+               for (int n = 0; n < 4; ++n)
+                 shared.pop();
+             });
+       }},
+      {"pushed together, drained",
+       [=] {
+         return spsc_program(
+             ring(), 5,
+             [](Spsc& shared) {
+               for (const auto& batch : {std::array<Value, 2>{1, 2}, std::array<Value, 2>{3, 4}}) {
+                 const std::size_t fitting = shared.ring.push_n(batch);
+                 shared.accepted.insert(shared.accepted.end(), batch.begin(),
+                                        batch.begin() + static_cast<std::ptrdiff_t>(fitting));
+               }
+               shared.push(5);
+             },
+             [](Spsc& shared) {
+               shared.drain();
+               shared.pop();
+               shared.drain();
+             });
+       }},
+      {"filled in place, and counted by an onlooker",
+       [=] {
+         const auto shared = ring();
+         Program program = spsc_program(
+             shared, 3,
+             [](Spsc& self) {
+               const std::size_t granted = self.ring.claim(3); // of which one can not fit
+               for (std::size_t n = 0; n < granted; ++n) {
+                 self.ring.claimed(n) = n + 1;
+                 self.accepted.push_back(n + 1);
+               }
+               self.ring.commit(granted);
+               self.ring.refuse(3 - granted);
+             },
+             [](Spsc& self) {
+               self.drain();
+               const RingCounters seen = self.ring.counters();
+               require(seen.high_water >= self.taken.size(), "so many were in it at once");
+             });
+         program.threads.emplace_back(
+             [shared] { require(shared->ring.size() <= 2, "no more come out than went in"); });
+         return program;
+       }},
+  };
+}
+
+std::vector<Scenario> overwriting_ring_scenarios() {
+  return {
+      {"four into two slots, popped",
+       [] {
+         return overwriting_program(4, [](Overwriting& shared) {
+           for (int n = 0; n < 3; ++n)
+             shared.pop();
+         });
+       }},
+      {"four into two slots, drained",
+       [] { return overwriting_program(4, [](Overwriting& shared) { shared.drain(); }); }},
+  };
+}
+
+std::vector<Scenario> latest_value_scenarios() {
+  return {{"four values, four looks", [] {
+             const auto shared = std::make_shared<Latest>();
+             return Program{{[=] {
+                               for (Value number = 1; number <= 4; ++number)
+                                 shared->publish(number);
+                             },
+                             [=] {
+                               for (int n = 0; n < 4; ++n)
+                                 shared->update();
+                             }},
+                            [=] {
+                              shared->update();
+                              require(shared->last == 4, "the newest comes at last");
+                              require(shared->seen + shared->overwritten == 4,
+                                      "seen + overwritten = published");
+                            }};
+           }}};
+}
+
+std::vector<Scenario> frame_pool_scenarios() {
+  const auto program = [](const std::function<void(Pool&)>& reader) {
+    const auto shared = std::make_shared<Pool>();
+    return Program{{[=] {
+                      for (Value number = 1; number <= 4; ++number)
+                        shared->write(number);
+                    },
+                    [=] { reader(*shared); }},
+                   [=] { shared->check(4); }};
+  };
+  return {
+      {"four frames through two, one held at a time",
+       [=] {
+         return program([](Pool& shared) {
+           for (int n = 0; n < 3; ++n)
+             shared.give_back(shared.take());
+         });
+       }},
+      {"four frames through two, both held, the newer given back first",
+       [=] {
+         return program([](Pool& shared) {
+           const auto* older = shared.take();
+           const auto* newer = shared.take();
+           shared.give_back(newer);
+           shared.give_back(older);
+         });
+       }},
+  };
+}
+
+} // namespace nendo::explorer

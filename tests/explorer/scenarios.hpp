@@ -1,0 +1,23 @@
+#pragma once
+// Small programs that use a lock-free class as its contract allows, with the laws that must hold in
+// every execution of them.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "explorer/explorer.hpp"
+
+namespace nendo::explorer {
+
+struct Scenario {
+  std::string name;
+  std::function<Program()> make;
+};
+
+std::vector<Scenario> spsc_ring_scenarios();
+std::vector<Scenario> overwriting_ring_scenarios();
+std::vector<Scenario> latest_value_scenarios();
+std::vector<Scenario> frame_pool_scenarios();
+
+} // namespace nendo::explorer
