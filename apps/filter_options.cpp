@@ -1,5 +1,7 @@
 #include "filter_options.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 namespace nendo::app {
 namespace {
 
@@ -30,15 +32,20 @@ Result<hand::FilterOptions> FilterArguments::parse() const {
 }
 
 void add_filter_options(Command& command, FilterArguments& arguments) {
+  const hand::FilterOptions usual;
   command.add_option("--filter", arguments.kind,
                      "off, or one-euro: smooths the joints' angles, at rest more than in motion; "
                      "the summary says how late that makes them");
-  command.add_option("--filter-min-cutoff", arguments.min_cutoff_hz,
-                     "The filter's cutoff for a joint at rest, Hz; lower is calmer, and later. "
-                     "Without it, 2");
-  command.add_option("--filter-beta", arguments.beta,
-                     "Hz by which the cutoff rises with each rad/s of a joint's speed; higher is "
-                     "less late in motion. Without it, 4");
+  command.add_option(
+      "--filter-min-cutoff", arguments.min_cutoff_hz,
+      fmt::format("The filter's cutoff for a joint at rest, Hz; lower is calmer, and later. "
+                  "Without it, {:g}",
+                  usual.min_cutoff_hz));
+  command.add_option(
+      "--filter-beta", arguments.beta,
+      fmt::format("Hz by which the cutoff rises with each rad/s of a joint's speed; higher is less "
+                  "late in motion. Without it, {:g}",
+                  usual.beta_hz_per_rad_s));
 }
 
 } // namespace nendo::app

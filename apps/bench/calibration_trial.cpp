@@ -35,7 +35,7 @@ Result<std::vector<PoseReading>> hold_all(Wearer& wearer, std::mt19937_64& rando
   hand::PoseCapture capture;
   std::vector<PoseReading> readings;
   std::uint64_t n = 0;
-  for (const hand::PoseId pose : hand::full_poses()) {
+  for (const hand::PoseId pose : hand::full_takes()) {
     const hand::SensorAngles asked = wearer.perform(pose);
     if (hand::pose_of(pose).touch) errors.touch_gap_m.push_back(wearer.gap_m(pose, asked));
     capture.begin_next();
@@ -117,7 +117,10 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
   std::vector<PoseReading> two;
   for (const PoseReading& reading : *readings) {
     const auto quick = hand::quick_poses();
-    if (std::find(quick.begin(), quick.end(), reading.pose) != quick.end()) two.push_back(reading);
+    const auto had = [&](const PoseReading& other) { return other.pose == reading.pose; };
+    if (std::find(quick.begin(), quick.end(), reading.pose) != quick.end() &&
+        std::none_of(two.begin(), two.end(), had))
+      two.push_back(reading);
   }
   const Watched watched = watch(wearer, random());
   hand::FitOptions full_options; // which is not told how large the hand is

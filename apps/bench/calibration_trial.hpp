@@ -12,7 +12,7 @@
 namespace nendo::app {
 
 enum class Method : std::uint8_t {
-  full,     ///< the guided poses
+  full,     ///< the guided takes
   two_pose, ///< flat and fist
   min_max,  ///< counts of a free motion, spread over each joint's range of motion
   adaptive, ///< what hand::RangeAdaptation makes of the same counts

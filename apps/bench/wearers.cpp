@@ -152,6 +152,8 @@ Wearer::Wearer(std::uint64_t seed)
   pad_behind_tip_m_ = uniform(0.0, 0.007);
   draw_sensors();
   palm_depth_m_ = uniform(0.008, 0.016);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    edge_habit_rad_[slot] = from_degrees(normal(0.0, 0.5 * kinds[slot].bent));
 }
 
 double Wearer::clamped(std::size_t slot, double angle_rad) const {
@@ -223,8 +225,10 @@ SensorAngles Wearer::perform(PoseId id) {
     double angle = from_degrees(normal(kind.relaxed, kind.relaxed_deviation));
     if (asked.known()) {
       const double farther = asked.angle_rad < 0.0 ? -1.0 : 1.0;
-      angle = asked.angle_rad + from_degrees(normal(0.0, bent ? kind.bent : kind.straight));
-      if (bent) angle += habit_rad_[slot] + farther * from_degrees(kind.shift);
+      const bool by_feel = bent && asked.by_feel;
+      angle = asked.angle_rad + from_degrees(normal(0.0, by_feel ? kind.bent : kind.straight));
+      if (by_feel) angle += habit_rad_[slot] + farther * from_degrees(kind.shift);
+      if (bent && !by_feel) angle += edge_habit_rad_[slot];
     }
     // Chance leads no farther than a joint goes; calm hands do not lie at 0, but about it.
     const double play_rad = asked.known() ? from_degrees(4) : 0.0;

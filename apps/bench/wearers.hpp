@@ -46,7 +46,8 @@ public:
   const hand::Calibration& truth() const noexcept { return truth_; }
 
   /// The joints as this wearer holds them when asked for a pose: off by habit and by chance, each
-  /// time anew. Touches do touch, but for a few millimetres that pads slip.
+  /// time anew. Touches do touch, but for a few millimetres that pads slip. What lies against a
+  /// table is as sure as a flat hand, but for a habit of its own where it is bent over the edge.
   hand::SensorAngles perform(hand::PoseId pose);
   /// The glove's counts, noisy and rounded to 8 bits.
   GloveSample read(const hand::SensorAngles& angles_rad);
@@ -73,6 +74,8 @@ private:
   hand::Calibration truth_;
   std::array<double, sensor_slots> bow_rad_{};
   std::array<double, sensor_slots> habit_rad_{};
+  /// Against an edge, where flesh gives way: as large as habits are, and of another kind.
+  std::array<double, sensor_slots> edge_habit_rad_{};
   double pad_depth_m_ = 0.0;
   double pad_behind_tip_m_ = 0.0;
   double palm_depth_m_ = 0.0;

@@ -74,7 +74,7 @@ hand::FitOptions fit_options(const Options& options, CountScale counts) {
 }
 
 std::span<const hand::PoseId> poses_for(const Options& options) {
-  return options.quick ? hand::quick_poses() : hand::full_poses();
+  return options.quick ? hand::quick_poses() : hand::full_takes();
 }
 
 Wearer describe(const Options& options, Side side, CountScale counts, SensorMask sensors) {
@@ -137,7 +137,7 @@ int calibrate_from_capture(const Options& options) {
   const auto capture = read_capture(options.from);
   if (!capture) return report(capture.error());
   CalibrationGuide guide(poses_for(options), capture->counts);
-  guide.restore(capture->readings);
+  guide.restore(capture->readings, capture->free_motion);
   SensorMask sensors;
   for (const auto& reading : capture->readings)
     sensors.bits |= reading.held.present.bits;
@@ -164,8 +164,8 @@ int keep_for_later(const Wearer& wearer, const CalibrationGuide& guide) {
   if (readings.empty()) return 0;
   std::error_code ignored;
   fs::create_directories(wearer.path.parent_path(), ignored);
-  const auto kept =
-      write_readings(unfinished_path(wearer), readings, wearer.about.side, wearer.about.counts);
+  const auto kept = write_readings(unfinished_path(wearer), readings, guide.free_motion(),
+                                   wearer.about.side, wearer.about.counts);
   if (!kept) return report(kept.error());
   note(std::to_string(readings.size()) +
        " poses are kept; the same command goes on from there, with --fresh from the beginning");
@@ -187,7 +187,8 @@ int calibrate_glove(const Options& options) {
     if (!before)
       return report({before.error().code,
                      before.error().message + "; with --fresh it is not read, and written anew"});
-    if (before->counts == info.counts && before->side == info.side) guide.restore(before->readings);
+    if (before->counts == info.counts && before->side == info.side)
+      guide.restore(before->readings, before->free_motion);
   }
   install_stop_signals();
   const auto end =
@@ -226,7 +227,10 @@ void add_calibrate(Command& program) {
   for (const auto id : hand::full_poses())
     footer += "  " + std::string(hand::pose_of(id).name) + ": " +
               std::string(hand::pose_of(id).instruction) + "\n";
-  command.set_footer(footer + "The other commands use the calibration by themselves; nendo "
+  footer += "Then once more:";
+  for (const auto id : hand::full_takes().subspan(hand::full_poses().size()))
+    footer += " " + std::string(hand::pose_of(id).name);
+  command.set_footer(footer + ".\nThe other commands use the calibration by themselves; nendo "
                               "calibration lists, compares and exports them.");
   command.on_chosen([options] { return calibrate(*options); });
 }

@@ -76,6 +76,24 @@ bool read_reading(const json& line, hand::PoseReading& reading, CountScale& coun
          });
 }
 
+bool read_free_motion(const json& line, hand::CountRanges& motion, CountScale& counts) {
+  const auto most = number(line, "counts_most", 1.0, 65535.0);
+  if (!most) return false;
+  counts = {static_cast<std::uint16_t>(*most), line.value("whole_range", json(false)) == true};
+  SensorMask high;
+  const bool low = for_each_count(line, "low_counts", *most, [&](std::size_t slot, double n) {
+    motion.low_counts[slot] = n;
+    motion.present.add(static_cast<Sensor>(slot));
+  });
+  return low &&
+         for_each_count(line, "high_counts", *most,
+                        [&](std::size_t slot, double n) {
+                          motion.high_counts[slot] = n;
+                          high.add(static_cast<Sensor>(slot));
+                        }) &&
+         high == motion.present;
+}
+
 /// The hand of a line; nothing if it names none.
 std::optional<Side> hand_of(const json& line) {
   const auto found = line.find("hand");
@@ -92,6 +110,8 @@ std::string take_line(const std::string& text, CaptureFile& file, bool first) {
   if (!side) return "no \"hand\" that is left or right";
   if (!first && *side != file.side) return "the other hand; use one file for each";
   file.side = *side;
+  if (line.contains("low_counts"))
+    return read_free_motion(line, file.free_motion, file.counts) ? "" : "not a free motion's ends";
   if (line.contains("pose")) {
     hand::PoseReading reading;
     if (!read_reading(line, reading, file.counts)) return "not a held pose with its counts";
@@ -105,12 +125,11 @@ std::string take_line(const std::string& text, CaptureFile& file, bool first) {
   return {};
 }
 
-ordered_json counts_json(const hand::HeldPose& held,
-                         const std::array<double, sensor_slots>& counts) {
+ordered_json counts_json(SensorMask present, const std::array<double, sensor_slots>& counts) {
   ordered_json object = ordered_json::object();
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto sensor = static_cast<Sensor>(slot);
-    if (held.present.has(sensor)) object[std::string(name_of(sensor))] = counts[slot];
+    if (present.has(sensor)) object[std::string(name_of(sensor))] = counts[slot];
   }
   return object;
 }
@@ -130,29 +149,33 @@ Result<CaptureFile> read_capture(const std::filesystem::path& path) {
   std::string text;
   for (std::size_t number = 1; std::getline(input, text); ++number) {
     if (text.empty()) continue;
-    const bool first = file.samples.empty() && file.readings.empty();
+    const bool first = file.is_empty();
     const std::string wrong = take_line(text, file, first);
     if (!wrong.empty())
       return Error{Errc::bad_input, path.string() + ":" + std::to_string(number) + ": " + wrong};
   }
   if (input.bad()) return bad("cannot be read");
-  if (file.samples.empty() && file.readings.empty()) return bad("there is nothing in it");
+  if (file.is_empty()) return bad("there is nothing in it");
   return file;
 }
 
 Result<void> write_readings(const std::filesystem::path& path,
-                            std::span<const hand::PoseReading> readings, Side side,
-                            CountScale counts) {
+                            std::span<const hand::PoseReading> readings,
+                            const hand::CountRanges& free_motion, Side side, CountScale counts) {
   std::string text;
-  for (const auto& reading : readings) {
-    const ordered_json line{{"pose", hand::pose_of(reading.pose).name},
-                            {"hand", name_of(side)},
-                            {"counts_most", counts.most},
-                            {"whole_range", counts.whole_range},
-                            {"mean_counts", counts_json(reading.held, reading.held.mean_counts)},
-                            {"noise_counts", counts_json(reading.held, reading.held.noise_counts)}};
+  const auto add = [&](ordered_json line) {
+    line["hand"] = name_of(side);
+    line["counts_most"] = counts.most;
+    line["whole_range"] = counts.whole_range;
     text += line.dump() + "\n";
-  }
+  };
+  if (free_motion.present.bits != 0)
+    add({{"low_counts", counts_json(free_motion.present, free_motion.low_counts)},
+         {"high_counts", counts_json(free_motion.present, free_motion.high_counts)}});
+  for (const auto& [pose, held] : readings)
+    add({{"pose", hand::pose_of(pose).name},
+         {"mean_counts", counts_json(held.present, held.mean_counts)},
+         {"noise_counts", counts_json(held.present, held.noise_counts)}});
   return replace_file(path, text);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
-// A capture as JSON lines, of which there are two kinds that may be mixed. Samples, as nendo
-// monitor
-// --json prints them: {"measured_s":…,"hand":"right","raw":{"index_mcp":118,…}}. Poses that were
-// held: {"pose":"flat","hand":"right","counts_most":255,"mean_counts":{…},"noise_counts":{…}}.
+// A capture as JSON lines, of which there are three kinds that may be mixed. Samples, as nendo
+// monitor --json prints them: {"measured_s":…,"hand":"right","raw":{"index_mcp":118,…}}. Poses that
+// were held: {"pose":"flat","mean_counts":{…},"noise_counts":{…},"hand":"right","counts_most":255}.
+// The ends of a free motion: {"low_counts":{…},"high_counts":{…},"hand":"right","counts_most":255}.
 
 #include <filesystem>
 #include <span>
@@ -11,6 +11,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration_fit.hpp>
+#include <nendo/hand/range_capture.hpp>
 
 namespace nendo::app {
 
@@ -18,7 +19,12 @@ struct CaptureFile {
   std::vector<GloveSample> samples;
   std::vector<hand::PoseReading> readings;
   Side side = Side::right;
-  CountScale counts; ///< 255 unless the poses say otherwise
+  CountScale counts; ///< 255 unless poses or free motion say otherwise
+  hand::CountRanges free_motion;
+
+  bool is_empty() const noexcept {
+    return samples.empty() && readings.empty() && free_motion.present.bits == 0;
+  }
 };
 
 /// Errors: bad_input, "FILE:LINE: what"; a file of two hands or of none, without a line of either
@@ -27,7 +33,7 @@ Result<CaptureFile> read_capture(const std::filesystem::path& path);
 
 /// Replaces the file in one step. Error: failed.
 Result<void> write_readings(const std::filesystem::path& path,
-                            std::span<const hand::PoseReading> readings, Side side,
-                            CountScale counts);
+                            std::span<const hand::PoseReading> readings,
+                            const hand::CountRanges& free_motion, Side side, CountScale counts);
 
 } // namespace nendo::app

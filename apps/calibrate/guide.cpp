@@ -18,16 +18,23 @@ constexpr double deviations_allowed = 3.0;
 } // namespace
 
 CalibrationGuide::CalibrationGuide(std::span<const PoseId> poses, CountScale scale)
-    : poses_(poses), kept_(poses.size()), capture_(scale) {}
+    : poses_(poses.begin(), poses.end()), kept_(poses.size()), capture_(scale) {}
 
 CalibrationGuide::Event CalibrationGuide::see(const GloveSample& sample) {
   if (is_done()) return Event::none;
-  if (capture_.push(sample) != hand::CaptureState::held) return Event::none;
+  const hand::CaptureState state = capture_.push(sample);
+  const bool moves = state == hand::CaptureState::moving || state == hand::CaptureState::noisy;
+  if (same_may_come_ && moves) {
+    capture_.forget_last();
+    same_may_come_ = false;
+  }
+  if (state != hand::CaptureState::held) return Event::none;
   const HeldPose held = capture_.held();
   capture_.begin_next();
   doubted_ = implausible_sensor(held);
   if (doubted_) return Event::implausible;
   kept_[at_] = held;
+  same_may_come_ = false;
   advance();
   return Event::captured;
 }
@@ -38,14 +45,43 @@ void CalibrationGuide::advance() {
     ++at_;
 }
 
-void CalibrationGuide::go_back() {
-  while (at_ > 0) {
-    --at_;
-    if (!kept_[at_]) continue; // was skipped
-    kept_[at_].reset();
-    break;
-  }
+/// The pose that was held last may be held again, but not held on.
+void CalibrationGuide::ask_again() noexcept {
+  same_may_come_ = true;
   doubted_.reset();
+}
+
+/// Before the one asked for; -1: none.
+std::ptrdiff_t CalibrationGuide::last_kept() const noexcept {
+  auto last = static_cast<std::ptrdiff_t>(at_) - 1;
+  while (last >= 0 && !kept_[static_cast<std::size_t>(last)])
+    --last; // was skipped
+  return last;
+}
+
+bool CalibrationGuide::is_again() const noexcept {
+  for (std::size_t k = 0; k < at_; ++k)
+    if (poses_[k] == poses_[at_] && kept_[k]) return true;
+  return false;
+}
+
+void CalibrationGuide::go_back() {
+  const std::ptrdiff_t last = last_kept();
+  at_ = static_cast<std::size_t>(std::max<std::ptrdiff_t>(last, 0));
+  kept_[at_].reset();
+  ask_again();
+}
+
+void CalibrationGuide::take_again() {
+  const std::ptrdiff_t last = last_kept();
+  if (last < 0 || is_done()) return;
+  const PoseId pose = poses_[static_cast<std::size_t>(last)];
+  const auto takes = static_cast<std::size_t>(std::count(poses_.begin(), poses_.end(), pose));
+  if (asked() == pose || takes >= most_takes) return;
+  const auto at = static_cast<std::ptrdiff_t>(at_);
+  poses_.insert(poses_.begin() + at, pose);
+  kept_.insert(kept_.begin() + at, std::nullopt);
+  ask_again();
 }
 
 void CalibrationGuide::skip() {
@@ -56,18 +92,32 @@ void CalibrationGuide::skip() {
   if (!is_done()) return;
   // Without these two there is no calibration.
   for (std::size_t k = 0; k < poses_.size(); ++k) {
-    if ((poses_[k] == PoseId::flat || poses_[k] == PoseId::fist) && !kept_[k]) {
+    if ((poses_[k] == PoseId::flat || poses_[k] == PoseId::fist) && kept(poses_[k]) == nullptr) {
       at_ = k;
       return;
     }
   }
 }
 
-void CalibrationGuide::restore(std::span<const hand::PoseReading> readings) {
+void CalibrationGuide::restore(std::span<const hand::PoseReading> readings,
+                               const hand::CountRanges& free_motion) {
+  free_motion_ = hand::RangeCapture(free_motion);
   for (const auto& reading : readings) {
-    const auto found = std::find(poses_.begin(), poses_.end(), reading.pose);
-    if (found != poses_.end())
-      kept_[static_cast<std::size_t>(found - poses_.begin())] = reading.held;
+    std::size_t takes = 0, end = 0; // of this pose, and where its last one ends
+    std::optional<std::size_t> room;
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      if (poses_[k] != reading.pose) continue;
+      ++takes;
+      end = k + 1;
+      if (!kept_[k] && !room) room = k;
+    }
+    if (takes == 0 || (!room && takes >= most_takes)) continue;
+    if (!room) {
+      poses_.insert(poses_.begin() + static_cast<std::ptrdiff_t>(end), reading.pose);
+      kept_.insert(kept_.begin() + static_cast<std::ptrdiff_t>(end), std::nullopt);
+      room = end;
+    }
+    kept_[*room] = reading.held;
   }
   at_ = 0;
   advance();

@@ -2,7 +2,8 @@
 // The guided calibration without its terminal: which pose is asked for, which were held, and
 // whether what was held can be that pose.
 
-#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,7 +17,8 @@ namespace nendo::app {
 
 class CalibrationGuide {
 public:
-  /// `poses` must outlive this; flat and fist are among them.
+  /// `poses` in the order in which they are asked for; one that stands there twice is taken twice.
+  /// Flat and fist are among them.
   CalibrationGuide(std::span<const hand::PoseId> poses, CountScale scale);
 
   enum class Event : std::uint8_t {
@@ -40,10 +42,16 @@ public:
   /// The sensor by which the last held pose was found implausible.
   std::optional<Sensor> doubted() const noexcept { return doubted_; }
 
-  void go_back(); ///< forgets the pose before this one and asks for it again
-  void skip();    ///< goes on without this pose; flat and fist are asked for again at the end
-  /// What an earlier session kept; poses that are not asked for here are left out.
-  void restore(std::span<const hand::PoseReading> readings);
+  /// Whether the pose asked for was taken before and is taken again.
+  bool is_again() const noexcept;
+
+  void go_back();    ///< forgets the pose before this one and asks for it again
+  void take_again(); ///< asks for the pose before this one once more; both takes count
+  void skip();       ///< goes on without this pose; flat and fist are asked for again at the end
+  /// What an earlier session kept. Poses that are not asked for here are left out, and so are takes
+  /// of a pose beyond `most_takes`.
+  void restore(std::span<const hand::PoseReading> readings, const hand::CountRanges& free_motion);
+  static constexpr std::size_t most_takes = 8;
 
   /// In the order in which they are asked for.
   std::vector<hand::PoseReading> readings() const;
@@ -52,13 +60,16 @@ public:
 
 private:
   void advance();
+  void ask_again() noexcept;
+  std::ptrdiff_t last_kept() const noexcept;
   std::optional<Sensor> implausible_sensor(const hand::HeldPose& held) const;
   const hand::HeldPose* kept(hand::PoseId pose) const;
 
-  std::span<const hand::PoseId> poses_;
+  std::vector<hand::PoseId> poses_;
   std::vector<std::optional<hand::HeldPose>> kept_; ///< by number
   std::size_t at_ = 0;
   hand::PoseCapture capture_;
+  bool same_may_come_ = false; ///< once the hand has moved
   hand::RangeCapture free_motion_;
   std::optional<Sensor> doubted_;
 };

@@ -150,7 +150,7 @@ std::vector<std::string> middle(const CalibrationPicture& picture, int columns, 
   const int drawn = draws ? std::min(2 * drawn_rows, (columns - (name_width + least_bar)) / 2) : 0;
   std::vector<std::string> lines(static_cast<std::size_t>(std::max(rows, 0)));
   if (draws && drawn >= least_columns) {
-    const auto pose = demonstrated(picture.guide->asked(), picture.info->side);
+    const hand::HandPose& pose = *picture.demonstration;
     const auto palm = draw_hand(pose, picture.info->side, HandView::palm, drawn, drawn_rows);
     const auto side = draw_hand(pose, picture.info->side, HandView::side, drawn, drawn_rows);
     for (std::size_t row = 0; row < palm.size(); ++row)
@@ -180,14 +180,14 @@ hand::HandPose demonstrated(hand::PoseId id, Side side) {
 std::vector<std::string> calibration_lines(const CalibrationPicture& picture, ScreenSize size) {
   const CalibrationGuide& guide = *picture.guide;
   const hand::CalibrationPose& pose = hand::pose_of(guide.asked());
-  const std::string title = "Pose " + std::to_string(guide.number() + 1) + " of " +
-                            std::to_string(guide.pose_count()) + ": " + std::string(pose.name) +
-                            "   (" + std::string(name_of(picture.info->side)) + " hand of " +
-                            printable(*picture.user) + ")";
+  const std::string title =
+      "Pose " + std::to_string(guide.number() + 1) + " of " + std::to_string(guide.pose_count()) +
+      ": " + std::string(pose.name) + (guide.is_again() ? ", once more" : "") + "   (" +
+      std::string(name_of(picture.info->side)) + " hand of " + printable(*picture.user) + ")";
   std::vector<std::string> lines{title, std::string(pose.instruction), state_text(picture)};
   const std::vector<std::string> below{
       undetermined_text(picture.undetermined),
-      "SPACE begin   b back one pose   s skip it   w write what there is   q quit"};
+      "SPACE begin  b redo the last pose  t take it once more  s skip  w write  q quit"};
   const int room = size.rows - static_cast<int>(lines.size() + below.size());
   const auto between = middle(picture, size.columns, room);
   lines.insert(lines.end(), between.begin(), between.end());

@@ -18,19 +18,21 @@ namespace nendo::app {
 struct CalibrationPicture {
   const driver::GloveInfo* info = nullptr;
   const std::string* user = nullptr;
-  const CalibrationGuide* guide = nullptr; ///< not done
-  const GloveSample* sample = nullptr;     ///< the latest; null: none came yet
-  const SeenCounts* seen = nullptr;        ///< has seen `sample`
-  double age_s = 0.0;                      ///< of `sample`
-  bool begun = false;                      ///< else the guide sees no samples yet
-  SensorMask undetermined;                 ///< by the poses so far
+  const CalibrationGuide* guide = nullptr;       ///< not done
+  const GloveSample* sample = nullptr;           ///< the latest; null: none came yet
+  const SeenCounts* seen = nullptr;              ///< has seen `sample`
+  double age_s = 0.0;                            ///< of `sample`
+  const hand::HandPose* demonstration = nullptr; ///< of the pose that the guide asks for
+  bool begun = false;                            ///< else the guide sees no samples yet
+  SensorMask undetermined;                       ///< by the poses so far
 };
 
 /// Lines of printable ASCII, at most as many and as long as the screen. The drawing and then the
 /// bars go where the screen is small; the instruction and the keys stay.
 std::vector<std::string> calibration_lines(const CalibrationPicture& picture, ScreenSize size);
 
-/// The pose as a wearer would take it; touching tips are brought together.
+/// The pose as a wearer would take it. Touching tips are brought together, by inverse kinematics:
+/// too much for every picture.
 hand::HandPose demonstrated(hand::PoseId pose, Side side);
 
 } // namespace nendo::app

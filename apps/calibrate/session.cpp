@@ -26,6 +26,11 @@ struct Session {
   std::optional<GloveSample> latest{};
   SensorMask undetermined{};
   bool begun = false;
+  struct Demonstration {
+    hand::PoseId of;
+    hand::HandPose pose;
+  };
+  std::optional<Demonstration> shown{};
 
   void take_samples() {
     GloveSample sample;
@@ -44,13 +49,22 @@ struct Session {
     const auto fitted = hand::fit_calibration(readings, glove.info().side, sensors, options);
     undetermined = fitted ? fitted->undetermined : sensors;
   }
+  const hand::HandPose& demonstration() {
+    const hand::PoseId asked = guide.asked();
+    if (!shown || shown->of != asked) shown = {asked, demonstrated(asked, glove.info().side)};
+    return shown->pose;
+  }
   void show() {
     const HostTime now = HostClock::now();
-    const CalibrationPicture picture{
-        &glove.info(), &user,
-        &guide,        latest ? &*latest : nullptr,
-        &seen,         latest ? to_seconds(now - latest->arrival) : 0.0,
-        begun,         begun ? undetermined : SensorMask{}};
+    const CalibrationPicture picture{&glove.info(),
+                                     &user,
+                                     &guide,
+                                     latest ? &*latest : nullptr,
+                                     &seen,
+                                     latest ? to_seconds(now - latest->arrival) : 0.0,
+                                     &demonstration(),
+                                     begun,
+                                     begun ? undetermined : SensorMask{}};
     terminal.draw(calibration_lines(picture, terminal.size()));
   }
   std::optional<SessionEnd> obey(char key) {
@@ -58,6 +72,7 @@ struct Session {
     if (key == 'w') return SessionEnd::written;
     if (key == ' ') begun = true;
     if (key == 'b') guide.go_back();
+    if (key == 't') guide.take_again();
     if (key == 's') guide.skip();
     if (key == 'b' || key == 's') look_what_is_known();
     return std::nullopt;

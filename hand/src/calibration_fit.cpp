@@ -9,6 +9,7 @@
 
 #include <nendo/base/units.hpp>
 
+#include "fit_priors.hpp"
 #include "fit_problem.hpp"
 
 namespace nendo::hand {
@@ -105,22 +106,29 @@ Eigen::MatrixXd columns_of(const Matrix& matrix, const Free& free) {
   return chosen;
 }
 
-/// Levenberg and Marquardt's method over the free unknowns; returns what the residuals say of them,
-/// J^T J, at the end. The default pulls with its own weight, 1.
-Eigen::MatrixXd minimise(const FitProblem& problem, const Free& free, Unknowns& at) {
+/// What poses as far apart as these say of the free unknowns, J^T J. How far each is off says
+/// nothing of a gain: all deviations are in counts here.
+Eigen::MatrixXd information_at(const FitProblem& problem, const Free& free, const Unknowns& at) {
   Eigen::VectorXd residuals;
   Eigen::MatrixXd jacobian;
-  const auto cost_at = [&](const Unknowns& x) {
-    problem.evaluate(x, residuals, nullptr);
-    return residuals.squaredNorm() + x.squaredNorm();
-  };
+  problem.evaluate(at, residuals, &jacobian);
+  problem.hold_weights(residuals, 1.0, jacobian);
+  const Eigen::MatrixXd slopes = columns_of(jacobian, free);
+  return slopes.transpose() * slopes;
+}
+
+/// Levenberg and Marquardt's method over the free unknowns, with deviations in counts by so great a
+/// part, which follow from turn to turn. The default pulls with its own weight, 1.
+void minimise(const FitProblem& problem, const Free& free, double in_counts, Unknowns& at) {
+  Eigen::VectorXd residuals;
+  Eigen::MatrixXd jacobian;
   double damping = 1e-3;
-  double cost = cost_at(at);
-  Eigen::MatrixXd information;
   for (int turn = 0; turn < 60; ++turn) {
     problem.evaluate(at, residuals, &jacobian);
+    problem.hold_weights(residuals, in_counts, jacobian);
+    const double cost = residuals.squaredNorm() + at.squaredNorm();
     const Eigen::MatrixXd slopes = columns_of(jacobian, free);
-    information = slopes.transpose() * slopes;
+    const Eigen::MatrixXd information = slopes.transpose() * slopes;
     Eigen::VectorXd downhill = -(slopes.transpose() * residuals);
     for (std::size_t n = 0; n < free.size(); ++n)
       downhill[static_cast<Eigen::Index>(n)] -= at[free[n]];
@@ -134,18 +142,33 @@ Eigen::MatrixXd minimise(const FitProblem& problem, const Free& free, Unknowns& 
       Unknowns next = at;
       for (std::size_t n = 0; n < free.size(); ++n)
         next[free[n]] += step[static_cast<Eigen::Index>(n)];
-      const double next_cost = cost_at(next);
-      better = next_cost <= cost; // false, too, of what is not a number
+      problem.evaluate(next, residuals, nullptr);
+      problem.weigh_as(at, next, in_counts, residuals);
+      // false, too, of what is not a number
+      better = residuals.squaredNorm() + next.squaredNorm() <= cost;
       if (!better) continue;
       at = next;
-      cost = next_cost;
       step_length = step.norm();
       damping *= 0.01; // and once more times 10 by the loop
     }
     damping = std::max(damping, 1e-12);
     if (!better || step_length < 1e-10) break;
   }
-  return information;
+}
+
+/// Deviations in counts follow gains that are far off, where poses contradict each other, and lead
+/// astray: they begin with a fit in radians, and stay there if they fit much worse than that does.
+void minimise_safely(const FitProblem& problem, const Free& free, Unknowns& at) {
+  constexpr double much_worse = 2.0;
+  Eigen::VectorXd residuals;
+  const auto cost_at = [&](const Unknowns& x) {
+    problem.evaluate(x, residuals, nullptr);
+    return residuals.squaredNorm() + x.squaredNorm();
+  };
+  minimise(problem, free, 0.0, at);
+  Unknowns in_counts = at;
+  minimise(problem, free, scatter_in_counts, in_counts);
+  if (cost_at(in_counts) <= much_worse * cost_at(at) + 1e-9) at = in_counts;
 }
 
 /// The covariance of the free unknowns, the default's word included.
@@ -185,7 +208,8 @@ Solution solve(const FitProblem& problem, Free free) {
   Solution solution;
   solution.free = std::move(free);
   do {
-    solution.information = minimise(problem, solution.free, solution.at);
+    minimise_safely(problem, solution.free, solution.at);
+    solution.information = information_at(problem, solution.free, solution.at);
   } while (drop_undetermined(solution.free, solution.information, solution.at));
   const Eigen::Index lines = lines_in(solution.free);
   solution.covariance = covariance_of(solution.information).topLeftCorner(lines, lines);

@@ -8,7 +8,7 @@ namespace nendo::hand {
 namespace {
 
 // Degrees, and how far wearers are off. The angles of bent joints are means of active ranges of
-// motion (American Academy of Orthopaedic Surgeons: MCP 90, PIP 100, DIP 70 to 80, thumb MCP 50,
+// motion (American Academy of Orthopaedic Surgeons: MCP 90, PIP 100, DIP 80 to 90, thumb MCP 50,
 // IP 80, wrist 70 to 80, 20 and 30), a little below, since calibration asks nobody to strain.
 struct Asked {
   double angle_deg;
@@ -30,8 +30,9 @@ public:
     pose_.instruction = instruction;
   }
   constexpr Described& of(Sensor sensor, Asked asked) {
+    const bool bent = asked.angle_deg > 8.0 || asked.angle_deg < -8.0;
     pose_.assumed[static_cast<std::size_t>(sensor)] = {from_degrees(asked.angle_deg),
-                                                       from_degrees(asked.deviation_deg)};
+                                                       from_degrees(asked.deviation_deg), bent};
     return *this;
   }
   constexpr Described& finger(std::size_t number, Asked mcp, Asked pip, Asked dip) {
@@ -46,6 +47,12 @@ public:
   constexpr Described& fingers(Asked mcp, Asked pip, Asked dip) {
     for (std::size_t number = 0; number < 4; ++number)
       finger(number, mcp, pip, dip);
+    return *this;
+  }
+  /// Palm and first phalanx on a table, the others pressed against its side.
+  constexpr Described& over_edge(std::size_t number) {
+    finger(number, about_straight, {90, 4}, about_straight);
+    pose_.assumed[static_cast<std::size_t>(Sensor::index_pip) + 4 * number].by_feel = false;
     return *this;
   }
   /// The first `extended` fingers straight, the others as in a fist, but less surely.
@@ -98,14 +105,16 @@ constexpr std::array<CalibrationPose, pose_count> poses{{
         .fingers(mcp_bent, pip_bent, dip_bent)
         .closed(bent_side_by_side)
         .thumb_bends({40, 12}, {45, 15}),
-    Described("spread", "Flat again, and spread the fingers as far as is easy.")
+    Described("spread", "Flat on the table again, and spread the fingers as far as is easy.")
         .fingers(straight, straight, straight)
         .gaps({20, 6}, {15, 6}, {20, 6})
         .thumb_bends({0, 8}, {0, 8})
-        .arch({0, 5}),
-    flat_fingers("thumb_out", "Close the fingers, and point the thumb out to the side.")
+        .arch({0, 5})
+        .wrist({0, 6}, {0, 6}),
+    flat_fingers("thumb_out", "Still flat: close the fingers, and point the thumb out to the side.")
         .thumb({0, 8}, {45, 8})
-        .thumb_bends({0, 6}, {0, 6}),
+        .thumb_bends({0, 6}, {0, 6})
+        .wrist({0, 6}, {0, 6}),
     flat_fingers("thumb_up", "Fingers straight, and point the thumb away from the palm.")
         .thumb({75, 8}, {45, 8})
         .thumb_bends({0, 8}, {0, 8}),
@@ -124,6 +133,12 @@ constexpr std::array<CalibrationPose, pose_count> poses{{
     Described("straight_fist", "Bend knuckles and middle joints; keep the last joints straight.")
         .fingers(mcp_bent, {95, 7}, {3, 8})
         .closed(bent_side_by_side),
+    Described("edge_index", "Palm on the table; index and middle finger bent down over its edge.")
+        .over_edge(0)
+        .over_edge(1),
+    Described("edge_little", "The same with ring and little finger: press them to its side.")
+        .over_edge(2)
+        .over_edge(3),
     Described("point", "Make a fist, the index finger straight.")
         .counting(1)
         .closed(bent_side_by_side),
@@ -162,6 +177,14 @@ constexpr auto full = [] {
   return ids;
 }();
 
+constexpr std::array again{PoseId::fist, PoseId::thumb_bent, PoseId::edge_index,
+                           PoseId::edge_little};
+constexpr auto takes = [] {
+  std::array<PoseId, full.size() + again.size()> ids{};
+  std::copy(again.begin(), again.end(), std::copy(full.begin(), full.end(), ids.begin()));
+  return ids;
+}();
+
 } // namespace
 
 const CalibrationPose& pose_of(PoseId id) noexcept {
@@ -181,6 +204,10 @@ std::span<const PoseId> quick_poses() noexcept {
 
 std::span<const PoseId> full_poses() noexcept {
   return full;
+}
+
+std::span<const PoseId> full_takes() noexcept {
+  return takes;
 }
 
 } // namespace nendo::hand

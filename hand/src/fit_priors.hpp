@@ -26,16 +26,32 @@ inline constexpr double palm_depth_deviation_m = 0.003;
 // done, or another one than was asked for, does not bend what the others agree on.
 inline constexpr double unusual = 3.0;
 
+// Of what wearers are off by where they bend a joint by feel, so much is their habit, and the same
+// in all poses of the joint: its square is a third of the whole's. No fit of all poses alone could
+// tell it from a gain.
+inline constexpr double habit_part = 0.6;
+
+// Poses differ from what was asked in the joint's angle, and counts follow from it: a line should
+// be fitted to counts over asked angles. By residuals in radians the best line is the flatter the
+// more poses scatter, for a small gain makes small residuals (regression dilution: W. A. Fuller,
+// "Measurement Error Models", 1987). By residuals in counts, whose deviations are those in radians
+// over the gain of the last turn, it is not, but where few poses bend a joint it is then uncertain.
+// Errors of wearers for tuning were least so far on the way, by a geometric mean of both
+// deviations.
+inline constexpr double scatter_in_counts = 0.6;
+
 // A free motion that stays so far behind the poses did not reach the end.
 inline constexpr double short_of_poses_rad = 0.05;
 
 // How far joints go, and how far people and published tables differ: means of the American Academy
-// of Orthopaedic Surgeons' (MCP 90, PIP 100, DIP 80; thumb 50 and 80; wrist 80 and -70, 20 and -30)
-// and those of M. C. Hume and others, "Functional range of motion of the joints of the hand",
-// J. Hand Surg. 15A, 1990 (100, 105, 85; thumb 56 and 73); of 300 hands' thumb MCP joints, 59, from
-// 16 to 90; of wrists, D. C. Boone and S. P. Azen's, J. Bone Joint Surg. 61-A, 1979 (76, -75, 21,
-// -36, with deviations of 6 and 4). Of PIP joints tables say up to 120. What is straight, poses
-// tell better.
+// of Orthopaedic Surgeons' (MCP 90, PIP 100, DIP 80 to 90 by edition; thumb 50 and 80; wrist 80 and
+// -70, 20 and -30), of those of the Electronic Textbook of Hand Surgery (90, 100, 80; 55 and 80; 75
+// and -70, 20 and -35), and for wrists of D. C. Boone and S. P. Azen's, J. Bone Joint Surg. 61-A,
+// 1979 (76, -75, 22, -36, as reference tables for goniometry quote them). From memory alone, and
+// not found again: the active ranges of M. C. Hume and others, J. Hand Surg. 15A, 1990 (100, 105,
+// 85; thumb 56 and 73), whose abstract has the functional ones; a thumb's MCP joint of 59, from 16
+// to 90, in 300 hands; deviations of 6 and 4 in wrists. Of PIP joints tables say up to 120. What is
+// straight, poses tell better.
 struct RangeEnds {
   double low_deg, low_deviation_deg, high_deg, high_deviation_deg; // deviation 0: not used
 };

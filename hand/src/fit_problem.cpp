@@ -120,8 +120,14 @@ std::vector<Eigen::Index> FitProblem::wearers_unknowns() const {
   std::vector<Eigen::Index> chosen;
   const bool touches = std::any_of(rows_.begin(), rows_.end(),
                                    [](const Rows& rows) { return rows.end > rows.touch; });
-  for (std::size_t k = line_unknowns; k < unknown_count && touches; ++k)
+  for (std::size_t k = line_unknowns; k < habit_unknowns && touches; ++k)
     chosen.push_back(static_cast<Eigen::Index>(k));
+  std::array<bool, sensor_slots> bent{};
+  for (const auto& of_reading : assumptions_)
+    for (const auto& [slot, assumed] : of_reading)
+      bent[slot] = bent[slot] || (full_ && assumed.by_feel);
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    if (bent[slot]) chosen.push_back(static_cast<Eigen::Index>(habit_of(slot)));
   return chosen;
 }
 
@@ -222,16 +228,25 @@ double FitProblem::gap_m(const Unknowns& at, std::size_t reading) const {
       .norm();
 }
 
-void FitProblem::add_assumptions(std::size_t reading, const SensorAngles& angles,
-                                 const AngleJacobian& by_unknowns, Eigen::VectorXd& residuals,
-                                 Eigen::MatrixXd* jacobian) const {
+void FitProblem::add_assumptions(std::size_t reading, const Unknowns& at,
+                                 const SensorAngles& angles, const AngleJacobian& by_unknowns,
+                                 Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) const {
   Eigen::Index row = rows_[reading].begin;
   for (const auto& [slot, assumed] : assumptions_[reading]) {
-    const Robust result = robust((angles[slot] - assumed.angle_rad) / assumed.deviation_rad);
+    // Two poses cannot tell a habit.
+    const double habit_rad = full_ && assumed.by_feel ? habit_part * assumed.deviation_rad : 0.0;
+    const double deviation_rad =
+        std::sqrt(assumed.deviation_rad * assumed.deviation_rad - habit_rad * habit_rad);
+    const auto habit = static_cast<Eigen::Index>(habit_of(slot));
+    const double meant_rad = assumed.angle_rad + habit_rad * at[habit];
+    const Robust result = robust((angles[slot] - meant_rad) / deviation_rad);
     residuals[row] = result.residual;
-    if (jacobian != nullptr)
+    if (jacobian != nullptr) {
+      const double slope = result.slope / deviation_rad;
       jacobian->row(row).head<line_unknowns>() =
-          result.slope / assumed.deviation_rad * by_unknowns.row(static_cast<Eigen::Index>(slot));
+          slope * by_unknowns.row(static_cast<Eigen::Index>(slot));
+      (*jacobian)(row, habit) = -slope * habit_rad;
+    }
     ++row;
   }
 }
@@ -262,7 +277,7 @@ void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles
     jacobian->block<3, line_unknowns>(row, 0) +=
         slopes.cwiseProduct(slope) * by_unknowns.row(static_cast<Eigen::Index>(slot));
   }
-  for (std::size_t k = line_unknowns; k < unknown_count; ++k) { // linear: any step will do
+  for (std::size_t k = line_unknowns; k < habit_unknowns; ++k) { // linear: any step will do
     Unknowns next = at;
     next[static_cast<Eigen::Index>(k)] += 1.0;
     jacobian->block<3, 1>(row, static_cast<Eigen::Index>(k)) =
@@ -295,10 +310,36 @@ void FitProblem::evaluate(const Unknowns& at, Eigen::VectorXd& residuals,
   AngleJacobian by_unknowns;
   for (std::size_t n = 0; n < readings_.size(); ++n) {
     const SensorAngles angles = angles_rad(at, n, jacobian == nullptr ? nullptr : &by_unknowns);
-    add_assumptions(n, angles, by_unknowns, residuals, jacobian);
+    add_assumptions(n, at, angles, by_unknowns, residuals, jacobian);
     if (rows_[n].end > rows_[n].touch) add_touch(n, at, angles, by_unknowns, residuals, jacobian);
   }
   add_range_ends(at, residuals, jacobian);
+}
+
+template <class Visit>
+void FitProblem::for_each_line(Visit&& visit) const {
+  for (std::size_t n = 0; n < readings_.size(); ++n) {
+    Eigen::Index row = rows_[n].begin;
+    for (const Assumption& assumption : assumptions_[n])
+      visit(row++, static_cast<Eigen::Index>(gain_of(assumption.slot)));
+  }
+  Eigen::Index row = height_ - static_cast<Eigen::Index>(range_ends_.size());
+  for (const RangeEnd& end : range_ends_)
+    visit(row++, static_cast<Eigen::Index>(gain_of(end.slot)));
+}
+
+void FitProblem::weigh_as(const Unknowns& before, const Unknowns& at, double part,
+                          Eigen::VectorXd& residuals) const {
+  for_each_line([&](Eigen::Index row, Eigen::Index gain) {
+    residuals[row] *= std::exp(part * gain_deviation * (before[gain] - at[gain]));
+  });
+}
+
+void FitProblem::hold_weights(const Eigen::VectorXd& residuals, double part,
+                              Eigen::MatrixXd& jacobian) const {
+  for_each_line([&](Eigen::Index row, Eigen::Index gain) {
+    jacobian(row, gain) -= part * gain_deviation * residuals[row];
+  });
 }
 
 } // namespace nendo::hand

@@ -66,7 +66,7 @@ Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_v
     if (at == places.size()) return bad("has more than 22 lines; this is another format");
     const auto fields = fields_of(*line);
     const auto a = point_of(fields[0]);
-    const auto b = fields.size() == 2 ? point_of(fields[1]) : std::nullopt;
+    const auto b = point_of(fields.size() == 2 ? fields[1] : std::string_view{});
     const auto [sensor, sign] = places[at];
     const std::string place = std::string(name_of(sensor)) + ": ";
     if (!a || !b) return bad(place + "must be two points angle_rad:count, counts 0 to 255");

@@ -66,7 +66,7 @@ TEST_SUITE("calibrate") {
       const auto capture = folder.path() / "capture.jsonl";
       const auto out = folder.path() / "anna.toml";
       const auto picture = folder.path() / "anna.svg";
-      record(wearer, hand::full_poses(), capture);
+      record(wearer, hand::full_takes(), capture);
       const auto done = nendo::test::nendo(
           {"calibrate", "--from", capture, "--user", "anna", "--out", out, "--picture", picture});
       REQUIRE_MESSAGE(done.exit_code == 0, done.err);
@@ -127,10 +127,20 @@ TEST_SUITE("calibrate") {
       readings.push_back(reading);
     }
     const auto path = folder.path() / "poses.jsonl";
-    REQUIRE(app::write_readings(path, readings, wearer.side(), {}));
+    hand::CountRanges motion;
+    motion.present = sensors_22;
+    motion.low_counts.fill(12.25);
+    motion.high_counts.fill(201.5);
+    REQUIRE(app::write_readings(path, readings, motion, wearer.side(), {}));
     const auto read = app::read_capture(path);
     REQUIRE_MESSAGE(read, read.error().message);
     CHECK(read->side == wearer.side());
+    CHECK(read->free_motion.present == sensors_22);
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+      if (!sensors_22.has(static_cast<Sensor>(slot))) continue;
+      CHECK(read->free_motion.low_counts[slot] == 12.25);
+      CHECK(read->free_motion.high_counts[slot] == 201.5);
+    }
     REQUIRE(read->readings.size() == readings.size());
     for (std::size_t k = 0; k < readings.size(); ++k) {
       CHECK(read->readings[k].pose == readings[k].pose);
@@ -139,6 +149,39 @@ TEST_SUITE("calibrate") {
         if (readings[k].held.present.has(static_cast<Sensor>(slot)))
           CHECK(read->readings[k].held.mean_counts[slot] == readings[k].held.mean_counts[slot]);
     }
+  }
+
+  TEST_CASE("a session that goes on has the free motion of the one that was quit") {
+    const TemporaryFolder folder;
+    app::Wearer wearer(2005);
+    std::vector<hand::PoseReading> readings;
+    for (const auto pose : hand::full_poses()) {
+      const GloveSample sample = wearer.read(wearer.perform(pose));
+      hand::PoseReading reading{pose, {}};
+      reading.held.present = sample.present;
+      for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+        reading.held.mean_counts[slot] = sample.raw[slot].value;
+      readings.push_back(reading);
+    }
+    hand::SensorAngles ends{};
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      ends[slot] = wearer.ranges()[slot].high_rad;
+    const GloveSample bent = wearer.read(ends);
+    hand::CountRanges motion;
+    motion.present = sensors_22;
+    for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+      motion.high_counts[slot] = bent.raw[slot].value;
+    const auto gain_with = [&](const hand::CountRanges& free_motion) {
+      const auto path = folder.path() / "unfinished.jsonl", out = folder.path() / "eve.toml";
+      REQUIRE(app::write_readings(path, readings, free_motion, wearer.side(), {}));
+      const auto done =
+          nendo::test::nendo({"calibrate", "--from", path, "--user", "eve", "--out", out});
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const auto written = hand::read_calibration(out);
+      REQUIRE(written);
+      return written->calibration[Sensor::thumb_mcp].gain_rad_per_count;
+    };
+    CHECK(gain_with(motion) != gain_with({}));
   }
 
   TEST_CASE("what cannot be a calibration is one line about it, with the right exit code") {
@@ -165,7 +208,13 @@ TEST_SUITE("calibrate") {
           "{\"hand\":\"right\",\"measured_s\":1,\"raw\":{\"elbow\":7}}\n",
           "{\"hand\":\"right\",\"measured_s\":-1e300,\"raw\":{\"index_mcp\":7}}\n",
           "{\"hand\":\"right\",\"pose\":\"flat\",\"counts_most\":0}\n",
-          "{\"hand\":\"right\",\"pose\":7,\"counts_most\":255}\n"}) {
+          "{\"hand\":\"right\",\"pose\":7,\"counts_most\":255}\n",
+          "{\"hand\":\"right\",\"low_counts\":{\"index_mcp\":7},\"counts_most\":255}\n",
+          "{\"hand\":\"right\",\"low_counts\":{\"index_mcp\":7},\"high_counts\":{\"ring_mcp\":9},"
+          "\"counts_most\":255}\n",
+          "{\"hand\":\"right\",\"low_counts\":{\"index_mcp\":7},\"high_counts\":{\"index_mcp\":300}"
+          ","
+          "\"counts_most\":255}\n"}) {
       write_file(file, text);
       refused({"--from", file, "--user", "a"}, 5, "bad.jsonl");
     }

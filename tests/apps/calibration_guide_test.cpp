@@ -111,9 +111,93 @@ TEST_SUITE("calibration_guide") {
     for (std::size_t k = 0; k < 4; ++k)
       REQUIRE(before.do_pose(hand::full_poses()[k]) == CalibrationGuide::Event::captured);
     Session after(3005);
-    after.guide.restore(before.guide.readings());
+    hand::CountRanges motion;
+    motion.present.add(Sensor::ring_pip);
+    constexpr auto slot = static_cast<std::size_t>(Sensor::ring_pip);
+    motion.low_counts[slot] = 3.0;
+    motion.high_counts[slot] = 254.0;
+    after.guide.restore(before.guide.readings(), motion);
     CHECK(after.guide.number() == 4);
     CHECK(after.guide.readings().size() == 4);
+    const GloveSample sample = after.wearer.read(after.wearer.perform(PoseId::flat));
+    for (int n = 0; n < 3; ++n)
+      after.guide.see_free_motion(sample);
+    CHECK(after.guide.free_motion().low_counts[slot] == 3.0);
+    CHECK(after.guide.free_motion().high_counts[slot] == 254.0);
+    CHECK(after.guide.free_motion().present.has(Sensor::index_mcp));
+  }
+
+  TEST_CASE("what is asked for twice is taken twice, and both takes count") {
+    constexpr std::array poses{PoseId::flat, PoseId::fist, PoseId::flat};
+    Session session(3007, poses);
+    CHECK_FALSE(session.guide.is_again());
+    CHECK(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
+    CHECK(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
+    CHECK(session.guide.is_again());
+    CHECK(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
+    CHECK(session.guide.is_done());
+    const auto readings = session.guide.readings();
+    REQUIRE(readings.size() == 3);
+    CHECK(readings[2].pose == PoseId::flat);
+
+    Session after(3007, poses); // each take finds its place again
+    after.guide.restore(readings, {});
+    CHECK(after.guide.is_done());
+    for (std::size_t k = 0; k < readings.size(); ++k)
+      CHECK(after.guide.readings()[k].held.mean_counts == readings[k].held.mean_counts);
+  }
+
+  TEST_CASE("a pose can be taken once more, beside the first take, even if nothing differs") {
+    Session session(3008);
+    session.guide.take_again(); // of nothing
+    CHECK(session.guide.asked() == PoseId::flat);
+    const auto flat = session.wearer.perform(PoseId::flat);
+    REQUIRE(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+    const std::size_t poses = session.guide.pose_count();
+    for (int n = 0; n < 3; ++n) // one key, held down
+      session.guide.take_again();
+    CHECK(session.guide.pose_count() == poses + 1);
+    CHECK(session.guide.asked() == PoseId::flat);
+    CHECK(session.hold(flat, 5.0) == CalibrationGuide::Event::none); // held on
+    session.hold(session.wearer.perform(PoseId::fist), 0.3);
+    CHECK(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+    CHECK(session.guide.readings().size() == 2);
+    CHECK(session.guide.asked() == PoseId::fist);
+    Session after(3008); // a session that goes on has both
+    after.guide.restore(session.guide.readings(), {});
+    CHECK(after.guide.readings().size() == 2);
+    CHECK(after.guide.asked() == PoseId::fist);
+    for (std::size_t n = 0; n < 2 * CalibrationGuide::most_takes; ++n) {
+      after.guide.take_again();
+      after.hold(after.wearer.perform(PoseId::fist), 0.3);
+      after.do_pose(PoseId::flat);
+      if (after.guide.asked() != PoseId::fist) break;
+    }
+    const auto readings = after.guide.readings();
+    CHECK(std::count_if(readings.begin(), readings.end(), [](const auto& reading) {
+            return reading.pose == PoseId::flat;
+          }) == CalibrationGuide::most_takes);
+  }
+
+  TEST_CASE("a pose that is taken anew replaces its take, even if nothing differs") {
+    Session session(3009);
+    const auto flat = session.wearer.perform(PoseId::flat);
+    REQUIRE(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+    session.guide.go_back();
+    CHECK(session.guide.readings().empty());
+    CHECK(session.hold(flat, 5.0) == CalibrationGuide::Event::none); // held on
+    session.hold(session.wearer.perform(PoseId::fist), 0.3);
+    CHECK(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+    CHECK(session.guide.readings().size() == 1);
+  }
+
+  TEST_CASE("a file of takes without end is cut at the most that count") {
+    Session session(3010);
+    REQUIRE(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
+    const std::vector<hand::PoseReading> many(1000, session.guide.readings().front());
+    session.guide.restore(many, {});
+    CHECK(session.guide.readings().size() == CalibrationGuide::most_takes);
+    CHECK(session.guide.asked() == PoseId::fist);
   }
 
   TEST_CASE("every pose is drawn for either hand, and no two alike") {
@@ -147,8 +231,9 @@ TEST_SUITE("calibration_guide") {
     GloveSample sample = session.wearer.read(session.wearer.perform(PoseId::fist));
     SeenCounts seen;
     seen.see(sample);
-    const CalibrationPicture picture{&info, &user, &session.guide, &sample,
-                                     &seen, 0.0,   true,           sensors_22};
+    const hand::HandPose pose = demonstrated(session.guide.asked(), info.side);
+    const CalibrationPicture picture{&info, &user, &session.guide, &sample,   &seen,
+                                     0.0,   &pose, true,           sensors_22};
     for (int rows = 1; rows <= 60; rows += 3)
       for (int columns = 1; columns <= 200; columns += 9) {
         const auto lines = calibration_lines(picture, {columns, rows});

@@ -1,11 +1,15 @@
+#include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/hand/joint_filter.hpp>
 
 #include "support/program.hpp"
 
@@ -148,6 +152,18 @@ TEST_SUITE("run") {
     CHECK(filter["moving_latency_ms"]["count"].get<int>() > 20);
     CHECK(with({"--filter", "one-euro"}).out.find("one-euro") != std::string::npos);
     CHECK(with({}).out.find("filter") == std::string::npos);
+  }
+
+  TEST_CASE("the help names the filter's values that are taken without any") {
+    const auto help = nendo::test::nendo({"run", "--help"});
+    REQUIRE(help.exit_code == 0);
+    std::istringstream words(help.out); // lines may break anywhere
+    std::vector<double> named;
+    for (std::string before, word; words >> word; before = word)
+      if (before == "it,") named.push_back(std::strtod(word.c_str(), nullptr));
+    const hand::FilterOptions usual;
+    for (const double value : {usual.min_cutoff_hz, usual.beta_hz_per_rad_s})
+      CHECK(std::find(named.begin(), named.end(), value) != named.end());
   }
 
   TEST_CASE("the filter's parameters are the ones asked for, and so is the latency they cause") {

@@ -51,17 +51,18 @@ TEST_SUITE("calibration_fit") {
     }
   }
 
-  TEST_CASE("the more often poses are held exactly, the nearer the fit is to the truth") {
+  TEST_CASE(
+      "the more often poses are held exactly, the nearer the fit is, up to what may be habit") {
     const Calibration truth = some_truth(4);
     double before = 1.0;
     for (const int times : {1, 6, 36}) {
       const auto readings = exact_readings(truth, times);
       const double off = largest_difference_rad(fitted(readings), truth, readings);
       CAPTURE(times);
-      CHECK(off < 0.35 * before);
+      CHECK(off < before);
       before = off;
     }
-    CHECK(before < 0.25 * rad);
+    CHECK(before < 2.5 * rad);
   }
 
   TEST_CASE("two poses give the flexion sensors' lines, and leave the rest at the default") {
@@ -231,7 +232,7 @@ TEST_SUITE("calibration_fit") {
                                  fitted(readings, {}, Side::right), readings) < 1e-7);
   }
 
-  TEST_CASE("holding the poses again makes the angles surer") {
+  TEST_CASE("holding the poses again makes the angles surer, but for what is habit") {
     const auto once = exact_readings(some_truth(14));
     auto often = once;
     for (int n = 0; n < 3; ++n)
@@ -242,8 +243,10 @@ TEST_SUITE("calibration_fit") {
     REQUIRE(b);
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       if (!sensors_22.has(static_cast<Sensor>(slot))) continue;
+      const double times = b->sensors[slot].deviation_rad / a->sensors[slot].deviation_rad;
       // Four times the evidence is half the deviation, but for the default's little part.
-      CHECK(b->sensors[slot].deviation_rad < 0.7 * a->sensors[slot].deviation_rad);
+      CHECK(times < 0.9);
+      CHECK(times > 0.5);
     }
   }
 

@@ -11,6 +11,12 @@
 using namespace nendo;
 using namespace nendo::hand;
 
+namespace {
+
+constexpr double rad = std::numbers::pi / 180.0;
+
+} // namespace
+
 TEST_SUITE("calibration_poses") {
   TEST_CASE("every pose has a name of its own, is found by it, and is asked for in a sentence") {
     std::set<std::string> names;
@@ -36,6 +42,33 @@ TEST_SUITE("calibration_poses") {
       CHECK(std::count(full.begin(), full.end(), id) == 1);
   }
 
+  TEST_CASE("a full calibration takes every pose, then some once more, but never at once") {
+    const auto full = full_poses(), takes = full_takes();
+    REQUIRE(takes.size() > full.size());
+    CHECK(takes.size() <=
+          30); // at five seconds each, and half a minute of free motion: three minutes
+    CHECK(std::equal(full.begin(), full.end(), takes.begin()));
+    for (std::size_t k = 1; k < takes.size(); ++k)
+      CHECK(takes[k] != takes[k - 1]);
+    for (const PoseId id : full)
+      CHECK(std::count(takes.begin(), takes.end(), id) <= 2);
+  }
+
+  TEST_CASE(
+      "every PIP joint is bent once by something other than feel, and nothing straight is by it") {
+    for (const Sensor pip :
+         {Sensor::index_pip, Sensor::middle_pip, Sensor::ring_pip, Sensor::pinky_pip}) {
+      const auto full = full_poses();
+      CHECK(std::count_if(full.begin(), full.end(), [&](PoseId id) {
+              const AssumedAngle& assumed = pose_of(id).assumed[static_cast<std::size_t>(pip)];
+              return assumed.angle_rad > 80.0 * rad && !assumed.by_feel;
+            }) == 1);
+    }
+    for (const PoseId id : full_poses())
+      for (const AssumedAngle& assumed : pose_of(id).assumed)
+        CHECK_FALSE((assumed.by_feel && std::abs(assumed.angle_rad) < 5.0 * rad));
+  }
+
   TEST_CASE("together the poses show every sensor of a 22-sensor glove two different angles") {
     for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
       if (!sensors_22.has(static_cast<Sensor>(slot))) continue;
@@ -54,7 +87,6 @@ TEST_SUITE("calibration_poses") {
   }
 
   TEST_CASE("nobody is asked for what a joint cannot do, or said to do it exactly") {
-    constexpr double rad = std::numbers::pi / 180.0;
     for (const PoseId id : full_poses()) {
       for (const AssumedAngle& assumed : pose_of(id).assumed) {
         CHECK(std::abs(assumed.angle_rad) <= 100.0 * rad);

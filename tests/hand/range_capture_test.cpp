@@ -47,6 +47,18 @@ TEST_SUITE("range_capture") {
     CHECK(capture.seen().high_counts[slot] <= 101.0);
   }
 
+  TEST_CASE("a capture that goes on from an earlier one keeps its ends, and widens them") {
+    RangeCapture before;
+    for (const int counts : {60, 60, 60, 180, 180})
+      before.push(sample_of(static_cast<std::uint16_t>(counts)));
+    RangeCapture after(before.seen());
+    CHECK(after.seen().present.bits == 1U << slot);
+    for (const int counts : {100, 100, 100, 40, 40})
+      after.push(sample_of(static_cast<std::uint16_t>(counts)));
+    CHECK(after.seen().low_counts[slot] == 40.0);
+    CHECK(after.seen().high_counts[slot] == 180.0);
+  }
+
   TEST_CASE("what is missing for a while is not compared across the gap") {
     RangeCapture capture;
     capture.push(sample_of(100));

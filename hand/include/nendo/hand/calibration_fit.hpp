@@ -1,10 +1,11 @@
 #pragma once
 // A wearer's calibration from held poses: the line of each sensor and the couplings under which the
-// poses are likeliest, by Levenberg and Marquardt. Three things speak: the angles that a pose is
-// known to have, each as surely as wearers do it; touches, where the thumb's and a finger's pads
-// meet by forward kinematics, whatever the angles (closed loops; Griffin, Findley, Turner, Cutkosky
-// 2000); and the default calibration, very softly. What the poses do not determine is left at the
-// default and said to be undetermined.
+// poses are likeliest, by Levenberg and Marquardt. Four things speak: the angles that a pose is
+// known to have, each as surely as wearers do it, some by a habit that all poses share; touches,
+// where the thumb's and a finger's pads meet by forward kinematics, whatever the angles (closed
+// loops; Griffin, Findley, Turner, Cutkosky 2000); the ends of a free motion; and the default
+// calibration, very softly. What the poses do not determine is left at the default and said to be
+// undetermined.
 
 #include <array>
 #include <span>

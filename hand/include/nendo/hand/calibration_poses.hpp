@@ -1,7 +1,8 @@
 #pragma once
 // The poses of the guided calibration: what a wearer is asked to do, and what that says about the
 // joints. Straight, hook, fist, table top and straight fist are the tendon gliding exercises of
-// hand therapy (Wehbe, Hunter 1985): each bends other joints, and people know how to do them.
+// hand therapy (Wehbe, Hunter 1985): each bends other joints, and people know how to do them. A
+// table's edge bends PIP joints to an angle that is not the wearer's own to choose.
 
 #include <array>
 #include <cstdint>
@@ -25,6 +26,8 @@ enum class PoseId : std::uint8_t {
   table_top,
   hook,
   straight_fist,
+  edge_index,
+  edge_little,
   point,
   two,
   three,
@@ -39,12 +42,15 @@ enum class PoseId : std::uint8_t {
   wrist_outwards,
 };
 
-inline constexpr std::size_t pose_count = 22;
+inline constexpr std::size_t pose_count = 24;
 
 /// The angle that a joint is taken to have in a pose.
 struct AssumedAngle {
   double angle_rad = 0.0;
   double deviation_rad = 0.0; ///< how far wearers are off, as a standard deviation; 0: not assumed
+  /// Bent to where it feels right, by a habit that is the same each time, and held there by
+  /// nothing.
+  bool by_feel = false;
 
   constexpr bool known() const noexcept { return deviation_rad > 0.0; }
 };
@@ -77,5 +83,8 @@ std::optional<PoseId> pose_named(std::string_view name) noexcept;
 std::span<const PoseId> quick_poses() noexcept;
 /// All of them, in an order that is easy on the hand.
 std::span<const PoseId> full_poses() noexcept;
+/// What a full calibration asks for: all of them, then some once more, which are the only ones, or
+/// the surest, to tell of a joint. A take is never the pose of the one before.
+std::span<const PoseId> full_takes() noexcept;
 
 } // namespace nendo::hand

@@ -51,6 +51,8 @@ public:
   const HeldPose& held() const noexcept { return held_; }
   /// Waits for another pose, different from the one held.
   void begin_next() noexcept;
+  /// Takes the pose held last, too, if it is held again.
+  void forget_last() noexcept { last_ = {}; }
 
 private:
   struct Watched {

@@ -18,6 +18,10 @@ struct CountRanges {
 /// Wait-free, no allocation. One thread.
 class RangeCapture {
 public:
+  RangeCapture() = default;
+  /// Goes on from what was seen before.
+  explicit RangeCapture(const CountRanges& seen) noexcept : seen_(seen) {}
+
   /// The next sample in time. A count counts once it is the middle one of three in a row by size,
   /// so that a single sample that jumps does not widen a range.
   void push(const GloveSample& sample) noexcept;
@@ -29,7 +33,7 @@ private:
     std::array<double, 2> counts{};
     std::uint8_t known = 0; ///< how many
   };
-  std::array<Last, sensor_slots> last_;
+  std::array<Last, sensor_slots> last_{};
   CountRanges seen_;
 };
 
