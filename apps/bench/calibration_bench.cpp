@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -42,12 +43,28 @@ Figures figures_of(std::vector<Number> values) {
   return {at(0.5), at(0.95)};
 }
 
+/// Groups, and then families of them.
+constexpr std::size_t row_count = group_names.size() + families.size();
+
+std::string_view row_name(std::size_t row) {
+  return row < group_names.size() ? group_names[row] : families[row - group_names.size()].name;
+}
+
+Figures row_figures(const TrialErrors& errors, std::size_t method, std::size_t row) {
+  if (row < group_names.size()) return figures_of(errors.deg[method][row]);
+  const JointFamily& family = families[row - group_names.size()];
+  std::vector<float> all;
+  for (std::size_t group = family.first_group; group < family.end_group; ++group)
+    all.insert(all.end(), errors.deg[method][group].begin(), errors.deg[method][group].end());
+  return figures_of(std::move(all));
+}
+
 void print_json(const TrialErrors& errors, std::uint64_t refused, const Options& options) {
   nlohmann::ordered_json groups;
-  for (std::size_t group = 0; group < group_names.size(); ++group) {
+  for (std::size_t row = 0; row < row_count; ++row) {
     for (std::size_t method = 0; method < method_names.size(); ++method) {
-      const Figures deg = figures_of(errors.deg[method][group]);
-      groups[std::string(group_names[group])][std::string(method_names[method])] = {
+      const Figures deg = row_figures(errors, method, row);
+      groups[std::string(row_name(row))][std::string(method_names[method])] = {
           {"median_deg", deg.median}, {"p95_deg", deg.p95}};
     }
   }
@@ -77,15 +94,15 @@ void print_table(const TrialErrors& errors, bool markdown) {
       "joints", [](std::size_t method) { return std::string(method_names[method]); },
       std::string("full / two_pose"));
   if (markdown) std::printf("|---|---:|---:|---:|---:|---:|---:|\n");
-  for (std::size_t group = 0; group < group_names.size(); ++group) {
+  for (std::size_t at = 0; at < row_count; ++at) {
     std::array<Figures, method_names.size()> deg;
     for (std::size_t method = 0; method < method_names.size(); ++method)
-      deg[method] = figures_of(errors.deg[method][group]);
+      deg[method] = row_figures(errors, method, at);
     char text[32];
     std::snprintf(text, sizeof text, "%.2f", deg[0].median / std::max(deg[1].median, 1e-9));
     const std::string ratio = text;
     row(
-        group_names[group],
+        row_name(at),
         [&](std::size_t method) {
           std::snprintf(text, sizeof text, "%.2f / %.2f", deg[method].median, deg[method].p95);
           return std::string(text);

@@ -25,6 +25,14 @@ inline constexpr std::array<std::string_view, 9> group_names{
     "finger abduction", "thumb roll", "thumb abduction",
     "thumb flexion",    "palm arch",  "wrist"};
 
+/// What several of these groups are together.
+struct JointFamily {
+  std::string_view name;
+  std::size_t first_group, end_group;
+};
+inline constexpr std::array<JointFamily, 2> families{
+    {{"finger flexion", 0, 3}, {"whole thumb", 4, 7}}};
+
 /// Absolute errors in degrees, by method and group of joints.
 struct TrialErrors {
   std::array<std::array<std::vector<float>, group_names.size()>, method_names.size()> deg;
