@@ -96,6 +96,10 @@ Option Command::add_flag(const std::string& names, bool& value, const std::strin
   return Option(*app_->add_flag(names, value, summary));
 }
 
+void Command::free_short_help() {
+  app_->set_help_flag("--help", "Print this help message and exit");
+}
+
 void Command::set_footer(const std::string& text) {
   app_->footer(text);
 }

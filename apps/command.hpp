@@ -43,6 +43,8 @@ public:
   template <class T>
   Option add_option(const std::string& names, T& value, const std::string& summary);
   Option add_flag(const std::string& names, bool& value, const std::string& summary);
+  /// -h may then be another option's; --help stays.
+  void free_short_help();
   /// The text after the options in --help.
   void set_footer(const std::string& text);
   /// Has `command` run when this one is chosen; what it returns becomes the exit code.

@@ -16,5 +16,6 @@ void add_info(Command& program);
 void add_monitor(Command& program);
 void add_poses(Command& program);
 void add_run(Command& program);
+void add_stress(Command& program);
 
 } // namespace nendo::app

@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
                        add_calibration(program);
                        add_deform(program);
                        add_emulate(program);
+                       add_stress(program);
                        add_bench(program);
                      });
 }

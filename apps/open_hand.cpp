@@ -10,7 +10,7 @@ namespace nendo::app {
 
 using std::chrono::milliseconds;
 
-Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side) {
+Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side, Bell* bell) {
   auto glove = driver::open_glove(spec, side);
   if (!glove) return glove.error();
   const Side own_side = (*glove)->info().side;
@@ -20,7 +20,7 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side) {
   }
   OpenHand hand;
   hand.side = side.value_or(own_side);
-  hand.ring = std::make_unique<SampleRing>(1024);
+  hand.ring = std::make_unique<SampleRing>(1024, bell);
   hand.glove = *std::move(glove);
   return hand;
 }

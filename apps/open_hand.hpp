@@ -22,8 +22,10 @@ struct OpenHand {
 };
 
 /// Opens the glove for that hand, and says so on standard error if it calls itself the other one;
-/// without `side`, for the hand that it is. Blocks and fails as open_glove().
-Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt);
+/// without `side`, for the hand that it is. `bell` is rung by each sample. Blocks and fails as
+/// open_glove().
+Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
+                           Bell* bell = nullptr);
 
 /// Takes the first sample of a started glove out of the ring. Blocks, 2 s at most. Errors:
 /// no_device if none comes, failed if a stop signal does.

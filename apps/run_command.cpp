@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "filter_options.hpp"
 #include "kernel_options.hpp"
+#include "loop_options.hpp"
 #include "run_report.hpp"
 
 namespace nendo::app {
@@ -26,6 +27,7 @@ struct CommandOptions {
   std::string switch_action = "none";
   FilterArguments filter;
   KernelOptions kernel;
+  LoopArguments loop;
   bool injective = false;
   bool not_injective = false;
 };
@@ -85,6 +87,7 @@ Result<void> check(CommandOptions& options) {
         run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
     return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
   }
+  if (const auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
   if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
     return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
   }
@@ -104,12 +107,15 @@ int run(CommandOptions& options) {
       (!options.not_injective && model->vertices.cols() <= most_injective_unasked))
     options.run.loop.sculptor.deformer.injective.emplace();
   install_stop_signals();
-  const auto hands = open_hands(options.run);
+  RunOptions& wanted = options.run;
+  const flow::RealtimeProcess process(wanted.realtime);
+  wanted.grants = process.grants();
+  Bell bell;
+  const auto hands = open_hands(wanted, bell);
   if (!hands) return report(hands.error());
-  const auto outcome =
-      run_session(options.run, *hands, *std::move(model), progress_for(options.run));
+  const auto outcome = run_session(wanted, *hands, *std::move(model), progress_for(wanted));
   if (!outcome) return report(outcome.error());
-  print_summary(options.run, *hands, *outcome);
+  print_summary(wanted, *hands, *outcome);
   return 0;
 }
 
@@ -146,6 +152,7 @@ void add_run(Command& program) {
                        std::to_string(most_injective_unasked) + " vertices");
   command.add_flag("--no-injective", options->not_injective, "Whatever the fingertips ask for");
   command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
+  options->loop.add_to(command);
   command.add_option("--switch", options->switch_action,
                      "What the wrist switch does. grab: the hands hold the model while it is on; "
                      "commit: keeps the shape so far; toggle: lets go, takes hold again");

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cli.hpp"
+#include "loop_options.hpp"
 #include "range_report.hpp"
 
 namespace nendo::app {
@@ -49,12 +50,9 @@ void print_percentiles(const char* name, const flow::Histogram& histogram) {
 }
 
 void print_progress_json(const flow::Frame& frame, double elapsed_s) {
-  ordered_json line{{"event", "progress"},
-                    {"elapsed_s", elapsed_s},
-                    {"ticks", frame.ticks},
-                    {"missed", frame.missed},
-                    {"held", frame.held},
-                    {"pairs_held_apart", frame.chain.held_pairs}};
+  ordered_json line{{"event", "progress"},  {"elapsed_s", elapsed_s},
+                    {"ticks", frame.ticks}, {"missed", frame.missed},
+                    {"held", frame.held},   {"pairs_held_apart", frame.chain.held_pairs}};
   for (std::size_t slot = 0; slot < sides.size(); ++slot) {
     if (!frame.hands[slot].present) continue;
     line[std::string(name_of(sides[slot]))] = {{"samples", frame.hands[slot].samples},
@@ -164,6 +162,8 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
                     {"kernel", deform::name_of(options.loop.sculptor.deformer.csrbf.kernel)},
                     {"radius", outcome.radius},
                     {"rate_hz", options.loop.rate_hz},
+                    {"policy", flow::describe_policy(options.loop)},
+                    {"realtime", grants_json(outcome.grants)},
                     {"ticks", stats.ticks},
                     {"overruns", stats.overruns},
                     {"missed", stats.missed},

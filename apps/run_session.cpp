@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <future>
+#include <limits>
 #include <thread>
 #include <utility>
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/driver/devices.hpp>
-#include <nendo/flow/tick_grid.hpp>
 
 #include "cli.hpp"
 #include "glove_light.hpp"
@@ -28,11 +29,11 @@ constexpr double piece_fraction = 0.05;
 
 // Both hands that the machine has, or simulated ones. A glove that is there but cannot be used is
 // an error.
-Result<std::vector<OpenHand>> open_any() {
+Result<std::vector<OpenHand>> open_any(Bell* bell) {
   std::vector<OpenHand> hands;
   std::string why;
   for (const Side side : {Side::left, Side::right}) {
-    auto hand = open_hand("auto:" + std::string(name_of(side)), side);
+    auto hand = open_hand("auto:" + std::string(name_of(side)), side, bell);
     if (hand) {
       hands.push_back(*std::move(hand));
     } else if (hand.error().code != Errc::no_device) {
@@ -50,19 +51,19 @@ Result<std::vector<OpenHand>> open_any() {
   note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
        "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {
-    auto hand = open_hand("sim", side);
+    auto hand = open_hand("sim", side, bell);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
   return hands;
 }
 
-Result<std::vector<OpenHand>> open_named(const RunOptions& options) {
+Result<std::vector<OpenHand>> open_named(const RunOptions& options, Bell* bell) {
   std::vector<OpenHand> hands;
   for (const auto& [spec, side] :
        {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
     if (spec->empty()) continue;
-    auto hand = open_hand(*spec, side);
+    auto hand = open_hand(*spec, side, bell);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
@@ -176,11 +177,11 @@ private:
 };
 
 // Follows the loop from the main thread until it ends or is to end.
-void watch(flow::DeformLoop& loop, const std::atomic<bool>& ended, HostTime start,
-           HoldLights& lights, const Progress& progress) {
+void watch(const RunOptions& options, flow::DeformLoop& loop, const std::atomic<bool>& ended,
+           HostTime start, HoldLights& lights, const Progress& progress) {
   HostTime next_report = start;
   bool unreported = false;
-  while (!ended && !stop_requested()) {
+  while (!ended && !stop_requested() && !is_over(options, start)) {
     std::this_thread::sleep_for(milliseconds(20));
     if (loop.frames().update()) {
       unreported = true;
@@ -193,27 +194,43 @@ void watch(flow::DeformLoop& loop, const std::atomic<bool>& ended, HostTime star
   }
 }
 
-std::uint64_t ticks_for(const RunOptions& options) {
-  if (options.duration_s <= 0.0) return std::numeric_limits<std::uint64_t>::max();
+} // namespace
+
+std::uint64_t ticks_for(const RunOptions& options) noexcept {
+  // Ticks that follow samples, or slip, do not measure time.
+  const auto policy = options.loop.policy;
+  const bool on_grid =
+      policy == flow::OverrunPolicy::skip || policy == flow::OverrunPolicy::catch_up;
+  if (options.duration_s <= 0.0 || !on_grid) return std::numeric_limits<std::uint64_t>::max();
   return static_cast<std::uint64_t>(
       std::max(1.0, std::round(options.duration_s * options.loop.rate_hz)));
 }
 
-} // namespace
+bool is_over(const RunOptions& options, HostTime start) noexcept {
+  if (options.duration_s <= 0.0) return false;
+  const bool on_grid = ticks_for(options) != std::numeric_limits<std::uint64_t>::max();
+  return !on_grid && to_seconds(HostClock::now() - start) >= options.duration_s;
+}
 
 Result<void> check_radius(const std::string& text) {
   if (text.empty() || deform::parse_supports_by_point(text, 10)) return {};
   return bad_radius(text, "is none");
 }
 
-Result<std::vector<OpenHand>> open_hands(const RunOptions& options) {
+Result<std::vector<OpenHand>> open_hands(RunOptions& options, Bell& bell) {
+  if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.bell = &bell;
   const bool named = !options.left.empty() || !options.right.empty();
-  auto hands = named ? open_named(options) : open_any();
+  Bell* const rung = options.loop.bell;
+  auto hands = named ? open_named(options, rung) : open_any(rung);
   if (!hands) return hands;
   if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
     return fine.error();
-  for (auto& hand : *hands) {
-    if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
+  {
+    const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
+    if (readers.grant()) options.grants.push_back(*readers.grant());
+    for (auto& hand : *hands) {
+      if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
+    }
   }
   for (auto& hand : *hands) {
     if (const auto came = wait_for_first_sample(hand); !came) return came.error();
@@ -222,8 +239,8 @@ Result<std::vector<OpenHand>> open_hands(const RunOptions& options) {
   return hands;
 }
 
-Result<RunOutcome> run_session(const RunOptions& options, const std::vector<OpenHand>& hands,
-                               deform::Mesh model, const Progress& progress) {
+Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
+                              const deform::Mesh& model) {
   const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
@@ -238,21 +255,35 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
   const auto placement = placement_for(inputs, model);
-  flow::DeformLoop loop(model, placement, std::move(inputs), loop_options);
-  if (!is_solved(loop.grab_status())) {
+  auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
+  if (!is_solved(loop->grab_status())) {
     return Error{Errc::failed, "the hands cannot take hold of the model: " +
-                                   std::string(deform::describe(loop.grab_status()))};
+                                   std::string(deform::describe(loop->grab_status()))};
   }
+  return PlacedLoop{std::move(loop), largest_radius};
+}
 
+Result<RunOutcome> run_session(const RunOptions& options, const std::vector<OpenHand>& hands,
+                               deform::Mesh model, const Progress& progress) {
+  auto placed = place_loop(options, hands, model);
+  if (!placed) return placed.error();
+  flow::DeformLoop& loop = *placed->loop;
   std::atomic<bool> over{false};
   std::atomic<bool> ended{false};
+  std::promise<std::vector<flow::Grant>> prepared;
   const HostTime start = HostClock::now();
   std::thread loop_thread([&] {
+    prepared.set_value(flow::make_thread_realtime(options.realtime));
     loop.run(over, ticks_for(options));
     ended = true;
   });
+  std::vector<flow::Grant> grants = options.grants;
+  for (auto& grant : prepared.get_future().get())
+    grants.push_back(std::move(grant));
+  for (const auto& line : flow::refusals(grants))
+    note(line);
   HoldLights lights(options.loop.switch_action, hands);
-  watch(loop, ended, start, lights, progress);
+  watch(options, loop, ended, start, lights, progress);
   over = true;
   loop_thread.join();
   const double elapsed_s = to_seconds(HostClock::now() - start);
@@ -262,7 +293,8 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
 
   model.vertices = loop.final_shape();
   if (const auto kept = keep(options.out, model); !kept) return kept.error();
-  return RunOutcome{loop.stats(), elapsed_s, model.vertices.cols(), largest_radius, options.out};
+  return RunOutcome{loop.stats(),   elapsed_s,   model.vertices.cols(),
+                    placed->radius, options.out, std::move(grants)};
 }
 
 } // namespace nendo::app

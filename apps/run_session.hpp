@@ -9,6 +9,7 @@
 #include <string>
 
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/realtime.hpp>
 
 #include "glove_calibration.hpp"
 #include "hand_length.hpp"
@@ -28,12 +29,16 @@ struct RunOptions {
   HandLength length;
   hand::FilterOptions filter; ///< of both hands
   flow::LoopOptions loop;
+  flow::RealtimeOptions realtime;  ///< of the loop's thread
+  std::vector<flow::Grant> grants; ///< what was asked for before, of the process and the readers
 };
 
 /// Opens and starts the gloves and waits for the first sample of each. With none named it uses what
 /// is identified, and simulated hands, saying so, if there is nothing. Errors as open_glove();
 /// no_device if no sample comes; as known_hands().
-Result<std::vector<OpenHand>> open_hands(const RunOptions& options);
+/// The readers get the priority that goes with the loop's; what the system says to that is added to
+/// options.grants. With OverrunPolicy::sample, `bell` is what wakes the loop; it must outlive both.
+Result<std::vector<OpenHand>> open_hands(RunOptions& options, Bell& bell);
 
 /// Whether a --radius is one, for hands at all. Error: usage.
 Result<void> check_radius(const std::string& text);
@@ -45,12 +50,30 @@ struct RunOutcome {
   Eigen::Index vertices = 0;
   double radius = 0.0; ///< the largest
   std::string result;
+  std::vector<flow::Grant> grants;
 };
+
+/// The loop over these hands, which hold the model between them.
+struct PlacedLoop {
+  std::unique_ptr<flow::DeformLoop> loop;
+  double radius = 0.0; ///< the largest
+};
+
+/// As options.loop says, with the supports that options.radius says. Errors: usage (radius), failed
+/// (the hands cannot take hold of the model).
+Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
+                              const deform::Mesh& model);
+
+/// How many deadlines of the grid a run lasts; no end where the clock alone says when it is over.
+std::uint64_t ticks_for(const RunOptions& options) noexcept;
+/// Whether a run that began at `start` has lasted its duration, by the clock.
+bool is_over(const RunOptions& options, HostTime start) noexcept;
 
 /// Called about four times a second with the latest frame.
 using Progress = std::function<void(const flow::Frame& frame, double elapsed_s)>;
 
-/// Runs until the duration is over or a stop signal comes, then writes the shape. Blocks.
+/// Runs until the duration is over or a stop signal comes, then writes the shape; says on standard
+/// error which rights were refused. Blocks.
 Result<RunOutcome> run_session(const RunOptions& options, const std::vector<OpenHand>& hands,
                                deform::Mesh model, const Progress& progress);
 

@@ -7,14 +7,15 @@ namespace nendo::app {
 
 void add_bench(Command& program) {
   Command bench = program.add_command(
-      "bench", "Measures this program on this machine: latency, faults, load, hands, calibration, "
-               "fields, deformation, rings");
+      "bench", "Measures this program on this machine: latency, faults, load, loop, rings, hands, "
+               "calibration, fields, deformation");
   bench.require_command();
   add_calibration_bench(bench);
   add_deform_bench(bench);
   add_latency_bench(bench);
   add_faults_bench(bench);
   add_hand_bench(bench);
+  add_loop_bench(bench);
   add_rt_bench(bench);
   add_scale_bench(bench);
   add_soak_bench(bench);

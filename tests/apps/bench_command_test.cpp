@@ -34,6 +34,20 @@ TEST_SUITE("bench") {
     }
   }
 
+  TEST_CASE("bench loop holds each figure against its goal, or says what it lacks") {
+    const auto done = nendo::test::nendo({"bench", "loop", "--seconds", "1", "--json"});
+    if (done.exit_code != 0) { // no real-time rights, no cyclictest
+      CHECK(is_one_line_about(done.err, "; "));
+      return;
+    }
+    const auto lines = lines_of(done.out);
+    CHECK(lines.size() == 10);
+    for (const auto& line : lines) {
+      const auto told = nlohmann::json::parse(line);
+      CHECK((told["value"].get<double>() <= told["at_most"].get<double>()) == told["met"]);
+    }
+  }
+
   TEST_CASE("no fault makes a CyberGlove deliver what was not sent, or stay away") {
     const auto done =
         nendo::test::nendo({"bench", "faults", "--seconds", "7", "--at-once", "32", "--json"});
@@ -337,6 +351,9 @@ TEST_SUITE("bench") {
     const auto unheard = nendo::test::nendo({"bench", "rt", "--part", "gears"});
     CHECK(unheard.exit_code == 2);
     CHECK(is_one_line_about(unheard.err, "gears"));
+    const auto no_time = nendo::test::nendo({"bench", "loop", "--seconds", "0"});
+    CHECK(no_time.exit_code == 2);
+    CHECK(is_one_line_about(no_time.err, "--seconds"));
     const auto few = nendo::test::nendo({"bench", "soak", "--records", "1"});
     CHECK(few.exit_code == 2);
     CHECK(is_one_line_about(few.err, "--records"));

@@ -330,4 +330,59 @@ TEST_SUITE("run") {
     CHECK(nendo::test::nendo({"run", "--right", "sim", "--out", "shape.stl"}).exit_code == 2);
     CHECK_FALSE(std::filesystem::exists(out));
   }
+
+  TEST_CASE(
+      "the rights that a run asks for are granted or refused, in the summary and in one line") {
+    const TemporaryFolder folder;
+    const auto done =
+        nendo::test::nendo({"run", "--left", "sim", "--right", "sim", "--rate", "200", "--duration",
+                            "0.5", "--priority", "80", "--mlockall", "--affinity", "0", "--policy",
+                            "catch-up:3", "--json", "--out", (folder.path() / "x.obj").string()});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const json summary = summary_of(done);
+    CHECK(summary["policy"] == "catch-up:3");
+    CHECK(summary["ticks"].get<int>() + summary["missed"].get<int>() == 100);
+    std::size_t refused = 0;
+    std::vector<std::string> names;
+    for (const json& grant : summary["realtime"]) {
+      names.push_back(grant["name"]);
+      if (grant["granted"] == true) continue;
+      ++refused;
+      CHECK(done.err.find(grant["wanted"].get<std::string>() + " refused (") != std::string::npos);
+    }
+    CHECK(names == std::vector<std::string>{"memory_lock", "dma_latency", "reader_policy",
+                                            "affinity", "policy", "timer_slack"});
+    CHECK(lines_of(done.err).size() == refused);
+  }
+
+  TEST_CASE("a run may be paced by its gloves' samples") {
+    const TemporaryFolder folder;
+    const auto done = nendo::test::nendo({"run", "--right", "sim?rate=100", "--policy", "sample",
+                                          "--rate", "1000", "--duration", "1", "--json", "--out",
+                                          (folder.path() / "x.obj").string()});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const json summary = summary_of(done);
+    CHECK(summary["elapsed_s"].get<double>() >= 1.0);
+    CHECK(summary["right"]["samples"].get<int>() > 20);
+    // A tick for each sample, and ten a second without one.
+    CHECK(summary["ticks"].get<int>() <= summary["right"]["samples"].get<int>() + 20);
+    CHECK(summary["missed"] == 0);
+  }
+
+  TEST_CASE("timing that cannot be is refused by the option's name") {
+    for (const auto& [option, value] : {std::pair{"--priority", "98"},
+                                        {"--priority", "-1"},
+                                        {"--affinity", "99999"},
+                                        {"--affinity", "zero"},
+                                        {"--policy", "hurry"},
+                                        {"--policy", "catch-up:0"},
+                                        {"--spin", "on"},
+                                        {"--spin", "maybe"}}) {
+      const auto done = nendo::test::nendo({"run", "--left", "sim", option, value});
+      CHECK(done.exit_code == 2);
+      CHECK(is_one_line_about(done.err, option));
+    }
+  }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -65,5 +66,27 @@ TEST_SUITE("histogram") {
               1.016 * static_cast<double>(ns));
       }
     }
+  }
+
+  TEST_CASE("its classes, shortest first, hold every value, and a value may be many") {
+    Histogram one_by_one;
+    Histogram together;
+    for (const auto& [ns, count] : {std::pair{5, 3}, {1'000, 7}, {2'000'000, 2}}) {
+      together.record(std::chrono::nanoseconds(ns), static_cast<std::uint64_t>(count));
+      for (int n = 0; n < count; ++n)
+        one_by_one.record(std::chrono::nanoseconds(ns));
+    }
+    together.record(std::chrono::hours(1), 0); // none of that
+    std::uint64_t seen = 0;
+    std::chrono::nanoseconds before{-1};
+    together.for_each([&](std::chrono::nanoseconds longest, std::uint64_t count) {
+      CHECK(longest > before);
+      seen += count;
+      before = longest;
+      CHECK(one_by_one.percentile(static_cast<double>(seen) / 12.0) == longest);
+    });
+    CHECK(seen == 12);
+    CHECK(before == together.max());
+    CHECK(together.max() == one_by_one.max());
   }
 }

@@ -66,6 +66,8 @@ public:
   Program& operator=(const Program&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  pid_t id() const noexcept { return pid_; }
+  std::string err_so_far() const { return contents(folder_.path() / "err"); }
 
   Finished wait(std::chrono::seconds patience = std::chrono::seconds(60)) {
     Finished finished;

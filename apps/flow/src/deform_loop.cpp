@@ -4,9 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include <sched.h>
 #include <sys/prctl.h>
-
-#include <nendo/flow/tick_grid.hpp>
 
 namespace nendo::flow {
 
@@ -63,7 +62,9 @@ void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
   angles = filter.pass(hand::joint_angles(latest, in_force), time);
 }
 
-void DeformLoop::take_samples(HostTime now) noexcept {
+void DeformLoop::take_samples(TickRecord& record) noexcept {
+  const HostTime now = record.woke;
+  HostTime newest{};
   for (auto& hand : hands_) {
     const std::size_t count = hand.input.ring->drain([&](const GloveSample& sample) noexcept {
       hand.follow(sample);
@@ -73,6 +74,12 @@ void DeformLoop::take_samples(HostTime now) noexcept {
       if (options_.switch_action == SwitchAction::commit) commit_due_ = true;
     });
     hand.fresh = count > 0;
+    if (hand.fresh) {
+      const HostTime arrival = hand.latest.arrival;
+      newest = std::max(newest, arrival);
+      record.input = record.samples == 0 ? arrival : std::min(record.input, arrival);
+      record.samples += static_cast<std::uint32_t>(count);
+    }
     stats_.samples[hand.slot] += count;
     stats_.spikes[hand.slot] = hand.gate.spikes();
     if (const auto* learned = hand.calibration.adaptation())
@@ -81,6 +88,7 @@ void DeformLoop::take_samples(HostTime now) noexcept {
     if (silent && !hand.silent) ++stats_.silences[hand.slot];
     hand.silent = silent;
   }
+  if (options_.policy == OverrunPolicy::sample && record.samples > 0) record.scheduled = newest;
   if (options_.switch_action == SwitchAction::grab) {
     hold_wanted_ = std::any_of(hands_.begin(), hands_.end(),
                                [](const Hand& hand) { return hand.wrist_switch.is_on(); });
@@ -133,29 +141,45 @@ void DeformLoop::record_chain(deform::ChainReport& chain) noexcept {
   if (chain.held_pairs > 0) ++stats_.held_apart_ticks;
 }
 
-void DeformLoop::tick(std::uint64_t number, HostTime scheduled) noexcept {
-  const HostTime woke = HostClock::now();
-  take_samples(woke);
+void DeformLoop::tick(const Pacer::Due& due) noexcept {
+  const TickStages& runs = options_.stages;
+  TickRecord record{.tick = due.number, .scheduled = due.scheduled, .woke = due.woke};
+  record.missed = due.missed;
+  record.spun_ns = saturated_ns(due.spun);
+  const auto now_ns = [&]() noexcept { return saturated_ns(HostClock::now() - record.woke); };
+  if (runs.input) take_samples(record);
+  record.drained_ns = now_ns();
   Frame& frame = frames_.back();
-  compute_hands(frame);
-  frame.status = shape(frame);
+  if (runs.hands) compute_hands(frame);
+  record.posed_ns = now_ns();
+  if (runs.deform) frame.status = shape(frame);
+  record.solved_ns = now_ns();
+  describe(record, frame);
+  if (runs.publish) frames_.publish();
+  record.published_ns = now_ns();
+  record_latencies(record);
+  if (options_.records != nullptr) options_.records->try_push(record);
+}
+
+void DeformLoop::describe(const TickRecord& record, Frame& frame) noexcept {
   ++stats_.ticks;
-  frame.tick = number;
+  if (!is_solved(frame.status)) ++stats_.failed;
+  frame.tick = record.tick;
   frame.ticks = stats_.ticks;
   frame.missed = stats_.missed;
   frame.commits = stats_.commits;
   frame.held = held_;
-  frame.scheduled = scheduled;
-  frame.woke = woke;
-  if (!is_solved(frame.status)) ++stats_.failed;
-  frames_.publish();
-
-  record_latencies(scheduled, woke, HostClock::now());
+  frame.scheduled = record.scheduled;
+  frame.woke = record.woke;
+  frame.since_last =
+      last_woke_ == HostTime{} ? HostClock::duration::zero() : record.woke - last_woke_;
+  last_woke_ = record.woke;
 }
 
-void DeformLoop::record_latencies(HostTime scheduled, HostTime woke, HostTime done) noexcept {
-  stats_.wake_latency.record(woke - scheduled);
-  stats_.work.record(done - woke);
+void DeformLoop::record_latencies(const TickRecord& record) noexcept {
+  const HostTime done = record.published();
+  stats_.wake_latency.record(record.woke - record.scheduled);
+  stats_.work.record(done - record.woke);
   for (const auto& hand : hands_) {
     if (!hand.fresh) continue;
     stats_.end_to_end.record(done - hand.latest.arrival);
@@ -170,17 +194,15 @@ void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) no
   // Without real-time priority the kernel may delay a wake-up by 50 microseconds unless it is told
   // not to.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-  const TickGrid grid(HostClock::now(), options_.rate_hz);
-  for (std::uint64_t number = 0; number < most_ticks;) {
-    sleep_until(grid.deadline(number));
+  PaceOptions pace = options_;
+  pace.spin = pace.spin && ::sched_getscheduler(0) == SCHED_FIFO;
+  Pacer pacer(pace, HostClock::now(), options_.bell);
+  while (pacer.next() < most_ticks) {
+    const Pacer::Due due = pacer.wait();
     if (stop.load(std::memory_order_relaxed)) return;
-    tick(number, grid.deadline(number));
-    const std::uint64_t next = grid.first_after(HostClock::now());
-    if (next > number + 1) {
-      ++stats_.overruns;
-      stats_.missed += std::min(next, most_ticks) - number - 1;
-    }
-    number = std::max(next, number + 1);
+    tick(due);
+    if (pacer.end_tick(HostClock::now())) ++stats_.overruns;
+    stats_.missed += std::min(pacer.next(), most_ticks) - due.number - 1;
   }
 }
 

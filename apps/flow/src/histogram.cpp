@@ -24,11 +24,12 @@ std::uint64_t Histogram::top_of(std::size_t bucket) noexcept {
   return ((low + 64U + 1U) << (octave - 1)) - 1U;
 }
 
-void Histogram::record(HostClock::duration value) noexcept {
+void Histogram::record(HostClock::duration value, std::uint64_t count) noexcept {
+  if (count == 0) return;
   const std::int64_t ns =
       std::max<std::int64_t>(0, std::chrono::duration_cast<Nanoseconds>(value).count());
-  ++buckets_[bucket_of(static_cast<std::uint64_t>(ns))];
-  ++count_;
+  buckets_[bucket_of(static_cast<std::uint64_t>(ns))] += count;
+  count_ += count;
   min_ns_ = std::min(min_ns_, ns);
   max_ns_ = std::max(max_ns_, ns);
 }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include <nendo/base/bell.hpp>
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/units.hpp>
 
@@ -125,6 +126,22 @@ struct GloveSample {
   }
 };
 
-using SampleRing = SpscRing<GloveSample>;
+/// From a glove's reader thread to whoever uses its samples; rings a bell, if it has one, for a
+/// user who sleeps until a sample comes.
+class SampleRing : public SpscRing<GloveSample> {
+public:
+  /// `bell` may serve several rings; it must outlive them.
+  explicit SampleRing(std::size_t at_least, Bell* bell = nullptr)
+      : SpscRing(at_least), bell_(bell) {}
+
+  bool try_push(const GloveSample& sample) noexcept {
+    const bool taken = SpscRing::try_push(sample);
+    if (bell_ != nullptr) bell_->ring();
+    return taken;
+  }
+
+private:
+  Bell* const bell_;
+};
 
 } // namespace nendo

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include <nendo/flow/frame.hpp>
-#include <nendo/flow/histogram.hpp>
+#include <nendo/flow/loop_stats.hpp>
+#include <nendo/flow/pacer.hpp>
 #include <nendo/flow/sculptor.hpp>
+#include <nendo/flow/tick_record.hpp>
 #include <nendo/flow/wrist_switch.hpp>
 #include <nendo/hand/calibration_in_force.hpp>
 #include <nendo/hand/joint_filter.hpp>
@@ -33,36 +35,23 @@ struct HandInput {
   std::optional<CountScale> adapt{};
 };
 
-struct LoopOptions {
-  double rate_hz = 90.0; ///< within TickGrid's limits
-  SculptorOptions sculptor;
-  HostClock::duration silent_after = std::chrono::milliseconds(500);
-  SwitchAction switch_action = SwitchAction::none;
+/// What a tick does; some of it, to measure that alone. What is left out stays as it was.
+struct TickStages {
+  bool input = true;   ///< drains the rings
+  bool hands = true;   ///< joints and fingertips
+  bool deform = true;  ///< field and vertices
+  bool publish = true; ///< gives the frame to the reader
 };
 
-/// Written by the loop's thread; read them when run() has returned.
-struct LoopStats {
-  std::uint64_t ticks = 0;
-  std::uint64_t overruns = 0; ///< ticks that ended after the next deadline
-  std::uint64_t missed = 0;   ///< deadlines that were skipped for it; the grid is kept
-  std::uint64_t failed = 0;   ///< ticks without a usable field: the shape stayed as it was
-  std::array<std::uint64_t, 2> samples{};
-  std::array<std::uint64_t, 2> silences{};
-  std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
-  std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor
-  std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
-  std::uint64_t grabs = 0;                    ///< times the hands took hold again
-  std::uint64_t commits = 0;                  ///< times the shape became the rest shape
-  int most_links = 0;                         ///< of a tick; 0 unless the sculptor is injective
-  double most_bound = 0.0;                    ///< Lipschitz bound of a tick, had it been one link
-  double least_determinant = 1.0;             ///< ChainReport::least_determinant of any tick
-  std::uint64_t held_apart_ticks = 0;         ///< in which fingertips were held apart
-  Histogram wake_latency;                     ///< from the deadline to the loop's running
-  Histogram work;                             ///< from there to the published frame
-  Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it
-  /// hand::FilterLatency of each hand at each tick with samples, which end_to_end does not contain.
-  Histogram filter_moving;
-  Histogram filter_worst;
+struct LoopOptions : PaceOptions {
+  SculptorOptions sculptor;
+  TickStages stages;
+  /// Every tick's record goes there; a full ring refuses it. Must outlive the loop.
+  TickRing* records = nullptr;
+  /// What the hands' rings ring: needed by OverrunPolicy::sample. Must outlive the loop.
+  Bell* bell = nullptr;
+  HostClock::duration silent_after = std::chrono::milliseconds(500);
+  SwitchAction switch_action = SwitchAction::none;
 };
 
 class DeformLoop {
@@ -75,10 +64,13 @@ public:
 
   /// Runs ticks on the calling thread until `stop` or for `most_ticks` deadlines of the grid,
   /// skipped ones included. In a tick: no allocation, no lock, no system call but the sleep.
+  /// make_thread_realtime() before it makes the thread's wake-ups punctual.
   void run(const std::atomic<bool>& stop,
            std::uint64_t most_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
   /// One tick without its sleep, for callers with a clock of their own. Same thread as run().
-  void tick(std::uint64_t number, HostTime scheduled) noexcept;
+  void tick(std::uint64_t number, HostTime scheduled) noexcept {
+    tick({number, scheduled, HostClock::now()});
+  }
 
   /// Whether the hands could take hold: ok or merged.
   deform::FieldStatus grab_status() const noexcept { return grab_status_; }
@@ -91,9 +83,11 @@ public:
   deform::Points final_shape();
 
 private:
-  void take_samples(HostTime now) noexcept;
+  void tick(const Pacer::Due& due) noexcept;
+  void take_samples(TickRecord& record) noexcept;
   void compute_hands(Frame& frame) noexcept;
-  void record_latencies(HostTime scheduled, HostTime woke, HostTime done) noexcept;
+  void describe(const TickRecord& record, Frame& frame) noexcept;
+  void record_latencies(const TickRecord& record) noexcept;
   deform::FieldStatus shape(Frame& frame) noexcept;
   void record_chain(deform::ChainReport& chain) noexcept;
 
@@ -123,6 +117,7 @@ private:
   bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< what the switches ask for; follows at the next tick that can
   bool commit_due_ = false;
+  HostTime last_woke_{}; ///< of the tick before; HostTime{} at first
   LoopStats stats_;
   FrameExchange frames_;
 };

@@ -23,7 +23,7 @@ struct HandFrame {
 };
 
 struct Frame {
-  std::uint64_t tick = 0;   ///< the number of the deadline on the grid
+  std::uint64_t tick = 0;   ///< the number of the deadline on the grid; gaps were missed
   std::uint64_t ticks = 0;  ///< how many have run
   std::uint64_t missed = 0; ///< how many deadlines were skipped
   /// How often the shape became the rest shape; a commit of this frame's comes after its fields.
@@ -31,6 +31,9 @@ struct Frame {
   bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};
+  /// From the tick before, as both woke; 0 at first. Times the rate it is 1 but for lateness;
+  /// `tick` tells how many periods it ought to be.
+  HostClock::duration since_last{};
   double units_per_metre = 1.0;   ///< from the stage to the model
   std::array<HandFrame, 2> hands; ///< by Placement::index_of(side)
   deform::FieldStatus status = deform::FieldStatus::ok;

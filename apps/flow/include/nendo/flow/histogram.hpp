@@ -2,6 +2,7 @@
 // A histogram of durations with constant relative precision and constant size, for use inside the
 // loop.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -13,8 +14,8 @@ class Histogram {
 public:
   using Nanoseconds = std::chrono::nanoseconds;
 
-  /// Wait-free, no allocation. Negative durations count as zero.
-  void record(HostClock::duration value) noexcept;
+  /// Wait-free, no allocation. Negative durations count as zero. `count`: that often.
+  void record(HostClock::duration value, std::uint64_t count = 1) noexcept;
 
   std::uint64_t count() const noexcept { return count_; }
   Nanoseconds min() const noexcept { return Nanoseconds(count_ == 0 ? 0 : min_ns_); }
@@ -22,6 +23,17 @@ public:
   /// The least recorded value that `fraction` (0..1) of all values do not exceed, to within 1.6 %;
   /// never above max().
   Nanoseconds percentile(double fraction) const noexcept;
+  /// Calls sink(longest, count) for each class of durations that has any, shortest first; `longest`
+  /// is the longest that belongs to it, at most max().
+  template <class Sink>
+  void for_each(Sink&& sink) const {
+    for (std::size_t bucket = 0; bucket < bucket_count; ++bucket) {
+      if (buckets_[bucket] == 0) continue;
+      const bool last = bucket + 1 == bucket_count;
+      const Nanoseconds top(static_cast<std::int64_t>(top_of(bucket)));
+      sink(last ? max() : std::min(top, max()), buckets_[bucket]);
+    }
+  }
 
 private:
   // 64 buckets an octave; values below 64 ns have one each. 2^40 ns is 18 minutes: longer ones

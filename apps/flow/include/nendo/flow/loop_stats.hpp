@@ -1,0 +1,38 @@
+#pragma once
+// What the loop counts while it runs: in fixed memory, without waiting for anybody.
+
+#include <array>
+#include <cstdint>
+
+#include <nendo/driver/sample.hpp>
+#include <nendo/flow/histogram.hpp>
+#include <nendo/hand/range_adaptation.hpp>
+
+namespace nendo::flow {
+
+/// Written by the loop's thread; read them when run() has returned.
+struct LoopStats {
+  std::uint64_t ticks = 0;
+  std::uint64_t overruns = 0; ///< ticks that ended after the next deadline
+  std::uint64_t missed = 0;   ///< deadlines that were skipped for it, as OverrunPolicy says
+  std::uint64_t failed = 0;   ///< ticks without a usable field: the shape stayed as it was
+  std::array<std::uint64_t, 2> samples{};
+  std::array<std::uint64_t, 2> silences{};
+  std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
+  std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor
+  std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
+  std::uint64_t grabs = 0;                    ///< times the hands took hold again
+  std::uint64_t commits = 0;                  ///< times the shape became the rest shape
+  int most_links = 0;                         ///< of a tick; 0 unless the sculptor is injective
+  double most_bound = 0.0;                    ///< Lipschitz bound of a tick, had it been one link
+  double least_determinant = 1.0;             ///< ChainReport::least_determinant of any tick
+  std::uint64_t held_apart_ticks = 0;         ///< in which fingertips were held apart
+  Histogram wake_latency;                     ///< from TickRecord::scheduled to the loop's running
+  Histogram work;                             ///< from there to the published frame
+  Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it
+  /// hand::FilterLatency of each hand at each tick with samples, which end_to_end does not contain.
+  Histogram filter_moving;
+  Histogram filter_worst;
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,74 @@
+#pragma once
+// When a loop's ticks run: the grid of deadlines, what becomes of it when a tick takes too long,
+// and the wait between ticks.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nendo/base/bell.hpp>
+#include <nendo/flow/spin_margin.hpp>
+#include <nendo/flow/tick_grid.hpp>
+
+namespace nendo::flow {
+
+/// What follows a tick that ended after the next deadline.
+enum class OverrunPolicy : std::uint8_t {
+  skip,      ///< deadlines that passed are missed; the next tick is on the grid again
+  catch_up,  ///< they are run at once, the newest `most_catch_up` of them; older ones are missed
+  re_anchor, ///< the next tick runs at once, and the grid begins anew there; none is missed
+  sample,    ///< no grid: a tick runs when a sample comes
+};
+
+struct PaceOptions {
+  double rate_hz = 90.0; ///< within TickGrid's limits
+  OverrunPolicy policy = OverrunPolicy::skip;
+  unsigned most_catch_up = 4; ///< at least 1
+  /// Wakes before the deadline and spins to it (SpinMargin). DeformLoop does so under SCHED_FIFO
+  /// alone: the ordinary scheduler punishes a thread that spins, which then misses twice as many.
+  bool spin = false;
+  /// With `sample`: a tick runs after so long without one, so that silence is seen.
+  HostClock::duration longest_wait = std::chrono::milliseconds(100);
+};
+
+/// "skip", "catch-up" or "catch-up:N" with N from 1 to 1000, "re-anchor", "sample".
+std::string describe_policy(const PaceOptions& options);
+/// Sets policy and most_catch_up; false for anything else than the above.
+bool parse_policy(std::string_view text, PaceOptions& options) noexcept;
+
+/// One thread. No allocation, lock or system call but the wait.
+class Pacer {
+public:
+  struct Due {
+    std::uint64_t number = 0; ///< of the deadline; with `sample`, of the tick
+    HostTime scheduled{};     ///< with `sample`: when the wait began or, in vain, ended
+    HostTime woke{};          ///< when the wait was over
+    std::uint32_t missed = 0; ///< deadlines between the tick before and this one
+    HostClock::duration spun{};
+  };
+
+  /// `bell` is what samples ring; needed by OverrunPolicy::sample alone. Tick 0 is due at `start`.
+  Pacer(const PaceOptions& options, HostTime start, Bell* bell = nullptr) noexcept;
+
+  /// Waits until the next tick is due, not at all if it is late.
+  Due wait() noexcept;
+  /// The tick ended at `now`: decides which comes next. True if it overran the next deadline.
+  bool end_tick(HostTime now) noexcept;
+  /// The number that wait() gives next; deadlines below it are past.
+  std::uint64_t next() const noexcept { return next_; }
+  HostTime next_deadline() const noexcept { return grid_.deadline(next_ - first_of_grid_); }
+
+private:
+  void sleep_and_spin(Due& due) noexcept;
+
+  PaceOptions options_;
+  TickGrid grid_;
+  Bell* bell_;
+  std::uint64_t next_ = 0;
+  std::uint64_t first_of_grid_ = 0; ///< which tick the grid's first deadline is, after re-anchoring
+  std::uint32_t missed_ = 0;
+  std::optional<SpinMargin> margin_;
+};
+
+} // namespace nendo::flow

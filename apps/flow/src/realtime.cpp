@@ -1,0 +1,175 @@
+#include <nendo/flow/realtime.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace nendo::flow {
+namespace {
+
+Grant granted(std::string name, std::string wanted) {
+  return {std::move(name), std::move(wanted), true, {}, {}};
+}
+
+Grant judged(std::string name, std::string wanted, int error, std::string remedy) {
+  Grant grant = granted(std::move(name), std::move(wanted));
+  if (error == 0) return grant;
+  grant.granted = false;
+  grant.why = std::strerror(error);
+  grant.remedy = std::move(remedy);
+  return grant;
+}
+
+Grant fifo(std::string name, unsigned priority, pthread_t thread) {
+  sched_param parameter{};
+  parameter.sched_priority = static_cast<int>(priority);
+  const int error = ::pthread_setschedparam(thread, SCHED_FIFO, &parameter);
+  const std::string rank = std::to_string(priority);
+  return judged(std::move(name), "SCHED_FIFO " + rank, error,
+                "let `ulimit -r` be " + rank +
+                    " or more: put `@audio - rtprio 99` into "
+                    "/etc/security/limits.d/nendo.conf, join the group audio, and log in again");
+}
+
+Grant pinned(const std::vector<unsigned>& cpus) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::string names;
+  for (const unsigned cpu : cpus) {
+    CPU_SET(cpu, &set);
+    names += (names.empty() ? "" : ",") + std::to_string(cpu);
+  }
+  const int error = ::pthread_setaffinity_np(::pthread_self(), sizeof set, &set);
+  return judged("affinity", "CPU " + names, error,
+                "name CPUs that this process may use: `taskset -p $$` shows them");
+}
+
+bool read_number(std::string_view text, unsigned& number) noexcept {
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc{} && stopped == end;
+}
+
+// Where locked memory has a limit, every allocation beyond it would fail from then on: worse than a
+// page fault.
+int lock_memory() noexcept {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_MEMLOCK, &limit);
+  if (limit.rlim_cur != RLIM_INFINITY && ::geteuid() != 0) return ENOMEM;
+  // Freed memory is kept, and large blocks come from the heap: what was touched stays.
+  ::mallopt(M_TRIM_THRESHOLD, -1);
+  ::mallopt(M_MMAP_MAX, 0);
+  return ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+}
+
+// The deepest that the loop was seen to need is a tenth of it.
+void touch_stack() noexcept {
+  constexpr std::size_t bytes = std::size_t{256} * 1024;
+  constexpr std::size_t page = 4096;
+  std::array<char, bytes> room; // NOLINT(cppcoreguidelines-pro-type-member-init): that is the point
+  for (std::size_t at = 0; at < bytes; at += page)
+    static_cast<volatile char&>(room[at]) = 0;
+}
+
+} // namespace
+
+Result<std::vector<unsigned>> parse_cpus(const std::string& text, const std::string& option) {
+  const auto configured = static_cast<unsigned>(std::max(1L, ::sysconf(_SC_NPROCESSORS_CONF)));
+  const unsigned count = std::min<unsigned>(configured, CPU_SETSIZE);
+  const Error bad{Errc::usage, option + " " + text + ": use CPUs from 0 to " +
+                                   std::to_string(count - 1) + ", like 0 or 0,1 or 0-1"};
+  std::vector<unsigned> cpus;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view item = rest.substr(0, comma);
+    const std::size_t dash = item.find('-');
+    unsigned first = 0;
+    unsigned last = 0;
+    if (!read_number(item.substr(0, dash), first)) return bad;
+    last = first;
+    if (dash != std::string_view::npos && !read_number(item.substr(dash + 1), last)) return bad;
+    if (last < first || last >= count) return bad;
+    for (unsigned cpu = first; cpu <= last; ++cpu)
+      cpus.push_back(cpu);
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  std::sort(cpus.begin(), cpus.end());
+  cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
+  return cpus;
+}
+
+std::vector<std::string> refusals(const std::vector<Grant>& grants) {
+  std::vector<std::string> lines;
+  for (const Grant& grant : grants) {
+    if (!grant.granted)
+      lines.push_back(grant.wanted + " refused (" + grant.why + "); to have it, " + grant.remedy);
+  }
+  return lines;
+}
+
+RealtimeProcess::RealtimeProcess(const RealtimeOptions& options) {
+  if (options.lock_memory) {
+    grants_.push_back(judged("memory_lock", "locked memory", lock_memory(),
+                             "let `ulimit -l` be unlimited: put `@audio - memlock unlimited` into "
+                             "/etc/security/limits.d/nendo.conf, join the group audio, and log in "
+                             "again"));
+  }
+  if (options.priority > 0) {
+    constexpr const char* path = "/dev/cpu_dma_latency";
+    constexpr std::int32_t microseconds = 0;
+    latency_file_ = ::open(path, O_WRONLY | O_CLOEXEC);
+    const bool written =
+        latency_file_ >= 0 && ::write(latency_file_, &microseconds, sizeof microseconds) ==
+                                  static_cast<ssize_t>(sizeof microseconds);
+    grants_.push_back(judged("dma_latency", "no deep sleep of the processor", written ? 0 : errno,
+                             "allow writing to /dev/cpu_dma_latency: `sudo chgrp audio "
+                             "/dev/cpu_dma_latency && sudo chmod g+w /dev/cpu_dma_latency`"));
+  }
+}
+
+RealtimeProcess::~RealtimeProcess() {
+  if (latency_file_ >= 0) ::close(latency_file_); // the demand ends with the file
+}
+
+std::vector<Grant> make_thread_realtime(const RealtimeOptions& options) {
+  std::vector<Grant> grants;
+  if (!options.affinity.empty()) grants.push_back(pinned(options.affinity));
+  if (options.priority > 0) grants.push_back(fifo("policy", options.priority, ::pthread_self()));
+  const int error = ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL) == 0 ? 0 : errno;
+  grants.push_back(judged("timer_slack", "timer slack of 1 ns", error,
+                          "run it where prctl(PR_SET_TIMERSLACK) is not filtered"));
+  touch_stack();
+  return grants;
+}
+
+InheritedPriority::InheritedPriority(unsigned priority) {
+  if (priority == 0) return;
+  sched_param before{};
+  ::pthread_getschedparam(::pthread_self(), &policy_before_, &before);
+  priority_before_ = before.sched_priority;
+  grant_ = fifo("reader_policy", priority, ::pthread_self());
+}
+
+InheritedPriority::~InheritedPriority() {
+  if (!grant_ || !grant_->granted) return;
+  sched_param before{};
+  before.sched_priority = priority_before_;
+  ::pthread_setschedparam(::pthread_self(), policy_before_, &before);
+}
+
+} // namespace nendo::flow

@@ -1,0 +1,33 @@
+#pragma once
+// What --fail-if asks: thresholds on the figures of a report.
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::app {
+
+/// "p99.9>200us": a figure of the report's JSON, and what it must not be.
+struct Condition {
+  std::string text;              ///< as written
+  std::vector<std::string> path; ///< in the report, "lateness_us" and "p99_9"
+  char relation = '>';           ///< '<' or '>'
+  bool or_equal = false;
+  double threshold = 0.0; ///< in the figure's own unit: microseconds, or a count
+};
+
+/// One or several with commas between: [corrected.][MEASURE.]FIGURE then > >= < or <= then a number
+/// with ns, us, ms or s (us without one). MEASURE is lateness (if left out), period_error, work,
+/// input_age or end_to_end, FIGURE min, p50, p90, p99, p99.9, p99.99 or max; or, as counts, ticks,
+/// missed, overruns, faults or switches; or longest_outage. Error: usage.
+Result<std::vector<Condition>> parse_conditions(const std::string& text);
+
+/// The conditions that the report fulfils, each with the figure it has: "p99.9>200us (312.4 us)".
+/// A figure that was not measured, of no sample say, fulfils it too: what is not known is not good.
+std::vector<std::string> fulfilled(const std::vector<Condition>& conditions,
+                                   const nlohmann::ordered_json& report);
+
+} // namespace nendo::app

@@ -1,0 +1,36 @@
+#pragma once
+// Work that competes with the loop, made by this program itself: a process a worker.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::app {
+
+/// The kinds of --load: "cpu" (arithmetic, a worker a CPU), "mem" (copies 64 MiB to and fro), "io"
+/// (writes and syncs a temporary file). Error: usage.
+Result<std::vector<std::string>> parse_load(const std::string& text);
+
+/// The workers run while this lives. They die with this process however it ends (the kernel sees to
+/// that), and are at ordinary priority whatever the caller's is.
+class Load {
+public:
+  /// Of kinds that parse_load() gave. Error: failed. Before other threads exist: it forks.
+  static Result<Load> start(const std::vector<std::string>& kinds);
+  ~Load(); ///< ends the workers and waits for them
+  Load(Load&& other) noexcept : workers_(std::move(other.workers_)) { other.workers_.clear(); }
+  Load& operator=(Load&&) = delete;
+
+  const std::vector<pid_t>& workers() const noexcept { return workers_; }
+
+private:
+  Load() = default;
+
+  std::vector<pid_t> workers_;
+};
+
+} // namespace nendo::app

@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "stress/report.hpp"
+
+namespace nendo::app {
+namespace {
+
+using std::chrono::nanoseconds;
+
+constexpr const char* ink = "#1d2b3a";
+constexpr const char* faint = "#8896a5";
+constexpr const char* grid_line = "#e3e8ee";
+constexpr const char* ran = "#2f7fc1";       // ticks that ran
+constexpr const char* scheduled = "#e07a3f"; // ticks that were scheduled
+constexpr const char* machine = "#aab4bf";   // the platform's floor
+
+double microseconds(nanoseconds time) {
+  return static_cast<double>(time.count()) / 1e3;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+std::string time_text(double us) {
+  char text[32];
+  if (us >= 1e6)
+    std::snprintf(text, sizeof text, "%.3g s", us / 1e6);
+  else if (us >= 1e3)
+    std::snprintf(text, sizeof text, "%.3g ms", us / 1e3);
+  else if (us >= 1.0)
+    std::snprintf(text, sizeof text, "%.3g \u00b5s", us);
+  else
+    std::snprintf(text, sizeof text, "%.3g ns", us * 1e3);
+  return text;
+}
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else if (static_cast<unsigned char>(c) >= 0x20)
+      safe += c;
+  }
+  return safe;
+}
+
+/// SVG, element by element.
+class Drawing {
+public:
+  Drawing(double width, double height) {
+    text_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(width) + ' ' +
+            number(height) + "\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n" +
+            "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+  }
+  void words(double x, double y, const std::string& words, double size = 13.0,
+             const char* colour = ink, const char* anchor = "start", bool bold = false) {
+    text_ += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" font-size=\"" + number(size) +
+             "\" fill=\"" + colour + "\" text-anchor=\"" + anchor + "\"" +
+             (bold ? " font-weight=\"bold\"" : "") + ">" + escaped(words) + "</text>\n";
+  }
+  void line(double x0, double y0, double x1, double y1, const char* colour, double width = 1.0,
+            const char* dashes = "") {
+    text_ += "<line x1=\"" + number(x0) + "\" y1=\"" + number(y0) + "\" x2=\"" + number(x1) +
+             "\" y2=\"" + number(y1) + "\" stroke=\"" + colour + "\" stroke-width=\"" +
+             number(width) + "\" stroke-dasharray=\"" + dashes + "\"/>\n";
+  }
+  void box(double x, double y, double width, double height, const char* colour, double opacity) {
+    text_ += "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" + number(width) +
+             "\" height=\"" + number(height) + "\" fill=\"" + colour + "\" fill-opacity=\"" +
+             number(opacity) + "\"/>\n";
+  }
+  void path(const std::string& points, const char* colour, double width) {
+    if (points.empty()) return;
+    text_ += "<polyline points=\"" + points + "\" fill=\"none\" stroke=\"" + colour +
+             "\" stroke-width=\"" + number(width) + "\" stroke-linejoin=\"round\"/>\n";
+  }
+  std::string finished() && { return std::move(text_) + "</svg>\n"; }
+
+private:
+  std::string text_;
+};
+
+/// A rectangle of the page and what its logarithmic axes reach from and to.
+struct Axes {
+  double left, top, width, height;
+  double x_low, x_high; ///< decades if `log_x`
+  bool log_x;
+  double y_low, y_high; ///< decades
+
+  double x(double value) const {
+    const double at = log_x ? std::log10(std::max(value, 1e-9)) : value;
+    return left + width * std::clamp((at - x_low) / (x_high - x_low), 0.0, 1.0);
+  }
+  double y(double value) const {
+    const double at = std::log10(std::max(value, 1e-9));
+    return top + height * (1.0 - std::clamp((at - y_low) / (y_high - y_low), 0.0, 1.0));
+  }
+  double bottom() const { return top + height; }
+};
+
+constexpr int bins_per_decade = 20;
+constexpr double least_us_decade = -2.0; // 10 ns
+constexpr double most_us_decade = 5.0;   // 100 ms
+constexpr std::size_t bin_count =
+    static_cast<std::size_t>((most_us_decade - least_us_decade) * bins_per_decade);
+
+std::vector<double> binned(const flow::Histogram& histogram) {
+  std::vector<double> bins(bin_count, 0.0);
+  histogram.for_each([&](nanoseconds value, std::uint64_t count) {
+    const double decade = std::log10(std::max(microseconds(value), 1e-9));
+    const double at = std::floor((decade - least_us_decade) * bins_per_decade);
+    bins[static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bin_count - 1)))] +=
+        static_cast<double>(count);
+  });
+  return bins;
+}
+
+double left_of(std::size_t bin) {
+  return std::pow(10.0, least_us_decade + static_cast<double>(bin) / bins_per_decade);
+}
+
+std::string outline(const Axes& axes, const std::vector<double>& bins) {
+  const auto any = [](double count) { return count > 0.0; };
+  const auto first = std::find_if(bins.begin(), bins.end(), any) - bins.begin();
+  const auto last = bins.rend() - std::find_if(bins.rbegin(), bins.rend(), any);
+  std::string points;
+  for (auto at = first; at < last; ++at) {
+    const auto bin = static_cast<std::size_t>(at);
+    for (const double x : {left_of(bin), left_of(bin + 1)})
+      points += number(axes.x(x)) + ',' + number(axes.y(bins[bin])) + ' ';
+  }
+  return points;
+}
+
+void draw_decades(Drawing& drawing, const Axes& axes, bool times_on_y) {
+  const auto whole = [](double decade) { return static_cast<int>(std::ceil(decade)); };
+  for (int decade = whole(axes.y_low); decade <= whole(axes.y_high); ++decade) {
+    const double value = std::pow(10.0, decade);
+    const double y = axes.y(value);
+    drawing.line(axes.left, y, axes.left + axes.width, y, grid_line);
+    char count[32];
+    std::snprintf(count, sizeof count, "%.0f", value);
+    drawing.words(axes.left - 8, y + 4, times_on_y ? time_text(value) : count, 11, faint, "end");
+  }
+  for (int decade = whole(axes.x_low); axes.log_x && decade <= whole(axes.x_high); ++decade) {
+    const double x = axes.x(std::pow(10.0, decade));
+    drawing.line(x, axes.top, x, axes.bottom(), grid_line);
+    drawing.words(x, axes.bottom() + 18, time_text(std::pow(10.0, decade)), 11, faint, "middle");
+  }
+}
+
+void draw_percentiles(Drawing& drawing, const Axes& axes, const flow::Histogram& lateness) {
+  struct Mark {
+    const char* name;
+    double fraction;
+  };
+  double row = axes.top + 12;
+  double last_x = -1e3;
+  for (const Mark& mark : {Mark{"p50", 0.5}, Mark{"p99", 0.99}, Mark{"p99.9", 0.999},
+                           Mark{"p99.99", 0.9999}, Mark{"max", 1.0}}) {
+    const double us = microseconds(lateness.percentile(mark.fraction));
+    const double x = axes.x(us);
+    row = x - last_x < 110 ? row + 16 : axes.top + 12; // labels do not cover each other
+    last_x = x;
+    drawing.line(x, axes.top, x, axes.bottom(), scheduled, 1.0, "3 3");
+    const bool at_edge = x > axes.left + axes.width - 110;
+    drawing.words(at_edge ? x - 4 : x + 4, row, std::string(mark.name) + " " + time_text(us), 11,
+                  ink, at_edge ? "end" : "start");
+  }
+}
+
+void draw_histogram(Drawing& drawing, const StressOutcome& outcome) {
+  const Distribution& lateness = outcome.tally[Measure::lateness];
+  const auto all = binned(lateness.corrected);
+  const auto those_ran = binned(lateness.raw);
+  const auto floor = binned(outcome.floor.gaps);
+  double most = 10.0;
+  for (const auto* bins : {&all, &floor})
+    most = std::max(most, *std::max_element(bins->begin(), bins->end()));
+  const Axes axes{80,
+                  130,
+                  1080,
+                  230,
+                  least_us_decade,
+                  most_us_decade,
+                  true,
+                  -0.4,
+                  std::ceil(std::log10(most))}; // a single tick shows
+  drawing.words(80, 112, "How late ticks were", 14, ink, "start", true);
+  draw_decades(drawing, axes, false);
+  for (std::size_t k = 0; k < those_ran.size(); ++k) {
+    if (those_ran[k] <= 0.0) continue;
+    const double x = axes.x(left_of(k));
+    drawing.box(x, axes.y(those_ran[k]), axes.x(left_of(k + 1)) - x,
+                std::max(1.0, axes.bottom() - axes.y(those_ran[k])), ran, 0.75);
+  }
+  drawing.path(outline(axes, floor), machine, 1.5);
+  drawing.path(outline(axes, all), scheduled, 1.8);
+  draw_percentiles(drawing, axes, lateness.corrected);
+}
+
+void draw_course(Drawing& drawing, const StressOutcome& outcome) {
+  const Timeline& course = outcome.tally.timeline();
+  const double length_s =
+      to_seconds(course.slice_length()) * static_cast<double>(course.slices().size());
+  double least_us = 10.0;
+  double most_us = 100.0;
+  for (const auto& slice : course.slices()) {
+    if (slice.count == 0) continue;
+    least_us = std::min(least_us, microseconds(slice.sum) / static_cast<double>(slice.count));
+    most_us = std::max(most_us, microseconds(slice.max));
+  }
+  const Axes axes{80,
+                  450,
+                  1080,
+                  200,
+                  0.0,
+                  std::max(length_s, 1e-3),
+                  false,
+                  std::max(least_us_decade, std::floor(std::log10(std::max(least_us, 1e-3)))),
+                  std::ceil(std::log10(most_us))};
+  drawing.words(80, 432, "When", 14, ink, "start", true);
+  draw_decades(drawing, axes, true);
+  const double slice_s = to_seconds(course.slice_length());
+  const double width = std::max(1.0, axes.x(slice_s) - axes.x(0.0));
+  std::string means;
+  for (std::size_t k = 0; k < course.slices().size(); ++k) {
+    const auto& slice = course.slices()[k];
+    if (slice.count == 0) continue;
+    const double x = axes.x(slice_s * static_cast<double>(k));
+    const double mean_us = microseconds(slice.sum) / static_cast<double>(slice.count);
+    const double top = axes.y(microseconds(slice.max));
+    drawing.box(x, top, width, std::max(1.0, axes.y(mean_us) - top), scheduled, 0.6);
+    means += number(x + width / 2) + ',' + number(axes.y(mean_us)) + ' ';
+  }
+  drawing.path(means, ran, 1.8);
+  for (int k = 0; k <= 5; ++k) {
+    const double at_s = length_s * k / 5.0;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g s", at_s);
+    drawing.words(axes.x(at_s), axes.bottom() + 18, text, 11, faint, "middle");
+  }
+}
+
+void draw_key(Drawing& drawing, double y,
+              std::initializer_list<std::pair<const char*, const char*>> entries) {
+  double right = 1160;
+  for (const auto& [colour, name] : entries) {
+    drawing.words(right, y, name, 12, faint, "end");
+    right -= 7.0 * static_cast<double>(std::string(name).size()) + 8;
+    drawing.box(right - 14, y - 9, 14, 9, colour, 0.8);
+    right -= 34;
+  }
+}
+
+std::string summary(const StressOptions& options, const StressOutcome& outcome) {
+  char text[256];
+  std::snprintf(
+      text, sizeof text, "%llu ticks at %g Hz in %.0f s; %llu deadlines missed; policy %s%s%s",
+      static_cast<unsigned long long>(outcome.tally.ticks()), options.run.loop.rate_hz,
+      outcome.elapsed_s, static_cast<unsigned long long>(outcome.missed),
+      flow::describe_policy(options.run.loop).c_str(), options.load.empty() ? "" : "; under load",
+      outcome.broke ? "; ended by --break" : "");
+  return text;
+}
+
+} // namespace
+
+std::string stress_picture(const StressOptions& options, const StressOutcome& outcome) {
+  Drawing drawing(1200, 720);
+  drawing.words(40, 46, "nendo stress", 24, ink, "start", true);
+  drawing.words(40, 72, summary(options, outcome), 14);
+  const Environment& about = outcome.environment;
+  drawing.words(1160, 46, "Linux " + about.kernel + (about.hypervisor ? ", virtual machine" : ""),
+                12, faint, "end");
+  drawing.words(1160, 66, about.processor, 12, faint, "end");
+  std::string rights;
+  for (const auto& grant : outcome.grants) {
+    if (!grant.granted) rights += (rights.empty() ? "refused: " : ", ") + grant.wanted;
+  }
+  drawing.words(1160, 86, rights, 12, faint, "end");
+  draw_histogram(drawing, outcome);
+  draw_key(drawing, 112,
+           {{machine, "gaps that this machine leaves"},
+            {scheduled, "every tick that was due"},
+            {ran, "ticks that ran"}});
+  draw_course(drawing, outcome);
+  draw_key(drawing, 432, {{scheduled, "up to the latest"}, {ran, "mean"}});
+  drawing.words(600, 396, "lateness, and how many ticks had it", 12, faint, "middle");
+  drawing.words(600, 702, "since the start", 12, faint, "middle");
+  return std::move(drawing).finished();
+}
+
+} // namespace nendo::app

@@ -1,0 +1,30 @@
+#pragma once
+// What a stress test tells: a table for people, an object for programs, files for plotters.
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "stress/stress_session.hpp"
+
+namespace nendo::app {
+
+/// Everything that was measured, with the environment. Times are in microseconds unless a key says
+/// otherwise. Keys are stable: an earlier one is what --compare reads.
+nlohmann::ordered_json stress_json(const StressOptions& options, const StressOutcome& outcome);
+
+/// Prints the table. `earlier`: another report to stand beside; null: none.
+void print_stress(const StressOutcome& outcome, const nlohmann::ordered_json& report,
+                  const nlohmann::ordered_json& earlier);
+
+/// The lateness as cyclictest prints it: a line a microsecond, up to `most_us`, and what is beyond.
+void print_histogram(const flow::Histogram& lateness, unsigned most_us);
+
+/// The lateness of each scheduled tick as an HdrHistogram percentile file, in microseconds: a line
+/// for each class of values.
+std::string hgrm(const flow::Histogram& lateness);
+
+/// Histogram and course of the lateness, as SVG.
+std::string stress_picture(const StressOptions& options, const StressOutcome& outcome);
+
+} // namespace nendo::app

@@ -1,0 +1,158 @@
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include <nlohmann/json.hpp>
+
+#include "loop_options.hpp"
+#include "stress/report.hpp"
+
+namespace nendo::app {
+namespace {
+
+using nlohmann::ordered_json;
+using std::chrono::nanoseconds;
+
+double microseconds(nanoseconds time) {
+  return static_cast<double>(time.count()) / 1e3;
+}
+
+// Null of what was never recorded.
+ordered_json figures(const flow::Histogram& histogram) {
+  if (histogram.count() == 0) return nullptr;
+  const auto at = [&](double fraction) { return microseconds(histogram.percentile(fraction)); };
+  return {{"count", histogram.count()},
+          {"min", microseconds(histogram.min())},
+          {"p50", at(0.50)},
+          {"p90", at(0.90)},
+          {"p99", at(0.99)},
+          {"p99_9", at(0.999)},
+          {"p99_99", at(0.9999)},
+          {"max", microseconds(histogram.max())}};
+}
+
+ordered_json environment_json(const StressOptions& options, const StressOutcome& outcome) {
+  const Environment& machine = outcome.environment;
+  const auto& loop = options.run.loop;
+  const auto or_null = [](const std::string& text) {
+    return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+  };
+  ordered_json line{{"kernel", machine.kernel},
+                    {"preemption", or_null(machine.preemption)},
+                    {"processor", or_null(machine.processor)},
+                    {"cpus", machine.cpus},
+                    {"hypervisor", machine.hypervisor},
+                    {"governor", or_null(machine.governor)},
+                    {"clock_source", or_null(machine.clock_source)},
+                    {"rt_runtime_us", nullptr},
+                    {"rate_hz", loop.rate_hz},
+                    {"duration_s", options.run.duration_s},
+                    {"policy", flow::describe_policy(loop)},
+                    {"spin", outcome.spins},
+                    {"mode", flow::name_of(loop.sculptor.mode)},
+                    {"vertices", outcome.vertices},
+                    {"gloves", outcome.gloves},
+                    {"load", options.load},
+                    {"realtime", grants_json(outcome.grants)}};
+  if (machine.rt_runtime_us) line["rt_runtime_us"] = *machine.rt_runtime_us;
+  ordered_json stages{"sleep"};
+  const auto& runs = loop.stages;
+  for (const auto& [name, run] : {std::pair{"input", runs.input},
+                                  {"hands", runs.hands},
+                                  {"deform", runs.deform},
+                                  {"publish", runs.publish}}) {
+    if (run) stages.push_back(name);
+  }
+  line["stages"] = stages;
+  return line;
+}
+
+std::string wall_time(const StressOutcome& outcome, HostTime time) {
+  const auto wall =
+      outcome.wall_start + std::chrono::duration_cast<nanoseconds>(time - outcome.start);
+  const auto second = std::chrono::floor<std::chrono::seconds>(wall);
+  const std::time_t at = std::chrono::system_clock::to_time_t(second);
+  std::tm utc{};
+  gmtime_r(&at, &utc);
+  char text[64];
+  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
+  std::snprintf(text + length, sizeof text - length, ".%06lldZ",
+                static_cast<long long>(
+                    std::chrono::duration_cast<std::chrono::microseconds>(wall - second).count()));
+  return text;
+}
+
+ordered_json worst_json(const StressOutcome& outcome) {
+  auto lines = ordered_json::array();
+  for (const Incident& incident : outcome.tally.worst()) {
+    lines.push_back({{"time", wall_time(outcome, incident.due)},
+                     {"since_start_s", to_seconds(incident.due - outcome.start)},
+                     {"tick", incident.tick},
+                     {"lateness_us", microseconds(incident.lateness)},
+                     {"missed", incident.missed},
+                     {"phase", phase_names[static_cast<std::size_t>(incident.phase)]},
+                     {"phase_us", microseconds(incident.phase_time)},
+                     {"cause", cause_names[static_cast<std::size_t>(incident.cause)]}});
+  }
+  return lines;
+}
+
+ordered_json causes_json(const TickTally& tally) {
+  ordered_json causes;
+  for (std::size_t k = 0; k < cause_names.size(); ++k) {
+    const auto& share = tally.causes()[k];
+    causes[std::string(cause_names[k])] = {{"incidents", share.incidents},
+                                           {"lateness_us", microseconds(share.lateness)}};
+  }
+  return {{"threshold_us", microseconds(TickTally::incident_threshold)},
+          {"explained", tally.explained()},
+          {"by_cause", causes}};
+}
+
+ordered_json floor_json(const PlatformFloor& floor) {
+  if (floor.spun_s <= 0.0) return nullptr;
+  ordered_json line{{"spun_s", floor.spun_s}, {"stalled_s", floor.stalled_s}};
+  line["gaps_us"] = figures(floor.gaps);
+  return line;
+}
+
+} // namespace
+
+ordered_json stress_json(const StressOptions& options, const StressOutcome& outcome) {
+  const TickTally& tally = outcome.tally;
+  ordered_json line{{"event", "stress"},
+                    {"environment", environment_json(options, outcome)},
+                    {"elapsed_s", outcome.elapsed_s},
+                    {"ticks", tally.ticks()},
+                    {"missed", outcome.missed},
+                    {"overruns", outcome.overruns},
+                    {"failed", outcome.failed},
+                    {"samples", tally.samples()},
+                    {"longest_outage_us", microseconds(tally.longest_outage())}};
+  ordered_json corrected;
+  for (std::size_t k = 0; k < measure_names.size(); ++k) {
+    const Distribution& of = tally[static_cast<Measure>(k)];
+    const std::string key = std::string(measure_names[k]) + "_us";
+    line[key] = figures(of.raw);
+    corrected[key] = figures(of.corrected);
+  }
+  line["corrected"] = corrected;
+  ordered_json stages;
+  for (std::size_t k = 1; k < phase_names.size(); ++k)
+    stages[std::string(phase_names[k])] = figures(tally.stage(static_cast<Phase>(k)));
+  line["stages_us"] = stages;
+  line["spun_us"] = outcome.spins ? figures(tally.stage(Phase::wake)) : nullptr;
+  line["incidents"] = causes_json(tally);
+  line["worst"] = worst_json(outcome);
+  line["page_faults"] = outcome.costs.minor_faults + outcome.costs.major_faults;
+  line["involuntary_switches"] = outcome.costs.involuntary_switches;
+  line["voluntary_switches"] = outcome.costs.voluntary_switches;
+  line["cpu_fraction"] = outcome.elapsed_s > 0.0 ? outcome.costs.cpu_s / outcome.elapsed_s : 0.0;
+  line["stolen_s"] = outcome.stolen_s ? ordered_json(*outcome.stolen_s) : ordered_json(nullptr);
+  line["records_refused"] = outcome.records_refused;
+  line["floor"] = floor_json(outcome.floor);
+  line["ended"] = outcome.broke ? "break" : outcome.stopped ? "stopped" : "duration";
+  return line;
+}
+
+} // namespace nendo::app

@@ -1,0 +1,46 @@
+#pragma once
+// How long a thread has been ready to run while other threads had its CPU, as the kernel counts it:
+// the witness that tells preemption from a machine that stood still.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <sys/types.h>
+
+#include <nendo/base/units.hpp>
+
+namespace nendo::app {
+
+/// The time in a line of /proc/<pid>/task/<tid>/schedstat: "time on the CPU, time waiting for it,
+/// time slices", in nanoseconds. Pure.
+std::optional<std::chrono::nanoseconds> parse_run_delay(const std::string& schedstat);
+
+/// Sampled from another thread, so that the thread itself makes no system call.
+class RunDelay {
+public:
+  /// Of a thread of this process.
+  explicit RunDelay(pid_t thread);
+
+  /// Reads the kernel's count and remembers it. A file's reading: some microseconds.
+  void sample();
+  /// How long the thread waited from the last sample before `from` to the newest one: no less than
+  /// since `from`. Before the first sample that is all that it ever waited. Nothing if the kernel
+  /// does not say, or `from` is before the samples kept.
+  std::optional<std::chrono::nanoseconds> since(HostTime from) const noexcept;
+
+private:
+  struct Sample {
+    HostTime time{};
+    std::chrono::nanoseconds waited{};
+  };
+  static constexpr std::size_t kept = 1024;
+
+  std::string path_;
+  std::array<Sample, kept> samples_{}; ///< a ring; sample n is at n % kept
+  std::uint64_t count_ = 0;
+};
+
+} // namespace nendo::app

@@ -1,0 +1,157 @@
+// nendo stress: how punctual the loop is on this machine, and why not.
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <nendo/base/files.hpp>
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli.hpp"
+#include "commands.hpp"
+#include "stress/report.hpp"
+
+namespace nendo::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+Result<ordered_json> read_earlier(const std::string& path) {
+  if (path.empty()) return ordered_json(nullptr);
+  constexpr std::uint64_t most_bytes = 1U << 20U;
+  const auto text = read_file(path, most_bytes, "report of nendo stress");
+  if (!text) return text.error();
+  auto report = ordered_json::parse(*text, nullptr, false);
+  if (!report.is_object() || report.value("event", ordered_json()) != "stress") {
+    return Error{Errc::bad_input,
+                 path + ": not a report of nendo stress; write one with --json > " + path};
+  }
+  return report;
+}
+
+StressProgress progress_for(const StressOptions& options) {
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  return [terminal, next_s = 2.0, duration_s = options.run.duration_s](const TickTally& tally,
+                                                                       double elapsed_s) mutable {
+    if (!terminal && elapsed_s < next_s) return;
+    next_s += 2.0;
+    char line[160];
+    const auto& lateness = tally[Measure::lateness].raw;
+    std::snprintf(line, sizeof line,
+                  "%5.1f of %.1f s  %llu ticks, lateness p50 %.1f us, p99 %.1f us, max %.1f us",
+                  elapsed_s, duration_s, static_cast<unsigned long long>(tally.ticks()),
+                  static_cast<double>(lateness.percentile(0.5).count()) / 1e3,
+                  static_cast<double>(lateness.percentile(0.99).count()) / 1e3,
+                  static_cast<double>(lateness.max().count()) / 1e3);
+    std::cerr << (terminal ? "\r" : "") << line << (terminal ? "\x1b[K" : "\n") << std::flush;
+  };
+}
+
+Result<void> write_files(const StressArguments& arguments, const StressOptions& options,
+                         const StressOutcome& outcome) {
+  if (!arguments.hgrm.empty()) {
+    const auto& lateness = outcome.tally[Measure::lateness].corrected;
+    if (const auto done = replace_file(arguments.hgrm, hgrm(lateness)); !done) return done.error();
+  }
+  if (arguments.picture.empty()) return {};
+  return replace_file(arguments.picture, stress_picture(options, outcome));
+}
+
+// A long test must not end in a file that cannot be written.
+Result<void> check_folder(const char* option, const std::string& path) {
+  if (path.empty()) return {};
+  const std::filesystem::path file(path);
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(file) && ::access(folder.c_str(), W_OK | X_OK) == 0) return {};
+  return Error{Errc::failed, std::string(option) + " " + path +
+                                 ": cannot be written there; name a file in a folder of yours"};
+}
+
+Result<void> check_files(const StressArguments& arguments) {
+  if (const auto fine = check_folder("--hgrm", arguments.hgrm); !fine) return fine.error();
+  return check_folder("--picture", arguments.picture);
+}
+
+int run(const StressArguments& arguments) {
+  const auto options = parse(arguments);
+  if (!options) return report(options.error());
+  if (const auto fine = check_files(arguments); !fine) return report(fine.error());
+  const auto earlier = read_earlier(arguments.compare);
+  if (!earlier) return report(earlier.error());
+  const auto model = deform::read_mesh(options->run.mesh);
+  if (!model) return report(model.error());
+  install_stop_signals();
+  const auto outcome = run_stress(*options, *model, progress_for(*options));
+  if (isatty(STDERR_FILENO) != 0) std::cerr << "\r\x1b[K";
+  if (!outcome) return report(outcome.error());
+  const ordered_json results = stress_json(*options, **outcome);
+  if (arguments.json) {
+    std::cout << results.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << std::endl;
+  } else {
+    print_stress(**outcome, results, *earlier);
+  }
+  if (arguments.histogram_us && !arguments.json)
+    print_histogram((*outcome)->tally[Measure::lateness].raw, *arguments.histogram_us);
+  if (const auto done = write_files(arguments, *options, **outcome); !done)
+    return report(done.error());
+  const auto bad = fulfilled(options->conditions, results);
+  for (const auto& line : bad)
+    note("--fail-if " + line);
+  if ((*outcome)->broke) note("--break: a tick was later than that");
+  return bad.empty() ? 0 : static_cast<int>(Errc::failed);
+}
+
+void add_reports(Command& command, StressArguments& arguments) {
+  command.add_flag("--json", arguments.json, "The report as one JSON object").under("Report");
+  command
+      .add_option("-h,--histogram", arguments.histogram_us,
+                  "Print the lateness, a line a microsecond, up to this many microseconds")
+      .under("Report");
+  command.add_option("--hgrm", arguments.hgrm, "Write an HdrHistogram percentile file")
+      .under("Report");
+  command.add_option("--picture", arguments.picture, "Draw the lateness, as SVG").under("Report");
+  command
+      .add_option("--compare", arguments.compare, "Show an earlier report (--json) beside this one")
+      .under("Report");
+  command
+      .add_option("--fail-if", arguments.fail_if,
+                  "Exit with 1 if a figure is so, like 'p99.9>200us,missed>0'")
+      .under("Report");
+}
+
+} // namespace
+
+void add_stress(Command& program) {
+  auto arguments = std::make_shared<StressArguments>();
+  Command command = program.add_command(
+      "stress", "Tests how punctual the loop is on this machine, and says what made it late");
+  command.free_short_help();
+  command.set_footer("It asks for real-time rights and says which were refused; without any it "
+                     "measures what an ordinary thread gets.");
+  command.add_option("-i,--interval", arguments->interval_us,
+                     "Microseconds from tick to tick, 100 to 1000000");
+  command.add_option("-D,--duration", arguments->duration, "How long: seconds, or 10m, 2h, 1d");
+  command.add_option("--stages", arguments->stages,
+                     "What a tick does: sleep, input, hands, deform, publish, with commas");
+  command.add_option("--load", arguments->load,
+                     "Work beside it, by processes of its own: cpu, mem, io, with commas");
+  command.add_option("-b,--break", arguments->break_us,
+                     "End at a tick that is later than this many microseconds");
+  command.add_option("--floor", arguments->floor_s,
+                     "Seconds to look at the machine alone before; 0: do not");
+  command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");
+  command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
+  command.add_option("--mesh", arguments->run.mesh,
+                     "OBJ or PLY file; without it, the shipped Moai");
+  command.add_option("--mode", arguments->mode, "type1 or type2");
+  command.add_option("--radius", arguments->run.radius, "As of nendo run");
+  arguments->loop.add_to(command, true);
+  add_reports(command, *arguments);
+  command.on_chosen([arguments] { return run(*arguments); });
+}
+
+} // namespace nendo::app

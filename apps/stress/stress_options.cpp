@@ -1,0 +1,109 @@
+#include "stress/stress_options.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "cli.hpp"
+#include "stress/load.hpp"
+
+namespace nendo::app {
+namespace {
+
+Error usage(std::string message) {
+  return {Errc::usage, std::move(message)};
+}
+
+Result<void> parse_loop(const StressArguments& arguments, RunOptions& run) {
+  constexpr double least_us = 1e6 / flow::TickGrid::most_rate_hz;
+  constexpr double most_us = 1e6 / flow::TickGrid::least_rate_hz;
+  if (!(arguments.interval_us >= least_us && arguments.interval_us <= most_us))
+    return usage("--interval: use 100 to 1000000 microseconds");
+  run.loop.rate_hz = 1e6 / arguments.interval_us;
+  const auto mode = flow::mode_named(arguments.mode);
+  if (!mode) return usage("--mode " + arguments.mode + ": unknown; use type1 or type2");
+  run.loop.sculptor.mode = *mode;
+  const auto stages = parse_stages(arguments.stages);
+  if (!stages) return stages.error();
+  run.loop.stages = *stages;
+  if (const auto fine = arguments.loop.parse(run.loop, run.realtime); !fine) return fine.error();
+  if (run.loop.policy == flow::OverrunPolicy::sample && !stages->input)
+    return usage("--policy sample: needs the stage input, for samples are what it waits for");
+  return check_radius(run.radius);
+}
+
+} // namespace
+
+Result<double> parse_duration(const std::string& text) {
+  struct Unit {
+    std::string_view name;
+    double seconds;
+  };
+  constexpr std::array<Unit, 5> units{
+      {{"", 1.0}, {"s", 1.0}, {"m", 60.0}, {"h", 3600.0}, {"d", 86'400.0}}};
+  constexpr double most_s = 1e7;
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  const std::string_view suffix(stopped, static_cast<std::size_t>(end - stopped));
+  for (const Unit& unit : units) {
+    const double seconds = value * unit.seconds;
+    if (error == std::errc{} && suffix == unit.name && seconds > 0.0 && seconds <= most_s)
+      return seconds;
+  }
+  return usage("--duration " + text + ": use seconds above 0, or 10m, 2h, 1d");
+}
+
+Result<flow::TickStages> parse_stages(const std::string& text) {
+  flow::TickStages stages{false, false, false, false};
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view name = rest.substr(0, comma);
+    if (name == "input") {
+      stages.input = true;
+    } else if (name == "hands") {
+      stages.hands = true;
+    } else if (name == "deform") {
+      stages.deform = true;
+    } else if (name == "publish") {
+      stages.publish = true;
+    } else if (name != "sleep") {
+      return usage("--stages " + text + ": use sleep, input, hands, deform, publish with commas");
+    }
+    if (comma == std::string_view::npos) return stages;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+Result<StressOptions> parse(const StressArguments& arguments) {
+  StressOptions options;
+  options.run = arguments.run;
+  RunOptions& run = options.run;
+  if (const auto fine = parse_loop(arguments, run); !fine) return fine.error();
+  const auto duration = parse_duration(arguments.duration);
+  if (!duration) return duration.error();
+  run.duration_s = *duration;
+  auto load = parse_load(arguments.load);
+  if (!load) return load.error();
+  options.load = *std::move(load);
+  auto conditions = parse_conditions(arguments.fail_if);
+  if (!conditions) return conditions.error();
+  options.conditions = *std::move(conditions);
+  if (arguments.break_us) {
+    if (!(*arguments.break_us > 0.0 && *arguments.break_us <= 1e9))
+      return usage("--break: use a lateness in microseconds above 0");
+    options.break_at = std::chrono::nanoseconds(std::llround(*arguments.break_us * 1e3));
+  }
+  if (arguments.histogram_us &&
+      (*arguments.histogram_us < 1 || *arguments.histogram_us > 1'000'000))
+    return usage("--histogram: use 1 to 1000000 microseconds");
+  if (!(arguments.floor_s >= 0.0 && arguments.floor_s <= 3600.0))
+    return usage("--floor: use 0 (not measured) to 3600 seconds");
+  options.floor_s = arguments.floor_s;
+  if (run.left.empty() && run.right.empty()) run.left = run.right = "sim";
+  if (run.mesh.empty()) run.mesh = shipped_model("moai.obj").string();
+  return options;
+}
+
+} // namespace nendo::app

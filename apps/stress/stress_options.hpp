@@ -1,0 +1,51 @@
+#pragma once
+// What nendo stress is asked to do, and whether that can be done.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "loop_options.hpp"
+#include "run_session.hpp"
+#include "stress/conditions.hpp"
+
+namespace nendo::app {
+
+/// As typed.
+struct StressArguments {
+  double interval_us = 1000.0;
+  std::string duration = "10";
+  std::string stages = "sleep,input,hands,deform,publish";
+  std::string mode = "type1";
+  std::string load;
+  std::string fail_if;
+  std::optional<double> break_us;
+  std::optional<unsigned> histogram_us;
+  double floor_s = 1.0;
+  std::string hgrm;
+  std::string picture;
+  std::string compare;
+  bool json = false;
+  LoopArguments loop{.priority = flow::usual_priority};
+  RunOptions run;
+};
+
+/// What they mean. `run` is complete: gloves, model, loop and rights.
+struct StressOptions {
+  RunOptions run;
+  std::vector<std::string> load;
+  std::vector<Condition> conditions;
+  std::optional<std::chrono::nanoseconds> break_at; ///< ends at a tick that is later than that
+  double floor_s = 0.0;
+};
+
+/// Error: usage, naming the option.
+Result<StressOptions> parse(const StressArguments& arguments);
+
+/// Seconds of "90", "90s", "10m", "2h" or "1d". Error: usage.
+Result<double> parse_duration(const std::string& text);
+
+/// The stages of a list like "sleep,input,hands": sleep is always one. Error: usage.
+Result<flow::TickStages> parse_stages(const std::string& text);
+
+} // namespace nendo::app

@@ -1,0 +1,152 @@
+#include "stress/stress_session.hpp"
+
+#include <future>
+#include <thread>
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "cli.hpp"
+#include "stress/load.hpp"
+
+namespace nendo::app {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// 65 s at 1 kHz: the main thread may be starved for long under load.
+constexpr std::size_t records_kept = 65'536;
+
+rusage usage_of_thread() {
+  rusage usage{};
+  ::getrusage(RUSAGE_THREAD, &usage);
+  return usage;
+}
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+ThreadCosts difference(const rusage& before, const rusage& after) {
+  return {after.ru_minflt - before.ru_minflt, after.ru_majflt - before.ru_majflt,
+          after.ru_nvcsw - before.ru_nvcsw, after.ru_nivcsw - before.ru_nivcsw,
+          seconds(after.ru_utime) - seconds(before.ru_utime) + seconds(after.ru_stime) -
+              seconds(before.ru_stime)};
+}
+
+/// What the loop's thread says once it has its rights.
+struct Prepared {
+  pid_t thread = 0;
+  std::vector<flow::Grant> grants;
+};
+
+/// Takes what the loop has recorded, after a look at how long it had to wait for a CPU.
+class Collector {
+public:
+  Collector(flow::TickRing& ring, pid_t thread, StressOutcome& outcome)
+      : ring_(ring), delay_(thread), outcome_(outcome) {
+    batch_.reserve(ring.capacity());
+    delay_.sample();
+  }
+  void collect() {
+    batch_.clear();
+    ring_.drain([&](const flow::TickRecord& record) noexcept { batch_.push_back(record); });
+    delay_.sample();
+    for (const auto& record : batch_)
+      outcome_.tally.add(record, &delay_);
+  }
+
+private:
+  flow::TickRing& ring_;
+  RunDelay delay_;
+  StressOutcome& outcome_;
+  std::vector<flow::TickRecord> batch_;
+};
+
+void watch(const StressOptions& options, Collector& collector, const std::atomic<bool>& ended,
+           StressOutcome& outcome, const StressProgress& progress) {
+  HostTime next_report = outcome.start;
+  while (!ended && !is_over(options.run, outcome.start)) {
+    std::this_thread::sleep_for(milliseconds(4));
+    collector.collect();
+    const auto& worst = outcome.tally.worst();
+    outcome.broke =
+        options.break_at && !worst.empty() && worst.front().lateness > *options.break_at;
+    outcome.stopped = stop_requested();
+    if (outcome.broke || outcome.stopped) return;
+    if (HostClock::now() < next_report) continue;
+    progress(outcome.tally, to_seconds(HostClock::now() - outcome.start));
+    next_report += milliseconds(250);
+  }
+}
+
+void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRing& ring,
+              StressOutcome& outcome, const StressProgress& progress) {
+  std::atomic<bool> over{false};
+  std::atomic<bool> ended{false};
+  std::promise<Prepared> prepared;
+  const auto stolen_before = stolen_s();
+  outcome.wall_start = std::chrono::system_clock::now();
+  outcome.start = HostClock::now();
+  std::thread loop_thread([&] {
+    prepared.set_value({static_cast<pid_t>(::syscall(SYS_gettid)),
+                        flow::make_thread_realtime(options.run.realtime)});
+    const rusage before = usage_of_thread();
+    loop.run(over, ticks_for(options.run));
+    outcome.costs = difference(before, usage_of_thread());
+    ended = true;
+  });
+  Prepared thread = prepared.get_future().get();
+  for (auto& grant : thread.grants) {
+    if (grant.name == "policy") outcome.spins = grant.granted && options.run.loop.spin;
+    outcome.grants.push_back(std::move(grant));
+  }
+  Collector collector(ring, thread.thread, outcome);
+  watch(options, collector, ended, outcome, progress);
+  over = true;
+  loop_thread.join();
+  collector.collect();
+  outcome.elapsed_s = to_seconds(HostClock::now() - outcome.start);
+  if (const auto stolen_after = stolen_s(); stolen_before && stolen_after)
+    outcome.stolen_s = *stolen_after - *stolen_before;
+}
+
+} // namespace
+
+Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
+                                                  const StressProgress& progress) {
+  RunOptions& run = options.run;
+  auto outcome = std::make_unique<StressOutcome>(run.loop);
+  const flow::RealtimeProcess process(run.realtime);
+  outcome->environment = describe_environment();
+  if (options.floor_s > 0.0)
+    outcome->floor = measure_floor(options.floor_s, run.realtime, stop_requested());
+  const auto load = Load::start(options.load);
+  if (!load) return load.error();
+  run.grants = process.grants();
+  Bell bell;
+  const auto hands = open_hands(run, bell);
+  if (!hands) return hands.error();
+  for (const auto& hand : *hands) {
+    outcome->gloves.push_back(hand.glove->info().source);
+    if (!run.loop.stages.input) hand.glove->stop();
+  }
+  outcome->grants = run.grants;
+  flow::TickRing ring(records_kept);
+  run.loop.records = &ring;
+  const auto placed = place_loop(run, *hands, model);
+  if (!placed) return placed.error();
+  run_loop(options, *placed->loop, ring, *outcome, progress);
+  for (const auto& hand : *hands)
+    hand.glove->stop();
+  const flow::LoopStats& stats = placed->loop->stats();
+  outcome->overruns = stats.overruns;
+  outcome->missed = stats.missed;
+  outcome->failed = stats.failed;
+  outcome->records_refused = ring.counters().refused;
+  outcome->vertices = model.vertices.cols();
+  return outcome;
+}
+
+} // namespace nendo::app

@@ -1,0 +1,58 @@
+#pragma once
+// A stress test from the first look at the machine to the last tick.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stress/environment.hpp"
+#include "stress/platform_floor.hpp"
+#include "stress/stress_options.hpp"
+#include "stress/tick_tally.hpp"
+
+namespace nendo::app {
+
+/// What the loop's thread cost the system, its set-up not included.
+struct ThreadCosts {
+  long minor_faults = 0;
+  long major_faults = 0;
+  long voluntary_switches = 0;
+  long involuntary_switches = 0;
+  double cpu_s = 0.0;
+};
+
+struct StressOutcome {
+  explicit StressOutcome(const flow::PaceOptions& pace) : tally(pace) {}
+
+  Environment environment;
+  std::vector<flow::Grant> grants;
+  PlatformFloor floor;
+  TickTally tally;
+  std::uint64_t overruns = 0;
+  std::uint64_t missed = 0;
+  std::uint64_t failed = 0;          ///< ticks without a usable field
+  std::uint64_t records_refused = 0; ///< ticks whose record found the ring full: not in `tally`
+  ThreadCosts costs;
+  std::optional<double> stolen_s;
+  double elapsed_s = 0.0;
+  Eigen::Index vertices = 0;
+  std::vector<std::string> gloves;                  ///< what opened them
+  std::chrono::system_clock::time_point wall_start; ///< by the clock on the wall, of:
+  HostTime start{};
+  bool spins = false;   ///< the spin tail was asked for, and SCHED_FIFO granted
+  bool broke = false;   ///< --break ended it
+  bool stopped = false; ///< a signal ended it
+};
+
+/// Called about four times a second.
+using StressProgress = std::function<void(const TickTally& tally, double elapsed_s)>;
+
+/// Measures the floor, starts the load, and runs the loop for its time, until a stop signal, or
+/// until a tick is later than `break_at`. Blocks. Errors: as open_hands(), place_loop(),
+/// Load::start().
+Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
+                                                  const StressProgress& progress);
+
+} // namespace nendo::app

@@ -1,0 +1,107 @@
+#pragma once
+// What a stress test knows of its ticks: made of the loop's records, on another thread, in constant
+// memory however long it runs.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <nendo/flow/histogram.hpp>
+#include <nendo/flow/pacer.hpp>
+
+#include "stress/incident.hpp"
+#include "stress/run_delay.hpp"
+
+namespace nendo::app {
+
+enum class Measure : std::uint8_t { lateness, period_error, work, input_age, end_to_end };
+inline constexpr std::array<std::string_view, 5> measure_names{"lateness", "period_error", "work",
+                                                               "input_age", "end_to_end"};
+
+/// `raw`: a value for each tick that ran. `corrected`: for each tick that was scheduled, so that a
+/// long stall counts for all the ticks that it swallowed (coordinated omission). Of the lateness
+/// that is exact: a missed deadline waited for the next tick. For the others it is HdrHistogram's
+/// rule: a value v beyond the period T stands for v - T, v - 2T, ... as well.
+struct Distribution {
+  flow::Histogram raw;
+  flow::Histogram corrected;
+};
+
+/// The lateness over time, in at most so many slices; they get longer as time goes on.
+class Timeline {
+public:
+  static constexpr std::size_t most_slices = 512;
+  struct Slice {
+    std::uint64_t count = 0;
+    std::chrono::nanoseconds sum{};
+    std::chrono::nanoseconds max{};
+  };
+  void add(HostTime time, std::chrono::nanoseconds lateness);
+  const std::vector<Slice>& slices() const noexcept { return slices_; }
+  HostClock::duration slice_length() const noexcept { return length_; }
+
+private:
+  HostTime start_{};
+  HostClock::duration length_ = std::chrono::milliseconds(10);
+  std::vector<Slice> slices_;
+};
+
+class TickTally {
+public:
+  /// Later than this is an incident that has to be explained.
+  static constexpr std::chrono::milliseconds incident_threshold{1};
+  static constexpr std::size_t most_worst = 10;
+
+  explicit TickTally(const flow::PaceOptions& pace);
+
+  /// The next record. `delay` must have been sampled after it was made; null: unknown.
+  void add(const flow::TickRecord& record, const RunDelay* delay);
+
+  std::uint64_t ticks() const noexcept { return ticks_; }
+  std::uint64_t samples() const noexcept { return samples_; }
+  /// From a tick to the next one, the longest, as they woke.
+  std::chrono::nanoseconds longest_outage() const noexcept { return longest_outage_; }
+  const Distribution& operator[](Measure measure) const noexcept {
+    return distributions_[static_cast<std::size_t>(measure)];
+  }
+  /// The time that a stage took; of Phase::wake the time spun.
+  const flow::Histogram& stage(Phase phase) const noexcept {
+    return stages_[static_cast<std::size_t>(phase)];
+  }
+  /// Latest first, no more than most_worst.
+  const std::vector<Incident>& worst() const noexcept { return worst_; }
+  /// Incidents beyond the threshold, by cause, and their lateness together.
+  struct Share {
+    std::uint64_t incidents = 0;
+    std::chrono::nanoseconds lateness{};
+  };
+  const std::array<Share, cause_names.size()>& causes() const noexcept { return causes_; }
+  /// Of the lateness of incidents beyond the threshold, the part whose cause is known; 1 if none.
+  double explained() const noexcept;
+  const Timeline& timeline() const noexcept { return timeline_; }
+
+private:
+  void add_stages(const flow::TickRecord& record) noexcept;
+  void add_step(const flow::TickRecord& before, const flow::TickRecord& record,
+                const RunDelay* delay);
+  void record(Measure measure, HostClock::duration value) noexcept;
+  UsualTimes usual_times() const noexcept;
+
+  std::chrono::nanoseconds period_;
+  bool on_grid_;
+  std::optional<flow::TickRecord> before_;
+  std::uint64_t ticks_ = 0;
+  std::uint64_t samples_ = 0;
+  std::chrono::nanoseconds longest_outage_{};
+  std::array<Distribution, measure_names.size()> distributions_;
+  std::array<flow::Histogram, phase_names.size()> stages_;
+  /// Of ticks that took samples alone: those that did not have next to nothing to do.
+  std::array<flow::Histogram, phase_names.size()> busy_stages_;
+  std::vector<Incident> worst_;
+  std::array<Share, cause_names.size()> causes_{};
+  Timeline timeline_;
+};
+
+} // namespace nendo::app

@@ -1,0 +1,142 @@
+// The whole tick under the kernel's own eyes: after warm-up the loop's thread makes no system call
+// but its sleep, no allocation, and touches no page for the first time.
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+#include <doctest/doctest.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <nendo/flow/realtime.hpp>
+
+#include "support/flow_fixtures.hpp"
+#include "support/restraint.hpp"
+#include "support/sleep_only.hpp"
+
+using namespace nendo;
+using namespace nendo::flow;
+using nendo::test::LoopUnderTest;
+
+namespace {
+
+struct Watched {
+  bool filtered = false; ///< the kernel has seccomp
+  test::StoppedCalls calls;
+  test::RestraintCounts counts;
+  long page_faults = 0;
+};
+
+long faults_so_far() noexcept {
+  rusage usage{};
+  ::getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
+/// Runs `warm_up`, and then `watched` on the same thread, where it may only sleep.
+Watched watch(const std::function<void()>& warm_up, const std::function<void()>& watched) {
+  Watched seen;
+  std::thread([&] {
+    make_thread_realtime({});
+    warm_up();
+    faults_so_far();
+    seen.filtered = test::allow_sleep_only();
+    {
+      const test::Restraint restraint;
+      const long before = faults_so_far();
+      watched();
+      seen.page_faults = faults_so_far() - before;
+      seen.counts = restraint.counts();
+      seen.calls = test::stopped_calls();
+    }
+    if (seen.filtered) test::end_thread();
+  }).join();
+  return seen;
+}
+
+/// Both gloves open and close a hand within 60 ticks.
+void move_and_tick(LoopUnderTest& test, std::uint64_t first, std::uint64_t ticks) {
+  const HostTime begin = HostClock::now();
+  for (std::uint64_t tick = first; tick < first + ticks; ++tick) {
+    const int bent = static_cast<int>(tick % 60);
+    test.bend(bent < 30 ? bent : 60 - bent, begin + tick * std::chrono::milliseconds(1));
+    test.frame_after_tick(tick);
+  }
+}
+
+} // namespace
+
+// The sanitizers' own run-time makes calls and allocates.
+TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
+  TEST_CASE("a system call, an allocation and a fresh page are each seen, or nothing is proved") {
+    constexpr std::size_t page = 4096;
+    void* const room =
+        ::mmap(nullptr, page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    REQUIRE(room != MAP_FAILED);
+    long answer = 0;
+    const Watched seen = watch([] {},
+                               [&] {
+                                 answer = ::syscall(SYS_getppid);
+                                 auto* volatile number = new std::uint64_t(7); // not optimised away
+                                 delete number;
+                                 *static_cast<volatile char*>(room) = 1;
+                               });
+    ::munmap(room, page);
+    REQUIRE(seen.filtered);
+    CHECK(seen.calls.count == 1);
+    CHECK(seen.calls.last == SYS_getppid);
+    CHECK(answer == -1); // and was not done
+    CHECK(seen.counts.allocations == 1);
+    CHECK(seen.counts.frees == 1);
+    CHECK(seen.page_faults == 1);
+  }
+
+  TEST_CASE("100,000 ticks of two hands, in either mode: no call, no allocation, no page fault") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      CAPTURE(name_of(mode));
+      LoopUnderTest test(mode, 10);
+      const Watched seen =
+          watch([&] { move_and_tick(test, 0, 300); }, [&] { move_and_tick(test, 300, 100'000); });
+      REQUIRE(seen.filtered);
+      CHECK(seen.calls.count == 0);
+      CHECK(seen.calls.last == -1);
+      CHECK(seen.counts.allocations == 0);
+      CHECK(seen.counts.frees == 0);
+      CHECK(seen.counts.locks == 0);
+      CHECK(seen.page_faults == 0);
+      CHECK(test.loop->stats().ticks == 100'300);
+      CHECK(test.loop->stats().failed == 0);
+      CHECK(test.loop->stats().samples[1] == 100'300);
+    }
+  }
+
+  TEST_CASE("waiting for the next tick is the sleep and nothing else, whatever the policy") {
+    for (const auto policy :
+         {OverrunPolicy::skip, OverrunPolicy::catch_up, OverrunPolicy::re_anchor}) {
+      for (const bool spin : {false, true}) {
+        TickRing records(4096);
+        PaceOptions options;
+        options.rate_hz = 10'000.0;
+        options.policy = policy;
+        options.spin = spin;
+        const auto run = [&] {
+          Pacer pacer(options, HostClock::now());
+          while (pacer.next() < 2000) {
+            const Pacer::Due due = pacer.wait();
+            records.try_push({.tick = due.number, .scheduled = due.scheduled, .woke = due.woke});
+            pacer.end_tick(HostClock::now());
+          }
+        };
+        const Watched seen = watch([] {}, run);
+        REQUIRE(seen.filtered);
+        CHECK(seen.calls.count == 0);
+        CHECK(seen.counts.allocations + seen.counts.frees + seen.counts.locks == 0);
+        CHECK(seen.page_faults == 0);
+        CHECK(records.size() > 0);
+      }
+    }
+  }
+}
