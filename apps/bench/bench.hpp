@@ -10,7 +10,6 @@ void add_deform_bench(Command& bench);
 void add_latency_bench(Command& bench);
 void add_faults_bench(Command& bench);
 void add_hand_bench(Command& bench);
-void add_loop_bench(Command& bench);
 void add_rt_bench(Command& bench);
 void add_scale_bench(Command& bench);
 void add_soak_bench(Command& bench);

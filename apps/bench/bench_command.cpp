@@ -15,7 +15,6 @@ void add_bench(Command& program) {
   add_latency_bench(bench);
   add_faults_bench(bench);
   add_hand_bench(bench);
-  add_loop_bench(bench);
   add_rt_bench(bench);
   add_scale_bench(bench);
   add_soak_bench(bench);

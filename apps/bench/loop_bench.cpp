@@ -1,4 +1,4 @@
-// nendo bench loop: the loop beside cyclictest, with its spin tail, and with all of its work.
+// nendo bench rt, the loop: beside cyclictest, with its spin tail, and with all of its work.
 
 #include <cmath>
 #include <cstdio>
@@ -11,18 +11,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/bench.hpp"
 #include "bench/cyclictest.hpp"
+#include "bench/rt_bench.hpp"
 #include "cli.hpp"
 #include "stress/stress_session.hpp"
 
 namespace nendo::app {
 namespace {
-
-struct Options {
-  std::uint32_t seconds = 10;
-  bool json = false;
-};
 
 constexpr unsigned interval_us = 1000;
 
@@ -56,7 +51,7 @@ deform::Mesh paper_sized_ball() {
 }
 
 /// What is measured: the wait alone, or all of a tick.
-StressArguments arguments_for(const Options& options, const char* stages, const char* spin,
+StressArguments arguments_for(const RtOptions& options, const char* stages, const char* spin,
                               const char* load) {
   StressArguments arguments;
   arguments.interval_us = interval_us;
@@ -86,12 +81,12 @@ double us(const flow::Histogram& histogram, double fraction) {
 }
 
 /// A figure, what it ought to be at the most, and a line about it.
-void tell(const Options& options, const std::string& part, const std::string& figure, double value,
-          double at_most) {
+void tell(const RtOptions& options, const std::string& part, const std::string& figure,
+          double value, double at_most) {
   const bool met = value <= at_most;
   if (options.json) {
-    const nlohmann::ordered_json line{
-        {"part", part}, {"figure", figure}, {"value", value}, {"at_most", at_most}, {"met", met}};
+    const nlohmann::ordered_json line{{"part", "loop"}, {"of", part},         {"figure", figure},
+                                      {"value", value}, {"at_most", at_most}, {"met", met}};
     std::cout << line.dump() << std::endl;
     return;
   }
@@ -101,7 +96,7 @@ void tell(const Options& options, const std::string& part, const std::string& fi
 }
 
 // Both at once, each on a CPU, and then the other way round: what the CPUs differ by cancels.
-Result<void> beside_cyclictest(const Options& options, const deform::Mesh& model) {
+Result<void> beside_cyclictest(const RtOptions& options, const deform::Mesh& model) {
   if (std::thread::hardware_concurrency() < 2)
     return Error{Errc::failed, "beside cyclictest: needs two CPUs"};
   flow::Histogram theirs;
@@ -131,7 +126,7 @@ Result<void> beside_cyclictest(const Options& options, const deform::Mesh& model
   return {};
 }
 
-Result<void> spinning(const Options& options, const deform::Mesh& model) {
+Result<void> spinning(const RtOptions& options, const deform::Mesh& model) {
   for (const auto& [load, name, p99_us] :
        {std::tuple{"", "spin tail, idle", 1.0}, {"cpu,mem,io", "spin tail, under load", 15.0}}) {
     const auto outcome = measure(arguments_for(options, "sleep", "on", load), model);
@@ -144,7 +139,7 @@ Result<void> spinning(const Options& options, const deform::Mesh& model) {
   return {};
 }
 
-Result<void> whole_pipeline(const Options& options, const deform::Mesh& model) {
+Result<void> whole_pipeline(const RtOptions& options, const deform::Mesh& model) {
   auto arguments = arguments_for(options, "sleep,input,hands,deform,publish", "off", "");
   arguments.run.left = arguments.run.right = "sim?rate=1000"; // no tick without something to do
   const auto outcome = measure(arguments, model);
@@ -156,30 +151,18 @@ Result<void> whole_pipeline(const Options& options, const deform::Mesh& model) {
   return {};
 }
 
-int bench_loop(const Options& options) {
-  if (options.seconds < 1 || options.seconds > 3600)
-    return report({Errc::usage, "--seconds: use 1 to 3600"});
-  install_stop_signals();
+} // namespace
+
+Result<void> measure_loop(const RtOptions& options) {
   const deform::Mesh model = paper_sized_ball();
   if (!options.json) {
     std::printf("the loop at %u Hz under SCHED_FIFO 80, %u s a measurement\n",
                 1'000'000 / interval_us, options.seconds);
   }
   for (const auto part : {beside_cyclictest, spinning, whole_pipeline}) {
-    if (const auto done = part(options, model); !done) return report(done.error());
+    if (const auto done = part(options, model); !done) return done;
   }
-  return 0;
-}
-
-} // namespace
-
-void add_loop_bench(Command& bench) {
-  auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
-      "loop", "The loop beside cyclictest (rt-tests), its spin tail, and all of its work");
-  command.add_option("--seconds", options->seconds, "How long each measurement takes");
-  command.add_flag("--json", options->json, "One JSON object a figure");
-  command.on_chosen([options] { return bench_loop(*options); });
+  return {};
 }
 
 } // namespace nendo::app

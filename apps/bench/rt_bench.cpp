@@ -16,7 +16,8 @@ struct Part {
   const char* name;
   Result<void> (*measure)(const RtOptions& options);
 };
-constexpr std::array parts{Part{"rings", measure_rings}, Part{"handoff", measure_handoff}};
+constexpr std::array parts{Part{"rings", measure_rings}, Part{"handoff", measure_handoff},
+                           Part{"loop", measure_loop}};
 
 struct Options {
   RtOptions rt;
@@ -26,6 +27,9 @@ struct Options {
 int bench_rt(const Options& options) {
   if (options.rt.rounds == 0 || options.rt.rounds > 10'000)
     return report({Errc::usage, "--rounds: from 1 to 10000"});
+  if (options.rt.seconds < 1 || options.rt.seconds > 3600)
+    return report({Errc::usage, "--seconds: use 1 to 3600"});
+  install_stop_signals();
   for (const Part& part : parts) {
     if (options.part != "all" && options.part != part.name) continue;
     const auto done = part.measure(options.rt);
@@ -39,10 +43,11 @@ int bench_rt(const Options& options) {
 void add_rt_bench(Command& bench) {
   auto options = std::make_shared<Options>();
   Command command =
-      bench.add_command("rt", "Rings and frame hand-off, beside others in the same run");
+      bench.add_command("rt", "Rings, frame hand-off and the loop, beside others in the same run");
   command.add_option("--part", options->part, "What to measure")
-      .one_of({"all", "rings", "handoff"});
-  command.add_option("--rounds", options->rt.rounds, "Measurements of each");
+      .one_of({"all", "rings", "handoff", "loop"});
+  command.add_option("--rounds", options->rt.rounds, "Measurements of each ring and hand-off");
+  command.add_option("--seconds", options->rt.seconds, "How long each of the loop's takes");
   command.add_flag("--json", options->rt.json, "One JSON object a line");
   command.on_chosen([options] { return bench_rt(*options); });
 }

@@ -9,8 +9,9 @@
 namespace nendo::app {
 
 struct RtOptions {
-  std::uint64_t rounds = 20; ///< of every contender, in an order that rotates
-  bool json = false;         ///< one object a line in place of text
+  std::uint64_t rounds = 20;  ///< of every contender, in an order that rotates
+  std::uint32_t seconds = 10; ///< of each of the loop's measurements, 1 to 3600
+  bool json = false;          ///< one object a line in place of text
 };
 
 /// SpscRing, one element at a time and in batches, beside other rings. Takes some 0.2 s a round.
@@ -18,5 +19,10 @@ Result<void> measure_rings(const RtOptions& options);
 /// What publishing a frame costs its writer: LatestValue beside a mutex and a condition variable.
 /// Takes some 0.6 s a round.
 Result<void> measure_handoff(const RtOptions& options);
+
+/// The loop beside cyclictest in the same seconds, its spin tail, all of a tick's work, each held
+/// against its goal. Takes six times `seconds`. Errors: no_permission where real-time rights are
+/// refused; without cyclictest (package rt-tests); stopped by a signal.
+Result<void> measure_loop(const RtOptions& options);
 
 } // namespace nendo::app
