@@ -39,8 +39,9 @@ void limit(const Eigen::Vector3d& chord, Eigen::Ref<Eigen::Vector3d> tangent) no
 } // namespace
 
 FingertipCurve::FingertipCurve(Eigen::Index points, double piece_length)
-    : piece_length_(piece_length), near_(Points::Zero(3, points)), from_(near_), to_(near_),
-      leaving_(from_), arriving_(from_), tangent_(from_), slope_(from_), last_slope_(from_) {
+    : piece_length_(piece_length), chord_(Points::Zero(3, points)), scratch_(chord_), from_(chord_),
+      to_(chord_), leaving_(from_), arriving_(from_), tangent_(from_), slope_(from_),
+      last_slope_(from_) {
   assert(piece_length > 0.0);
 }
 
@@ -59,9 +60,9 @@ void FingertipCurve::extend(const Points& tips) {
   if (farthest(to_, tips) < least_way * piece_length_) return;
   for (Eigen::Index i = 0; i < tips.cols(); ++i) {
     const bool moves = (tips.col(i) - to_.col(i)).norm() >= least_move * piece_length_;
-    near_.col(i) = (moves ? tips : to_).col(i);
+    scratch_.col(i) = (moves ? tips : to_).col(i);
   }
-  lead_to(near_);
+  lead_to(scratch_);
 }
 
 void FingertipCurve::end_at(const Points& tips) {
@@ -85,7 +86,8 @@ void FingertipCurve::lead_to(const Points& tips) {
 
 /// Curves are parametrised by the length of their chords: samples may be unevenly spaced.
 void FingertipCurve::set_tangents(double length) noexcept {
-  slope_ = (to_ - from_) / length;
+  chord_ = to_ - from_;
+  slope_ = chord_ / length;
   const bool first = last_length_ == 0.0;
   leaving_ = first ? slope_ : tangent_;
   tangent_ = slope_;
@@ -100,22 +102,29 @@ void FingertipCurve::set_tangents(double length) noexcept {
   last_length_ = length;
 }
 
-void FingertipCurve::measure() noexcept {
-  lengths_[0] = 0.0;
-  for (std::size_t step = 1; step <= steps; ++step) {
-    const double u = static_cast<double>(step) / steps;
-    const double before = static_cast<double>(step - 1) / steps;
-    double longest = 0.0;
-    for (Eigen::Index i = 0; i < to_.cols(); ++i)
-      longest = std::max(longest, (point_at(i, u) - point_at(i, before)).squaredNorm());
-    lengths_[step] = lengths_[step - 1] + std::sqrt(longest);
-  }
+namespace {
+
+/// Hermite's cubic from 0: what chord and tangents weigh at u.
+struct Weights {
+  double chord, leaving, arriving;
+};
+constexpr Weights weights_at(double u) noexcept {
+  const double v = 1.0 - u;
+  return {u * u * (3.0 - 2.0 * u), u * v * v, -u * u * v};
 }
 
-Eigen::Vector3d FingertipCurve::point_at(Eigen::Index i, double u) const noexcept {
-  const double v = 1.0 - u;
-  return from_.col(i) + u * u * (3.0 - 2.0 * u) * (to_.col(i) - from_.col(i)) +
-         u * v * (v * leaving_.col(i) - u * arriving_.col(i));
+} // namespace
+
+void FingertipCurve::measure() noexcept {
+  lengths_[0] = 0.0;
+  Weights before{};
+  for (std::size_t step = 1; step <= steps; ++step) {
+    const Weights here = weights_at(static_cast<double>(step) / steps);
+    scratch_ = (here.chord - before.chord) * chord_ + (here.leaving - before.leaving) * leaving_ +
+               (here.arriving - before.arriving) * arriving_;
+    lengths_[step] = lengths_[step - 1] + std::sqrt(scratch_.colwise().squaredNorm().maxCoeff());
+    before = here;
+  }
 }
 
 bool FingertipCurve::next_cut(Points& cut) noexcept {
@@ -138,9 +147,8 @@ bool FingertipCurve::next_cut(Points& cut) noexcept {
   const auto step = static_cast<std::size_t>(
       std::upper_bound(lengths_.begin(), lengths_.end(), position_) - lengths_.begin());
   const double part = (position_ - lengths_[step - 1]) / (lengths_[step] - lengths_[step - 1]);
-  const double u = (static_cast<double>(step - 1) + part) / steps;
-  for (Eigen::Index i = 0; i < cut.cols(); ++i)
-    cut.col(i) = point_at(i, u);
+  const Weights here = weights_at((static_cast<double>(step - 1) + part) / steps);
+  cut = from_ + here.chord * chord_ + here.leaving * leaving_ + here.arriving * arriving_;
   return true;
 }
 

@@ -92,23 +92,52 @@ HWY_INLINE Vectors3<V> polynomial_at(D d, const std::array<std::array<double, 4>
           polynomial_row(d, rows[2], place)};
 }
 
+/// The least lane of each of three vectors, and a zero, to four aligned places.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store_least_lanes(D d, V x, V y, V z, float* to) {
+#if HWY_TARGET == HWY_SCALAR
+  to[0] = hn::GetLane(x);
+  to[1] = hn::GetLane(y);
+  to[2] = hn::GetLane(z);
+  to[3] = hn::GetLane(hn::Zero(d));
+#else
+  const hn::Repartition<double, D> pairs;
+  const auto least_pairs = [d](V a, V b) { // a b a b in each four lanes
+    return hn::Min(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b));
+  };
+  const auto xy = hn::BitCast(pairs, least_pairs(x, y));
+  const auto z0 = hn::BitCast(pairs, least_pairs(z, hn::Zero(d)));
+  const V least = hn::Min(hn::BitCast(d, hn::InterleaveLower(pairs, xy, z0)),
+                          hn::BitCast(d, hn::InterleaveUpper(pairs, xy, z0)));
+  alignas(64) float fours[hn::MaxLanes(D())];
+  hn::Store(least, d, fours);
+  const hn::CappedTag<float, 4> four;
+  auto all = hn::Load(four, fours);
+  for (std::size_t lane = 4; lane < hn::Lanes(d); lane += 4)
+    all = hn::Min(all, hn::Load(four, fours + lane));
+  hn::Store(all, four, to);
+#endif
+}
+
 /// The bounds of a block that has just been written.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE BlockBounds vector_bounds(D d, const VertexBlock& block) {
-  BlockBounds bounds;
   const float* const coordinates[3] = {block.x.data(), block.y.data(), block.z.data()};
+  V low[3];
+  V high[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    V low = hn::Load(d, coordinates[axis]);
-    V high = low;
+    low[axis] = hn::Load(d, coordinates[axis]);
+    high[axis] = low[axis];
     for (std::size_t lane = hn::Lanes(d); lane < block_size; lane += hn::Lanes(d)) {
       const V more = hn::Load(d, coordinates[axis] + lane);
-      low = hn::Min(low, more);
-      high = hn::Max(high, more);
+      low[axis] = hn::Min(low[axis], more);
+      high[axis] = hn::Max(high[axis], more);
     }
-    bounds.sides[axis] = hn::GetLane(hn::MinOfLanes(d, low));
-    bounds.sides[axis + 4] = -hn::GetLane(hn::MaxOfLanes(d, high));
   }
-  bounds.sides[3] = bounds.sides[7] = 0.0F;
+  BlockBounds bounds;
+  store_least_lanes(d, low[0], low[1], low[2], bounds.sides.data());
+  store_least_lanes(d, hn::Neg(high[0]), hn::Neg(high[1]), hn::Neg(high[2]),
+                    bounds.sides.data() + 4);
   return bounds;
 }
 

@@ -37,16 +37,16 @@ public:
   static constexpr int most_pieces = 16;
 
 private:
-  static constexpr std::size_t steps = 16; ///< in which a piece's length is measured
+  static constexpr std::size_t steps = 8; ///< in which a piece's length is measured
 
   void lead_to(const Points& tips);
   void set_tangents(double length) noexcept;
   void measure() noexcept;
-  Eigen::Vector3d point_at(Eigen::Index i, double u) const noexcept;
 
   double piece_length_;
   double cut_length_ = 0.0;   ///< piece_length_, but for long ways
-  Points near_;               ///< where a sample leads
+  Points chord_;              ///< from from_ to to_
+  Points scratch_;            ///< where a sample leads, or a step
   Points from_, to_;          ///< the last piece of the curve
   Points leaving_, arriving_; ///< its tangents, as dp/du with u from 0 to 1
   Points tangent_;            ///< at to_, by length
