@@ -28,7 +28,7 @@ Result<ordered_json> read_earlier(const std::string& path) {
   auto report = ordered_json::parse(*text, nullptr, false);
   if (!report.is_object() || report.value("event", ordered_json()) != "stress") {
     return Error{Errc::bad_input,
-                 path + ": not a report of nendo stress; write one with --json > " + path};
+                 path + ": not a report of nendo stress; `nendo stress --json >FILE` writes one"};
   }
   return report;
 }
