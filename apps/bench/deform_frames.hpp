@@ -12,7 +12,7 @@
 namespace nendo::app {
 
 inline constexpr std::size_t poses = 16; ///< different ones, so that nothing is learnt by heart
-/// A stroke that finish() applies in one piece, however long.
+/// A stroke that end_at() applies in one piece, however long.
 inline constexpr double one_piece = 1e9;
 
 /// Where the fingertips go, at random but always the same.

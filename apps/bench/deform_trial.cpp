@@ -79,10 +79,7 @@ CellTimes measure_cell(const Points& mesh, double radius, int repetitions) {
   for (int n = 0; n < repetitions; ++n) {
     if (can_run_plain()) {
       p1.measure(vertices, [&](std::size_t k) { plain1.type1(ends[k % poses]); });
-      p2.measure(vertices, [&](std::size_t k) {
-        const Points& end = ends[k / 2 % poses];
-        k % 2 == 0 ? plain2.type2(starts, end) : plain2.type2(end, starts);
-      });
+      p2.measure(vertices, [&](std::size_t k) { plain2.stroke(ends, k); });
     }
     t1.measure(vertices,
                [&](std::size_t k) { deformers.type1.apply(ends[k % poses], deformers.out); });

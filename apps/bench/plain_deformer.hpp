@@ -1,10 +1,12 @@
 #pragma once
 // Both types of deformation by the plain loop (plain_deform.hpp), solved as the deformers do it.
 
+#include <array>
 #include <vector>
 
 #include <nendo/deform/csrbf.hpp>
 
+#include "bench/deform_frames.hpp"
 #include "bench/plain_deform.hpp"
 
 namespace nendo::app {
@@ -18,6 +20,11 @@ public:
 
   void type1(const deform::Points& ends);
   void type2(const deform::Points& from, const deform::Points& to);
+  /// The n-th stroke of Type-2, there and back like stroke()'s.
+  void stroke(const std::array<deform::Points, poses>& ends, std::size_t n) {
+    const deform::Points& end = ends[n / 2 % poses];
+    n % 2 == 0 ? type2(starts_, end) : type2(end, starts_);
+  }
 
 private:
   struct Arrays {

@@ -44,10 +44,7 @@ public:
     for_seconds(seconds, [&] {
       if (can_run_plain()) {
         p1.measure(vertices_, [&](std::size_t n) { plain1.type1(ends_[n % poses]); });
-        p2.measure(vertices_, [&](std::size_t n) {
-          const Points& end = ends_[n / 2 % poses];
-          n % 2 == 0 ? plain2.type2(starts_, end) : plain2.type2(end, starts_);
-        });
+        p2.measure(vertices_, [&](std::size_t n) { plain2.stroke(ends_, n); });
       }
       t1.measure(vertices_, [&](std::size_t n) { type1.apply(ends_[n % poses], out); });
       t2.measure(vertices_, [&](std::size_t n) { stroke(type2, starts_, ends_, n); });

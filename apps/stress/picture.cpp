@@ -3,9 +3,11 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stress/report.hpp"
+#include "svg_drawing.hpp"
 
 namespace nendo::app {
 namespace {
@@ -19,14 +21,12 @@ constexpr const char* ran = "#2f7fc1";       // ticks that ran
 constexpr const char* scheduled = "#e07a3f"; // ticks that were scheduled
 constexpr const char* machine = "#aab4bf";   // the platform's floor
 
+constexpr SvgText heading{14, ink, "start", true};
+constexpr SvgText at_right{12, faint, "end"};
+constexpr SvgText below{12, faint, "middle"};
+
 double microseconds(nanoseconds time) {
   return static_cast<double>(time.count()) / 1e3;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
 }
 
 std::string time_text(double us) {
@@ -41,57 +41,6 @@ std::string time_text(double us) {
     std::snprintf(text, sizeof text, "%.3g ns", us * 1e3);
   return text;
 }
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (static_cast<unsigned char>(c) >= 0x20)
-      safe += c;
-  }
-  return safe;
-}
-
-/// SVG, element by element.
-class Drawing {
-public:
-  Drawing(double width, double height) {
-    text_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(width) + ' ' +
-            number(height) + "\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n" +
-            "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
-  }
-  void words(double x, double y, const std::string& words, double size = 13.0,
-             const char* colour = ink, const char* anchor = "start", bool bold = false) {
-    text_ += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" font-size=\"" + number(size) +
-             "\" fill=\"" + colour + "\" text-anchor=\"" + anchor + "\"" +
-             (bold ? " font-weight=\"bold\"" : "") + ">" + escaped(words) + "</text>\n";
-  }
-  void line(double x0, double y0, double x1, double y1, const char* colour, double width = 1.0,
-            const char* dashes = "") {
-    text_ += "<line x1=\"" + number(x0) + "\" y1=\"" + number(y0) + "\" x2=\"" + number(x1) +
-             "\" y2=\"" + number(y1) + "\" stroke=\"" + colour + "\" stroke-width=\"" +
-             number(width) + "\" stroke-dasharray=\"" + dashes + "\"/>\n";
-  }
-  void box(double x, double y, double width, double height, const char* colour, double opacity) {
-    text_ += "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" + number(width) +
-             "\" height=\"" + number(height) + "\" fill=\"" + colour + "\" fill-opacity=\"" +
-             number(opacity) + "\"/>\n";
-  }
-  void path(const std::string& points, const char* colour, double width) {
-    if (points.empty()) return;
-    text_ += "<polyline points=\"" + points + "\" fill=\"none\" stroke=\"" + colour +
-             "\" stroke-width=\"" + number(width) + "\" stroke-linejoin=\"round\"/>\n";
-  }
-  std::string finished() && { return std::move(text_) + "</svg>\n"; }
-
-private:
-  std::string text_;
-};
 
 /// A rectangle of the page and what its logarithmic axes reach from and to.
 struct Axes {
@@ -140,12 +89,12 @@ std::string outline(const Axes& axes, const std::vector<double>& bins) {
   for (auto at = first; at < last; ++at) {
     const auto bin = static_cast<std::size_t>(at);
     for (const double x : {left_of(bin), left_of(bin + 1)})
-      points += number(axes.x(x)) + ',' + number(axes.y(bins[bin])) + ' ';
+      points += svg_point(axes.x(x), axes.y(bins[bin]));
   }
   return points;
 }
 
-void draw_decades(Drawing& drawing, const Axes& axes, bool times_on_y) {
+void draw_decades(SvgDrawing& drawing, const Axes& axes, bool times_on_y) {
   const auto whole = [](double decade) { return static_cast<int>(std::ceil(decade)); };
   for (int decade = whole(axes.y_low); decade <= whole(axes.y_high); ++decade) {
     const double value = std::pow(10.0, decade);
@@ -153,16 +102,16 @@ void draw_decades(Drawing& drawing, const Axes& axes, bool times_on_y) {
     drawing.line(axes.left, y, axes.left + axes.width, y, grid_line);
     char count[32];
     std::snprintf(count, sizeof count, "%.0f", value);
-    drawing.words(axes.left - 8, y + 4, times_on_y ? time_text(value) : count, 11, faint, "end");
+    drawing.words(axes.left - 8, y + 4, times_on_y ? time_text(value) : count, {11, faint, "end"});
   }
   for (int decade = whole(axes.x_low); axes.log_x && decade <= whole(axes.x_high); ++decade) {
     const double x = axes.x(std::pow(10.0, decade));
     drawing.line(x, axes.top, x, axes.bottom(), grid_line);
-    drawing.words(x, axes.bottom() + 18, time_text(std::pow(10.0, decade)), 11, faint, "middle");
+    drawing.words(x, axes.bottom() + 18, time_text(std::pow(10.0, decade)), {11, faint, "middle"});
   }
 }
 
-void draw_percentiles(Drawing& drawing, const Axes& axes, const flow::Histogram& lateness) {
+void draw_percentiles(SvgDrawing& drawing, const Axes& axes, const flow::Histogram& lateness) {
   struct Mark {
     const char* name;
     double fraction;
@@ -177,12 +126,12 @@ void draw_percentiles(Drawing& drawing, const Axes& axes, const flow::Histogram&
     last_x = x;
     drawing.line(x, axes.top, x, axes.bottom(), scheduled, 1.0, "3 3");
     const bool at_edge = x > axes.left + axes.width - 110;
-    drawing.words(at_edge ? x - 4 : x + 4, row, std::string(mark.name) + " " + time_text(us), 11,
-                  ink, at_edge ? "end" : "start");
+    drawing.words(at_edge ? x - 4 : x + 4, row, std::string(mark.name) + " " + time_text(us),
+                  {11, ink, at_edge ? "end" : "start"});
   }
 }
 
-void draw_histogram(Drawing& drawing, const StressOutcome& outcome) {
+void draw_histogram(SvgDrawing& drawing, const StressOutcome& outcome) {
   const Distribution& lateness = outcome.tally[Measure::lateness];
   const auto all = binned(lateness.corrected);
   const auto those_ran = binned(lateness.raw);
@@ -199,7 +148,7 @@ void draw_histogram(Drawing& drawing, const StressOutcome& outcome) {
                   true,
                   -0.4,
                   std::ceil(std::log10(most))}; // a single tick shows
-  drawing.words(80, 112, "How late ticks were", 14, ink, "start", true);
+  drawing.words(80, 112, "How late ticks were", heading);
   draw_decades(drawing, axes, false);
   for (std::size_t k = 0; k < those_ran.size(); ++k) {
     if (those_ran[k] <= 0.0) continue;
@@ -212,7 +161,7 @@ void draw_histogram(Drawing& drawing, const StressOutcome& outcome) {
   draw_percentiles(drawing, axes, lateness.corrected);
 }
 
-void draw_course(Drawing& drawing, const StressOutcome& outcome) {
+void draw_course(SvgDrawing& drawing, const StressOutcome& outcome) {
   const Timeline& course = outcome.tally.timeline();
   const double length_s =
       to_seconds(course.slice_length()) * static_cast<double>(course.slices().size());
@@ -232,7 +181,7 @@ void draw_course(Drawing& drawing, const StressOutcome& outcome) {
                   false,
                   std::max(least_us_decade, std::floor(std::log10(std::max(least_us, 1e-3)))),
                   std::ceil(std::log10(most_us))};
-  drawing.words(80, 432, "When", 14, ink, "start", true);
+  drawing.words(80, 432, "When", heading);
   draw_decades(drawing, axes, true);
   const double slice_s = to_seconds(course.slice_length());
   const double width = std::max(1.0, axes.x(slice_s) - axes.x(0.0));
@@ -244,25 +193,26 @@ void draw_course(Drawing& drawing, const StressOutcome& outcome) {
     const double mean_us = microseconds(slice.sum) / static_cast<double>(slice.count);
     const double top = axes.y(microseconds(slice.max));
     drawing.box(x, top, width, std::max(1.0, axes.y(mean_us) - top), scheduled, 0.6);
-    means += number(x + width / 2) + ',' + number(axes.y(mean_us)) + ' ';
+    means += svg_point(x + width / 2, axes.y(mean_us));
   }
   drawing.path(means, ran, 1.8);
   for (int k = 0; k <= 5; ++k) {
     const double at_s = length_s * k / 5.0;
     char text[32];
     std::snprintf(text, sizeof text, "%.3g s", at_s);
-    drawing.words(axes.x(at_s), axes.bottom() + 18, text, 11, faint, "middle");
+    drawing.words(axes.x(at_s), axes.bottom() + 18, text, {11, faint, "middle"});
   }
 }
 
-void draw_key(Drawing& drawing, double y,
+/// From the right, the last first.
+void draw_key(SvgDrawing& drawing, double y,
               std::initializer_list<std::pair<const char*, const char*>> entries) {
   double right = 1160;
   for (const auto& [colour, name] : entries) {
-    drawing.words(right, y, name, 12, faint, "end");
-    right -= 7.0 * static_cast<double>(std::string(name).size()) + 8;
-    drawing.box(right - 14, y - 9, 14, 9, colour, 0.8);
-    right -= 34;
+    right -= 6.6 * static_cast<double>(std::string_view(name).size());
+    drawing.words(right, y, name, {12, faint});
+    drawing.box(right - 20, y - 9, 14, 9, colour, 0.8);
+    right -= 44;
   }
 }
 
@@ -280,18 +230,18 @@ std::string summary(const StressOptions& options, const StressOutcome& outcome) 
 } // namespace
 
 std::string stress_picture(const StressOptions& options, const StressOutcome& outcome) {
-  Drawing drawing(1200, 720);
-  drawing.words(40, 46, "nendo stress", 24, ink, "start", true);
-  drawing.words(40, 72, summary(options, outcome), 14);
+  SvgDrawing drawing(1200, 720);
+  drawing.words(40, 46, "nendo stress", {24, ink, "start", true});
+  drawing.words(40, 72, summary(options, outcome), {14, ink});
   const Environment& about = outcome.environment;
   drawing.words(1160, 46, "Linux " + about.kernel + (about.hypervisor ? ", virtual machine" : ""),
-                12, faint, "end");
-  drawing.words(1160, 66, about.processor, 12, faint, "end");
+                at_right);
+  drawing.words(1160, 66, about.processor, at_right);
   std::string rights;
   for (const auto& grant : outcome.grants) {
     if (!grant.granted) rights += (rights.empty() ? "refused: " : ", ") + grant.wanted;
   }
-  drawing.words(1160, 86, rights, 12, faint, "end");
+  drawing.words(1160, 86, rights, at_right);
   draw_histogram(drawing, outcome);
   draw_key(drawing, 112,
            {{machine, "gaps that this machine leaves"},
@@ -299,8 +249,8 @@ std::string stress_picture(const StressOptions& options, const StressOutcome& ou
             {ran, "ticks that ran"}});
   draw_course(drawing, outcome);
   draw_key(drawing, 432, {{scheduled, "up to the latest"}, {ran, "mean"}});
-  drawing.words(600, 396, "lateness, and how many ticks had it", 12, faint, "middle");
-  drawing.words(600, 702, "since the start", 12, faint, "middle");
+  drawing.words(600, 396, "lateness, and how many ticks had it", below);
+  drawing.words(600, 702, "since the start", below);
   return std::move(drawing).finished();
 }
 

@@ -160,7 +160,7 @@ TEST_SUITE("fingertip_curve") {
         k % 20 == 19 ? curve.end_at(tips) : curve.extend(tips);
         const double step = (curve.end() - last).colwise().norm().maxCoeff();
         const auto cuts = cuts_of(curve);
-        CHECK(cuts.size() <= FingertipCurve::most_pieces + 1);
+        CHECK(cuts.size() <= FingertipCurve::most_pieces);
         for (const Points& cut : cuts)
           CHECK((cut - last).colwise().norm().maxCoeff() <= 1.5 * step + piece);
         if (k % 20 == 19) CHECK((cuts.empty() || cuts.back() == tips));

@@ -24,7 +24,7 @@ TEST_SUITE("inverse_kinematics") {
       const Side side = round % 2 == 0 ? Side::left : Side::right;
       const HandSkeleton skeleton(side);
       const JointAngles made_of = random_angles_within_limits(random);
-      const Isometry3d base = random_pose(random);
+      const Isometry3d base = random_place(random);
       const auto targets = targets_at(skeleton.pose(made_of, base).fingertip_positions());
       for (const JointAngles& start :
            {resting_with_wrist_of(made_of), near(made_of, 0.2, random)}) {
@@ -59,7 +59,7 @@ TEST_SUITE("inverse_kinematics") {
       std::uniform_real_distribution<double> bend(0.1, 0.9);
       for (auto& f : inside.fingers)
         f = {bend(random), f.mcp_abduction_rad, bend(random), bend(random)};
-      const Isometry3d base = random_pose(random);
+      const Isometry3d base = random_place(random);
       const auto targets = targets_at(skeleton->pose(inside, base).fingertip_positions());
       const auto solution =
           inverse_kinematics(*skeleton, base, targets, resting_with_wrist_of(inside), options);
@@ -195,7 +195,7 @@ TEST_SUITE("inverse_kinematics") {
     int reached = 0;
     for (int round = 0; round < 300; ++round) {
       const JointAngles made_of = random_angles_within_limits(random);
-      const Isometry3d base = random_pose(random);
+      const Isometry3d base = random_place(random);
       const auto targets = targets_at(skeleton.pose(made_of, base).fingertip_positions());
       JointAngles start = made_of;
       start.wrist_pitch_rad *= 0.7;
@@ -222,7 +222,7 @@ TEST_SUITE("inverse_kinematics") {
     for (int round = 0; round < 200; ++round) {
       const HandSkeleton skeleton(round % 2 == 0 ? Side::left : Side::right);
       const JointAngles made_of = random_angles_within_limits(random);
-      const Isometry3d base = random_pose(random);
+      const Isometry3d base = random_place(random);
       const HandPose made = skeleton.pose(made_of, base);
       InverseOptions options;
       options.palm = {made[Joint::palm], 1.0};
@@ -303,7 +303,7 @@ TEST_SUITE("inverse_kinematics") {
       FingertipTargets targets;
       for (auto& target : targets)
         target = {Vector3d(any(), 0.1 * any(), any()), any()};
-      Isometry3d base = random_pose(random);
+      Isometry3d base = random_place(random);
       if (round % 3 == 0) base.translation().y() = any();
       if (round % 5 == 0) base.linear()(1, 2) = any();
       JointAngles start;

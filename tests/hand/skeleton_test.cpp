@@ -9,11 +9,14 @@
 
 #include <doctest/doctest.h>
 
+#include "support/random_poses.hpp"
+
 using namespace nendo;
 using namespace nendo::hand;
 using Eigen::Isometry3d;
 using Eigen::Matrix4d;
 using Eigen::Vector3d;
+using nendo::test::random_place;
 
 namespace {
 
@@ -32,15 +35,6 @@ JointAngles random_angles(std::mt19937& random) {
   angles.wrist_pitch_rad = turn(random);
   angles.wrist_yaw_rad = turn(random);
   return angles;
-}
-
-Isometry3d random_pose(std::mt19937& random) {
-  std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const Eigen::Quaterniond q(u(random), u(random), u(random), u(random));
-  Isometry3d pose = Isometry3d::Identity();
-  pose.linear() = q.normalized().toRotationMatrix();
-  pose.translation() = Vector3d(u(random), u(random), u(random));
-  return pose;
 }
 
 // The reference: products of 4x4 matrices written out by hand, with nothing of the code under test
@@ -141,7 +135,7 @@ TEST_SUITE("skeleton") {
       for (const Side side : {Side::left, Side::right}) {
         const HandSkeleton skeleton(side, size);
         const JointAngles a = random_angles(random);
-        const Isometry3d base = random_pose(random);
+        const Isometry3d base = random_place(random);
         REQUIRE(farthest_apart(skeleton.pose(a, base), product_of_matrices(skeleton, a, base)) <
                 1e-13);
       }
@@ -157,7 +151,7 @@ TEST_SUITE("skeleton") {
       a.thumb_mcp_flexion_rad = far(random);
       a.fingers[0].pip_flexion_rad = far(random);
       a.fingers[2].mcp_abduction_rad = far(random);
-      const Isometry3d base = random_pose(random);
+      const Isometry3d base = random_place(random);
       REQUIRE(farthest_apart(skeleton.pose(a, base), product_of_matrices(skeleton, a, base)) <
               1e-13);
     }
@@ -194,7 +188,7 @@ TEST_SUITE("skeleton") {
     for (const Side side : {Side::left, Side::right}) {
       const HandSkeleton skeleton(side);
       for (int round = 0; round < 100; ++round) {
-        const HandPose pose = skeleton.pose(random_angles(random), random_pose(random));
+        const HandPose pose = skeleton.pose(random_angles(random), random_place(random));
         for (std::size_t at = 0; at < joint_count; ++at) {
           const auto joint = static_cast<Joint>(at);
           const auto parent = parent_of(joint);
@@ -227,7 +221,7 @@ TEST_SUITE("skeleton") {
     const HandSkeleton skeleton(Side::left);
     const JointAngles angles = random_angles(random);
     const HandPose at_origin = skeleton.pose(angles, Isometry3d::Identity());
-    const Isometry3d moved = random_pose(random);
+    const Isometry3d moved = random_place(random);
     const HandPose pose = skeleton.pose(angles, moved);
     for (std::size_t at = 0; at < joint_count; ++at) {
       CHECK((pose.joints[at].matrix() - (moved * at_origin.joints[at]).matrix()).norm() < 1e-12);
@@ -238,7 +232,7 @@ TEST_SUITE("skeleton") {
     std::mt19937 random(6);
     for (const Side side : {Side::left, Side::right}) {
       const HandSkeleton skeleton(side);
-      const HandPose pose = skeleton.pose(random_angles(random), random_pose(random));
+      const HandPose pose = skeleton.pose(random_angles(random), random_place(random));
       for (std::size_t at = index_of(Joint::thumb_metacarpal) + 1; at < joint_count; ++at) {
         const auto joint = static_cast<Joint>(at);
         const Joint parent = *parent_of(joint);

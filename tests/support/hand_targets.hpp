@@ -9,6 +9,8 @@
 
 #include <nendo/hand/inverse_kinematics.hpp>
 
+#include "support/random_poses.hpp"
+
 namespace nendo::test {
 
 using namespace nendo::hand;
@@ -58,15 +60,6 @@ inline double farthest_apart(JointAngles a, JointAngles b) {
   for (std::size_t k = 0; k < as.size(); ++k)
     farthest = std::max(farthest, std::abs(*as[k] - *bs[k]));
   return farthest;
-}
-
-inline Isometry3d random_pose(std::mt19937& random) {
-  std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const Eigen::Quaterniond q(u(random), u(random), u(random), u(random));
-  Isometry3d pose = Isometry3d::Identity();
-  pose.linear() = q.normalized().toRotationMatrix();
-  pose.translation() = Vector3d(u(random), u(random), u(random));
-  return pose;
 }
 
 inline FingertipTargets targets_at(const Eigen::Matrix<double, 3, 5>& places) {

@@ -92,6 +92,22 @@ HWY_INLINE Vectors3<V> polynomial_at(D d, const std::array<std::array<double, 4>
           polynomial_row(d, rows[2], place)};
 }
 
+/// psi' / (t slope_factor) of t and o = max(1 - t, 0).
+template <Wendland kernel, class D, class V = hn::Vec<D>>
+HWY_INLINE V slope(D d, V t, V o) {
+  using Real = hn::TFromD<D>;
+  // At its centre c0 has no derivative: none is added there.
+  if constexpr (kernel == Wendland::c0)
+    return hn::IfThenElseZero(hn::Gt(t, hn::Zero(d)), hn::Div(o, t));
+  const V o2 = hn::Mul(o, o);
+  if constexpr (kernel == Wendland::c2) return hn::Mul(o2, o);
+  const V o5 = hn::Mul(hn::Mul(o2, o2), o);
+  if constexpr (kernel == Wendland::c4)
+    return hn::Mul(o5, hn::NegMulAdd(hn::Set(d, Real(5)), o, hn::Set(d, Real(6))));
+  const V linear = hn::MulAdd(hn::Set(d, Real(16)), o, hn::Set(d, Real(-39)));
+  return hn::Mul(hn::Mul(o5, o2), hn::MulAdd(linear, o, hn::Set(d, Real(24))));
+}
+
 /// The least lane of each of three vectors, and a zero, to four aligned places.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_least_lanes(D d, V x, V y, V z, float* to) {

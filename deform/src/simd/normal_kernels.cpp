@@ -16,22 +16,6 @@ HWY_BEFORE_NAMESPACE();
 namespace nendo::deform::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// psi' / (t slope_factor) of t and o = max(1 - t, 0).
-template <Wendland kernel, class D, class V = hn::Vec<D>>
-HWY_INLINE V slope(D d, V t, V o) {
-  using Real = hn::TFromD<D>;
-  // At its centre c0 has no derivative: none is added there.
-  if constexpr (kernel == Wendland::c0)
-    return hn::IfThenElseZero(hn::Gt(t, hn::Zero(d)), hn::Div(o, t));
-  const V o2 = hn::Mul(o, o);
-  if constexpr (kernel == Wendland::c2) return hn::Mul(o2, o);
-  const V o5 = hn::Mul(hn::Mul(o2, o2), o);
-  if constexpr (kernel == Wendland::c4)
-    return hn::Mul(o5, hn::NegMulAdd(hn::Set(d, Real(5)), o, hn::Set(d, Real(6))));
-  const V linear = hn::MulAdd(hn::Set(d, Real(16)), o, hn::Set(d, Real(-39)));
-  return hn::Mul(hn::Mul(o5, o2), hn::MulAdd(linear, o, hn::Set(d, Real(24))));
-}
-
 /// The gradients of the three coordinates of x + s(x).
 template <class V>
 struct Gradients {

@@ -16,23 +16,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Probes = hn::CappedTag<double, probe_vector>;
 using ProbeV = hn::Vec<Probes>;
 
-/// psi'(t) / t, with o = 1 - t, neither negative; 0 at the tip of c0's cone.
-template <Wendland kernel>
-HWY_INLINE ProbeV slope_over_t(Probes d, ProbeV t, ProbeV o) {
-  const ProbeV o2 = hn::Mul(o, o);
-  if constexpr (kernel == Wendland::c0)
-    return hn::IfThenZeroElse(hn::Eq(t, hn::Zero(d)), hn::Div(hn::Mul(hn::Set(d, -2.0), o), t));
-  const ProbeV o3 = hn::Mul(o2, o);
-  if constexpr (kernel == Wendland::c2) return hn::Mul(hn::Set(d, -20.0), o3);
-  const ProbeV one = hn::Set(d, 1.0);
-  if constexpr (kernel == Wendland::c4) {
-    const ProbeV linear = hn::MulAdd(hn::Set(d, 5.0), t, one);
-    return hn::Mul(hn::Mul(hn::Set(d, -56.0 / 3.0), linear), hn::Mul(o2, o3));
-  }
-  const ProbeV square = hn::MulAdd(hn::MulAdd(hn::Set(d, 16.0), t, hn::Set(d, 7.0)), t, one);
-  return hn::Mul(hn::Mul(hn::Set(d, -22.0), square), hn::Mul(hn::Mul(o2, o2), o3));
-}
-
 /// Rows of a 3 by 3 matrix, or of a vector's three coordinates.
 struct ProbePlace {
   ProbeV at[3];
@@ -67,9 +50,10 @@ HWY_INLINE void add_centre(Probes d, const CsrbfField& field, Eigen::Index i, Pr
   const ProbeV t = hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.0 / radius));
   const ProbeV o = hn::Max(hn::Sub(hn::Set(d, 1.0), t), zero);
   const ProbeV psi = hn::Mul(hn::Set(d, kernel_factor(kernel)), weight<kernel>(d, o));
-  const ProbeV slope = hn::Mul(slope_over_t<kernel>(d, t, o), hn::Set(d, 1.0 / (radius * radius)));
+  const double factor = slope_factor(kernel) / (radius * radius);
+  const ProbeV steep = hn::Mul(slope<kernel>(d, t, o), hn::Set(d, factor));
   for (ProbeV& coordinate : offset)
-    coordinate = hn::Mul(slope, coordinate);
+    coordinate = hn::Mul(steep, coordinate);
   for (Eigen::Index row = 0; row < 3; ++row) {
     const ProbeV coefficient = hn::Set(d, field.coefficients(row, i));
     place.moved[row] = hn::MulAdd(psi, coefficient, place.moved[row]);
