@@ -41,6 +41,7 @@ inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
 /// A loop over two hands whose rings the test fills itself.
 struct LoopUnderTest {
   std::vector<std::unique_ptr<SampleRing>> rings;
+  flow::RequestRing requests{16};
   deform::Mesh model;
   flow::Placement placement;
   std::unique_ptr<flow::DeformLoop> loop;
@@ -70,7 +71,9 @@ struct LoopUnderTest {
     flow::LoopOptions options;
     options.rate_hz = rate_hz;
     options.switch_action = switch_action;
+    options.requests = &requests;
     options.sculptor.mode = mode;
+    options.sculptor.deformer.undo_bytes = std::size_t{4} << 20;
     options.sculptor.deformer.supports = deform::one_radius(0.5);
     options.sculptor.piece_length = 0.02;
     options.sculptor.deformer.csrbf.merge_fraction = 0.05;

@@ -89,10 +89,25 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
     hand.silent = silent;
   }
   if (options_.policy == OverrunPolicy::sample && record.samples > 0) record.scheduled = newest;
-  if (options_.switch_action == SwitchAction::grab) {
-    hold_wanted_ = std::any_of(hands_.begin(), hands_.end(),
-                               [](const Hand& hand) { return hand.wrist_switch.is_on(); });
-  }
+  follow_switches();
+}
+
+void DeformLoop::follow_switches() noexcept {
+  if (options_.switch_action != SwitchAction::grab) return;
+  const bool on = std::any_of(hands_.begin(), hands_.end(),
+                              [](const Hand& hand) { return hand.wrist_switch.is_on(); });
+  if (on != switch_on_) hold_wanted_ = on; // in between, requests are heard
+  switch_on_ = on;
+}
+
+void DeformLoop::take_requests() noexcept {
+  if (options_.requests == nullptr) return;
+  options_.requests->drain([this](Request request) noexcept {
+    if (request == Request::grab) hold_wanted_ = true;
+    if (request == Request::let_go) hold_wanted_ = false;
+    if (request == Request::commit) commit_due_ = held_;
+    if (request == Request::undo) ++undos_due_;
+  });
 }
 
 void DeformLoop::compute_hands(Frame& frame) noexcept {
@@ -109,6 +124,13 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
 }
 
 deform::FieldStatus DeformLoop::shape(Frame& frame) noexcept {
+  for (; undos_due_ > 0; --undos_due_) {
+    if (is_solved(sculptor_.undo(tips_))) {
+      ++stats_.undos;
+    } else {
+      held_ = false; // taken hold of again as soon as that can be
+    }
+  }
   if (!held_ && hold_wanted_) {
     held_ = is_solved(sculptor_.grab(tips_));
     if (held_) ++stats_.grabs;
@@ -147,7 +169,10 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   record.missed = due.missed;
   record.spun_ns = saturated_ns(due.spun);
   const auto now_ns = [&]() noexcept { return saturated_ns(HostClock::now() - record.woke); };
-  if (runs.input) take_samples(record);
+  if (runs.input) {
+    take_requests();
+    take_samples(record);
+  }
   record.drained_ns = now_ns();
   Frame& frame = frames_.back();
   if (runs.hands) compute_hands(frame);
@@ -168,6 +193,7 @@ void DeformLoop::describe(const TickRecord& record, Frame& frame) noexcept {
   frame.ticks = stats_.ticks;
   frame.missed = stats_.missed;
   frame.commits = stats_.commits;
+  frame.undos = stats_.undos;
   frame.held = held_;
   frame.scheduled = record.scheduled;
   frame.woke = record.woke;

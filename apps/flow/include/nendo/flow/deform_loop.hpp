@@ -11,6 +11,7 @@
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
+#include <nendo/flow/request.hpp>
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/flow/tick_record.hpp>
 #include <nendo/flow/wrist_switch.hpp>
@@ -48,6 +49,8 @@ struct LoopOptions : PaceOptions {
   TickStages stages;
   /// Every tick's record goes there; a full ring refuses it. Must outlive the loop.
   TickRing* records = nullptr;
+  /// What the loop is asked for while it runs. Must outlive it.
+  RequestRing* requests = nullptr;
   /// What the hands' rings ring: needed by OverrunPolicy::sample. Must outlive the loop.
   Bell* bell = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
@@ -84,7 +87,9 @@ public:
 
 private:
   void tick(const Pacer::Due& due) noexcept;
+  void take_requests() noexcept;
   void take_samples(TickRecord& record) noexcept;
+  void follow_switches() noexcept;
   void compute_hands(Frame& frame) noexcept;
   void describe(const TickRecord& record, Frame& frame) noexcept;
   void record_latencies(const TickRecord& record) noexcept;
@@ -114,9 +119,11 @@ private:
   deform::Points tips_; ///< 3 by 5 a hand, model units
   Sculptor sculptor_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
-  bool held_;        ///< the fingertips shape the model
-  bool hold_wanted_; ///< what the switches ask for; follows at the next tick that can
+  bool held_;              ///< the fingertips shape the model
+  bool hold_wanted_;       ///< what is asked for; follows at the next tick that can
+  bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
   bool commit_due_ = false;
+  unsigned undos_due_ = 0;
   HostTime last_woke_{}; ///< of the tick before; HostTime{} at first
   LoopStats stats_;
   FrameExchange frames_;

@@ -23,6 +23,7 @@ struct LoopStats {
   std::array<hand::SensorRanges, 2> ranges{}; ///< learned; zeros if not adapting
   std::uint64_t grabs = 0;                    ///< times the hands took hold again
   std::uint64_t commits = 0;                  ///< times the shape became the rest shape
+  std::uint64_t undos = 0;                    ///< times it became an earlier one
   int most_links = 0;                         ///< of a tick; 0 unless the sculptor is injective
   double most_bound = 0.0;                    ///< Lipschitz bound of a tick, had it been one link
   double least_determinant = 1.0;             ///< ChainReport::least_determinant of any tick

@@ -1,0 +1,30 @@
+#pragma once
+// What a person asks of the loop while it runs, on its way there from a keyboard, a window or a
+// browser.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <nendo/base/spsc_ring.hpp>
+
+namespace nendo::flow {
+
+enum class Request : std::uint8_t {
+  grab,   ///< the hands take hold of the model
+  let_go, ///< and let go of it; what they have shaped stays
+  commit, ///< the shape so far becomes the rest shape, and the hands hold it anew
+  undo,   ///< back to the rest shape before the last commit: Sculptor::undo()
+};
+
+inline constexpr std::array requests{Request::grab, Request::let_go, Request::commit,
+                                     Request::undo};
+
+std::string_view name_of(Request request) noexcept;
+std::optional<Request> request_named(std::string_view name) noexcept;
+
+/// One thread asks, the loop takes at the beginning of a tick what has been asked for.
+using RequestRing = SpscRing<Request>;
+
+} // namespace nendo::flow
