@@ -107,13 +107,17 @@ void print_spikes(const Spikes& spikes) {
               thousands(static_cast<double>(*worst)).c_str());
 }
 
-void print_switch(const RunOptions& options, const flow::LoopStats& stats) {
-  if (options.loop.switch_action == flow::SwitchAction::none) return;
-  std::printf("  %-14s %s; turned on %llu times, %llu commits, %llu grabs\n", "wrist switch",
-              std::string(flow::name_of(options.loop.switch_action)).c_str(),
-              static_cast<unsigned long long>(stats.switch_uses[0] + stats.switch_uses[1]),
+void print_holds(const RunOptions& options, const flow::LoopStats& stats) {
+  if (options.loop.switch_action != flow::SwitchAction::none) {
+    std::printf("  %-14s %s; turned on %llu times\n", "wrist switch",
+                std::string(flow::name_of(options.loop.switch_action)).c_str(),
+                static_cast<unsigned long long>(stats.switch_uses[0] + stats.switch_uses[1]));
+  }
+  if (stats.commits + stats.grabs + stats.undos == 0) return;
+  std::printf("  %-14s %llu commits, %llu grabs, %llu undone\n", "shapes kept",
               static_cast<unsigned long long>(stats.commits),
-              static_cast<unsigned long long>(stats.grabs));
+              static_cast<unsigned long long>(stats.grabs),
+              static_cast<unsigned long long>(stats.undos));
 }
 
 // What the filter was and how late it made the hands; its lag comes on top of end to end.
@@ -170,7 +174,8 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
                     {"failed", stats.failed},
                     {"switch", flow::name_of(options.loop.switch_action)},
                     {"grabs", stats.grabs},
-                    {"commits", stats.commits}};
+                    {"commits", stats.commits},
+                    {"undos", stats.undos}};
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
     const auto glove = hand.glove->stats();
@@ -222,7 +227,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
     print_spikes(stats.spikes[slot]);
     if (hand.known.adapt) print_ranges(stats.ranges[slot], hand.glove->info().sensors);
   }
-  print_switch(options, stats);
+  print_holds(options, stats);
   std::printf("  %-14s %s at %g Hz, %llu overruns, %llu missed\n", "ticks",
               thousands(static_cast<double>(stats.ticks)).c_str(), options.loop.rate_hz,
               static_cast<unsigned long long>(stats.overruns),

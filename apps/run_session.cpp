@@ -13,6 +13,7 @@
 
 #include "cli.hpp"
 #include "glove_light.hpp"
+#include "run_keys.hpp"
 
 namespace nendo::app {
 namespace {
@@ -129,6 +130,13 @@ std::pair<double, double> least_and_largest(const deform::Supports& supports) {
   return {least, largest};
 }
 
+// For some dozens of whole shapes, of which strokes mostly change parts.
+std::size_t undo_bytes_for(const deform::Mesh& model) {
+  constexpr std::size_t most = std::size_t{64} << 20;
+  constexpr std::size_t a_vertex = 64 * 3 * sizeof(float);
+  return std::min(most, a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
+}
+
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
 // room elsewhere.
 Result<void> keep(const std::string& out, const deform::Mesh& shape) {
@@ -178,11 +186,11 @@ private:
 
 // Follows the loop from the main thread until it ends or is to end.
 void watch(const RunOptions& options, flow::DeformLoop& loop, const std::atomic<bool>& ended,
-           HostTime start, HoldLights& lights, const Progress& progress) {
+           HostTime start, HoldLights& lights, RunKeys& keys, const Progress& progress) {
   HostTime next_report = start;
   bool unreported = false;
   while (!ended && !stop_requested() && !is_over(options, start)) {
-    std::this_thread::sleep_for(milliseconds(20));
+    if (!keys.obey(milliseconds(20), loop.frames().front())) return;
     if (loop.frames().update()) {
       unreported = true;
       lights.show(loop.frames().front().held);
@@ -263,8 +271,11 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   return PlacedLoop{std::move(loop), largest_radius};
 }
 
-Result<RunOutcome> run_session(const RunOptions& options, const std::vector<OpenHand>& hands,
+Result<RunOutcome> run_session(RunOptions options, const std::vector<OpenHand>& hands,
                                deform::Mesh model, const Progress& progress) {
+  flow::RequestRing requests(64);
+  options.loop.requests = &requests;
+  options.loop.sculptor.deformer.undo_bytes = undo_bytes_for(model);
   auto placed = place_loop(options, hands, model);
   if (!placed) return placed.error();
   flow::DeformLoop& loop = *placed->loop;
@@ -283,7 +294,10 @@ Result<RunOutcome> run_session(const RunOptions& options, const std::vector<Open
   for (const auto& line : flow::refusals(grants))
     note(line);
   HoldLights lights(options.loop.switch_action, hands);
-  watch(options, loop, ended, start, lights, progress);
+  {
+    RunKeys keys(requests, loop, model, options.out);
+    watch(options, loop, ended, start, lights, keys, progress);
+  }
   over = true;
   loop_thread.join();
   const double elapsed_s = to_seconds(HostClock::now() - start);

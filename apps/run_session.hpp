@@ -72,9 +72,9 @@ bool is_over(const RunOptions& options, HostTime start) noexcept;
 /// Called about four times a second with the latest frame.
 using Progress = std::function<void(const flow::Frame& frame, double elapsed_s)>;
 
-/// Runs until the duration is over or a stop signal comes, then writes the shape; says on standard
-/// error which rights were refused. Blocks.
-Result<RunOutcome> run_session(const RunOptions& options, const std::vector<OpenHand>& hands,
+/// Runs until the duration is over, a stop signal comes or a key says so (run_keys.hpp), then
+/// writes the shape; says on standard error which rights were refused. Blocks.
+Result<RunOutcome> run_session(RunOptions options, const std::vector<OpenHand>& hands,
                                deform::Mesh model, const Progress& progress);
 
 } // namespace nendo::app

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <thread>
 
 #include <poll.h>
 #include <sys/ioctl.h>
@@ -27,17 +26,6 @@ std::string move_to_row(int row) {
 } // namespace
 
 Terminal::Terminal() {
-  termios settings{};
-  if (tcgetattr(STDIN_FILENO, &settings) == 0) {
-    saved_ = settings;
-    settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    settings.c_iflag &= ~static_cast<tcflag_t>(IXON); // a stopped terminal could not be given back
-    settings.c_cc[VSUSP] = _POSIX_VDISABLE;           // nor one whose program is suspended
-    settings.c_cc[VQUIT] = _POSIX_VDISABLE;
-    settings.c_cc[VMIN] = 1;
-    settings.c_cc[VTIME] = 0;
-    tcsetattr(STDIN_FILENO, TCSADRAIN, &settings);
-  }
   write_all(enter_sequence);
 }
 
@@ -49,7 +37,7 @@ void Terminal::leave() noexcept {
   if (!entered_) return;
   entered_ = false;
   write_all(leave_sequence);
-  if (saved_) tcsetattr(STDIN_FILENO, TCSADRAIN, &*saved_);
+  keys_.give_back();
 }
 
 ScreenSize Terminal::size() const noexcept {
@@ -76,20 +64,6 @@ void Terminal::draw(const std::vector<std::string>& lines) {
   }
   if (rows < now.rows) page += move_to_row(rows + 1) + clear_below;
   write_all(page);
-}
-
-std::optional<char> Terminal::key(std::chrono::milliseconds patience) noexcept {
-  if (!saved_) {
-    std::this_thread::sleep_for(patience);
-    return std::nullopt;
-  }
-  pollfd input{STDIN_FILENO, POLLIN, 0};
-  if (::poll(&input, 1, static_cast<int>(patience.count())) <= 0) return std::nullopt;
-  char pressed = 0;
-  const ssize_t got = ::read(STDIN_FILENO, &pressed, 1);
-  if (got == 1) return pressed;
-  if (got == 0 || errno != EINTR) gone_ = true;
-  return std::nullopt;
 }
 
 void Terminal::write_all(const std::string& text) noexcept {

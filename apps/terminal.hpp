@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <termios.h>
+#include "keys.hpp"
 
 namespace nendo::app {
 
@@ -18,8 +18,8 @@ struct ScreenSize {
 
 class Terminal {
 public:
-  /// Takes standard output, which must be a terminal: the alternate screen, the cursor hidden. If
-  /// standard input is a terminal too, keys come without Return and echo; Ctrl-C stays a signal.
+  /// Takes standard output, which must be a terminal: the alternate screen, the cursor hidden. And
+  /// keys, if there can be any.
   Terminal();
   ~Terminal(); ///< leave()
   Terminal(const Terminal&) = delete;
@@ -30,19 +30,21 @@ public:
   /// Replaces the page, in one write. Lines are of printable ASCII; what exceeds the screen is cut.
   /// Blocks while the terminal does not read; an interrupted write is left unfinished.
   void draw(const std::vector<std::string>& lines);
-  bool has_keys() const noexcept { return saved_.has_value(); }
-  /// The next key, waiting for it at most so long; returns early at a signal.
-  std::optional<char> key(std::chrono::milliseconds patience) noexcept;
+  bool has_keys() const noexcept { return keys_.are_there(); }
+  /// As Keys::next().
+  std::optional<char> key(std::chrono::milliseconds patience) noexcept {
+    return keys_.next(patience);
+  }
   /// True once the terminal cannot be written or read any more: a closed window.
-  bool is_gone() const noexcept { return gone_; }
+  bool is_gone() const noexcept { return gone_ || keys_.are_gone(); }
   /// Gives the terminal back. Idempotent.
   void leave() noexcept;
 
 private:
   void write_all(const std::string& text) noexcept;
 
-  std::optional<termios> saved_; ///< standard input's settings, if it is a terminal
-  ScreenSize drawn_{0, 0};       ///< the size at the last draw()
+  Keys keys_;
+  ScreenSize drawn_{0, 0}; ///< the size at the last draw()
   bool entered_ = true;
   bool gone_ = false;
 };

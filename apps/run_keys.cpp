@@ -1,0 +1,72 @@
+#include "run_keys.hpp"
+
+#include <filesystem>
+#include <iostream>
+#include <thread>
+#include <utility>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli.hpp"
+
+namespace nendo::app {
+namespace {
+
+// A line that progress has begun stays as it is.
+void tell(const std::string& what) {
+  std::cerr << '\n';
+  note(what);
+}
+
+} // namespace
+
+std::string numbered(const std::string& out, int number) {
+  std::filesystem::path path(out);
+  const std::string name =
+      path.stem().string() + "-" + std::to_string(number) + path.extension().string();
+  return path.replace_filename(name).string();
+}
+
+RunKeys::RunKeys(flow::RequestRing& requests, const flow::DeformLoop& loop,
+                 const deform::Mesh& model, std::string out)
+    : requests_(requests), loop_(loop), model_(model), out_(std::move(out)) {
+  if (keys_.are_there())
+    note("keys: g lets go, takes hold again; c keeps the shape so far; u undoes; s saves; q ends");
+}
+
+bool RunKeys::obey(std::chrono::milliseconds patience, const flow::Frame& latest) {
+  const auto key = keys_.next(patience);
+  if (!key) return true;
+  if (*key == 'g') ask(latest.held ? flow::Request::let_go : flow::Request::grab);
+  if (*key == 'c' || *key == ' ') ask(flow::Request::commit);
+  if (*key == 'u') ask(flow::Request::undo);
+  if (*key == 's') save(latest);
+  if (*key != 'q') return true;
+  wait_until_heard();
+  return false;
+}
+
+// What was asked for just before the end is done before it, if the loop ticks at all.
+void RunKeys::wait_until_heard() const {
+  const HostTime latest = HostClock::now() + std::chrono::seconds(1);
+  while (requests_.size() > 0 && HostClock::now() < latest)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+void RunKeys::ask(flow::Request request) {
+  if (!requests_.try_push(request))
+    tell("the loop does not answer, so it was not asked to " + std::string(name_of(request)));
+}
+
+void RunKeys::save(const flow::Frame& latest) {
+  std::string file;
+  do
+    file = numbered(out_, ++saved_);
+  while (std::filesystem::exists(file));
+  deform::Mesh shape = model_;
+  loop_.layout().unpack(latest.shape, shape.vertices);
+  const auto written = deform::write_mesh(file, shape);
+  tell(written ? "saved as " + file : written.error().message);
+}
+
+} // namespace nendo::app

@@ -1,0 +1,42 @@
+#pragma once
+// The keys of a run: what they are, and what they ask of the loop.
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include <nendo/deform/mesh.hpp>
+#include <nendo/flow/deform_loop.hpp>
+
+#include "keys.hpp"
+
+namespace nendo::app {
+
+class RunKeys {
+public:
+  /// `out` names the shape that the run ends with; those saved on the way get a number. All must
+  /// outlive this. Says on standard error what the keys are, if any can come.
+  RunKeys(flow::RequestRing& requests, const flow::DeformLoop& loop, const deform::Mesh& model,
+          std::string out);
+
+  /// Waits so long for a key, and does what it stands for; `latest` is what the user sees. False:
+  /// the run is to end.
+  bool obey(std::chrono::milliseconds patience, const flow::Frame& latest);
+
+private:
+  void ask(flow::Request request);
+  void save(const flow::Frame& latest);
+  void wait_until_heard() const;
+
+  Keys keys_;
+  flow::RequestRing& requests_;
+  const flow::DeformLoop& loop_;
+  const deform::Mesh& model_;
+  std::string out_;
+  int saved_ = 0;
+};
+
+/// "shape.obj" and 2 become "shape-2.obj".
+std::string numbered(const std::string& out, int number);
+
+} // namespace nendo::app
