@@ -5,6 +5,8 @@
 #include <atomic>
 #include <thread>
 
+#include <nendo/base/relax.hpp>
+
 namespace nendo::deform {
 
 class SpinWorker {
@@ -31,19 +33,11 @@ public:
     State expected = State::given;
     if (state_.compare_exchange_strong(expected, State::idle, std::memory_order_acq_rel)) return;
     while (state_.load(std::memory_order_acquire) != State::idle)
-      pause();
+      relax();
   }
 
 private:
   enum class State { idle, given, taken };
-
-  static void pause() noexcept {
-#if defined(__x86_64__) || defined(__i386__)
-    __builtin_ia32_pause();
-#elif defined(__aarch64__)
-    asm volatile("yield");
-#endif
-  }
 
   bool take() noexcept {
     State expected = State::given;
@@ -55,7 +49,7 @@ private:
     for (;;) {
       // On a machine with fewer free cores than threads, whoever has work must get one.
       for (int turn = 0; !take(); ++turn) {
-        pause();
+        relax();
         if (turn % patience == patience - 1) std::this_thread::yield();
       }
       if (job_ == nullptr) return;

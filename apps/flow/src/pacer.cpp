@@ -7,20 +7,13 @@
 #include <limits>
 #include <utility>
 
+#include <nendo/base/relax.hpp>
+
 namespace nendo::flow {
 namespace {
 
 constexpr std::array<std::string_view, 4> policy_names{"skip", "catch-up", "re-anchor", "sample"};
 constexpr unsigned most_burst = 1000;
-
-/// Tells the processor that this is a spin: its other thread may run, and less power is drawn.
-inline void relax() noexcept {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#elif defined(__aarch64__)
-  asm volatile("yield");
-#endif
-}
 
 } // namespace
 

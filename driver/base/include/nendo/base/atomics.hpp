@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cstddef>
 
+#include <nendo/base/relax.hpp>
+
 namespace nendo {
 
 /// What belongs to different threads is kept this far apart, twice that where prefetchers fetch
@@ -22,6 +24,7 @@ struct StdAtomics {
   using Plain = T;
 
   static void fence(std::memory_order order) noexcept { std::atomic_thread_fence(order); }
+  static void relax() noexcept { nendo::relax(); }
 };
 
 } // namespace nendo

@@ -78,11 +78,11 @@ public:
     return static_cast<std::size_t>(cached_tail_ - head);
   }
 
-  /// Consumer only, wait-free. False: empty.
+  /// Consumer only, wait-free. False: empty, which is said after a moment (some 0.3 microseconds).
   bool try_pop(T& element) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
     if (head == cached_tail_) look_at_tail();
-    if (head == cached_tail_) return false;
+    if (head == cached_tail_) return leave_alone();
     element = slots_[head & mask_].element;
     head_.store(head + 1, std::memory_order_release);
     return true;
@@ -108,6 +108,12 @@ private:
   };
 
   void look_at_head() noexcept { cached_head_ = head_.load(std::memory_order_acquire); }
+  // Who polls and looks at once again takes the producer's line away from it with each element.
+  static bool leave_alone() noexcept {
+    for (int n = 0; n < 16; ++n)
+      Atomics::relax();
+    return false;
+  }
   void look_at_tail() noexcept { cached_tail_ = tail_.load(std::memory_order_acquire); }
   const std::size_t mask_;
   std::unique_ptr<Slot[]> slots_;

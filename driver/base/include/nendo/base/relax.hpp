@@ -1,0 +1,16 @@
+#pragma once
+// relax(): what a thread does that spins.
+
+namespace nendo {
+
+/// Tells the processor that this is a spin: its other thread may run, and less power is drawn.
+/// Takes some 10 to 60 ns. Wait-free.
+inline void relax() noexcept {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+} // namespace nendo
