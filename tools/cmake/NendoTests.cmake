@@ -15,6 +15,8 @@ function(nendo_test name)
   nendo_settings(${target} PRIVATE)
   if(ARG_UNOPTIMISED)
     target_compile_options(${target} PRIVATE -O0)
+  else() # what is tested is optimised as users have it; what tests it need not be
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   nendo_precompile(${target} <doctest/doctest.h>)
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
