@@ -13,15 +13,19 @@ using std::chrono::milliseconds;
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side, Bell* bell) {
   auto glove = driver::open_glove(spec, side);
   if (!glove) return glove.error();
-  const Side own_side = (*glove)->info().side;
+  return hand_of(*std::move(glove), side, bell);
+}
+
+OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side, Bell* bell) {
+  const Side own_side = glove->info().side;
   if (side && own_side != *side) {
-    note(spec + " says that it is a " + std::string(name_of(own_side)) +
+    note(glove->info().source + " says that it is a " + std::string(name_of(own_side)) +
          "-hand glove; it shapes as the " + std::string(name_of(*side)) + " hand, as you asked");
   }
   OpenHand hand;
   hand.side = side.value_or(own_side);
   hand.ring = std::make_unique<SampleRing>(1024, bell);
-  hand.glove = *std::move(glove);
+  hand.glove = std::move(glove);
   return hand;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/flow/placement.hpp>
 
 #include "glove_calibration.hpp"
 
@@ -19,6 +20,8 @@ struct OpenHand {
   std::unique_ptr<driver::Glove> glove;
   GloveSample first;
   KnownHands known; ///< for the glove that sent the first sample; by calibrate()
+  /// Where the forearm ends, if something else than the glove tells it.
+  std::optional<Eigen::Isometry3d> T_stage_wrist{};
 };
 
 /// Opens the glove for that hand, and says so on standard error if it calls itself the other one;
@@ -26,6 +29,9 @@ struct OpenHand {
 /// open_glove().
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
                            Bell* bell = nullptr);
+
+/// The same of a glove that is open already.
+OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side, Bell* bell);
 
 /// Takes the first sample of a started glove out of the ring. Blocks, 2 s at most. Errors:
 /// no_device if none comes, failed if a stop signal does.

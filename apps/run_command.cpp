@@ -111,7 +111,7 @@ int run(CommandOptions& options) {
   const flow::RealtimeProcess process(wanted.realtime);
   wanted.grants = process.grants();
   Bell bell;
-  const auto hands = open_hands(wanted, bell);
+  const auto hands = open_hands(wanted, *model, bell);
   if (!hands) return report(hands.error());
   const auto outcome = run_session(wanted, *hands, *std::move(model), progress_for(wanted));
   if (!outcome) return report(outcome.error());

@@ -14,6 +14,7 @@
 #include "cli.hpp"
 #include "glove_light.hpp"
 #include "run_keys.hpp"
+#include "touching_glove.hpp"
 
 namespace nendo::app {
 namespace {
@@ -59,12 +60,23 @@ Result<std::vector<OpenHand>> open_any(Bell* bell) {
   return hands;
 }
 
-Result<std::vector<OpenHand>> open_named(const RunOptions& options, Bell* bell) {
+Result<OpenHand> open_touching(const RunOptions& options, const deform::Mesh& model,
+                               const std::string& spec, Side side, Bell* bell) {
+  auto touching = open_touching_glove(spec, side, model, options.length.size({}));
+  if (!touching) return touching.error();
+  OpenHand hand = hand_of(std::move(touching->glove), side, bell);
+  hand.T_stage_wrist = touching->T_stage_wrist;
+  return hand;
+}
+
+Result<std::vector<OpenHand>> open_named(const RunOptions& options, const deform::Mesh& model,
+                                         Bell* bell) {
   std::vector<OpenHand> hands;
   for (const auto& [spec, side] :
        {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
     if (spec->empty()) continue;
-    auto hand = open_hand(*spec, side, bell);
+    auto hand = is_touching(*spec) ? open_touching(options, model, *spec, side, bell)
+                                   : open_hand(*spec, side, bell);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
@@ -80,20 +92,27 @@ std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
     inputs.push_back({hand.ring.get(), skeleton, hand.known.own.calibration, hand.first});
     inputs.back().filter = options.filter;
     inputs.back().swapped = hand.known.swapped.calibration;
+    inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(hand.known.swapped.size));
     inputs.back().adapt = hand.known.adapt;
   }
   return inputs;
 }
 
-flow::Placement placement_for(const std::vector<flow::HandInput>& hands,
+flow::Placement placement_for(const std::vector<OpenHand>& open,
+                              const std::vector<flow::HandInput>& inputs,
                               const deform::Mesh& model) {
   std::array<std::optional<flow::Fingertips>, 2> tips;
-  for (const auto& hand : hands) {
+  for (const auto& hand : inputs) {
     const auto angles = hand::joint_angles(hand.first, hand.calibration);
     tips[flow::Placement::index_of(hand.skeleton.side())] =
         hand.skeleton.pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
   }
-  return flow::place_hands(model, tips);
+  flow::Placement placement = flow::place_hands(model, tips);
+  for (const auto& hand : open) {
+    if (hand.T_stage_wrist)
+      placement.T_stage_wrist[flow::Placement::index_of(hand.side)] = *hand.T_stage_wrist;
+  }
+  return placement;
 }
 
 double longest_side(const deform::Mesh& model) {
@@ -225,11 +244,12 @@ Result<void> check_radius(const std::string& text) {
   return bad_radius(text, "is none");
 }
 
-Result<std::vector<OpenHand>> open_hands(RunOptions& options, Bell& bell) {
+Result<std::vector<OpenHand>> open_hands(RunOptions& options, const deform::Mesh& model,
+                                         Bell& bell) {
   if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.bell = &bell;
   const bool named = !options.left.empty() || !options.right.empty();
   Bell* const rung = options.loop.bell;
-  auto hands = named ? open_named(options, rung) : open_any(rung);
+  auto hands = named ? open_named(options, model, rung) : open_any(rung);
   if (!hands) return hands;
   if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
     return fine.error();
@@ -262,7 +282,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   // between them.
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
-  const auto placement = placement_for(inputs, model);
+  const auto placement = placement_for(hands, inputs, model);
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {
     return Error{Errc::failed, "the hands cannot take hold of the model: " +

@@ -126,7 +126,7 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   if (!load) return load.error();
   run.grants = process.grants();
   Bell bell;
-  const auto hands = open_hands(run, bell);
+  const auto hands = open_hands(run, model, bell);
   if (!hands) return hands.error();
   for (const auto& hand : *hands) {
     outcome->gloves.push_back(hand.glove->info().source);

@@ -239,7 +239,7 @@ TEST_SUITE("monitor") {
           Case{"serial:" + (folder.path() / "file").string(), 3, "file"},
           Case{"serial:/dev/null", 3, "/dev/null"}, Case{"bogus:1", 2, "bogus"},
           Case{"/dev/ttyUSB0", 2, "serial:/dev/ttyUSB0"}, Case{"sim:moonwalk", 2, "moonwalk"},
-          Case{"sim?rate=0", 2, "rate"}, Case{"", 2, ""}}) {
+          Case{"sim:touch", 2, "sim:sculpt"}, Case{"sim?rate=0", 2, "rate"}, Case{"", 2, ""}}) {
       const auto done = nendo::test::nendo({"monitor", c.glove, "--count", "1"});
       CAPTURE(c.glove);
       CAPTURE(done.err);

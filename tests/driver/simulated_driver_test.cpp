@@ -1,6 +1,8 @@
 #include "simulated/simulated_driver.hpp"
 
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -8,6 +10,10 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+
+#include <nendo/driver/simulated_glove.hpp>
+
+#include "simulated/typical_wearer.hpp"
 
 using namespace std::chrono_literals;
 using nendo::Errc;
@@ -76,6 +82,8 @@ TEST_SUITE("simulated_driver") {
       return glove.error().message;
     };
     CHECK(message("dance", {}).find("rest, wave, pinch, grasp, sculpt") != std::string::npos);
+    CHECK(message("dance", {}).find("touch") != std::string::npos);
+    CHECK(message("touch", {}).find("nendo run") != std::string::npos);
     CHECK(message("", {{"colour", "red"}}).find("'colour'") != std::string::npos);
     CHECK(message("", {{"rate", "0"}}).find("1 to 1000") != std::string::npos);
     CHECK(message("", {{"rate", "1001"}}).find("rate is '1001'") != std::string::npos);
@@ -85,6 +93,29 @@ TEST_SUITE("simulated_driver") {
     CHECK(message("", {{"seed", "-1"}}).find("whole number") != std::string::npos);
     CHECK(message("", {{"hand", "both"}}).find("left or right") != std::string::npos);
     CHECK(message("", {{"sensors", "20"}}).find("18 or 22") != std::string::npos);
+  }
+
+  TEST_CASE(
+      "a motion from elsewhere comes as a typical wearer's counts, at the samples' own times") {
+    const auto options =
+        nendo::driver::simulated_glove_options(spec("touch", {{"rate", "500"}}), Side::left);
+    REQUIRE(options);
+    CHECK(options->motion == "touch");
+    CHECK(options->side == Side::left);
+    constexpr auto slot = static_cast<std::size_t>(Sensor::ring_pip);
+    const auto glove = nendo::driver::make_simulated_glove(*options, [](double time_s) {
+      std::array<double, nendo::sensor_slots> angles{};
+      angles[slot] = 2.0 * time_s;
+      return angles;
+    });
+    const auto [offset, gain] = nendo::driver::nominal_sensor(Sensor::ring_pip);
+    for (const GloveSample& sample : run(*glove, 100)) {
+      const double angle_rad = gain * (sample.raw[slot].value - offset);
+      const double meant_rad = 2.0 * nendo::to_seconds(sample.device_time);
+      if (meant_rad > 2.0) continue; // the converter's end
+      REQUIRE(std::abs(angle_rad - meant_rad) < 4.0 * gain);
+      REQUIRE(sample.side == Side::left);
+    }
   }
 
   TEST_CASE("samples are numbered, in order, and keep the rate on the average") {

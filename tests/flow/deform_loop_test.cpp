@@ -258,6 +258,38 @@ TEST_SUITE("deform_loop") {
     CHECK((shown - tips_by(hand::default_calibration())).cwiseAbs().maxCoeff() > 1e-3);
   }
 
+  TEST_CASE("a glove of the other side in the place of the first has its own wearer's size") {
+    const HostTime now = HostClock::now();
+    SampleRing ring(64);
+    HandInput input{&ring, hand::HandSkeleton(Side::right), hand::default_calibration(),
+                    nendo::test::bent_sample(Side::right, 0, now)};
+    const hand::HandSkeleton small(Side::right, {0.160, 0.070});
+    flow::LoopOptions options;
+    options.sculptor.deformer.supports = deform::one_radius(0.5);
+    for (const bool known : {true, false}) {
+      if (known)
+        input.swapped_skeleton = small;
+      else
+        input.swapped_skeleton.reset();
+      flow::DeformLoop loop(nendo::test::ball(12), {}, {input}, options);
+      std::uint64_t number = 0;
+      for (const Side side : {Side::right, Side::left, Side::right}) {
+        ring.try_push(nendo::test::bent_sample(side, 0, now + (number + 1) * 11ms));
+        loop.tick(number++, HostClock::now());
+        loop.frames().update();
+        // The middle finger's last bone is as long as its wearer's, however it is bent.
+        const auto& pose = loop.frames().front().hands[1].pose;
+        const double shown = (pose[hand::Joint::middle_tip].translation() -
+                              pose[hand::Joint::middle_distal].translation())
+                                 .norm();
+        const auto& wearer = side == Side::left && known ? small : input.skeleton;
+        CHECK(shown == doctest::Approx(wearer.rest_offset(hand::Joint::middle_tip).norm()));
+      }
+    }
+    CHECK(small.rest_offset(hand::Joint::middle_tip).norm() <
+          0.95 * input.skeleton.rest_offset(hand::Joint::middle_tip).norm());
+  }
+
   TEST_CASE("a glove of the other side in the place of the first does not get its calibration") {
     const HostTime now = HostClock::now();
     SampleRing ring(64);

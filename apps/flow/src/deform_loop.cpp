@@ -62,6 +62,11 @@ void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
   angles = filter.pass(hand::joint_angles(latest, in_force), time);
 }
 
+const hand::HandSkeleton& DeformLoop::Hand::skeleton() const noexcept {
+  const bool swapped = latest.side != input.first.side && input.swapped_skeleton;
+  return swapped ? *input.swapped_skeleton : input.skeleton;
+}
+
 void DeformLoop::take_samples(TickRecord& record) noexcept {
   const HostTime now = record.woke;
   HostTime newest{};
@@ -114,7 +119,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
   for (const auto& hand : hands_) {
     HandFrame& shown = frame.hands[hand.slot];
-    shown.pose = hand.input.skeleton.pose(hand.angles, hand.T_stage_wrist);
+    shown.pose = hand.skeleton().pose(hand.angles, hand.T_stage_wrist);
     shown.present = true;
     shown.silent = hand.silent;
     shown.samples = stats_.samples[hand.slot];

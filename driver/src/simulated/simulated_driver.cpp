@@ -12,6 +12,9 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
+
+#include <nendo/driver/simulated_glove.hpp>
 
 #include "simulated/hand_motion.hpp"
 #include "simulated/typical_wearer.hpp"
@@ -19,27 +22,18 @@
 namespace nendo::driver {
 namespace {
 
-struct Settings {
-  Motion motion = Motion::sculpt;
-  std::string motion_name = "sculpt";
-  std::uint32_t seed = 1;
-  double rate_hz = 90.0;
-  Side side = Side::right;
-  unsigned sensors = 22;
-};
-
 class SimulatedGlove final : public Glove {
 public:
-  SimulatedGlove(const GloveSpec& spec, const Settings& settings)
-      : motion_(settings.motion, settings.side, settings.seed), wearer_(settings.seed),
+  SimulatedGlove(const SimulatedGloveOptions& options, SensorMotion motion)
+      : motion_(std::move(motion)), wearer_(options.seed),
         period_(std::chrono::duration_cast<HostClock::duration>(
-            std::chrono::duration<double>(1.0 / settings.rate_hz))) {
-    info_.source = spec.text;
-    info_.model = "simulated glove, " + std::to_string(settings.sensors) + " sensors, motion " +
-                  settings.motion_name;
-    info_.side = settings.side;
-    info_.sensors = settings.sensors == 18 ? sensors_18 : sensors_22;
-    info_.rate_hz = settings.rate_hz;
+            std::chrono::duration<double>(1.0 / options.rate_hz))) {
+    info_.source = options.source;
+    info_.model = "simulated glove, " + std::to_string(options.sensors) + " sensors, motion " +
+                  options.motion;
+    info_.side = options.side;
+    info_.sensors = options.sensors == 18 ? sensors_18 : sensors_22;
+    info_.rate_hz = options.rate_hz;
   }
 
   const GloveInfo& info() const noexcept override { return info_; }
@@ -86,7 +80,7 @@ private:
 
   void deliver(HostClock::duration elapsed, SampleRing& ring) {
     GloveSample sample;
-    const auto raw = wearer_.counts(motion_.at(to_seconds(elapsed)));
+    const auto raw = wearer_.counts(motion_(to_seconds(elapsed)));
     for (std::size_t k = 0; k < sensor_slots; ++k) {
       if (info_.sensors.has(static_cast<Sensor>(k))) sample.raw[k] = raw[k];
     }
@@ -102,7 +96,7 @@ private:
   }
 
   GloveInfo info_;
-  HandMotion motion_;
+  SensorMotion motion_;
   TypicalWearer wearer_;
   HostClock::duration period_;
   HostTime begin_; ///< used by the reader thread only
@@ -123,13 +117,13 @@ struct Option {
   std::string_view key;
   std::string_view allowed;
 };
-constexpr std::array<Option, 4> options{{{"seed", "a whole number from 0 to 4294967295"},
-                                         {"rate", "a number from 1 to 1000 (hertz)"},
-                                         {"hand", "left or right"},
-                                         {"sensors", "18 or 22"}}};
+constexpr std::array<Option, 4> known_options{{{"seed", "a whole number from 0 to 4294967295"},
+                                               {"rate", "a number from 1 to 1000 (hertz)"},
+                                               {"hand", "left or right"},
+                                               {"sensors", "18 or 22"}}};
 
-// False: the value is none of those that `options` allows for this key.
-bool set_option(Settings& settings, const std::string& key, const std::string& value) {
+// False: the value is none of those that `known_options` allows for this key.
+bool set_option(SimulatedGloveOptions& settings, const std::string& key, const std::string& value) {
   if (key == "seed") return read_number(value, settings.seed);
   if (key == "rate") {
     return read_number(value, settings.rate_hz) && settings.rate_hz >= 1.0 &&
@@ -149,17 +143,16 @@ Error usage(const GloveSpec& spec, std::string_view what) {
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side) {
-  Settings settings;
+Result<SimulatedGloveOptions> simulated_glove_options(const GloveSpec& spec,
+                                                      std::optional<Side> side) {
+  SimulatedGloveOptions settings;
+  settings.source = spec.text;
   settings.side = side.value_or(Side::right);
-  if (!spec.target.empty()) settings.motion_name = spec.target;
-  const auto motion = find_motion(settings.motion_name);
-  if (!motion) return usage(spec, motion.error().message);
-  settings.motion = *motion;
+  if (!spec.target.empty()) settings.motion = spec.target;
   for (const auto& [key, value] : spec.options) {
-    const auto* option = std::find_if(options.begin(), options.end(),
+    const auto* option = std::find_if(known_options.begin(), known_options.end(),
                                       [&name = key](const Option& o) { return o.key == name; });
-    if (option == options.end()) {
+    if (option == known_options.end()) {
       return usage(spec, "no option '" + key + "'; there are seed, rate, hand, sensors");
     }
     if (!set_option(settings, key, value)) {
@@ -168,7 +161,26 @@ Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::option
       return usage(spec, what);
     }
   }
-  return std::unique_ptr<Glove>(std::make_unique<SimulatedGlove>(spec, settings));
+  return settings;
+}
+
+std::unique_ptr<Glove> make_simulated_glove(const SimulatedGloveOptions& options,
+                                            SensorMotion motion) {
+  return std::make_unique<SimulatedGlove>(options, std::move(motion));
+}
+
+Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side) {
+  if (spec.target == touching_motion)
+    return usage(spec, "needs a model to touch, which only nendo run and nendo stress have; use "
+                       "another motion here, like sim:sculpt");
+  const auto motion = find_motion(spec.target.empty() ? "sculpt" : spec.target);
+  if (!motion) return usage(spec, motion.error().message + ", " + std::string(touching_motion));
+  auto settings = simulated_glove_options(spec, side);
+  if (!settings) return settings.error();
+  return make_simulated_glove(
+      *settings, [hand = HandMotion(*motion, settings->side, settings->seed)](double time_s) {
+        return hand.at(time_s);
+      });
 }
 
 } // namespace nendo::driver

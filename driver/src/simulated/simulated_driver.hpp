@@ -10,9 +10,8 @@
 
 namespace nendo::driver {
 
-/// `sim:MOTION?seed=N&rate=HZ&hand=left|right&sensors=18|22`; all of it may be left out (sculpt, 1,
-/// 90, `side`, 22). The motion begins with start(). Samples come at absolute deadlines; one that is
-/// missed is skipped, the grid stays. Error: usage, naming the option and what is allowed.
+/// As simulated_glove_options() says, with one of the motions of hand_motion.hpp. The motion begins
+/// with start(). Error: usage, also for the one motion that takes a surface.
 Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side);
 
 } // namespace nendo::driver

@@ -34,6 +34,9 @@ struct HandInput {
   hand::Calibration swapped = hand::default_calibration();
   /// A glove with such counts: its ranges are learned while it is used, in place of calibrations.
   std::optional<CountScale> adapt{};
+  /// For the samples that `swapped` is for; nullopt: the other hand has the same size. Of the same
+  /// side as `skeleton`: it shapes as that hand.
+  std::optional<hand::HandSkeleton> swapped_skeleton{};
 };
 
 /// What a tick does; some of it, to measure that alone. What is left out stays as it was.
@@ -99,6 +102,8 @@ private:
   struct Hand {
     /// Makes `latest` and `angles` of the next sample.
     void follow(const GloveSample& sample) noexcept;
+    /// Of the hand that sent `latest`.
+    const hand::HandSkeleton& skeleton() const noexcept;
 
     HandInput input;
     std::size_t slot = 0; ///< of arrays by side

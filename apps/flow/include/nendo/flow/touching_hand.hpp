@@ -1,0 +1,70 @@
+#pragma once
+// A simulated hand that really touches: its fingertips lie on the model's surface, press into it
+// and pull at it by stated depths, one finger after another and all together, and glide along it
+// between the strokes. The joint angles are inverse kinematics of where the tips are to be.
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include <nendo/base/result.hpp>
+#include <nendo/flow/placement.hpp>
+#include <nendo/hand/calibration.hpp>
+#include <nendo/hand/joint_angles.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::flow {
+
+/// At the most; a finger that does not reach so far does as much as it reaches.
+struct TouchOptions {
+  std::uint32_t seed = 1; ///< of the order of fingers, the tempo and the way of gliding
+  double press_m = 0.020;
+  double pull_m = 0.012;
+  double glide_m = 0.012;
+};
+
+/// Where a fingertip is to be, on the stage.
+struct TouchTarget {
+  Eigen::Vector3d contact_m = Eigen::Vector3d::Zero(); ///< on the surface, as it is undeformed
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the surface there, outwards
+  double depth_m = 0.0; ///< > 0: pressed in along the normal, < 0: pulled out
+
+  Eigen::Vector3d place_m() const { return contact_m - depth_m * normal; }
+};
+
+struct TouchPlan;
+
+/// One stroke after another, without end: after period_s() everything is repeated. At time 0 all
+/// fingertips lie on the surface.
+class TouchingHand {
+public:
+  /// How far a fingertip may be from its target, at any time.
+  static constexpr double tolerance_m = 1e-4;
+
+  /// The model stands as place_hands() puts it; so does the hand. Error: bad_input, if the model
+  /// has no faces or none within reach. Allocates; takes about 0.1 s, longer with millions of
+  /// faces.
+  static Result<TouchingHand> make(const deform::Mesh& model, const hand::HandSkeleton& skeleton,
+                                   const TouchOptions& options = {});
+
+  /// `time_s` since the start; what is no time counts as 0. Continuously differentiable; within the
+  /// ranges in which joint_angles() leaves angles as they are; the middle finger does not turn
+  /// aside, because no glove measures that. Any thread, wait-free.
+  hand::JointAngles angles(double time_s) const noexcept;
+  /// What a glove's sensors turn by then: joint_angles() makes angles(time_s) of them.
+  hand::SensorAngles sensor_angles(double time_s) const noexcept;
+  /// Nothing (zero) for a finger that cannot reach the surface; it keeps still. Any thread.
+  TouchTarget target(hand::Finger finger, double time_s) const noexcept;
+
+  bool touches(hand::Finger finger) const noexcept;
+  /// T_stage_wrist: where the forearm ends.
+  const Eigen::Isometry3d& wrist_pose() const noexcept;
+  double period_s() const noexcept;
+
+private:
+  explicit TouchingHand(std::shared_ptr<const TouchPlan> plan) : plan_(std::move(plan)) {}
+
+  std::shared_ptr<const TouchPlan> plan_;
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,61 @@
+#pragma once
+// How far a point is from a model's surface, by looking at every triangle: polygons are fans from
+// their first corner.
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::test {
+
+struct NearestTriangle {
+  double distance = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< by its corners' order
+};
+
+inline double distance_to_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& from,
+                                  const Eigen::Vector3d& to) {
+  const Eigen::Vector3d way = to - from;
+  const double length = way.norm();
+  if (length == 0.0) return (p - from).norm();
+  const double along = std::clamp((p - from).dot(way / length), 0.0, length);
+  return (p - from - along * (way / length)).norm();
+}
+
+/// To its edges, or to its plane if that is nearer and the foot of the perpendicular is inside.
+inline double distance_to_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const double to_edges = std::min(
+      {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+  const Eigen::Vector3d n = (b - a).cross(c - a);
+  // A line's normal is made of rounding.
+  const bool is_line = n.norm() <= 1e-9 * (b - a).norm() * (c - a).norm();
+  const bool inside = !is_line && n.dot((b - a).cross(p - a)) >= 0.0 &&
+                      n.dot((c - b).cross(p - b)) >= 0.0 && n.dot((a - c).cross(p - c)) >= 0.0;
+  return inside ? std::min(to_edges, std::abs(n.normalized().dot(p - a))) : to_edges;
+}
+
+inline NearestTriangle nearest_triangle(const deform::Mesh& model, const Eigen::Vector3d& p) {
+  NearestTriangle nearest;
+  for (std::size_t face = 0; face < model.face_count(); ++face) {
+    const auto corner = [&](std::uint32_t at) -> Eigen::Vector3d {
+      return model.vertices.col(
+          static_cast<Eigen::Index>(model.face_corners[model.face_starts[face] + at]));
+    };
+    const std::uint32_t corners = model.face_starts[face + 1] - model.face_starts[face];
+    for (std::uint32_t at = 1; at + 1 < corners; ++at) {
+      const Eigen::Vector3d a = corner(0);
+      const Eigen::Vector3d b = corner(at);
+      const Eigen::Vector3d c = corner(at + 1);
+      const double distance = distance_to_triangle(p, a, b, c);
+      if (distance < nearest.distance)
+        nearest = {distance, (b - a).cross(c - a).stableNormalized()};
+    }
+  }
+  return nearest;
+}
+
+} // namespace nendo::test
