@@ -38,9 +38,10 @@ void BoundedShape::follow(const BoundedShape& other) {
 }
 
 void ListRoom::reserve(std::size_t entries) {
-  if (indices_[0] != nullptr && entries <= entries_) return;
+  if (lists_ != nullptr && entries <= entries_) return;
   entries_ = entries;
-  for (auto& array : indices_)
+  lists_ = hwy::AllocateAligned<std::uint32_t>(group_size * list_room(entries));
+  for (auto& array : names_)
     array = hwy::AllocateAligned<std::uint32_t>(list_room(entries));
   for (auto& array : numbers_)
     array = hwy::AllocateAligned<float>(list_room(entries));

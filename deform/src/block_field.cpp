@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace nendo::deform {
 
@@ -16,6 +17,11 @@ constexpr double float_error = 3e-7;
 constexpr Eigen::Index most_overlapping = 64;
 /// Of the model's diagonal. The promise is 1e-5; coordinates in float take 1e-7.
 constexpr double most_float_error = 3e-6;
+
+/// Fifth powers of radii between these, and products with them, stay far from float's ends.
+constexpr double least_float_radius = 1e-4;
+constexpr double most_float_radius = 1e4;
+constexpr double most_float = 1e30;
 
 float as_float(double value) noexcept {
   return static_cast<float>(std::clamp(value, -most_units, most_units));
@@ -35,6 +41,8 @@ void BlockField::reserve(Eigen::Index entries) {
   const std::size_t room = list_room(static_cast<std::size_t>(entries));
   for (auto* array : {&x_, &y_, &z_, &squared_radius_})
     *array = hwy::AllocateAligned<float>(room);
+  names_ = hwy::AllocateAligned<std::uint32_t>(room);
+  std::iota(names_.get(), names_.get() + room, 0U);
   entries_.resize(static_cast<std::size_t>(entries));
   precise_entries_.resize(static_cast<std::size_t>(entries));
 }
@@ -66,15 +74,51 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
   const double error = float_error * largest_coefficient_ * std::sqrt(overlapping);
   const bool has_polynomial = usable && !field.polynomial.isZero(0.0);
   view_ = {.kernel = field.kernel,
-           .centres = {x_.get(), y_.get(), z_.get(), squared_radius_.get(), count},
+           .centres = {x_.get(), y_.get(), z_.get(), squared_radius_.get(), names_.get(), count},
            .entries = entries_.data(),
-           .precise_entries = error > tolerance_ ? precise_entries_.data() : nullptr,
+           .precise_entries = error > tolerance_ || !in_range_ ? precise_entries_.data() : nullptr,
            .polynomial = has_polynomial ? &polynomial_ : nullptr};
   return usable;
 }
 
+/// At `at`, all in units.
+void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, double radius,
+                              const Eigen::Vector3d& coefficient, Wendland kernel) {
+  const double r = std::clamp(radius, 1.0 / most_units, most_units);
+  const Eigen::Vector3d scaled =
+      kernel_factor(kernel) * std::pow(r, -weight_power(kernel)) * coefficient;
+  const Eigen::Vector3d steep =
+      slope_factor(kernel) * std::pow(r, -2 - slope_power(kernel)) * coefficient;
+  precise_entries_[at] = {centre[0],
+                          centre[1],
+                          centre[2],
+                          r,
+                          1.0 / r,
+                          1.25 * r,
+                          {scaled[0], scaled[1], scaled[2]},
+                          {steep[0], steep[1], steep[2]}};
+  const FieldEntry<double>& entry = precise_entries_[at];
+  entries_[at] = {as_float(centre[0]),
+                  as_float(centre[1]),
+                  as_float(centre[2]),
+                  as_float(r),
+                  as_float(entry.inverse_radius),
+                  as_float(entry.inner),
+                  {as_float(scaled[0]), as_float(scaled[1]), as_float(scaled[2])},
+                  {as_float(steep[0]), as_float(steep[1]), as_float(steep[2])}};
+  // Powers of others, and what they are multiplied by, are not numbers that float holds.
+  in_range_ = in_range_ && r >= least_float_radius && r <= most_float_radius &&
+              scaled.cwiseAbs().maxCoeff() <= most_float &&
+              steep.cwiseAbs().maxCoeff() <= most_float;
+  x_[at] = entries_[at].x;
+  y_[at] = entries_[at].y;
+  z_[at] = entries_[at].z;
+  squared_radius_[at] = static_cast<float>(
+      std::min(radius * radius, static_cast<double>(std::numeric_limits<float>::max())));
+}
+
 bool BlockField::assign_entries(const CsrbfField& field, Zeros zeros) {
-  const double factor = kernel_factor(field.kernel);
+  in_range_ = true;
   bool finite = true;
   for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
     if (zeros == Zeros::left_out && field.coefficients.col(i).isZero(0.0)) continue;
@@ -82,30 +126,11 @@ bool BlockField::assign_entries(const CsrbfField& field, Zeros zeros) {
     const Eigen::Vector3d centre = (field.centres.col(i) - origin_) / unit_;
     const Eigen::Vector3d coefficient = field.coefficients.col(i) / unit_;
     const double radius = field.radii[i] / unit_;
-    const double inverse = std::clamp(1.0 / radius, 1.0 / most_units, most_units);
     finite = finite && radius > 0.0 && centre.allFinite() && coefficient.allFinite();
     const double largest = coefficient.cwiseAbs().maxCoeff();
     sum_of_coefficients_ += largest;
     largest_coefficient_ = std::max(largest_coefficient_, largest);
-    const Eigen::Vector3d scaled = factor * coefficient;
-    const Eigen::Vector3d steep = slope_factor(field.kernel) * inverse * inverse * coefficient;
-    precise_entries_[at] = {centre[0],
-                            centre[1],
-                            centre[2],
-                            inverse,
-                            {scaled[0], scaled[1], scaled[2]},
-                            {steep[0], steep[1], steep[2]}};
-    entries_[at] = {as_float(centre[0]),
-                    as_float(centre[1]),
-                    as_float(centre[2]),
-                    static_cast<float>(inverse),
-                    {as_float(scaled[0]), as_float(scaled[1]), as_float(scaled[2])},
-                    {as_float(steep[0]), as_float(steep[1]), as_float(steep[2])}};
-    x_[at] = entries_[at].x;
-    y_[at] = entries_[at].y;
-    z_[at] = entries_[at].z;
-    squared_radius_[at] = static_cast<float>(
-        std::min(radius * radius, static_cast<double>(std::numeric_limits<float>::max())));
+    assign_entry(at, centre, radius, coefficient, field.kernel);
   }
   return finite;
 }

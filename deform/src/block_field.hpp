@@ -41,6 +41,8 @@ public:
 private:
   void reserve(Eigen::Index entries);
   bool assign_entries(const CsrbfField& field, Zeros zeros);
+  void assign_entry(std::size_t at, const Eigen::Vector3d& centre, double radius,
+                    const Eigen::Vector3d& coefficient, Wendland kernel);
 
   Eigen::Vector3d origin_;
   double unit_;
@@ -48,11 +50,13 @@ private:
   Eigen::Index capacity_ = 0;
   Eigen::Index size_ = 0;
   VectorArray<float> x_, y_, z_, squared_radius_;
+  VectorArray<std::uint32_t> names_;
   std::vector<FieldEntry<float>> entries_;
   std::vector<FieldEntry<double>> precise_entries_;
   std::array<std::array<double, 4>, 3> polynomial_{};
   double sum_of_coefficients_ = 0.0;
   double largest_coefficient_ = 0.0;
+  bool in_range_ = true; ///< of float sums
   FieldView view_{};
 };
 

@@ -21,14 +21,18 @@ class ListRoom {
 public:
   void reserve(std::size_t entries);
   ListScratch scratch() const noexcept {
-    return {indices_[0].get(), indices_[1].get(), indices_[2].get(), numbers_[0].get(),
-            numbers_[1].get(), numbers_[2].get(), numbers_[3].get()};
+    return {lists_.get(),
+            {{{names_[0].get(), numbers_[0].get(), numbers_[1].get(), numbers_[2].get(),
+               numbers_[3].get()},
+              {names_[1].get(), numbers_[4].get(), numbers_[5].get(), numbers_[6].get(),
+               numbers_[7].get()}}}};
   }
 
 private:
   std::size_t entries_ = 0;
-  std::array<VectorArray<std::uint32_t>, 3> indices_;
-  std::array<VectorArray<float>, 4> numbers_;
+  VectorArray<std::uint32_t> lists_;
+  std::array<VectorArray<std::uint32_t>, 2> names_;
+  std::array<VectorArray<float>, 8> numbers_;
 };
 
 struct BlockEvaluator::Parts {

@@ -123,6 +123,29 @@ TEST_SUITE("normals") {
     use_simd("");
   }
 
+  TEST_CASE(
+      "radii whose powers float does not hold give what double makes, and normals of any length") {
+    const BlockLayout layout(ball.vertices);
+    const BlockShape before = layout.pack_vectors(100.0 * outward);
+    for (const double radius : {1e-12, 1e3, 1e8, 1e12}) {
+      CAPTURE(radius);
+      CsrbfField field = gentle_field(81);
+      field.radii.setConstant(radius);
+      field.polynomial(2, 1) = 0.2;
+      BlockEvaluator evaluator(layout, 10, {});
+      REQUIRE(evaluator.set_field(field));
+      BoundedShape moved(layout.pack());
+      BlockShape after = before;
+      REQUIRE(evaluator.displace(moved, &after));
+      Points places;
+      Points reference;
+      layout.unpack(moved.shape, places);
+      displace(field, ball.vertices, reference);
+      CHECK(largest(places - reference) < 1e-5 * layout.diagonal());
+      CHECK(largest(unpacked(layout, after) - turned(field, ball.vertices, outward)) < 1e-5);
+    }
+  }
+
   TEST_CASE("normals of large coefficients that cancel are what double makes") {
     Points starts(3, 2);
     starts << 5, 5.02, 0, 0, 0, 0;

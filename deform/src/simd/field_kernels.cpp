@@ -18,31 +18,48 @@ HWY_BEFORE_NAMESPACE();
 namespace nendo::deform::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Vectors of vertices that go through the centres together: one alone leaves AVX-512 waiting, two
-/// do not fit the registers of the others.
-constexpr std::size_t abreast = HWY_MAX_BYTES >= 64 ? 2 : 1;
+/// Vectors of vertices that go through the centres together: as many as the registers hold.
+constexpr std::size_t abreast = HWY_MAX_BYTES >= 64 ? 4 : HWY_TARGET == HWY_SCALAR ? 1 : 2;
 
-/// Adds the field of the listed centres at the places.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void distances_to(D d, const FieldEntry<hn::TFromD<D>>& entry,
+                             const Vectors3<V> (&places)[abreast], V (&distances)[abreast]) {
+  for (std::size_t n = 0; n < abreast; ++n) {
+    const V x = hn::Sub(places[n].x, hn::Set(d, entry.x));
+    const V y = hn::Sub(places[n].y, hn::Set(d, entry.y));
+    const V z = hn::Sub(places[n].z, hn::Set(d, entry.z));
+    distances[n] = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+  }
+}
+
+template <Wendland kernel, class D, class V = hn::Vec<D>>
+HWY_INLINE void add_entry(D d, const FieldEntry<hn::TFromD<D>>& entry,
+                          const V (&distances)[abreast], Vectors3<V> (&sums)[abreast]) {
+  for (std::size_t n = 0; n < abreast; ++n) {
+    const V w = weight_at<kernel>(d, entry, depth<kernel>(d, entry, distances[n]));
+    sums[n].x = hn::MulAdd(w, hn::Set(d, entry.coefficient[0]), sums[n].x);
+    sums[n].y = hn::MulAdd(w, hn::Set(d, entry.coefficient[1]), sums[n].y);
+    sums[n].z = hn::MulAdd(w, hn::Set(d, entry.coefficient[2]), sums[n].z);
+  }
+}
+
+/// Adds the field of the listed centres at the places. One centre's roots are taken while the one
+/// before it is added: a root takes longer than processors look ahead.
 template <Wendland kernel, class D, class V = hn::Vec<D>>
 HWY_INLINE void add_entries(D d, const FieldEntry<hn::TFromD<D>>* entries,
                             const std::uint32_t* list, std::size_t count,
                             const Vectors3<V> (&places)[abreast], Vectors3<V> (&sums)[abreast]) {
-  using Real = hn::TFromD<D>;
-  const V one = hn::Set(d, Real(1));
-  for (std::size_t at = 0; at < count; ++at) {
-    const FieldEntry<Real>& entry = entries[list[at]];
-    for (std::size_t n = 0; n < abreast; ++n) {
-      const V x = hn::Sub(places[n].x, hn::Set(d, entry.x));
-      const V y = hn::Sub(places[n].y, hn::Set(d, entry.y));
-      const V z = hn::Sub(places[n].z, hn::Set(d, entry.z));
-      const V squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-      const V o = hn::NegMulAdd(hn::Sqrt(squared), hn::Set(d, entry.inverse_radius), one);
-      const V w = weight<kernel>(d, hn::Max(o, hn::Zero(d)));
-      sums[n].x = hn::MulAdd(w, hn::Set(d, entry.coefficient[0]), sums[n].x);
-      sums[n].y = hn::MulAdd(w, hn::Set(d, entry.coefficient[1]), sums[n].y);
-      sums[n].z = hn::MulAdd(w, hn::Set(d, entry.coefficient[2]), sums[n].z);
-    }
+  if (count == 0) return;
+  V distances[abreast];
+  distances_to(d, entries[list[0]], places, distances);
+  for (std::size_t at = 1; at < count; ++at) {
+    V next[abreast];
+    distances_to(d, entries[list[at]], places, next);
+    add_entry<kernel>(d, entries[list[at - 1]], distances, sums);
+    for (std::size_t n = 0; n < abreast; ++n)
+      distances[n] = next[n];
   }
+  add_entry<kernel>(d, entries[list[count - 1]], distances, sums);
 }
 
 template <Wendland kernel, class Real>

@@ -11,12 +11,16 @@
 
 namespace nendo::deform {
 
-/// One centre: what a vertex's evaluation needs. The coefficients contain the kernel's constant
-/// factor (kernel_factor); the steep ones, for the field's derivative, slope_factor / r^2.
+/// One centre: what a vertex's evaluation needs. With o = max(1 - t, 0), of which c0 and c2 are
+/// given r o instead, which spares a product: their coefficients are divided by the power of r that
+/// this makes. The coefficients also contain the kernel's constant factor (kernel_factor); the
+/// steep ones, for the field's derivative, slope_factor / r^2.
 template <class Real>
 struct FieldEntry {
   Real x, y, z;
+  Real radius;
   Real inverse_radius;
+  Real inner; ///< 1.25 r
   std::array<Real, 3> coefficient;
   std::array<Real, 3> steep;
 };
@@ -42,6 +46,15 @@ constexpr double slope_factor(Wendland kernel) noexcept {
   return 0.0;
 }
 
+/// Powers of r o in psi, and in psi' / t: those of c4 and c6 are of o.
+constexpr int weight_power(Wendland kernel) noexcept {
+  if (kernel == Wendland::c0) return 2;
+  return kernel == Wendland::c2 ? 5 : 0;
+}
+constexpr int slope_power(Wendland kernel) noexcept {
+  return kernel == Wendland::c2 ? 3 : 0;
+}
+
 /// Centres coordinates apart, to find those that reach a block. Arrays are padded to whole vectors
 /// with a negative radius.
 struct CentreArrays {
@@ -49,18 +62,27 @@ struct CentreArrays {
   const float* y;
   const float* z;
   const float* squared_radius;
+  const std::uint32_t* names; ///< numbers of their entries
   std::size_t count;
 };
 
-/// Room for lists of centres while a pass runs; one a thread. Each array has list_room(count).
-struct ListScratch {
-  std::uint32_t* words;
-  std::uint32_t* list;
-  std::uint32_t* candidate;
+/// Room for centres that reach several blocks.
+struct CandidateRoom {
+  std::uint32_t* names;
   float* x;
   float* y;
   float* z;
   float* squared_radius;
+};
+
+/// Blocks whose lists are made together.
+inline constexpr std::size_t group_size = 16;
+
+/// Room for lists of centres while a pass runs; one a thread. Candidates' arrays have
+/// list_room(count), lists group_size times that.
+struct ListScratch {
+  std::uint32_t* lists;
+  std::array<CandidateRoom, 2> candidates;
 };
 constexpr std::size_t list_room(std::size_t entries) noexcept {
   return (entries + 2 * block_size - 1) / block_size * block_size;

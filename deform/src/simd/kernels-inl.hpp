@@ -76,6 +76,25 @@ HWY_INLINE V weight(D d, V o) {
   return hn::Mul(hn::Mul(o4, o4), hn::MulAdd(square, o, hn::Set(d, Real(66))));
 }
 
+/// o of an entry's centre, or r o (FieldEntry).
+template <Wendland kernel, class D, class V = hn::Vec<D>>
+HWY_INLINE V depth(D d, const FieldEntry<hn::TFromD<D>>& entry, V distance) {
+  if constexpr (weight_power(kernel) > 0) {
+    return hn::Max(hn::Sub(hn::Set(d, entry.radius), distance), hn::Zero(d));
+  } else {
+    const V one = hn::Set(d, hn::TFromD<D>(1));
+    return hn::Max(hn::NegMulAdd(distance, hn::Set(d, entry.inverse_radius), one), hn::Zero(d));
+  }
+}
+
+/// What the entry's coefficients are multiplied by, of depth().
+template <Wendland kernel, class D, class V = hn::Vec<D>>
+HWY_INLINE V weight_at(D d, const FieldEntry<hn::TFromD<D>>& entry, V depth) {
+  if constexpr (kernel != Wendland::c2) return weight<kernel>(d, depth);
+  const V squared = hn::Mul(depth, depth);
+  return hn::Mul(hn::Mul(squared, squared), hn::Sub(hn::Set(d, entry.inner), depth));
+}
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V polynomial_row(D d, const std::array<double, 4>& row, const Vectors3<V>& place) {
   using Real = hn::TFromD<D>;

@@ -7,115 +7,108 @@
 #define NENDO_SIMD_LISTS_INL
 #endif
 
+#include <array>
 #include <bit>
+#include <cstdint>
 
 #include <hwy/highway.h>
 
 #include "simd/field_kernels.hpp"
 
+#ifndef NENDO_SIMD_SET_LANES
+#define NENDO_SIMD_SET_LANES
+namespace nendo::deform {
+
+/// Of each byte, the numbers of the bits that are set, and then zeros.
+inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_lanes = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> all{};
+  for (std::size_t byte = 0; byte < 256; ++byte) {
+    std::size_t size = 0;
+    for (std::uint8_t bit = 0; bit < 8; ++bit)
+      if ((byte >> bit & 1U) != 0) all[byte][size++] = bit;
+  }
+  return all;
+}();
+
+} // namespace nendo::deform
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace nendo::deform::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Blocks whose lists are made together, each in a lane of its own.
-constexpr std::size_t group_size = 16;
-/// With more centres than this, a group asks first which of them reach its common box.
+/// With more centres than this, neighbouring blocks ask together first: 256 for all centres, then
+/// 16 for those that reach the 256.
 constexpr std::size_t most_ungrouped = 32;
-constexpr std::size_t bits_a_word = 32;
+constexpr std::size_t groups_together = 16;
 
-/// Squared distance to a box, of which low and negated high sides are given.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V box_distance(D d, const V (&centre)[3], const V (&low)[3],
-                          const V (&negated_high)[3]) {
-  const V zero = hn::Zero(d);
-  V squared = zero;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const V below = hn::Sub(low[axis], centre[axis]);
-    const V above = hn::Add(negated_high[axis], centre[axis]);
-    const V outside = hn::Max(hn::Max(below, above), zero);
-    squared = hn::MulAdd(outside, outside, squared);
-  }
-  return squared;
+using ListVectors = hn::ScalableTag<float>;
+
+/// Which of a vector of centres reach a box: those whose squared distance to it is at most the
+/// squared radius.
+HWY_INLINE hn::Mask<ListVectors> reaching(const CentreArrays& centres, std::size_t at,
+                                          const BlockBounds& box) {
+  const ListVectors d;
+  const auto outside = [&](const float* coordinates, std::size_t axis) HWY_ATTR {
+    const auto centre = hn::Load(d, coordinates + at);
+    const auto below = hn::Sub(hn::Set(d, box.sides[axis]), centre);
+    const auto above = hn::Add(hn::Set(d, box.sides[axis + 4]), centre);
+    return hn::Max(hn::Max(below, above), hn::Zero(d));
+  };
+  const auto x = outside(centres.x, 0);
+  const auto y = outside(centres.y, 1);
+  const auto z = outside(centres.z, 2);
+  const auto squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+  return hn::Le(squared, hn::Load(d, centres.squared_radius + at));
 }
 
-/// Marks which centres reach which of up to 16 blocks: bit c % 32 of words[c / 32 * 16 + block].
-HWY_INLINE void mark_group(const CentreArrays& centres, const BlockBounds* bounds,
-                           std::size_t count, std::uint32_t* words) {
-  const hn::CappedTag<float, group_size> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  using V = hn::Vec<decltype(d)>;
-  alignas(64) float sides[6][group_size];
-  for (std::size_t block = 0; block < group_size; ++block) {
-    const auto& box = bounds[block < count ? block : count - 1].sides;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      sides[axis][block] = box[axis];
-      sides[axis + 3][block] = box[axis + 4];
-    }
-  }
-  for (std::size_t lane = 0; lane < group_size; lane += hn::Lanes(d)) {
-    const V low[3] = {hn::Load(d, sides[0] + lane), hn::Load(d, sides[1] + lane),
-                      hn::Load(d, sides[2] + lane)};
-    const V negated_high[3] = {hn::Load(d, sides[3] + lane), hn::Load(d, sides[4] + lane),
-                               hn::Load(d, sides[5] + lane)};
-    for (std::size_t begin = 0; begin < centres.count; begin += bits_a_word) {
-      auto bits = hn::Zero(du);
-      for (std::size_t c = begin; c < begin + bits_a_word && c < centres.count; ++c) {
-        const V centre[3] = {hn::Set(d, centres.x[c]), hn::Set(d, centres.y[c]),
-                             hn::Set(d, centres.z[c])};
-        const auto reached = hn::Le(box_distance(d, centre, low, negated_high),
-                                    hn::Set(d, centres.squared_radius[c]));
-        const auto bit = hn::Set(du, std::uint32_t{1} << (c - begin));
-        bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(du, reached), bit));
-      }
-      hn::Store(bits, du, words + begin / bits_a_word * group_size + lane);
+/// Bit n of the result: lane n of a mask.
+HWY_INLINE std::uint32_t bits_of(hn::Mask<ListVectors> mask) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(ListVectors(), mask, bytes);
+  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
+}
+
+/// Stores the lanes whose bits are set, one after the other; what is beyond them is overwritten.
+/// Without branches on which those are, which nothing could foretell.
+HWY_INLINE void store_set_lanes(const std::uint32_t* from, std::uint32_t bits, std::uint32_t* to) {
+  const hn::ScalableTag<std::uint32_t> d;
+  if constexpr (hn::MaxLanes(d) == 8) { // AVX2: Highway's Compress copies its table each time
+    const hn::Rebind<std::uint8_t, decltype(d)> bytes;
+    const auto lanes = hn::PromoteTo(d, hn::Load(bytes, set_lanes[bits].data()));
+    hn::StoreU(hn::TableLookupLanes(hn::Load(d, from), hn::IndicesFromVec(d, lanes)), d, to);
+  } else {
+    std::size_t size = 0;
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      to[size] = from[lane];
+      size += bits >> lane & 1U;
     }
   }
 }
 
-/// The centres marked for a block, by their places or, if that is not null, by `names`.
-HWY_INLINE std::size_t list_marked(const std::uint32_t* words, std::size_t block,
-                                   std::size_t centres, const std::uint32_t* names,
-                                   std::uint32_t* list) {
+/// The names of the centres that reach a box.
+HWY_INLINE std::size_t list_reaching(const CentreArrays& centres, const BlockBounds& box,
+                                     std::uint32_t* list) {
+  const ListVectors d;
   std::size_t size = 0;
-  for (std::size_t begin = 0; begin < centres; begin += bits_a_word) {
-    std::uint32_t bits = words[begin / bits_a_word * group_size + block];
-    for (; bits != 0; bits &= bits - 1) {
-      const std::size_t at = begin + static_cast<std::size_t>(std::countr_zero(bits));
-      list[size++] = names != nullptr ? names[at] : static_cast<std::uint32_t>(at);
+  for (std::size_t at = 0; at < centres.count; at += hn::Lanes(d)) {
+    const auto reached = reaching(centres, at, box);
+    if constexpr (hn::MaxLanes(ListVectors()) >= 16) { // an instruction
+      const hn::RebindToUnsigned<ListVectors> du;
+      const auto names = hn::Load(du, centres.names + at);
+      hn::StoreU(hn::Compress(names, hn::RebindMask(du, reached)), du, list + size);
+      size += hn::CountTrue(d, reached);
+    } else {
+      const std::uint32_t bits = bits_of(reached);
+      store_set_lanes(centres.names + at, bits, list + size);
+      size += static_cast<std::size_t>(std::popcount(bits));
     }
   }
   return size;
 }
 
-/// The centres that reach the box of several blocks, gathered in the scratch; their names in
-/// scratch.candidate.
-HWY_INLINE CentreArrays gather_candidates(const CentreArrays& centres, const BlockBounds& box,
-                                          const ListScratch& scratch) {
-  const hn::ScalableTag<float> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  std::size_t count = 0;
-  using V = hn::Vec<decltype(d)>;
-  const auto& sides = box.sides;
-  const V low[3] = {hn::Set(d, sides[0]), hn::Set(d, sides[1]), hn::Set(d, sides[2])};
-  const V negated_high[3] = {hn::Set(d, sides[4]), hn::Set(d, sides[5]), hn::Set(d, sides[6])};
-  for (std::size_t at = 0; at < centres.count; at += hn::Lanes(d)) {
-    const V centre[3] = {hn::Load(d, centres.x + at), hn::Load(d, centres.y + at),
-                         hn::Load(d, centres.z + at)};
-    const auto reach = hn::Load(d, centres.squared_radius + at);
-    const auto reached = hn::Le(box_distance(d, centre, low, negated_high), reach);
-    if (hn::AllFalse(d, reached)) continue;
-    const auto name = hn::Iota(du, static_cast<std::uint32_t>(at));
-    hn::StoreU(hn::Compress(name, hn::RebindMask(du, reached)), du, scratch.candidate + count);
-    hn::StoreU(hn::Compress(hn::Load(d, centres.x + at), reached), d, scratch.x + count);
-    hn::StoreU(hn::Compress(hn::Load(d, centres.y + at), reached), d, scratch.y + count);
-    hn::StoreU(hn::Compress(hn::Load(d, centres.z + at), reached), d, scratch.z + count);
-    hn::StoreU(hn::Compress(reach, reached), d, scratch.squared_radius + count);
-    count += hn::CountTrue(d, reached);
-  }
-  return {scratch.x, scratch.y, scratch.z, scratch.squared_radius, count};
-}
-
-HWY_INLINE BlockBounds group_bounds(const BlockBounds* bounds, std::size_t begin, std::size_t end) {
+HWY_INLINE BlockBounds common_bounds(const BlockBounds* bounds, std::size_t begin,
+                                     std::size_t end) {
   BlockBounds box = bounds[begin];
   for (std::size_t block = begin + 1; block < end; ++block)
     for (std::size_t side = 0; side < box.sides.size(); ++side)
@@ -124,21 +117,91 @@ HWY_INLINE BlockBounds group_bounds(const BlockBounds* bounds, std::size_t begin
   return box;
 }
 
-/// Calls work(block, list, size) for the blocks of a pass, with the centres that reach each.
-template <class Work>
-HWY_INLINE void for_each_block(const CentreArrays& all, const BlockPass& pass, Work& work) {
-  const bool grouped = all.count > most_ungrouped;
-  const ListScratch& scratch = pass.scratch;
-  for (std::size_t begin = pass.begin; begin < pass.end; begin += group_size) {
-    const std::size_t end = begin + group_size < pass.end ? begin + group_size : pass.end;
-    const CentreArrays centres =
-        grouped ? gather_candidates(all, group_bounds(pass.bounds, begin, end), scratch) : all;
-    mark_group(centres, pass.bounds + begin, end - begin, scratch.words);
-    for (std::size_t block = begin; block < end; ++block) {
-      const std::size_t size = list_marked(scratch.words, block - begin, centres.count,
-                                           grouped ? scratch.candidate : nullptr, scratch.list);
-      work.on_block(block, scratch.list, size);
+/// The centres that reach a box, copied to `room`.
+static HWY_NOINLINE CentreArrays gather_reaching(const CentreArrays& centres,
+                                                 const BlockBounds& box,
+                                                 const CandidateRoom& room) {
+  const ListVectors d;
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < centres.count; at += hn::Lanes(d)) {
+    const auto reached = reaching(centres, at, box);
+    if constexpr (hn::MaxLanes(ListVectors()) >= 16) {
+      const hn::RebindToUnsigned<ListVectors> du;
+      const auto take = [&](const float* from, float* to) HWY_ATTR {
+        hn::StoreU(hn::Compress(hn::Load(d, from + at), reached), d, to + count);
+      };
+      const auto names = hn::Load(du, centres.names + at);
+      hn::StoreU(hn::Compress(names, hn::RebindMask(du, reached)), du, room.names + count);
+      take(centres.x, room.x);
+      take(centres.y, room.y);
+      take(centres.z, room.z);
+      take(centres.squared_radius, room.squared_radius);
+      count += hn::CountTrue(d, reached);
+      continue;
     }
+    std::uint32_t bits = bits_of(reached);
+    for (; bits != 0; bits &= bits - 1, ++count) {
+      const std::size_t from = at + static_cast<std::size_t>(std::countr_zero(bits));
+      room.names[count] = centres.names[from];
+      room.x[count] = centres.x[from];
+      room.y[count] = centres.y[from];
+      room.z[count] = centres.z[from];
+      room.squared_radius[count] = centres.squared_radius[from];
+    }
+  }
+  hn::StoreU(hn::Set(d, -1.0F), d, room.squared_radius + count); // of nobody: reaches nothing
+  return {room.x, room.y, room.z, room.squared_radius, room.names, count};
+}
+
+/// Up to 16 blocks of a pass at a time, with the centres that reach each. Their lists are made
+/// together: what a block's work branches on is then long known.
+struct ListedBlocks {
+  const CentreArrays& all;
+  const BlockPass& pass;
+  CentreArrays near{}, nearest{};
+  std::size_t near_end = 0;
+  std::size_t begin = 0, end = 0;
+  std::size_t sizes[group_size]{};
+
+  HWY_INLINE const std::uint32_t* list(std::size_t block) const {
+    return pass.scratch.lists + (block - begin) * list_room(nearest.count);
+  }
+};
+
+/// The next ones. Compiled once, however many kinds of work there are.
+static HWY_NOINLINE void list_next(ListedBlocks& blocks) {
+  const auto least = [](std::size_t a, std::size_t b) { return a < b ? a : b; };
+  const BlockPass& pass = blocks.pass;
+  blocks.begin = blocks.end;
+  blocks.end = least(blocks.begin + group_size, pass.end);
+  if (blocks.all.count <= most_ungrouped) {
+    blocks.nearest = blocks.all;
+  } else {
+    if (blocks.near_end <= blocks.begin) {
+      blocks.near_end = least(blocks.begin + group_size * groups_together, pass.end);
+      blocks.near =
+          gather_reaching(blocks.all, common_bounds(pass.bounds, blocks.begin, blocks.near_end),
+                          pass.scratch.candidates[0]);
+    }
+    blocks.nearest =
+        gather_reaching(blocks.near, common_bounds(pass.bounds, blocks.begin, blocks.end),
+                        pass.scratch.candidates[1]);
+  }
+  const std::size_t room = list_room(blocks.nearest.count);
+  std::uint32_t* list = pass.scratch.lists;
+  for (std::size_t block = blocks.begin; block < blocks.end; ++block, list += room)
+    blocks.sizes[block - blocks.begin] = list_reaching(blocks.nearest, pass.bounds[block], list);
+}
+
+/// Calls work.on_block(block, list, size) for the blocks of a pass, with the centres that reach
+/// each.
+template <class Work>
+HWY_INLINE void for_each_block(const CentreArrays& centres, const BlockPass& pass, Work& work) {
+  ListedBlocks blocks{centres, pass};
+  for (blocks.end = pass.begin; blocks.end < pass.end;) {
+    list_next(blocks);
+    for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+      work.on_block(block, blocks.list(block), blocks.sizes[block - blocks.begin]);
   }
 }
 
