@@ -15,6 +15,9 @@ void add_emulate(Command& program);
 void add_info(Command& program);
 void add_monitor(Command& program);
 void add_poses(Command& program);
+void add_record(Command& program);
+void add_recording(Command& program);
+void add_replay(Command& program);
 void add_run(Command& program);
 void add_stress(Command& program);
 

@@ -5,6 +5,7 @@
 #include "calibration_names.hpp"
 #include "cli.hpp"
 #include "printable.hpp"
+#include "recorded_hands.hpp"
 
 namespace nendo::app {
 namespace {
@@ -103,6 +104,13 @@ Result<KnownHands> known_hands(const driver::GloveInfo& glove, Side side,
   }
   // The simulated wearer has the hand that the default is for.
   if (options.user.empty() && glove.source.starts_with("sim")) return hands;
+  if (options.user.empty()) {
+    if (const auto recorded = recorded_hand(glove, side)) {
+      hands.own = {recorded->calibration, recorded->size};
+      hands.swapped = {recorded->swapped, recorded->swapped_size};
+      return hands;
+    }
+  }
   return stored_hands(glove, hands, options.user);
 }
 

@@ -50,7 +50,8 @@ void add_calibration_options(Command& command, CalibrationOptions& options);
 Result<void> check(const CalibrationOptions& options);
 
 /// `own` is for the hand that the glove is sewn for, `side`. Says in one line on standard error
-/// which file it is; a simulated glove gets a stored one only if it is asked for. `swapped` is
+/// which file it is; a simulated glove gets a stored one only if it is asked for, a
+/// replayed one has that with which it was recorded. `swapped` is
 /// chosen without a word: a stored one, or the default. Blocks. Errors: bad_input (no such, another
 /// hand's, not readable), usage.
 Result<KnownHands> known_hands(const driver::GloveInfo& glove, Side side,

@@ -32,6 +32,9 @@ int run(int argc, char** argv) {
                        add_calibration(program);
                        add_deform(program);
                        add_emulate(program);
+                       add_record(program);
+                       add_replay(program);
+                       add_recording(program);
                        add_stress(program);
                        add_bench(program);
                      });

@@ -72,7 +72,7 @@ Result<void> check(CommandOptions& options) {
   const auto action = flow::switch_action_named(options.switch_action);
   if (!action) {
     return Error{Errc::usage, "--switch " + options.switch_action +
-                                  ": unknown; use none, grab, commit or toggle"};
+                                  ": unknown; use none, grab, commit, toggle or keep"};
   }
   run.loop.switch_action = *action;
   const auto filter = options.filter.parse();
@@ -95,6 +95,7 @@ Result<void> check(CommandOptions& options) {
   if (const auto fine = run.length.check(); !fine) return fine;
   if (const auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
+  if (const auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
   if (run.mesh.empty()) run.mesh = shipped_model("moai.obj").string();
   return check_output(run.out);
 }
@@ -116,7 +117,7 @@ int run(CommandOptions& options) {
   const auto outcome = run_session(wanted, *hands, *std::move(model), progress_for(wanted));
   if (!outcome) return report(outcome.error());
   print_summary(wanted, *hands, *outcome);
-  return 0;
+  return outcome->recording.has_failed ? static_cast<int>(Errc::failed) : 0;
 }
 
 } // namespace
@@ -155,7 +156,10 @@ void add_run(Command& program) {
   options->loop.add_to(command);
   command.add_option("--switch", options->switch_action,
                      "What the wrist switch does. grab: the hands hold the model while it is on; "
-                     "commit: keeps the shape so far; toggle: lets go, takes hold again");
+                     "commit: keeps the shape so far; toggle: lets go, takes hold again; keep: "
+                     "keeps what was just "
+                     "done (--keep-last)");
+  add_recording_options(command, run_options.recording);
   add_filter_options(command, options->filter);
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--out", run_options.out,

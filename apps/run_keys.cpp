@@ -28,10 +28,12 @@ std::string numbered(const std::string& out, int number) {
 }
 
 RunKeys::RunKeys(flow::RequestRing& requests, const flow::DeformLoop& loop,
-                 const deform::Mesh& model, std::string out)
-    : requests_(requests), loop_(loop), model_(model), out_(std::move(out)) {
-  if (keys_.are_there())
-    note("keys: g lets go, takes hold again; c keeps the shape so far; u undoes; s saves; q ends");
+                 const deform::Mesh& model, std::string out, RunRecorder* keeper)
+    : requests_(requests), loop_(loop), model_(model), out_(std::move(out)), keeper_(keeper) {
+  if (!keys_.are_there()) return;
+  note("keys: g lets go, takes hold again; c keeps the shape so far; u undoes; s saves; " +
+       std::string(keeper_ != nullptr ? "k keeps the recording of what was just done; " : "") +
+       "q ends");
 }
 
 bool RunKeys::obey(std::chrono::milliseconds patience, const flow::Frame& latest) {
@@ -41,6 +43,7 @@ bool RunKeys::obey(std::chrono::milliseconds patience, const flow::Frame& latest
   if (*key == 'c' || *key == ' ') ask(flow::Request::commit);
   if (*key == 'u') ask(flow::Request::undo);
   if (*key == 's') save(latest);
+  if (*key == 'k' && keeper_ != nullptr) keeper_->keep();
   if (*key != 'q') return true;
   wait_until_heard();
   return false;

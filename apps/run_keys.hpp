@@ -9,15 +9,17 @@
 #include <nendo/flow/deform_loop.hpp>
 
 #include "keys.hpp"
+#include "run_recording.hpp"
 
 namespace nendo::app {
 
 class RunKeys {
 public:
-  /// `out` names the shape that the run ends with; those saved on the way get a number. All must
-  /// outlive this. Says on standard error what the keys are, if any can come.
+  /// `out` names the shape that the run ends with; those saved on the way get a number. `keeper`
+  /// keeps what was done last, if there is one. All must outlive this. Says on standard error what
+  /// the keys are, if any can come.
   RunKeys(flow::RequestRing& requests, const flow::DeformLoop& loop, const deform::Mesh& model,
-          std::string out);
+          std::string out, RunRecorder* keeper);
 
   /// Waits so long for a key, and does what it stands for; `latest` is what the user sees. False:
   /// the run is to end.
@@ -33,6 +35,7 @@ private:
   const flow::DeformLoop& loop_;
   const deform::Mesh& model_;
   std::string out_;
+  RunRecorder* keeper_;
   int saved_ = 0;
 };
 

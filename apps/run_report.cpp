@@ -157,6 +157,33 @@ void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
               static_cast<unsigned long long>(stats.held_apart_ticks));
 }
 
+// Of the file, or of the files that were kept.
+ordered_json recording_json(const RunOptions& options, const RecordingOutcome& outcome) {
+  if (!options.recording.wanted()) return nullptr;
+  ordered_json line{{"file", options.recording.file}, {"failed", outcome.has_failed}};
+  if (!outcome.recorded) return line;
+  line["samples"] = outcome.recorded->samples;
+  line["ticks"] = outcome.recorded->ticks;
+  line["lost"] = outcome.recorded->lost;
+  line["bytes"] = outcome.recorded->bytes;
+  line["kept"] = outcome.recorded->kept;
+  return line;
+}
+
+void print_recording(const RunOptions& options, const RecordingOutcome& outcome) {
+  if (!options.recording.wanted()) return;
+  if (!outcome.recorded) {
+    std::printf("  %-14s not complete, as was told\n", "recording");
+    return;
+  }
+  const bool is_filed = !options.recording.file.empty();
+  std::printf("  %-14s %s%s bytes, %llu entries lost, %llu kept\n", "recording",
+              is_filed ? (options.recording.file + ", ").c_str() : "",
+              thousands(static_cast<double>(outcome.recorded->bytes)).c_str(),
+              static_cast<unsigned long long>(outcome.recorded->lost),
+              static_cast<unsigned long long>(outcome.recorded->kept));
+}
+
 void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
@@ -202,6 +229,7 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
   line["vertices"] = outcome.vertices;
   line["vertices_per_s"] =
       static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) / outcome.elapsed_s;
+  line["recording"] = recording_json(options, outcome.recording);
   line["result"] = outcome.result;
   std::cout << line.dump() << std::endl;
 }
@@ -243,6 +271,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
                         outcome.elapsed_s)
                   .c_str(),
               thousands(static_cast<double>(outcome.vertices)).c_str());
+  print_recording(options, outcome.recording);
   std::printf("  %-14s %s\n", "result", outcome.result.c_str());
   std::fflush(stdout);
 }

@@ -283,12 +283,13 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
   const auto placement = placement_for(hands, inputs, model);
+  auto setup = setup_of(inputs, placement, loop_options);
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {
     return Error{Errc::failed, "the hands cannot take hold of the model: " +
                                    std::string(deform::describe(loop->grab_status()))};
   }
-  return PlacedLoop{std::move(loop), largest_radius};
+  return PlacedLoop{std::move(loop), largest_radius, std::move(setup)};
 }
 
 Result<RunOutcome> run_session(RunOptions options, const std::vector<OpenHand>& hands,
@@ -296,9 +297,12 @@ Result<RunOutcome> run_session(RunOptions options, const std::vector<OpenHand>& 
   flow::RequestRing requests(64);
   options.loop.requests = &requests;
   options.loop.sculptor.deformer.undo_bytes = undo_bytes_for(model);
-  auto placed = place_loop(options, hands, model);
+  RunRecorder recorder(options);
+  auto placed = place_loop(recorder.recorded(options), hands, model);
   if (!placed) return placed.error();
   flow::DeformLoop& loop = *placed->loop;
+  if (const auto begun = recorder.begin(options, placed->setup, hands, model); !begun)
+    return begun.error();
   std::atomic<bool> over{false};
   std::atomic<bool> ended{false};
   std::promise<std::vector<flow::Grant>> prepared;
@@ -315,7 +319,8 @@ Result<RunOutcome> run_session(RunOptions options, const std::vector<OpenHand>& 
     note(line);
   HoldLights lights(options.loop.switch_action, hands);
   {
-    RunKeys keys(requests, loop, model, options.out);
+    RunKeys keys(requests, loop, model, options.out,
+                 options.recording.keep_last_s > 0.0 ? &recorder : nullptr);
     watch(options, loop, ended, start, lights, keys, progress);
   }
   over = true;
@@ -326,9 +331,11 @@ Result<RunOutcome> run_session(RunOptions options, const std::vector<OpenHand>& 
     hand.glove->stop();
 
   model.vertices = loop.final_shape();
+  const auto recording = recorder.end(model);
   if (const auto kept = keep(options.out, model); !kept) return kept.error();
   return RunOutcome{loop.stats(),   elapsed_s,   model.vertices.cols(),
-                    placed->radius, options.out, std::move(grants)};
+                    placed->radius, options.out, std::move(grants),
+                    recording};
 }
 
 } // namespace nendo::app

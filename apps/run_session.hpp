@@ -14,6 +14,7 @@
 #include "glove_calibration.hpp"
 #include "hand_length.hpp"
 #include "open_hand.hpp"
+#include "run_recording.hpp"
 
 namespace nendo::app {
 
@@ -29,6 +30,7 @@ struct RunOptions {
   HandLength length;
   hand::FilterOptions filter; ///< of both hands
   flow::LoopOptions loop;
+  RecordingOptions recording;
   flow::RealtimeOptions realtime;  ///< of the loop's thread
   std::vector<flow::Grant> grants; ///< what was asked for before, of the process and the readers
 };
@@ -53,12 +55,14 @@ struct RunOutcome {
   double radius = 0.0; ///< the largest
   std::string result;
   std::vector<flow::Grant> grants;
+  RecordingOutcome recording;
 };
 
 /// The loop over these hands, which hold the model between them.
 struct PlacedLoop {
   std::unique_ptr<flow::DeformLoop> loop;
   double radius = 0.0; ///< the largest
+  PlacedSetup setup;   ///< what a recording tells of it
 };
 
 /// As options.loop says, with the supports that options.radius says. Errors: usage (radius), failed

@@ -35,26 +35,6 @@ Result<void> parse_loop(const StressArguments& arguments, RunOptions& run) {
 
 } // namespace
 
-Result<double> parse_duration(const std::string& text) {
-  struct Unit {
-    std::string_view name;
-    double seconds;
-  };
-  constexpr std::array<Unit, 5> units{
-      {{"", 1.0}, {"s", 1.0}, {"m", 60.0}, {"h", 3600.0}, {"d", 86'400.0}}};
-  constexpr double most_s = 1e7;
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, value);
-  const std::string_view suffix(stopped, static_cast<std::size_t>(end - stopped));
-  for (const Unit& unit : units) {
-    const double seconds = value * unit.seconds;
-    if (error == std::errc{} && suffix == unit.name && seconds > 0.0 && seconds <= most_s)
-      return seconds;
-  }
-  return usage("--duration " + text + ": use seconds above 0, or 10m, 2h, 1d");
-}
-
 Result<flow::TickStages> parse_stages(const std::string& text) {
   flow::TickStages stages{false, false, false, false};
   for (std::string_view rest = text;;) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "durations.hpp"
 #include "loop_options.hpp"
 #include "run_session.hpp"
 #include "stress/conditions.hpp"
@@ -41,9 +42,6 @@ struct StressOptions {
 
 /// Error: usage, naming the option.
 Result<StressOptions> parse(const StressArguments& arguments);
-
-/// Seconds of "90", "90s", "10m", "2h" or "1d". Error: usage.
-Result<double> parse_duration(const std::string& text);
 
 /// The stages of a list like "sleep,input,hands": sleep is always one. Error: usage.
 Result<flow::TickStages> parse_stages(const std::string& text);

@@ -10,6 +10,7 @@
 #include "fivedt/fivedt_driver.hpp"
 #include "forte/forte_driver.hpp"
 #include "lucidgloves/lucidgloves_driver.hpp"
+#include "replay/replay_driver.hpp"
 #include "simulated/simulated_driver.hpp"
 #include "usb/open_usb_glove.hpp"
 
@@ -39,6 +40,8 @@ constexpr std::array drivers{
            open_auto},
     Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
            "a simulated glove", open_simulated},
+    Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes]",
+           "a glove as `nendo record` or `nendo run --record` recorded it", open_replay},
 };
 
 } // namespace

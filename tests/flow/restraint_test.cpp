@@ -9,6 +9,7 @@
 
 #include "support/flow_fixtures.hpp"
 #include "support/restraint.hpp"
+#include "support/takes.hpp"
 
 using namespace std::chrono_literals;
 using namespace nendo;
@@ -75,6 +76,27 @@ TEST_SUITE("restraint") {
       CHECK((test.vertices_of(test.loop->frames().front()) - test.model.vertices)
                 .cwiseAbs()
                 .maxCoeff() > 1e-3);
+    }
+  }
+
+  TEST_CASE("with a recorder attached, and requests, no tick does either, and nothing is lost") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      test::RecordedLoop recorded(mode, hand::FilterKind::one_euro, true, true);
+      recorded.record();
+      test::RestraintCounts counts;
+      {
+        const Restraint restraint;
+        test::play(recorded, 400);
+        counts = restraint.counts();
+      }
+      CHECK(counts.allocations == 0);
+      CHECK(counts.frees == 0);
+      CHECK(counts.locks == 0);
+      const auto taken = recorded.end();
+      REQUIRE(taken);
+      CHECK(taken->ticks == 400);
+      CHECK(taken->requests > 0);
+      CHECK(taken->lost == 0);
     }
   }
 

@@ -47,8 +47,8 @@ constexpr auto off = WristSwitch::off;
 
 TEST_SUITE("wrist_switch") {
   TEST_CASE("actions have names") {
-    for (const auto action :
-         {SwitchAction::none, SwitchAction::grab, SwitchAction::commit, SwitchAction::toggle}) {
+    for (const auto action : {SwitchAction::none, SwitchAction::grab, SwitchAction::commit,
+                              SwitchAction::toggle, SwitchAction::keep}) {
       CHECK(switch_action_named(name_of(action)) == action);
     }
     CHECK_FALSE(switch_action_named("press").has_value());

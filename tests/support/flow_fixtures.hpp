@@ -44,16 +44,18 @@ struct LoopUnderTest {
   flow::RequestRing requests{16};
   deform::Mesh model;
   flow::Placement placement;
+  std::vector<flow::HandInput> inputs; ///< these two as the loop was made of them
+  flow::LoopOptions options;
   std::unique_ptr<flow::DeformLoop> loop;
 
   explicit LoopUnderTest(flow::Mode mode, std::uint32_t rings_of_ball = 24, double rate_hz = 1000.0,
                          flow::SwitchAction switch_action = flow::SwitchAction::none,
                          bool gated = true, hand::FilterKind filter = hand::FilterKind::off,
-                         std::optional<CountScale> adapt = std::nullopt)
+                         std::optional<CountScale> adapt = std::nullopt, flow::Tape* tape = nullptr,
+                         std::optional<deform::InjectiveOptions> injective = std::nullopt)
       : model(ball(rings_of_ball)) {
     const HostTime now = HostClock::now();
     std::array<std::optional<flow::Fingertips>, 2> tips;
-    std::vector<flow::HandInput> inputs;
     for (const Side side : {Side::left, Side::right}) {
       rings.push_back(std::make_unique<SampleRing>(64));
       const GloveSample first = bent_sample(side, 0, now);
@@ -68,7 +70,8 @@ struct LoopUnderTest {
       inputs.back().adapt = adapt;
     }
     placement = flow::place_hands(model, tips);
-    flow::LoopOptions options;
+    options.tape = tape;
+    options.sculptor.deformer.injective = injective;
     options.rate_hz = rate_hz;
     options.switch_action = switch_action;
     options.requests = &requests;
@@ -77,7 +80,7 @@ struct LoopUnderTest {
     options.sculptor.deformer.supports = deform::one_radius(0.5);
     options.sculptor.piece_length = 0.02;
     options.sculptor.deformer.csrbf.merge_fraction = 0.05;
-    loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), options);
+    loop = std::make_unique<flow::DeformLoop>(model, placement, inputs, options);
   }
 
   void bend(int counts, HostTime arrival) {

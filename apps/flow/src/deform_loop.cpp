@@ -70,14 +70,17 @@ const hand::HandSkeleton& DeformLoop::Hand::skeleton() const noexcept {
 void DeformLoop::take_samples(TickRecord& record) noexcept {
   const HostTime now = record.woke;
   HostTime newest{};
+  std::uint8_t number = 0;
   for (auto& hand : hands_) {
     const std::size_t count = hand.input.ring->drain([&](const GloveSample& sample) noexcept {
+      if (options_.tape != nullptr) options_.tape->sample(number, sample);
       hand.follow(sample);
       if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
       ++stats_.switch_uses[hand.slot];
       if (options_.switch_action == SwitchAction::toggle) hold_wanted_ = !hold_wanted_;
       if (options_.switch_action == SwitchAction::commit) commit_due_ = true;
     });
+    ++number;
     hand.fresh = count > 0;
     if (hand.fresh) {
       const HostTime arrival = hand.latest.arrival;
@@ -108,6 +111,7 @@ void DeformLoop::follow_switches() noexcept {
 void DeformLoop::take_requests() noexcept {
   if (options_.requests == nullptr) return;
   options_.requests->drain([this](Request request) noexcept {
+    if (options_.tape != nullptr) options_.tape->request(request);
     if (request == Request::grab) hold_wanted_ = true;
     if (request == Request::let_go) hold_wanted_ = false;
     if (request == Request::commit) commit_due_ = held_;
@@ -188,6 +192,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   if (runs.publish) frames_.publish();
   record.published_ns = now_ns();
   record_latencies(record);
+  if (options_.tape != nullptr) options_.tape->tick(record.tick, record.scheduled, record.woke);
   if (options_.records != nullptr) options_.records->try_push(record);
 }
 

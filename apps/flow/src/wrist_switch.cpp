@@ -5,7 +5,7 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, 4> action_names{"none", "grab", "commit", "toggle"};
+constexpr std::array<std::string_view, 5> action_names{"none", "grab", "commit", "toggle", "keep"};
 
 } // namespace
 

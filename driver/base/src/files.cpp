@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -14,26 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Descriptor {
-public:
-  explicit Descriptor(int fd) noexcept : fd_(fd) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int get() const noexcept { return fd_; }
-  bool is_open() const noexcept { return fd_ >= 0; }
-  /// False if the system reports here what an earlier write could not keep.
-  bool close() noexcept {
-    const int fd = fd_;
-    fd_ = -1;
-    return fd < 0 || ::close(fd) == 0;
-  }
-
-private:
-  int fd_;
-};
-
 std::string why(int error_number) {
   return std::generic_category().message(error_number);
 }
@@ -42,16 +23,6 @@ std::string size_text(std::uint64_t bytes) {
   constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
   return bytes % (1024 * mebibyte) == 0 ? std::to_string(bytes / 1024 / mebibyte) + " GiB"
                                         : std::to_string(bytes / mebibyte) + " MiB";
-}
-
-bool write_all(int fd, std::string_view rest) noexcept {
-  while (!rest.empty()) {
-    const ssize_t written = ::write(fd, rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    rest.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
 }
 
 /// A name that no other process or thread uses. Not mkstemp: its 0600 would override the umask.
@@ -64,18 +35,12 @@ fs::path temporary_beside(const fs::path& target) {
   return name;
 }
 
-/// A rename is on the disk when its folder is. What a file system cannot sync is not worth failing.
-void sync_folder_of(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (opened.is_open()) ::fsync(opened.get());
-}
-
 /// 0, or the error number of the step that failed.
 int write_and_rename(const fs::path& temporary, const fs::path& target, std::string_view contents) {
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!file.is_open()) return errno;
-  const bool done = write_all(file.get(), contents) && ::fsync(file.get()) == 0 && file.close() &&
+  const bool done = write_all(file.get(), std::as_bytes(std::span(contents))) &&
+                    ::fsync(file.get()) == 0 && file.close() &&
                     ::rename(temporary.c_str(), target.c_str()) == 0;
   if (done) return 0;
   const int error_number = errno;
@@ -85,6 +50,41 @@ int write_and_rename(const fs::path& temporary, const fs::path& target, std::str
 
 } // namespace
 
+bool Descriptor::close() noexcept {
+  const int fd = std::exchange(fd_, -1);
+  return fd < 0 || ::close(fd) == 0;
+}
+
+bool write_all(int fd, std::span<const std::byte> rest) noexcept {
+  while (!rest.empty()) {
+    const ssize_t written = ::write(fd, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    rest = rest.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+void sync_folder_of(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened.is_open()) ::fsync(opened.get());
+}
+
+Result<OpenFile> open_file(const fs::path& path, std::string_view kind) {
+  const auto bad = [&](const std::string& what) {
+    return Error{Errc::bad_input, path.string() + ": " + what};
+  };
+  // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.is_open()) return bad("cannot be opened: " + why(errno));
+  struct stat info {};
+  if (::fstat(file.get(), &info) != 0) return bad("cannot be read: " + why(errno));
+  if (!S_ISREG(info.st_mode))
+    return bad("is not a regular file; name a " + std::string(kind) + " file");
+  return OpenFile{std::move(file), static_cast<std::uint64_t>(info.st_size)};
+}
+
 Result<std::string> read_file(const fs::path& path, std::uint64_t most_bytes,
                               std::string_view kind) {
   const auto bad = [&](const std::string& what) {
@@ -93,14 +93,10 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t most_bytes,
   const auto too_large = [&] {
     return bad("is larger than " + size_text(most_bytes) + ", so it is no " + std::string(kind));
   };
-  // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!file.is_open()) return bad("cannot be opened: " + why(errno));
-  struct stat info {};
-  if (::fstat(file.get(), &info) != 0) return bad("cannot be read: " + why(errno));
-  if (!S_ISREG(info.st_mode))
-    return bad("is not a regular file; name a " + std::string(kind) + " file");
-  const auto size = static_cast<std::uint64_t>(info.st_size);
+  const auto opened = open_file(path, kind);
+  if (!opened) return opened.error();
+  const Descriptor& file = opened->file;
+  const std::uint64_t size = opened->size;
   if (size > most_bytes) return too_large();
   std::string contents(size + 1, '\0'); // one more than is there: its end is seen in one turn
   std::size_t filled = 0;

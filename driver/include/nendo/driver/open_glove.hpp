@@ -1,7 +1,7 @@
 #pragma once
 // From what a user types to an open glove. One grammar everywhere:
 //   serial:/dev/ttyUSB0   serial:/dev/ttyUSB0?baud=38400   auto   auto:left
-//   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18
+//   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18   replay:take1.nendo?speed=0.5
 
 #include <map>
 #include <memory>

@@ -13,6 +13,7 @@
 #include <nendo/flow/pacer.hpp>
 #include <nendo/flow/request.hpp>
 #include <nendo/flow/sculptor.hpp>
+#include <nendo/flow/tape.hpp>
 #include <nendo/flow/tick_record.hpp>
 #include <nendo/flow/wrist_switch.hpp>
 #include <nendo/hand/calibration_in_force.hpp>
@@ -54,6 +55,8 @@ struct LoopOptions : PaceOptions {
   TickRing* records = nullptr;
   /// What the loop is asked for while it runs. Must outlive it.
   RequestRing* requests = nullptr;
+  /// What is taken goes there, too. Must outlive it.
+  Tape* tape = nullptr;
   /// What the hands' rings ring: needed by OverrunPolicy::sample. Must outlive the loop.
   Bell* bell = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
@@ -76,6 +79,10 @@ public:
   /// One tick without its sleep, for callers with a clock of their own. Same thread as run().
   void tick(std::uint64_t number, HostTime scheduled) noexcept {
     tick({number, scheduled, HostClock::now()});
+  }
+  /// The same of a tick that has been, as a tape tells it; what is measured of it says nothing.
+  void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {
+    tick(Pacer::Due{number, scheduled, woke});
   }
 
   /// Whether the hands could take hold: ok or merged.

@@ -3,9 +3,11 @@
 // flag, so that a decoder reads a whole layout and asks once, at the end, whether the bytes
 // sufficed.
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace nendo {
 
@@ -31,6 +33,17 @@ public:
   constexpr std::uint32_t u32_le() noexcept {
     const std::uint32_t low = u16_le();
     return low | (static_cast<std::uint32_t>(u16_le()) << 16U);
+  }
+  constexpr std::uint64_t u64_le() noexcept {
+    const std::uint64_t low = u32_le();
+    return low | (static_cast<std::uint64_t>(u32_le()) << 32U);
+  }
+  constexpr std::int64_t i64_le() noexcept { return std::bit_cast<std::int64_t>(u64_le()); }
+  constexpr double f64_le() noexcept { return std::bit_cast<double>(u64_le()); }
+  /// As ByteWriter::text() writes it; any bytes. As long-lived as the bytes that are read.
+  std::string_view text() noexcept {
+    const auto part = take(u16_le());
+    return {reinterpret_cast<const char*>(part.data()), part.size()};
   }
   constexpr std::span<const std::byte> take(std::size_t count) noexcept {
     if (count > remaining()) {

@@ -1,0 +1,72 @@
+#include "crash_keeper.hpp"
+
+#include <array>
+#include <atomic>
+#include <climits>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <nendo/base/files.hpp>
+
+namespace nendo::recording {
+namespace {
+
+constexpr std::array<int, 5> crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
+
+// A signal handler sees nothing but what has static storage.
+std::atomic<KeptRing*> kept{nullptr};
+std::array<char, PATH_MAX> kept_path{};
+std::array<struct sigaction, crashes.size()> before{};
+static_assert(std::atomic<KeptRing*>::is_always_lock_free);
+
+void say(std::string_view text) noexcept {
+  write_all(STDERR_FILENO, std::as_bytes(std::span(text)));
+}
+
+// Only calls that signal-safety(7) lists.
+extern "C" void on_crash(int signal) {
+  // Whichever thread comes first; a crash in here finds nothing to do.
+  KeptRing* const ring = kept.exchange(nullptr);
+  if (ring != nullptr) {
+    ring->freeze();
+    const int fd = ::open(kept_path.data(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const bool written = fd >= 0 && ring->write(fd) && ::fsync(fd) == 0;
+    say(written ? "nendo: crashed; the last of what it recorded is in "
+                : "nendo: crashed; the last of what it recorded could not be written to ");
+    say(std::string_view(kept_path.data(), ::strlen(kept_path.data())));
+    say("\n");
+    if (fd >= 0) ::close(fd);
+  }
+  // The default action is in force again (SA_RESETHAND), and takes place when this returns.
+  ::raise(signal);
+}
+
+} // namespace
+
+CrashKeeper::CrashKeeper(KeptRing& ring, const std::filesystem::path& path) {
+  const std::string& name = path.native();
+  if (kept.load() != nullptr || name.size() >= kept_path.size()) return;
+  std::memcpy(kept_path.data(), name.c_str(), name.size() + 1);
+  kept.store(&ring);
+  armed_ = true;
+  struct sigaction action {};
+  action.sa_handler = on_crash;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigemptyset(&action.sa_mask);
+  for (std::size_t at = 0; at < crashes.size(); ++at)
+    ::sigaction(crashes[at], &action, &before[at]);
+}
+
+CrashKeeper::~CrashKeeper() {
+  if (!armed_) return;
+  for (std::size_t at = 0; at < crashes.size(); ++at)
+    ::sigaction(crashes[at], &before[at], nullptr);
+  kept.store(nullptr);
+}
+
+} // namespace nendo::recording

@@ -1,0 +1,62 @@
+#include <nendo/recording/loop_replay.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace nendo::recording {
+namespace {
+
+// As many as may wait for a live loop, or more.
+constexpr std::size_t ring_size = 4096;
+
+bool points_exist(const deform::Supports& supports, std::size_t hands) {
+  return std::all_of(supports.own.begin(), supports.own.end(), [&](const auto& own) {
+    return own.point < 5 * static_cast<Eigen::Index>(hands);
+  });
+}
+
+} // namespace
+
+Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
+                                                     const deform::Mesh& model) {
+  if (!setup.loop || setup.hands.empty() ||
+      !points_exist(setup.loop->options.sculptor.deformer.supports, setup.hands.size())) {
+    return Error{Errc::bad_input,
+                 "gloves were recorded, but no loop that shapes a model; shape one "
+                 "with `nendo run --right replay:FILE`"};
+  }
+  std::unique_ptr<LoopReplay> replay(new LoopReplay);
+  std::vector<flow::HandInput> inputs;
+  for (const HandSetup& hand : setup.hands) {
+    replay->rings_.push_back(std::make_unique<SampleRing>(ring_size));
+    inputs.push_back(hand.input(replay->rings_.back().get()));
+  }
+  flow::LoopOptions options = setup.loop->options;
+  options.requests = &replay->requests_;
+  replay->loop_ =
+      std::make_unique<flow::DeformLoop>(model, setup.loop->placement, std::move(inputs), options);
+  if (!is_solved(replay->loop_->grab_status()))
+    return Error{Errc::bad_input, "the recorded hands cannot take hold of the model: " +
+                                      std::string(describe(replay->loop_->grab_status()))};
+  return replay;
+}
+
+void LoopReplay::take(const driver::RecordedSample& sample) noexcept {
+  exact_ = sample.glove < rings_.size() && rings_[sample.glove]->try_push(sample.sample) && exact_;
+}
+
+bool LoopReplay::feed(const Entry& entry) noexcept {
+  if (const auto* sample = std::get_if<driver::RecordedSample>(&entry)) {
+    take(*sample);
+  } else if (const auto* request = std::get_if<flow::Request>(&entry)) {
+    exact_ = requests_.try_push(*request) && exact_;
+  } else if (const auto* tick = std::get_if<flow::TapedTick>(&entry)) {
+    loop_->tick(tick->number, tick->scheduled, tick->woke);
+    return true;
+  } else {
+    exact_ = false;
+  }
+  return false;
+}
+
+} // namespace nendo::recording

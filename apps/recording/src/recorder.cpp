@@ -1,0 +1,220 @@
+#include <nendo/recording/recorder.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <unistd.h>
+
+#include <nendo/flow/wrist_switch.hpp>
+#include <nendo/recording/kept_ring.hpp>
+
+#include "crash_keeper.hpp"
+#include "take_file.hpp"
+
+namespace nendo::recording {
+namespace {
+
+constexpr std::size_t largest_payload = std::size_t{1} << 18;
+/// How often the tape is emptied.
+constexpr std::chrono::milliseconds drain_time{20};
+
+/// What the last minute may take in memory: gloves that are twice as fast as they say, or send 250
+/// samples a second without saying so, and a loop in time.
+std::size_t memory_for(const Setup& setup, HostClock::duration span) {
+  constexpr double sample_bytes = 88.0;
+  constexpr double tick_bytes = 26.0;
+  constexpr double least_rate_hz = 250.0;
+  double bytes_s = 1000.0;
+  for (const auto& glove : setup.gloves)
+    bytes_s += sample_bytes * std::max(2.0 * glove.rate_hz, least_rate_hz);
+  if (setup.loop) bytes_s += tick_bytes * setup.loop->options.rate_hz;
+  constexpr double most_bytes = 1e9;
+  return static_cast<std::size_t>(std::min(most_bytes, bytes_s * (to_seconds(span) + 2.0)));
+}
+
+class TapeRecorder final : public Recorder {
+public:
+  TapeRecorder(flow::Tape& tape, RecorderOptions options, std::optional<TakeFile> file,
+               std::unique_ptr<KeptRing> ring)
+      : tape_(tape), options_(std::move(options)), file_(std::move(file)), ring_(std::move(ring)) {
+    payload_.reserve(2 * largest_payload);
+    if (!ring_) return;
+    auto crash_path = options_.kept_stem;
+    crash_.emplace(*ring_, crash_path += ".crash.nendo");
+  }
+  ~TapeRecorder() override { (void)TapeRecorder::end({}); }
+
+  void start() {
+    thread_ = std::jthread([this](const std::stop_token& stop) { record(stop); });
+  }
+
+  void keep() noexcept override { keeps_.fetch_add(1, std::memory_order_relaxed); }
+
+  Result<Recorded> end(const std::optional<ShapeSum>& shape) override {
+    if (!std::exchange(ended_, true)) {
+      thread_.request_stop();
+      if (thread_.joinable()) thread_.join();
+      finish(shape);
+    }
+    if (failure_) return *failure_;
+    return recorded_;
+  }
+
+private:
+  void record(const std::stop_token& stop) {
+    std::mutex mutex; // nobody else takes it: the wait wants one
+    std::condition_variable_any wake;
+    std::unique_lock lock(mutex);
+    HostTime next_chunk = HostClock::now() + options_.chunk_time;
+    while (!stop.stop_requested()) {
+      wake.wait_until(lock, stop, std::min(next_chunk, HostClock::now() + drain_time),
+                      [] { return false; });
+      drain();
+      const HostTime now = HostClock::now();
+      if (now >= next_chunk || payload_.size() >= largest_payload) {
+        write_chunk();
+        next_chunk = now + options_.chunk_time;
+      }
+      if (ring_ && keeps_.exchange(0, std::memory_order_relaxed) > 0) write_kept();
+    }
+  }
+
+  void drain() {
+    tape_.drain([this](const flow::TapeEntry& entry) noexcept {
+      std::visit([this](const auto& taken) { add(taken); }, entry);
+      if (payload_.size() >= largest_payload) write_chunk();
+    });
+  }
+
+  void add(const flow::TakenSample& taken) {
+    put({driver::RecordedSample{taken.hand, taken.sample}});
+    ++recorded_.samples;
+    auto& edge = switches_[taken.hand % switches_.size()];
+    if (options_.keep_on_switch && edge.turned_on(taken.sample.wrist_switch, taken.sample.arrival))
+      keep();
+  }
+  void add(flow::Request request) {
+    put(request);
+    ++recorded_.requests;
+  }
+  void add(const flow::TapedTick& tick) {
+    tell_lost(tick.lost);
+    put(tick);
+    ++recorded_.ticks;
+  }
+  void put(const Entry& entry) {
+    ByteWriter writer(payload_);
+    put_entry(writer, entry);
+    ++entries_;
+  }
+  void tell_lost(std::uint64_t lost) {
+    if (lost == recorded_.lost) return;
+    put(Gap{lost - recorded_.lost});
+    if (recorded_.lost == 0)
+      tell("the recorder cannot keep up; what is missing is marked in the recording");
+    recorded_.lost = lost;
+  }
+
+  void write_chunk() {
+    if (payload_.empty()) return;
+    if (ring_) ring_->push(payload_, entries_, HostClock::now());
+    append(driver::tape_chunk);
+    payload_.clear();
+    entries_ = 0;
+  }
+  void append(driver::ChunkType type) {
+    if (!file_) return;
+    if (const auto written = file_->append(type, payload_); !written) fail(written.error());
+    recorded_.bytes = file_->bytes();
+  }
+
+  void write_kept() {
+    write_chunk();
+    std::filesystem::path path;
+    for (;;) { // names that are taken by earlier runs stay
+      path = options_.kept_stem;
+      path += ".kept-" + std::to_string(++kept_number_) + ".nendo";
+      std::error_code ignored;
+      if (!std::filesystem::exists(path, ignored)) break;
+    }
+    auto file = create_file(path);
+    if (!file) return fail(file.error());
+    if (!ring_->write(file->get()) || ::fdatasync(file->get()) != 0 || !file->close()) {
+      const std::string why = std::generic_category().message(errno);
+      return fail({Errc::failed, path.string() + ": cannot be kept: " + why + "; make room"});
+    }
+    ++recorded_.kept;
+    tell("kept as " + path.string());
+  }
+
+  void finish(const std::optional<ShapeSum>& shape) {
+    drain();
+    tell_lost(tape_.lost());
+    write_chunk();
+    if (ring_ && keeps_.exchange(0, std::memory_order_relaxed) > 0) write_kept();
+    ByteWriter writer(payload_);
+    put_ending(writer, {HostClock::now(), recorded_.samples, recorded_.requests, recorded_.ticks,
+                        recorded_.lost, shape});
+    append(ending_chunk);
+    payload_.clear();
+  }
+
+  void fail(const Error& error) {
+    if (!failure_) failure_ = error;
+    tell(error.message);
+  }
+  void tell(std::string_view line) const {
+    if (options_.tell) options_.tell(line);
+  }
+
+  flow::Tape& tape_;
+  RecorderOptions options_;
+  std::optional<TakeFile> file_;
+  std::unique_ptr<KeptRing> ring_;
+  std::optional<CrashKeeper> crash_;
+  std::vector<std::byte> payload_;
+  std::uint64_t entries_ = 0; ///< in the payload
+  std::array<flow::WristSwitchEdge, 2> switches_{};
+  Recorded recorded_;
+  std::optional<Error> failure_; ///< the first one
+  unsigned kept_number_ = 0;
+  bool ended_ = false;
+  std::atomic<unsigned> keeps_{0};
+  std::jthread thread_; // last: joined before what it uses is gone
+};
+
+} // namespace
+
+Result<std::unique_ptr<Recorder>> Recorder::begin(const Setup& setup, flow::Tape& tape,
+                                                  RecorderOptions options) {
+  std::uint32_t chunks = 0;
+  auto bytes = setup_bytes(setup, chunks);
+  std::optional<TakeFile> file;
+  if (!options.file.empty()) {
+    auto created = TakeFile::create(options.file, bytes, chunks);
+    if (!created) return created.error();
+    file = *std::move(created);
+  }
+  std::unique_ptr<KeptRing> ring;
+  if (options.keep_last > HostClock::duration::zero()) {
+    ring = std::make_unique<KeptRing>(std::move(bytes), chunks, options.keep_last,
+                                      memory_for(setup, options.keep_last));
+  }
+  auto recorder =
+      std::make_unique<TapeRecorder>(tape, std::move(options), std::move(file), std::move(ring));
+  try {
+    recorder->start();
+  } catch (const std::system_error& error) {
+    return Error{Errc::failed, std::string("no thread for the recorder: ") + error.what()};
+  }
+  return std::unique_ptr<Recorder>(std::move(recorder));
+}
+
+} // namespace nendo::recording

@@ -1,0 +1,135 @@
+#include "setup_parts.hpp"
+
+#include <cmath>
+
+#include <nendo/driver/sample_record.hpp>
+
+namespace nendo::recording {
+namespace {
+
+constexpr std::size_t most_hands = 2;
+constexpr double largest = 1e6; // of anything that a hand is described by
+constexpr double least_hand_m = 0.01;
+constexpr double most_hand_m = 1.0;
+
+bool is_number(double value) {
+  return std::abs(value) <= largest; // false for NaN
+}
+
+bool is_hand_length(double length_m) {
+  return length_m >= least_hand_m && length_m <= most_hand_m;
+}
+
+void put_calibration(ByteWriter& writer, const hand::Calibration& calibration) {
+  for (const auto& line : calibration.sensors) {
+    writer.f64_le(line.gain_rad_per_count);
+    writer.f64_le(line.offset_counts);
+  }
+  for (const double part : calibration.mixed_in)
+    writer.f64_le(part);
+  writer.f64_le(calibration.middle_bias);
+}
+
+bool read_calibration(ByteReader& reader, hand::Calibration& calibration) {
+  bool fine = true;
+  const auto number = [&] {
+    const double value = reader.f64_le();
+    fine = fine && is_number(value);
+    return value;
+  };
+  for (auto& line : calibration.sensors) {
+    line.gain_rad_per_count = number();
+    line.offset_counts = number();
+  }
+  for (double& part : calibration.mixed_in)
+    part = number();
+  calibration.middle_bias = number();
+  return fine;
+}
+
+bool read_filter(ByteReader& reader, hand::FilterOptions& filter) {
+  const unsigned kind = reader.u8();
+  filter.kind = static_cast<hand::FilterKind>(kind);
+  filter.min_cutoff_hz = reader.f64_le();
+  filter.beta_hz_per_rad_s = reader.f64_le();
+  filter.derivative_cutoff_hz = reader.f64_le();
+  return kind <= static_cast<unsigned>(hand::FilterKind::one_euro) &&
+         is_number(filter.min_cutoff_hz) && is_number(filter.beta_hz_per_rad_s) &&
+         is_number(filter.derivative_cutoff_hz);
+}
+
+void put_size(ByteWriter& writer, const hand::HandSize& size) {
+  writer.f64_le(size.length_m);
+  writer.f64_le(size.breadth_m);
+}
+
+bool read_size(ByteReader& reader, hand::HandSize& size) {
+  size.length_m = reader.f64_le();
+  size.breadth_m = reader.f64_le();
+  return is_hand_length(size.length_m) && is_hand_length(size.breadth_m);
+}
+
+} // namespace
+
+void put_head(ByteWriter& writer, const Setup& setup) {
+  writer.i64_le(setup.begun.time_since_epoch().count());
+  driver::put_time(writer, setup.begun_host);
+  writer.text(setup.program);
+  writer.text(setup.wearer);
+}
+
+bool read_head(ByteReader& reader, Setup& setup) {
+  const std::chrono::nanoseconds begun(reader.i64_le());
+  const HostTime begun_host = driver::read_time(reader);
+  const std::string_view program = reader.text();
+  const std::string_view wearer = reader.text();
+  if (reader.overrun() || !driver::is_usable_time(begun) ||
+      !driver::is_usable_time(begun_host.time_since_epoch()))
+    return false;
+  setup.begun = std::chrono::sys_time<std::chrono::nanoseconds>(begun);
+  setup.begun_host = begun_host;
+  setup.program = program;
+  setup.wearer = wearer;
+  return true;
+}
+
+void put_hand(ByteWriter& writer, std::uint8_t number, const HandSetup& hand) {
+  writer.u8(static_cast<std::uint8_t>(hand.side));
+  put_size(writer, hand.size);
+  driver::put_sample_body(writer, {number, hand.first});
+  writer.u8(static_cast<std::uint8_t>(hand.gated));
+  writer.u8(static_cast<std::uint8_t>(hand.filter.kind));
+  writer.f64_le(hand.filter.min_cutoff_hz);
+  writer.f64_le(hand.filter.beta_hz_per_rad_s);
+  writer.f64_le(hand.filter.derivative_cutoff_hz);
+  writer.u8(static_cast<std::uint8_t>(hand.adapt.has_value()));
+  writer.u16_le(hand.adapt ? hand.adapt->most : 0);
+  writer.u8(static_cast<std::uint8_t>(hand.adapt && hand.adapt->whole_range));
+  put_calibration(writer, hand.calibration);
+  put_calibration(writer, hand.swapped);
+  put_size(writer, hand.swapped_size);
+}
+
+bool read_hand(ByteReader& reader, std::vector<HandSetup>& hands) {
+  HandSetup hand;
+  const unsigned side = reader.u8();
+  hand.side = side == 0 ? Side::left : Side::right;
+  const bool sized = read_size(reader, hand.size);
+  const auto first = driver::read_sample_body(reader);
+  if (!first || first->glove != hands.size() || hands.size() >= most_hands) return false;
+  if (!hands.empty() && hands.front().side == hand.side) return false;
+  hand.first = first->sample;
+  hand.gated = reader.u8() != 0;
+  const bool filters = read_filter(reader, hand.filter);
+  const bool adapts = reader.u8() != 0;
+  const CountScale counts{reader.u16_le(), reader.u8() != 0};
+  if (adapts) hand.adapt = counts;
+  const bool calibrated = read_calibration(reader, hand.calibration) &&
+                          read_calibration(reader, hand.swapped) &&
+                          read_size(reader, hand.swapped_size);
+  if (reader.overrun() || side > 1 || !sized || !filters || !calibrated) return false;
+  hands.push_back(hand);
+  return true;
+}
+
+} // namespace nendo::recording

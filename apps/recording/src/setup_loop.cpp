@@ -1,0 +1,186 @@
+#include "setup_parts.hpp"
+
+#include <utility>
+
+#include <nendo/driver/sample_record.hpp>
+#include <nendo/flow/tick_grid.hpp>
+
+namespace nendo::recording {
+namespace {
+
+constexpr std::size_t most_supports = 64; // of each kind
+constexpr std::uint64_t most_memory = std::uint64_t{1} << 28;
+constexpr std::uint32_t most_links = 1024;
+constexpr std::uint32_t most_catch_up = 1000; // as parse_policy()
+constexpr double most_points = 10.0;          // two hands' fingertips
+constexpr double largest = 1e100;             // as the solver takes
+
+/// Reads one value after another and remembers whether all of them were usable.
+class Judge {
+public:
+  explicit Judge(ByteReader& reader) : reader_(&reader) {}
+
+  double number(double least, double most) {
+    const double value = reader_->f64_le();
+    require(value >= least && value <= most);
+    return value;
+  }
+  template <class Enum>
+  Enum one_of(Enum last) {
+    const unsigned value = reader_->u8();
+    require(value <= static_cast<unsigned>(last));
+    return static_cast<Enum>(value);
+  }
+  std::uint64_t memory() {
+    const std::uint64_t bytes = reader_->u64_le();
+    require(bytes <= most_memory);
+    return bytes;
+  }
+  std::size_t count(std::size_t most) {
+    const std::size_t counted = reader_->u16_le();
+    require(counted <= most);
+    return fine_ ? counted : 0;
+  }
+  void require(bool fine) { fine_ = fine_ && fine; }
+  bool fine() const { return fine_ && !reader_->overrun(); }
+
+private:
+  ByteReader* reader_;
+  bool fine_ = true;
+};
+
+void put_placement(ByteWriter& writer, const flow::Placement& placement) {
+  writer.f64_le(placement.units_per_metre);
+  for (const auto& pose : placement.T_stage_wrist) {
+    for (Eigen::Index row = 0; row < 3; ++row)
+      for (Eigen::Index column = 0; column < 4; ++column)
+        writer.f64_le(pose(row, column));
+  }
+}
+
+flow::Placement read_placement(Judge& judge) {
+  constexpr double least_scale = 1e-100;
+  constexpr double farthest_m = 1e6;
+  flow::Placement placement;
+  placement.units_per_metre = judge.number(least_scale, largest);
+  for (auto& pose : placement.T_stage_wrist) {
+    for (Eigen::Index row = 0; row < 3; ++row)
+      for (Eigen::Index column = 0; column < 4; ++column)
+        pose(row, column) = judge.number(-farthest_m, farthest_m);
+  }
+  return placement;
+}
+
+void put_support(ByteWriter& writer, const deform::Support& support) {
+  writer.f64_le(support.radius);
+  writer.f64_le(support.weight);
+}
+
+deform::Support read_support(Judge& judge) {
+  const double radius = judge.number(0.0, largest);
+  return {radius, judge.number(0.0, largest)};
+}
+
+void put_deformer(ByteWriter& writer, const deform::DeformerOptions& options) {
+  const auto count = [](const auto& list) { return static_cast<std::uint16_t>(list.size()); };
+  writer.u16_le(count(options.supports.shared));
+  for (const auto& support : options.supports.shared)
+    put_support(writer, support);
+  writer.u16_le(count(options.supports.own));
+  for (const auto& own : options.supports.own) {
+    writer.u32_le(static_cast<std::uint32_t>(own.point));
+    put_support(writer, own.support);
+  }
+  writer.u8(static_cast<std::uint8_t>(options.csrbf.kernel));
+  writer.u8(static_cast<std::uint8_t>(options.csrbf.polynomial));
+  writer.f64_le(options.csrbf.merge_fraction);
+  writer.u8(static_cast<std::uint8_t>(options.csrbf.order));
+  writer.u8(static_cast<std::uint8_t>(options.csrbf.storage));
+  writer.u64_le(options.evaluation.weight_bytes);
+  writer.u64_le(options.undo_bytes);
+  writer.u8(static_cast<std::uint8_t>(options.injective.has_value()));
+  const auto injective = options.injective.value_or(deform::InjectiveOptions{});
+  writer.f64_le(injective.most_bound);
+  writer.u32_le(static_cast<std::uint32_t>(injective.most_links));
+  writer.f64_le(injective.least_gap);
+}
+
+void read_supports(ByteReader& reader, Judge& judge, deform::Supports& supports) {
+  supports = {};
+  const std::size_t shared = judge.count(most_supports);
+  for (std::size_t at = 0; at < shared; ++at)
+    supports.shared.push_back(read_support(judge));
+  const std::size_t own = judge.count(most_supports);
+  for (std::size_t at = 0; at < own; ++at) {
+    const Eigen::Index point = reader.u32_le();
+    judge.require(static_cast<double>(point) < most_points);
+    supports.own.push_back({point, read_support(judge)});
+  }
+  judge.require(!supports.shared.empty() && supports.are_usable());
+}
+
+void read_deformer(ByteReader& reader, Judge& judge, deform::DeformerOptions& options) {
+  read_supports(reader, judge, options.supports);
+  options.csrbf.kernel = judge.one_of(deform::Wendland::c6);
+  options.csrbf.polynomial = judge.one_of(deform::Polynomial::linear);
+  options.csrbf.merge_fraction = judge.number(0.0, 1.0);
+  options.csrbf.order = judge.one_of(deform::PointOrder::minimum_degree);
+  options.csrbf.storage = judge.one_of(deform::Storage::sparse);
+  options.evaluation.weight_bytes = judge.memory();
+  options.undo_bytes = judge.memory();
+  const bool injects = reader.u8() != 0;
+  deform::InjectiveOptions injective;
+  injective.most_bound = judge.number(0.01, 0.999);
+  const std::uint32_t links = reader.u32_le();
+  judge.require(links >= 1 && links <= most_links);
+  injective.most_links = static_cast<int>(links);
+  injective.least_gap = judge.number(0.0, 1.0);
+  if (injects) options.injective = injective;
+}
+
+} // namespace
+
+void put_loop(ByteWriter& writer, const LoopSetup& loop) {
+  const flow::LoopOptions& options = loop.options;
+  writer.text(loop.mesh);
+  writer.u64_le(loop.mesh_sum.vertices);
+  writer.u32_le(loop.mesh_sum.crc);
+  put_placement(writer, loop.placement);
+  writer.f64_le(options.rate_hz);
+  writer.u8(static_cast<std::uint8_t>(options.policy));
+  writer.u32_le(options.most_catch_up);
+  writer.i64_le(std::chrono::nanoseconds(options.silent_after).count());
+  writer.u8(static_cast<std::uint8_t>(options.switch_action));
+  writer.u8(static_cast<std::uint8_t>(options.sculptor.mode));
+  writer.f64_le(options.sculptor.piece_length);
+  put_deformer(writer, options.sculptor.deformer);
+  writer.text(loop.simd);
+}
+
+bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
+  constexpr double least_piece = 1e-100;
+  Judge judge(reader);
+  LoopSetup read;
+  flow::LoopOptions& options = read.options;
+  read.mesh = reader.text();
+  read.mesh_sum.vertices = reader.u64_le();
+  read.mesh_sum.crc = reader.u32_le();
+  read.placement = read_placement(judge);
+  options.rate_hz = judge.number(flow::TickGrid::least_rate_hz, flow::TickGrid::most_rate_hz);
+  options.policy = judge.one_of(flow::OverrunPolicy::sample);
+  options.most_catch_up = reader.u32_le();
+  judge.require(options.most_catch_up >= 1 && options.most_catch_up <= most_catch_up);
+  const std::chrono::nanoseconds silent_after(reader.i64_le());
+  judge.require(silent_after.count() >= 0 && driver::is_usable_time(silent_after));
+  options.silent_after = silent_after;
+  options.switch_action = judge.one_of(flow::SwitchAction::keep);
+  options.sculptor.mode = judge.one_of(flow::Mode::type2);
+  options.sculptor.piece_length = judge.number(least_piece, largest);
+  read_deformer(reader, judge, options.sculptor.deformer);
+  read.simd = reader.text();
+  if (loop || !judge.fine()) return false;
+  loop = std::move(read);
+  return true;
+}
+
+} // namespace nendo::recording

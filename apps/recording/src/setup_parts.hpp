@@ -1,0 +1,24 @@
+#pragma once
+// The chunks of a setup, one by one, as FORMAT.md has them. Enumerators are written as their
+// numbers: new ones belong at the ends of their lists, here and in the document.
+
+#include <nendo/base/byte_reader.hpp>
+#include <nendo/base/byte_writer.hpp>
+#include <nendo/recording/setup.hpp>
+
+namespace nendo::recording {
+
+inline constexpr driver::ChunkType head_chunk = driver::chunk_type("HEAD");
+inline constexpr driver::ChunkType hand_chunk = driver::chunk_type("HAND");
+inline constexpr driver::ChunkType loop_chunk = driver::chunk_type("LOOP");
+
+void put_head(ByteWriter& writer, const Setup& setup);
+void put_hand(ByteWriter& writer, std::uint8_t number, const HandSetup& hand);
+void put_loop(ByteWriter& writer, const LoopSetup& loop);
+
+// False: the payload is not usable, and nothing has changed.
+bool read_head(ByteReader& reader, Setup& setup);
+bool read_hand(ByteReader& reader, std::vector<HandSetup>& hands);
+bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop);
+
+} // namespace nendo::recording

@@ -1,0 +1,169 @@
+#include <nendo/recording/take_reader.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace nendo::recording {
+namespace {
+
+using driver::RecordKind;
+
+constexpr std::size_t tick_bytes = 24;
+constexpr std::size_t request_bytes = 1;
+constexpr std::size_t gap_bytes = 8;
+
+struct EntryWriter {
+  ByteWriter& writer;
+
+  void operator()(const driver::RecordedSample& sample) const {
+    driver::put_sample(writer, sample);
+  }
+  void operator()(flow::Request request) const {
+    driver::put_record_head(writer, RecordKind::request, request_bytes);
+    writer.u8(static_cast<std::uint8_t>(request));
+  }
+  void operator()(const flow::TapedTick& tick) const {
+    driver::put_record_head(writer, RecordKind::tick, tick_bytes);
+    writer.u64_le(tick.number);
+    driver::put_time(writer, tick.scheduled);
+    driver::put_time(writer, tick.woke);
+  }
+  void operator()(const Gap& gap) const {
+    driver::put_record_head(writer, RecordKind::gap, gap_bytes);
+    writer.u64_le(gap.entries);
+  }
+};
+
+std::optional<Entry> request_of(std::uint8_t value) {
+  const auto* const found =
+      std::find_if(flow::requests.begin(), flow::requests.end(), [value](flow::Request known) {
+        return static_cast<std::uint8_t>(known) == value;
+      });
+  if (found == flow::requests.end()) return std::nullopt;
+  return *found;
+}
+
+std::optional<Entry> tick_of(ByteReader& reader) {
+  flow::TapedTick tick;
+  tick.number = reader.u64_le();
+  tick.scheduled = driver::read_time(reader);
+  tick.woke = driver::read_time(reader);
+  if (reader.overrun() || !driver::is_usable_time(tick.scheduled.time_since_epoch()) ||
+      !driver::is_usable_time(tick.woke.time_since_epoch()))
+    return std::nullopt;
+  return tick;
+}
+
+std::optional<Ending> ending_of(std::span<const std::byte> payload) {
+  ByteReader reader(payload);
+  Ending ending;
+  ending.host = driver::read_time(reader);
+  ending.samples = reader.u64_le();
+  ending.requests = reader.u64_le();
+  ending.ticks = reader.u64_le();
+  ending.lost = reader.u64_le();
+  const bool has_shape = reader.u8() != 0;
+  ShapeSum shape;
+  shape.vertices = reader.u64_le();
+  shape.crc = reader.u32_le();
+  if (has_shape) ending.shape = shape;
+  if (reader.overrun() || !driver::is_usable_time(ending.host.time_since_epoch()))
+    return std::nullopt;
+  return ending;
+}
+
+} // namespace
+
+void put_entry(ByteWriter& writer, const Entry& entry) {
+  std::visit(EntryWriter{writer}, entry);
+}
+
+void put_ending(ByteWriter& writer, const Ending& ending) {
+  driver::put_time(writer, ending.host);
+  for (const std::uint64_t count : {ending.samples, ending.requests, ending.ticks, ending.lost})
+    writer.u64_le(count);
+  const ShapeSum shape = ending.shape.value_or(ShapeSum{});
+  writer.u8(static_cast<std::uint8_t>(ending.shape.has_value()));
+  writer.u64_le(shape.vertices);
+  writer.u32_le(shape.crc);
+}
+
+TakeReader::TakeReader(driver::ChunkReader chunks) : chunks_(std::move(chunks)) {
+  next_chunk(); // the setup stands before the first tape
+}
+
+Result<TakeReader> TakeReader::open(const std::filesystem::path& path) {
+  auto chunks = driver::ChunkReader::open(path);
+  if (!chunks) return chunks.error();
+  return TakeReader(*std::move(chunks));
+}
+
+Result<TakeReader> TakeReader::of(std::span<const std::byte> bytes, std::string_view name) {
+  auto chunks = driver::ChunkReader::of(bytes, name);
+  if (!chunks) return chunks.error();
+  return TakeReader(*std::move(chunks));
+}
+
+/// On to the next chunk of a tape; false if there is none.
+bool TakeReader::next_chunk() {
+  while (const auto chunk = chunks_.next()) {
+    gap_due_ = gap_due_ || chunks_.damage_count() > damages_told_;
+    damages_told_ = chunks_.damage_count();
+    if (chunk->type == driver::tape_chunk) {
+      records_ = driver::TapeRecords(chunk->payload);
+      return true;
+    }
+    if (chunk->type == ending_chunk) {
+      ending_ = ending_of(chunk->payload);
+      if (!ending_) ++strange_;
+    } else if (!read_setup_chunk(chunk->type, chunk->payload, setup_)) {
+      ++strange_;
+    }
+  }
+  gap_due_ = gap_due_ || chunks_.damage_count() > damages_told_;
+  damages_told_ = chunks_.damage_count();
+  return false;
+}
+
+/// Nothing, and a gap due, if it cannot be used; nothing if its kind is not known.
+std::optional<Entry> TakeReader::entry_of(const driver::TapeRecord& record) {
+  ByteReader reader(record.body);
+  std::optional<Entry> entry;
+  if (record.is(RecordKind::sample)) {
+    const auto sample = driver::sample_of(record);
+    if (sample && sample->glove < setup_.gloves.size()) entry = *sample;
+  } else if (record.is(RecordKind::request)) {
+    const std::uint8_t request = reader.u8();
+    if (!reader.overrun()) entry = request_of(request);
+  } else if (record.is(RecordKind::tick)) {
+    entry = tick_of(reader);
+  } else if (record.is(RecordKind::gap)) {
+    const Gap gap{reader.u64_le()};
+    if (!reader.overrun()) entry = gap;
+  } else {
+    return std::nullopt;
+  }
+  if (!entry) {
+    ++strange_;
+    gap_due_ = true;
+  }
+  return entry;
+}
+
+std::optional<Entry> TakeReader::next() {
+  for (;;) {
+    if (std::exchange(gap_due_, false)) return Gap{};
+    if (const auto record = records_.next()) {
+      if (auto entry = entry_of(*record)) return entry;
+      continue;
+    }
+    if (!records_.ended_well()) {
+      ++strange_;
+      gap_due_ = true;
+    }
+    records_ = driver::TapeRecords({});
+    if (!next_chunk() && !gap_due_) return std::nullopt;
+  }
+}
+
+} // namespace nendo::recording

@@ -1,0 +1,103 @@
+#include <algorithm>
+
+#include <nendo/recording/take_tools.hpp>
+
+namespace nendo::recording {
+namespace {
+
+class Counter {
+public:
+  explicit Counter(TakeSummary& summary) : summary_(summary) {
+    summary.gloves.resize(summary.setup.gloves.size());
+    next_sequence_.resize(summary.gloves.size());
+  }
+
+  void operator()(const driver::RecordedSample& recorded) {
+    GloveSummary& glove = summary_.gloves[recorded.glove];
+    const GloveSample& sample = recorded.sample;
+    auto& expected = next_sequence_[recorded.glove];
+    if (glove.samples == 0) {
+      glove.first = sample.arrival;
+    } else {
+      if (sample.sequence > expected) glove.lost += sample.sequence - expected;
+      if (sample.sequence < expected) ++glove.out_of_order;
+      glove.longest_pause = std::max(glove.longest_pause, sample.arrival - glove.last);
+    }
+    ++glove.samples;
+    expected = sample.sequence + 1;
+    glove.last = sample.arrival;
+    summary_.last = std::max(summary_.last, sample.arrival);
+  }
+  void operator()(flow::Request request) { ++summary_.requests[static_cast<std::size_t>(request)]; }
+  void operator()(const flow::TapedTick& tick) {
+    if (summary_.ticks > 0) {
+      if (tick.number < next_tick_) ++summary_.ticks_out_of_order;
+      if (tick.number > next_tick_ && !after_gap_) summary_.missed += tick.number - next_tick_;
+    }
+    ++summary_.ticks;
+    next_tick_ = tick.number + 1;
+    after_gap_ = false;
+    summary_.last = std::max(summary_.last, tick.woke);
+  }
+  void operator()(const Gap& gap) {
+    ++summary_.gaps;
+    summary_.missing += gap.entries;
+    after_gap_ = true;
+  }
+
+private:
+  TakeSummary& summary_;
+  std::vector<std::uint64_t> next_sequence_;
+  std::uint64_t next_tick_ = 0;
+  bool after_gap_ = false; ///< what is not in the recording was not missed by the loop
+};
+
+bool agree(const TakeSummary& summary) {
+  if (!summary.ending || summary.gaps > 0) return true;
+  std::uint64_t samples = 0;
+  for (const auto& glove : summary.gloves)
+    samples += glove.samples;
+  std::uint64_t requests = 0;
+  for (const std::uint64_t count : summary.requests)
+    requests += count;
+  return samples == summary.ending->samples && requests == summary.ending->requests &&
+         summary.ticks == summary.ending->ticks;
+}
+
+} // namespace
+
+double GloveSummary::rate_hz() const noexcept {
+  const double seconds = to_seconds(last - first);
+  return samples < 2 || seconds <= 0.0 ? 0.0 : static_cast<double>(samples - 1) / seconds;
+}
+
+HostClock::duration TakeSummary::duration() const noexcept {
+  const HostTime end = ending ? ending->host : last;
+  return std::max(end - setup.begun_host, HostClock::duration::zero());
+}
+
+bool TakeSummary::is_whole() const noexcept {
+  return damage_count == 0 && strange == 0 && counts_agree && ticks_out_of_order == 0 &&
+         std::all_of(gloves.begin(), gloves.end(),
+                     [](const auto& glove) { return glove.out_of_order == 0; });
+}
+
+Result<TakeSummary> summarise(const std::filesystem::path& path) {
+  auto reader = TakeReader::open(path);
+  if (!reader) return reader.error();
+  TakeSummary summary;
+  summary.setup = reader->setup();
+  Counter counter(summary);
+  while (const auto entry = reader->next())
+    std::visit(counter, *entry);
+  summary.ending = reader->ending();
+  summary.bytes = reader->chunks().size();
+  summary.good_end = reader->chunks().good_end();
+  summary.damage_count = reader->chunks().damage_count();
+  summary.damages = reader->chunks().damages();
+  summary.strange = reader->strange();
+  summary.counts_agree = agree(summary);
+  return summary;
+}
+
+} // namespace nendo::recording

@@ -1,0 +1,111 @@
+// nendo recording: looks after recordings.
+
+#include <cstdio>
+#include <memory>
+
+#include "cli.hpp"
+#include "commands.hpp"
+#include "recording_report.hpp"
+
+namespace nendo::app {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string out;
+  double from_s = 0.0;
+  std::optional<double> to_s;
+  bool json = false;
+};
+
+int info(const Options& options) {
+  const auto summary = recording::summarise(options.file);
+  if (!summary) return report(summary.error());
+  if (options.json) {
+    print_take_json(options.file, *summary);
+  } else {
+    print_take(options.file, *summary);
+  }
+  return 0;
+}
+
+int check(const Options& options) {
+  const auto summary = recording::summarise(options.file);
+  if (!summary) return report(summary.error());
+  const auto entries = static_cast<unsigned long long>(summary->ticks);
+  if (summary->is_whole()) {
+    std::printf("%s: whole, %llu bytes, %llu ticks%s\n", options.file.c_str(),
+                static_cast<unsigned long long>(summary->bytes), entries,
+                summary->ending ? "" : "; it has no end, so the recorder was cut off");
+    return 0;
+  }
+  print_damages(*summary);
+  return report({Errc::failed, options.file + ": is damaged; what is whole ends at byte " +
+                                   std::to_string(summary->good_end) + " of " +
+                                   std::to_string(summary->bytes) +
+                                   ", and `nendo recording repair` makes a new file of it"});
+}
+
+void print_made(const Options& options, std::uint64_t count, const char* what,
+                std::uint64_t bytes) {
+  std::printf("%s: %llu %s, %llu bytes\n", options.out.c_str(),
+              static_cast<unsigned long long>(count), what, static_cast<unsigned long long>(bytes));
+}
+
+int repair(const Options& options) {
+  const auto made = recording::repair_take(options.file, options.out);
+  if (!made) return report(made.error());
+  print_made(options, made->chunks, "whole chunks", made->bytes);
+  if (made->damages > 0)
+    note(std::to_string(made->damages) + " damages are gaps now; a replay from there on need not "
+                                         "be the same");
+  return 0;
+}
+
+int cut(const Options& options) {
+  constexpr double most_s = 1e7;
+  const double to_s = options.to_s.value_or(most_s);
+  if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= most_s))
+    return report(
+        {Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"});
+  const auto time = [](double seconds) {
+    return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
+  };
+  const auto made =
+      recording::cut_take(options.file, options.out, time(options.from_s), time(to_s));
+  if (!made) return report(made.error());
+  print_made(options, made->entries, "entries", made->bytes);
+  return 0;
+}
+
+} // namespace
+
+void add_recording(Command& program) {
+  auto options = std::make_shared<Options>();
+  Command command = program.add_command("recording", "Looks after recordings");
+  command.require_command();
+
+  Command telling = command.add_command("info", "Who, when, how long, rates, losses, gaps");
+  telling.add_option("FILE", options->file, "A recording").required();
+  telling.add_flag("--json", options->json, "One JSON object");
+  telling.on_chosen([options] { return info(*options); });
+
+  Command checking =
+      command.add_command("check", "Verifies all checksums and numbers; exit code 1 on damage");
+  checking.add_option("FILE", options->file, "A recording").required();
+  checking.on_chosen([options] { return check(*options); });
+
+  Command repairing = command.add_command("repair", "Makes a new file of what is whole");
+  repairing.add_option("FILE", options->file, "A damaged recording; it stays as it is").required();
+  repairing.add_option("--out", options->out, "The new file").required();
+  repairing.on_chosen([options] { return repair(*options); });
+
+  Command cutting = command.add_command("cut", "Makes a new file of a part");
+  cutting.add_option("FILE", options->file, "A recording; it stays as it is").required();
+  cutting.add_option("--from", options->from_s, "Seconds from the beginning");
+  cutting.add_option("--to", options->to_s, "Seconds from the beginning; without it, the end");
+  cutting.add_option("--out", options->out, "The new file").required();
+  cutting.on_chosen([options] { return cut(*options); });
+}
+
+} // namespace nendo::app

@@ -1,0 +1,43 @@
+#pragma once
+// What ByteReader reads, written: little-endian, one after another, at the end of a vector.
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace nendo {
+
+class ByteWriter {
+public:
+  /// Appends to `out`, which must outlive it.
+  explicit ByteWriter(std::vector<std::byte>& out) noexcept : out_(&out) {}
+
+  void u8(std::uint8_t value) { out_->push_back(std::byte{value}); }
+  void u16_le(std::uint16_t value) { put(value, 2); }
+  void u32_le(std::uint32_t value) { put(value, 4); }
+  void u64_le(std::uint64_t value) { put(value, 8); }
+  void i64_le(std::int64_t value) { u64_le(std::bit_cast<std::uint64_t>(value)); }
+  void f64_le(double value) { u64_le(std::bit_cast<std::uint64_t>(value)); }
+  void bytes(std::span<const std::byte> part) {
+    out_->insert(out_->end(), part.begin(), part.end());
+  }
+  /// Its length in two bytes, then the text; cut after 65535 bytes.
+  void text(std::string_view part) {
+    part = part.substr(0, UINT16_MAX);
+    u16_le(static_cast<std::uint16_t>(part.size()));
+    bytes(std::as_bytes(std::span(part)));
+  }
+
+private:
+  void put(std::uint64_t value, unsigned count) {
+    for (unsigned at = 0; at < count; ++at, value >>= 8U)
+      out_->push_back(static_cast<std::byte>(value & 0xFFU));
+  }
+
+  std::vector<std::byte>* out_;
+};
+
+} // namespace nendo

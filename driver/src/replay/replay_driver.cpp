@@ -1,0 +1,239 @@
+#include "replay/replay_driver.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <condition_variable>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include <nendo/driver/sample_record.hpp>
+
+#include "glove_options.hpp"
+#include "glove_spec.hpp"
+
+namespace nendo::driver {
+namespace {
+
+struct Settings {
+  double speed = 1.0;
+  bool loops = false;
+};
+
+Error error_of(const GloveSpec& spec, Errc code, const std::string& what) {
+  return Error{code, spec.text + ": " + what};
+}
+
+Result<Settings> settings_of(const GloveSpec& spec) {
+  constexpr double least_speed = 0.01;
+  constexpr double most_speed = 100.0;
+  Settings settings;
+  if (const auto option = spec.options.find("speed"); option != spec.options.end()) {
+    const char* const end = option->second.data() + option->second.size();
+    const auto [stopped, failure] = std::from_chars(option->second.data(), end, settings.speed);
+    if (failure != std::errc{} || stopped != end ||
+        !(settings.speed >= least_speed && settings.speed <= most_speed))
+      return error_of(spec, Errc::usage, "speed must be a number from 0.01 to 100");
+  }
+  if (const auto option = spec.options.find("loop"); option != spec.options.end()) {
+    if (option->second != "yes" && option->second != "no")
+      return error_of(spec, Errc::usage, "loop is yes or no");
+    settings.loops = option->second == "yes";
+  }
+  return settings;
+}
+
+/// The samples of one glove of a recording, in their order.
+class SampleSource {
+public:
+  SampleSource(ChunkReader reader, std::uint8_t glove)
+      : reader_(std::move(reader)), glove_(glove) {}
+
+  std::optional<GloveSample> next() {
+    for (;;) {
+      while (const auto record = records_.next()) {
+        const auto recorded = sample_of(*record);
+        if (recorded && recorded->glove == glove_) return recorded->sample;
+      }
+      const auto chunk = reader_.next();
+      if (!chunk) return std::nullopt;
+      records_ =
+          TapeRecords(chunk->type == tape_chunk ? chunk->payload : std::span<const std::byte>{});
+    }
+  }
+
+private:
+  ChunkReader reader_;
+  std::uint8_t glove_;
+  TapeRecords records_{{}};
+};
+
+class ReplayedGlove final : public Glove {
+public:
+  ReplayedGlove(const GloveSpec& spec, const Settings& settings, RecordedGlove glove)
+      : path_(spec.target), settings_(settings), number_(glove.number),
+        info_(std::move(glove.info)) {
+    info_.facts.push_back({"recorded_from", info_.source});
+    info_.source = spec.text;
+    info_.rate_hz *= settings.speed;
+    info_.abilities = {.wrist_switch = info_.abilities.wrist_switch};
+  }
+
+  const GloveInfo& info() const noexcept override { return info_; }
+
+  Result<void> start(SampleRing& ring) override {
+    if (started_) return Error{Errc::failed, info_.source + ": start() was called twice"};
+    try {
+      reader_ = std::jthread([this, &ring](const std::stop_token& stop) { replay(stop, ring); });
+    } catch (const std::system_error& error) {
+      return Error{Errc::failed, info_.source + ": no thread for the reader: " + error.what()};
+    }
+    started_ = true;
+    return {};
+  }
+
+  void stop() noexcept override {
+    reader_.request_stop();
+    if (reader_.joinable()) reader_.join();
+  }
+
+  GloveStats stats() const noexcept override {
+    GloveStats stats;
+    stats.records = records_.load(std::memory_order_relaxed);
+    stats.missed = missed_.load(std::memory_order_relaxed);
+    stats.ring_refused = ring_refused_.load(std::memory_order_relaxed);
+    return stats;
+  }
+
+  void give(const Feedback& /*feedback*/) noexcept override {} // nobody wears it
+
+private:
+  void replay(const std::stop_token& stop, SampleRing& ring) {
+    HostTime begin = HostClock::now();
+    do {
+      const auto end = replay_once(stop, ring, begin);
+      if (!end) return;
+      begin = *end;
+    } while (settings_.loops);
+  }
+
+  /// When the next pass begins; nothing if there is none.
+  std::optional<HostTime> replay_once(const std::stop_token& stop, SampleRing& ring,
+                                      HostTime begin) {
+    auto reader = ChunkReader::open(path_);
+    if (!reader) return std::nullopt; // it has been taken away since
+    SampleSource source(*std::move(reader), number_);
+    auto sample = source.next();
+    if (!sample) return std::nullopt;
+    const HostTime first = sample->arrival;
+    const std::uint64_t first_sequence = sample->sequence;
+    const std::uint64_t sequence_base = next_sequence_;
+    HostTime due = begin;
+    for (; sample; sample = source.next()) {
+      due = begin + scaled(sample->arrival - first);
+      if (!wait_until(stop, due)) return std::nullopt;
+      const std::uint64_t sequence = sequence_base + (sample->sequence - first_sequence);
+      if (sequence > next_sequence_)
+        missed_.fetch_add(sequence - next_sequence_, std::memory_order_relaxed);
+      next_sequence_ = sequence + 1;
+      deliver(*sample, sequence, begin + scaled(sample->measured - first), ring);
+    }
+    return due + period();
+  }
+
+  void deliver(GloveSample sample, std::uint64_t sequence, HostTime measured, SampleRing& ring) {
+    sample.sequence = sequence;
+    sample.arrival = HostClock::now();
+    sample.measured = sample.has_device_time ? std::min(measured, sample.arrival) : sample.arrival;
+    if (!ring.try_push(sample)) ring_refused_.fetch_add(1, std::memory_order_relaxed);
+    records_.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  HostClock::duration scaled(HostClock::duration time) const noexcept {
+    constexpr double most_s = 1e8; // three years: a hostile file's gap is no reason to overflow
+    const double seconds = std::clamp(to_seconds(time) / settings_.speed, -most_s, most_s);
+    return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
+  }
+
+  HostClock::duration period() const noexcept {
+    constexpr double least_rate_hz = 1.0;
+    constexpr double most_rate_hz = 1e4;
+    return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(
+        1.0 / std::clamp(info_.rate_hz, least_rate_hz, most_rate_hz)));
+  }
+
+  /// False: it is to stop.
+  bool wait_until(const std::stop_token& stop, HostTime due) {
+    std::unique_lock lock(mutex_);
+    wake_.wait_until(lock, stop, due, [] { return false; });
+    return !stop.stop_requested();
+  }
+
+  std::string path_;
+  Settings settings_;
+  std::uint8_t number_;
+  GloveInfo info_;
+  std::uint64_t next_sequence_ = 0; ///< used by the reader thread only
+  std::atomic<std::uint64_t> records_{0};
+  std::atomic<std::uint64_t> missed_{0};
+  std::atomic<std::uint64_t> ring_refused_{0};
+  std::mutex mutex_; ///< nobody else takes it: the wait wants one
+  std::condition_variable_any wake_;
+  bool started_ = false;
+  std::jthread reader_; // last: joined before what it uses is gone
+};
+
+std::vector<RecordedGlove> gloves_of(ChunkReader reader) {
+  std::vector<RecordedGlove> gloves;
+  while (const auto chunk = reader.next()) {
+    if (chunk->type == tape_chunk) break; // the gloves are told before their samples
+    if (chunk->type != glove_chunk) continue;
+    if (auto glove = glove_of(chunk->payload)) gloves.push_back(*std::move(glove));
+  }
+  return gloves;
+}
+
+Result<RecordedGlove> choose(const GloveSpec& spec, std::vector<RecordedGlove> gloves,
+                             std::optional<Side> asked, std::optional<Side> wanted) {
+  if (gloves.empty())
+    return error_of(spec, Errc::bad_input, "no glove was recorded, or what tells of it is damaged");
+  const std::optional<Side> side = asked ? asked : wanted;
+  const auto found = std::find_if(gloves.begin(), gloves.end(), [&](const RecordedGlove& glove) {
+    return side && glove.info.side == *side;
+  });
+  if (found != gloves.end()) return std::move(*found);
+  if (asked)
+    return error_of(spec, Errc::no_device,
+                    "no " + std::string(name_of(*asked)) +
+                        "-hand glove was recorded; leave hand= out, or choose the other");
+  if (!side && gloves.size() > 1)
+    return error_of(spec, Errc::usage,
+                    "several gloves were recorded; add ?hand=left or ?hand=right");
+  return std::move(gloves.front());
+}
+
+} // namespace
+
+Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<Side> side) {
+  if (const auto fine = allow_options(spec, {"hand", "speed", "loop"}); !fine) return fine.error();
+  if (spec.target.empty())
+    return error_of(spec, Errc::usage, "name the recording, e.g. replay:take1.nendo");
+  const auto settings = settings_of(spec);
+  if (!settings) return settings.error();
+  const auto asked = hand_option(spec);
+  if (!asked) return asked.error();
+  auto reader = ChunkReader::open(spec.target);
+  if (!reader) return reader.error();
+  auto glove = choose(spec, gloves_of(*std::move(reader)), *asked, side);
+  if (!glove) return glove.error();
+  auto again = ChunkReader::open(spec.target);
+  if (!again) return again.error();
+  if (!SampleSource(*std::move(again), glove->number).next())
+    return error_of(spec, Errc::bad_input, "holds no sample of this glove");
+  return std::unique_ptr<Glove>(
+      std::make_unique<ReplayedGlove>(spec, *settings, *std::move(glove)));
+}
+
+} // namespace nendo::driver

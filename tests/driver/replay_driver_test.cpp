@@ -1,0 +1,135 @@
+#include <nendo/driver/open_glove.hpp>
+
+#include <fstream>
+
+#include <doctest/doctest.h>
+
+#include <nendo/driver/sample_record.hpp>
+
+#include "support/temporary_folder.hpp"
+#include "support/within.hpp"
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::driver;
+
+namespace {
+
+/// A recording of two gloves that sent `samples` each, 10 ms apart; the right one lost number 3.
+struct Take {
+  test::TemporaryFolder folder;
+  std::filesystem::path path = folder.path() / "take.nendo";
+  std::vector<GloveSample> right;
+
+  explicit Take(int samples) {
+    std::vector<std::byte> bytes;
+    ByteWriter(bytes).bytes(file_header());
+    std::uint32_t chunk = 0;
+    std::vector<std::byte> payload;
+    for (const Side side : {Side::left, Side::right}) {
+      payload.clear();
+      ByteWriter writer(payload);
+      GloveInfo info;
+      info.source = "sim";
+      info.side = side;
+      info.sensors = sensors_22;
+      info.rate_hz = 100.0;
+      put_glove(writer, {static_cast<std::uint8_t>(side), info});
+      append_chunk(bytes, glove_chunk, chunk++, payload);
+    }
+    for (int at = 0; at < samples; ++at) {
+      payload.clear();
+      ByteWriter writer(payload);
+      GloveSample sample;
+      sample.arrival = HostTime(1h + at * 10ms);
+      sample.measured = sample.arrival - 2ms;
+      sample.device_time = at * 10ms;
+      sample.has_device_time = true;
+      sample.sequence = static_cast<std::uint64_t>(1000 + at + (at >= 3 ? 1 : 0));
+      sample.set(Sensor::index_mcp, RawCount{static_cast<std::uint16_t>(50 + at)});
+      right.push_back(sample);
+      put_sample(writer, {1, sample});
+      sample.side = Side::left;
+      put_sample(writer, {0, sample});
+      append_chunk(bytes, tape_chunk, chunk++, payload);
+    }
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+  std::string spec(const std::string& options) const { return "replay:" + path.string() + options; }
+};
+
+std::vector<GloveSample> samples_of(Glove& glove, std::size_t wanted) {
+  std::vector<GloveSample> samples;
+  SampleRing ring(1024);
+  REQUIRE(glove.start(ring));
+  test::within(20s, [&] {
+    ring.drain([&](const GloveSample& sample) noexcept { samples.push_back(sample); });
+    return samples.size() >= wanted;
+  });
+  glove.stop();
+  return samples;
+}
+
+Errc code_of(const std::string& spec, std::optional<Side> side = {}) {
+  const auto glove = open_glove(spec, side);
+  REQUIRE_FALSE(glove);
+  CHECK(glove.error().message.find('\n') == std::string::npos);
+  return glove.error().code;
+}
+
+} // namespace
+
+TEST_SUITE("replay_driver") {
+  TEST_CASE("the samples come again: counts, device times, sequence and its gaps, as far apart") {
+    const Take take(12);
+    const auto glove = open_glove(take.spec("?speed=2"), Side::right);
+    REQUIRE(glove);
+    CHECK((*glove)->info().side == Side::right);
+    CHECK((*glove)->info().rate_hz == 200.0);
+    CHECK((*glove)->info().source == take.spec("?speed=2"));
+    const HostTime begin = HostClock::now();
+    const auto samples = samples_of(**glove, take.right.size());
+    REQUIRE(samples.size() == take.right.size());
+    for (std::size_t at = 0; at < samples.size(); ++at) {
+      CHECK(samples[at].raw == take.right[at].raw);
+      CHECK(samples[at].device_time == take.right[at].device_time);
+      CHECK(samples[at].sequence == take.right[at].sequence - 1000);
+      CHECK(samples[at].side == Side::right);
+      // Never early: half of 10 ms each. How late is the machine's affair.
+      CHECK(samples[at].arrival - begin >= at * 5ms);
+      CHECK(samples[at].measured <= samples[at].arrival);
+      if (at > 0) CHECK(samples[at].measured - samples[at - 1].measured >= 0ms);
+    }
+    CHECK((*glove)->stats().records == samples.size());
+    CHECK((*glove)->stats().missed == 1);
+  }
+
+  TEST_CASE("with loop=yes it begins again, and its sequence goes on") {
+    const Take take(3);
+    const auto glove = open_glove(take.spec("?hand=left&loop=yes&speed=10"));
+    REQUIRE(glove);
+    const auto samples = samples_of(**glove, 8);
+    REQUIRE(samples.size() >= 8);
+    for (std::size_t at = 0; at < 8; ++at) {
+      CHECK(samples[at].sequence == at);
+      CHECK(samples[at].raw == take.right[at % 3].raw);
+      CHECK(samples[at].side == Side::left);
+    }
+  }
+
+  TEST_CASE("what cannot be replayed is told in a line with the right code") {
+    const Take take(2);
+    CHECK(code_of(take.spec("")) == Errc::usage); // which of the two?
+    CHECK(code_of(take.spec("?speed=0")) == Errc::usage);
+    CHECK(code_of(take.spec("?speed=nan")) == Errc::usage);
+    CHECK(code_of(take.spec("?loop=maybe")) == Errc::usage);
+    CHECK(code_of(take.spec("?hand=middle")) == Errc::usage);
+    CHECK(code_of(take.spec("?rate=3")) == Errc::usage);
+    CHECK(code_of("replay:") == Errc::usage);
+    CHECK(code_of("replay:/dev/zero") == Errc::bad_input);
+    CHECK(code_of("replay:/nowhere") == Errc::bad_input);
+    CHECK(code_of(Take(0).spec(""), Side::right) == Errc::bad_input);
+  }
+}

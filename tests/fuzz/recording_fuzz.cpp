@@ -1,0 +1,94 @@
+// Recordings from anywhere: whole files, and payloads whose checksums fit, which bytes at random
+// never do.
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+#include <nendo/recording/loop_replay.hpp>
+
+#include "support/test_meshes.hpp"
+
+using namespace nendo;
+using namespace nendo::recording;
+
+namespace {
+
+void require(bool law) {
+  if (!law) std::abort();
+}
+
+/// A file of the payloads that the input is cut into: a byte for the type, two for the length.
+std::vector<std::byte> framed(std::span<const std::byte> input) {
+  constexpr std::array types{driver::chunk_type("HEAD"), driver::chunk_type("GLOV"),
+                             driver::chunk_type("HAND"), driver::chunk_type("LOOP"),
+                             driver::chunk_type("TAPE"), driver::chunk_type("END "),
+                             driver::chunk_type("WHAT")};
+  std::vector<std::byte> file;
+  ByteWriter(file).bytes(driver::file_header());
+  ByteReader reader(input);
+  for (std::uint32_t number = 0; reader.remaining() > 0; ++number) {
+    const driver::ChunkType type = types[reader.u8() % types.size()];
+    driver::append_chunk(file, type, number, reader.take(reader.u16_le()));
+  }
+  return file;
+}
+
+void replay(const Setup& setup, const std::vector<Entry>& entries) {
+  constexpr int most_ticks = 20;
+  static const deform::Mesh model = test::sphere(6, 8, 1.0);
+  // Memory that a setup may ask for is not what is looked for here.
+  const auto replayed = LoopReplay::make(setup, model);
+  if (!replayed) return;
+  int ticks = 0;
+  for (const Entry& entry : entries) {
+    if ((*replayed)->feed(entry) && ++ticks == most_ticks) break;
+  }
+  require((*replayed)->loop().final_shape().allFinite());
+}
+
+void read(std::span<const std::byte> file) {
+  auto reader = TakeReader::of(file, "fuzz");
+  if (!reader) {
+    const auto& message = reader.error().message;
+    require(!message.empty() && message.find('\n') == std::string::npos);
+    return;
+  }
+  Setup setup = reader->setup();
+  std::vector<Entry> entries;
+  while (const auto entry = reader->next()) {
+    entries.push_back(*entry);
+    require(entries.size() <= 2 * file.size()); // nothing comes out of nothing
+  }
+  require(reader->chunks().good_end() <= file.size());
+  if (setup.loop) {
+    auto& deformer = setup.loop->options.sculptor.deformer;
+    deformer.undo_bytes = std::min<std::size_t>(deformer.undo_bytes, 1 << 16);
+    if (deformer.injective)
+      deformer.injective->most_links = std::min(deformer.injective->most_links, 8);
+    replay(setup, entries);
+  }
+  // What was read is written and read again to the same bytes.
+  std::uint32_t chunks = 0;
+  const auto bytes = setup_bytes(setup, chunks);
+  const auto again = TakeReader::of(bytes, "again");
+  require(static_cast<bool>(again) && again->strange() == 0);
+  std::uint32_t chunks_again = 0;
+  require(setup_bytes(again->setup(), chunks_again) == bytes);
+}
+
+} // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto bytes = std::as_bytes(std::span(data, size));
+  if ((data[0] & 1U) != 0) {
+    read(framed(bytes.subspan(1)));
+  } else {
+    read(bytes.subspan(1));
+  }
+  return 0;
+}

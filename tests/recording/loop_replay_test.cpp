@@ -1,0 +1,144 @@
+#include <nendo/recording/loop_replay.hpp>
+
+#include <atomic>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "support/takes.hpp"
+
+using namespace nendo;
+using namespace nendo::recording;
+using flow::Mode;
+using hand::FilterKind;
+using test::RecordedLoop;
+
+namespace {
+
+/// Feeds all of a recording. REQUIREs that it can be replayed.
+std::unique_ptr<LoopReplay> replayed(const std::filesystem::path& path, const deform::Mesh& model) {
+  auto reader = TakeReader::open(path);
+  REQUIRE(reader);
+  auto replay = LoopReplay::make(reader->setup(), model);
+  REQUIRE(replay);
+  while (const auto entry = reader->next())
+    (*replay)->feed(*entry);
+  return *std::move(replay);
+}
+
+} // namespace
+
+TEST_SUITE("loop_replay") {
+  TEST_CASE("a replay without a clock has the live loop's shape, bit for bit, and its statistics") {
+    struct Way {
+      Mode mode;
+      FilterKind filter;
+      bool adapts, injective;
+      flow::SwitchAction action;
+    };
+    using flow::SwitchAction;
+    for (const Way& way : {Way{Mode::type1, FilterKind::off, false, false, SwitchAction::none},
+                           Way{Mode::type2, FilterKind::off, false, false, SwitchAction::none},
+                           Way{Mode::type1, FilterKind::one_euro, true, true, SwitchAction::toggle},
+                           Way{Mode::type2, FilterKind::one_euro, true, true, SwitchAction::commit},
+                           Way{Mode::type1, FilterKind::off, false, true, SwitchAction::grab}}) {
+      CAPTURE(name_of(way.mode));
+      CAPTURE(way.injective);
+      RecordedLoop live(way.mode, way.filter, way.adapts, way.injective, way.action);
+      live.record();
+      test::play(live, 600);
+      const auto recorded = live.end();
+      REQUIRE(recorded);
+      CHECK(recorded->lost == 0);
+      const auto replay = replayed(live.path, live.test.model);
+      CHECK(replay->is_exact());
+      const deform::Points shape = replay->loop().final_shape();
+      CHECK(shape == live.test.loop->final_shape());
+      CHECK((shape - live.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
+      const auto& stats = replay->loop().stats();
+      const auto& wanted = live.test.loop->stats();
+      CHECK(stats.ticks == wanted.ticks);
+      CHECK(stats.samples == wanted.samples);
+      CHECK(stats.switch_uses == wanted.switch_uses);
+      CHECK(stats.grabs == wanted.grabs);
+      CHECK(stats.commits == wanted.commits);
+      CHECK(stats.undos == wanted.undos);
+      CHECK(stats.silences == wanted.silences);
+      CHECK(wanted.commits + wanted.undos > 0);
+    }
+  }
+
+  TEST_CASE("every frame on the way is the live one's") {
+    RecordedLoop live(Mode::type2, FilterKind::off, false, true);
+    live.record();
+    std::vector<deform::Points> shapes;
+    const HostTime begin = HostClock::now();
+    for (std::uint64_t tick = 0; tick < 60; ++tick) {
+      live.test.bend(static_cast<int>(tick % 25), begin + tick * std::chrono::milliseconds(11));
+      if (tick == 30) live.test.requests.try_push(flow::Request::commit);
+      shapes.push_back(live.test.vertices_of(live.test.frame_after_tick(tick)));
+    }
+    REQUIRE(live.end());
+    auto reader = TakeReader::open(live.path);
+    REQUIRE(reader);
+    auto replay = LoopReplay::make(reader->setup(), live.test.model);
+    REQUIRE(replay);
+    std::size_t at = 0;
+    while (const auto entry = reader->next()) {
+      if (!(*replay)->feed(*entry)) continue;
+      (*replay)->loop().frames().update();
+      CHECK(live.test.vertices_of((*replay)->loop().frames().front()) == shapes[at++]);
+    }
+    CHECK(at == shapes.size());
+  }
+
+  TEST_CASE("the loop at its own rate, on its own thread, is replayed as well") {
+    RecordedLoop live(Mode::type1);
+    live.record();
+    std::atomic<bool> stop{false};
+    std::thread runs([&] { live.test.loop->run(stop, 300); });
+    const HostTime begin = HostClock::now();
+    for (int at = 0; at < 100; ++at) {
+      live.test.bend(at % 25, begin + at * std::chrono::milliseconds(3));
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    runs.join();
+    REQUIRE(live.end());
+    const auto replay = replayed(live.path, live.test.model);
+    CHECK(replay->is_exact());
+    CHECK(replay->loop().final_shape() == live.test.loop->final_shape());
+  }
+
+  TEST_CASE("what found the tape full is counted, and the replay says that it is not exact") {
+    RecordedLoop live(Mode::type1);
+    const HostTime begin = HostClock::now();
+    // Nobody empties the tape: 3 entries a tick, and 2^14 of them fit.
+    constexpr std::uint64_t ticks = 6000;
+    for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+      live.test.bend(static_cast<int>(tick % 20), begin + tick * std::chrono::milliseconds(11));
+      live.test.frame_after_tick(tick);
+    }
+    live.record();
+    live.test.frame_after_tick(ticks); // the recorder may have made room by then, or not
+    const auto recorded = live.end();
+    REQUIRE(recorded);
+    CHECK(recorded->lost > 0);
+    CHECK(recorded->lost + recorded->samples + recorded->ticks == 3 * ticks + 1);
+    CHECK(live.told.size() == 1);
+    CHECK_FALSE(replayed(live.path, live.test.model)->is_exact());
+  }
+
+  TEST_CASE("gloves alone, and hands that are not there, are no loop") {
+    RecordedLoop live(Mode::type1);
+    Setup setup = live.setup;
+    CHECK(LoopReplay::make(setup, live.test.model));
+    setup.loop->options.sculptor.deformer.supports.own.push_back({10, {1.0, 1.0}});
+    CHECK_FALSE(LoopReplay::make(setup, live.test.model));
+    setup = live.setup;
+    setup.loop.reset();
+    CHECK_FALSE(LoopReplay::make(setup, live.test.model));
+    setup = live.setup;
+    setup.hands.clear();
+    CHECK_FALSE(LoopReplay::make(setup, live.test.model));
+  }
+}

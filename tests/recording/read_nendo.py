@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Reads a recording as apps/recording/FORMAT.md describes it, and knows nothing of Nendo's sources: their test.
+Prints a JSON object for each chunk and for each entry of a tape. Ends with 1 at the first thing that does not fit."""
+import json
+import struct
+import sys
+
+
+def crc32c(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = (crc >> 1) ^ (0x82F63B78 if crc & 1 else 0)
+    return crc ^ 0xFFFFFFFF
+
+
+class Bytes:
+    def __init__(self, data):
+        self.data, self.at = data, 0
+
+    def take(self, form):
+        values = struct.unpack_from("<" + form, self.data, self.at)
+        self.at += struct.calcsize("<" + form)
+        return values[0] if len(values) == 1 else list(values)
+
+    def text(self):
+        size = self.take("H")
+        self.at += size
+        return self.data[self.at - size:self.at].decode()
+
+    def left(self):
+        return len(self.data) - self.at
+
+
+def sample(b):
+    s = dict(zip(("glove", "arrival", "measured", "device_time", "sequence", "present", "flags"), b.take("BqqqQIB")))
+    s["raw"] = b.take("24H")
+    return s
+
+
+def calibration(b):
+    return {"lines": b.take("48d"), "couplings": b.take("8d"), "middle_bias": b.take("d")}
+
+
+def glove(b):
+    g = {"number": b.take("B"), "side": b.take("B"), "source": b.text(), "model": b.text()}
+    g.update(zip(("sensors", "rate_hz", "most", "whole_range", "abilities", "facts"), b.take("IdHBBH")))
+    g["facts"] = [[b.text(), b.text()] for _ in range(g["facts"])]
+    return g
+
+
+def hand(b):
+    h = {"side": b.take("B"), "size": b.take("dd"), "first": sample(b), "gated": b.take("B"), "filter": b.take("Bddd"),
+         "adapt": b.take("BHB")}
+    h["own"], h["swapped"], h["swapped_size"] = calibration(b), calibration(b), b.take("dd")
+    return h
+
+
+def loop(b):
+    o = {"mesh": b.text(), "vertices": b.take("Q"), "crc": b.take("I"), "units_per_metre": b.take("d"),
+         "poses": [b.take("12d"), b.take("12d")]}
+    o.update(zip(("rate_hz", "policy", "catch_up", "silent_ns", "switch", "mode", "piece"), b.take("dBIqBBd")))
+    o["shared"] = [b.take("dd") for _ in range(b.take("H"))]
+    o["own"] = [b.take("Idd") for _ in range(b.take("H"))]
+    o.update(zip(("kernel", "polynomial", "merge", "order", "storage", "weight_bytes", "undo_bytes", "injective",
+                  "most_bound", "most_links", "least_gap"), b.take("BBdBBQQBdId")))
+    o["simd"] = b.text()
+    return o
+
+
+def head(b):
+    return {"wall": b.take("q"), "host": b.take("q"), "program": b.text(), "wearer": b.text()}
+
+
+def end(b):
+    return dict(zip(("host", "samples", "requests", "ticks", "lost", "has_shape", "vertices", "crc"),
+                    b.take("qQQQQBQI")))
+
+
+def tape(b):
+    forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 4: lambda e: {"gap": e.take("Q")},
+             3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+    entries = []
+    while b.left():
+        kind, size = b.take("BB")
+        body = Bytes(b.data[b.at:b.at + size])
+        assert len(body.data) == size, "an entry ends early"
+        b.at += size
+        entries.append(dict(kind=kind, **forms[kind](body)))
+        assert body.left() == 0, "an entry is too long"
+    return entries
+
+
+def main():
+    data = open(sys.argv[1], "rb").read()
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 0, crc32c(data[:12])), "header"
+    at = 16
+    number = 0
+    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "TAPE": tape, "END ": end}
+    while at < len(data):
+        magic, kind, size, found, check = struct.unpack_from("<4s4sIII", data, at)
+        assert magic == b"NCHK" and check == crc32c(data[at:at + 16]) and found == number, f"chunk header at {at}"
+        payload = data[at + 20:at + 20 + size]
+        assert struct.unpack_from("<I", data, at + 20 + size)[0] == crc32c(payload), f"payload at {at}"
+        b = Bytes(payload)
+        told = readers[kind.decode()](b)
+        assert b.left() == 0, f"{kind} at {at} has {b.left()} bytes too many"
+        for line in told if isinstance(told, list) else [told]:
+            print(json.dumps(dict(chunk=kind.decode(), **line)))
+        at += 24 + size
+        number += 1
+
+
+main()

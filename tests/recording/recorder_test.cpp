@@ -1,0 +1,153 @@
+#include <nendo/recording/recorder.hpp>
+
+#include <csignal>
+
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+
+#include "support/takes.hpp"
+#include "support/within.hpp"
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::recording;
+using flow::Mode;
+using test::RecordedLoop;
+
+namespace {
+
+/// Files may not become larger than so many bytes, as on a disk that is full.
+class SmallDisk {
+public:
+  explicit SmallDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN); // the write then fails with EFBIG
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+private:
+  rlimit before_{};
+};
+
+struct Counts {
+  std::uint64_t samples = 0, requests = 0, ticks = 0, gaps = 0, damages = 0;
+  bool has_ending = false;
+};
+
+Counts counts_of(const std::filesystem::path& path) {
+  auto reader = TakeReader::open(path);
+  REQUIRE(reader);
+  Counts counts;
+  while (const auto entry = reader->next()) {
+    counts.samples += std::holds_alternative<driver::RecordedSample>(*entry);
+    counts.requests += std::holds_alternative<flow::Request>(*entry);
+    counts.ticks += std::holds_alternative<flow::TapedTick>(*entry);
+    counts.gaps += std::holds_alternative<Gap>(*entry);
+  }
+  counts.damages = reader->chunks().damage_count();
+  counts.has_ending = reader->ending().has_value();
+  CHECK(reader->strange() == 0);
+  return counts;
+}
+
+} // namespace
+
+TEST_SUITE("recorder") {
+  TEST_CASE("all that the loop took is in the file, and the ending says how much that is") {
+    RecordedLoop live(Mode::type1);
+    live.record();
+    test::play(live, 300);
+    const auto recorded = live.end();
+    REQUIRE(recorded);
+    const auto& stats = live.test.loop->stats();
+    CHECK(recorded->samples == stats.samples[0] + stats.samples[1]);
+    CHECK(recorded->ticks == 300);
+    CHECK(recorded->bytes == std::filesystem::file_size(live.path));
+    const Counts counts = counts_of(live.path);
+    CHECK(counts.samples == recorded->samples);
+    CHECK(counts.requests == recorded->requests);
+    CHECK(counts.requests > 0);
+    CHECK(counts.ticks == 300);
+    CHECK(counts.gaps + counts.damages == 0);
+    CHECK(counts.has_ending);
+    CHECK(live.told.empty());
+    auto reader = TakeReader::open(live.path);
+    while (reader->next()) {
+    }
+    CHECK(reader->ending()->shape == sum_of(live.test.loop->final_shape()));
+    CHECK(live.end()); // once more changes nothing
+    CHECK(std::filesystem::file_size(live.path) == recorded->bytes);
+  }
+
+  TEST_CASE("what the loop took is in the file soon, without waiting for the end") {
+    RecordedLoop live(Mode::type1);
+    live.record({.file = {},
+                 .keep_last = {},
+                 .kept_stem = {},
+                 .keep_on_switch = false,
+                 .tell = {},
+                 .chunk_time = 20ms});
+    test::play(live, 100);
+    CHECK(test::within(20s, [&] { return counts_of(live.path).ticks == 100; }));
+    CHECK_FALSE(counts_of(live.path).has_ending);
+    REQUIRE(live.end());
+  }
+
+  TEST_CASE("no recording is written over, and a folder that is missing is told at once") {
+    RecordedLoop live(Mode::type1);
+    test::write_bytes(live.path, "precious");
+    CHECK_THROWS_WITH(live.record(), doctest::Contains("is there already"));
+    CHECK(test::file_bytes(live.path) == "precious");
+    live.path = live.folder.path() / "nowhere" / "take.nendo";
+    CHECK_THROWS_WITH(live.record(), doctest::Contains("cannot be made"));
+  }
+
+  TEST_CASE("a disk that fills up: one warning, what is written stays whole, the loop goes on") {
+    RecordedLoop live(Mode::type1);
+    live.record({.file = {},
+                 .keep_last = {},
+                 .kept_stem = {},
+                 .keep_on_switch = false,
+                 .tell = {},
+                 .chunk_time = 1ms});
+    const SmallDisk small(64 * 1024);
+    for (unsigned seed = 0; seed < 12; ++seed)
+      test::play(live, 100, seed);
+    const auto recorded = live.end();
+    REQUIRE_FALSE(recorded);
+    CHECK(recorded.error().code == Errc::failed);
+    CHECK(recorded.error().message.find("make room") != std::string::npos);
+    CHECK(live.told.size() == 1);
+    CHECK(live.test.loop->stats().ticks == 1200);
+    CHECK(std::filesystem::file_size(live.path) <= 64 * 1024);
+    const Counts counts = counts_of(live.path);
+    CHECK(counts.damages == 0);
+    CHECK(counts.ticks > 0);
+    CHECK_FALSE(counts.has_ending);
+  }
+
+  TEST_CASE("a folder that vanishes is told while the loop runs") {
+    RecordedLoop live(Mode::type1);
+    live.path = live.folder.path() / "stick" / "take.nendo";
+    std::filesystem::create_directory(live.path.parent_path());
+    live.record({.file = {},
+                 .keep_last = {},
+                 .kept_stem = {},
+                 .keep_on_switch = false,
+                 .tell = {},
+                 .chunk_time = 1ms});
+    std::filesystem::remove_all(live.path.parent_path());
+    test::play(live, 50);
+    const auto recorded = live.end();
+    REQUIRE_FALSE(recorded);
+    CHECK(recorded.error().message.find("was removed") != std::string::npos);
+    CHECK(live.told.size() == 1);
+  }
+}

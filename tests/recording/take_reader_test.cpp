@@ -1,0 +1,230 @@
+#include <nendo/recording/take_reader.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "support/takes.hpp"
+
+using namespace nendo;
+using namespace nendo::recording;
+using flow::Mode;
+using nlohmann::json;
+using test::RecordedLoop;
+
+namespace {
+
+/// What the reader of the test's own, which was written from FORMAT.md, makes of a recording.
+std::vector<json> told_by_python(const std::filesystem::path& path) {
+  const std::string command = "python3 " NENDO_READER " '" + path.string() + "'";
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  std::string text;
+  std::array<char, 4096> buffer{};
+  for (std::size_t got = 0; (got = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    text.append(buffer.data(), got);
+  CHECK(::pclose(pipe) == 0);
+  std::vector<json> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    lines.push_back(json::parse(text.substr(at, end - at)));
+    at = end + 1;
+  }
+  return lines;
+}
+
+std::int64_t ns(HostTime time) {
+  return std::chrono::nanoseconds(time.time_since_epoch()).count();
+}
+
+bool is_sample(const json& told, unsigned glove, const GloveSample& sample) {
+  const unsigned flags = (sample.has_device_time ? 1U : 0U) | (sample.sampled_too_fast ? 2U : 0U) |
+                         static_cast<unsigned>(sample.wrist_switch) * 4U |
+                         (sample.side == Side::right ? 16U : 0U);
+  bool same = told["glove"] == glove && told["arrival"] == ns(sample.arrival) &&
+              told["measured"] == ns(sample.measured) &&
+              told["device_time"] == sample.device_time.count() &&
+              told["sequence"] == sample.sequence && told["present"] == sample.present.bits &&
+              told["flags"] == flags;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    same = same && told["raw"][slot] == sample.raw[slot].value;
+  return same;
+}
+
+void check_calibration(const json& told, const hand::Calibration& calibration) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    CHECK(told["lines"][2 * slot] == calibration.sensors[slot].gain_rad_per_count);
+    CHECK(told["lines"][2 * slot + 1] == calibration.sensors[slot].offset_counts);
+  }
+  for (std::size_t at = 0; at < calibration.mixed_in.size(); ++at)
+    CHECK(told["couplings"][at] == calibration.mixed_in[at]);
+  CHECK(told["middle_bias"] == calibration.middle_bias);
+}
+
+/// A setup of which nothing is what it is by default.
+Setup unusual_setup() {
+  test::LoopUnderTest test(Mode::type2, 8, 333.0, flow::SwitchAction::toggle, false,
+                           hand::FilterKind::one_euro, CountScale{4095, true});
+  auto& input = test.inputs[0];
+  input.calibration[Sensor::ring_mcp] = {0.1, -17.25};
+  input.calibration.mixed_in[3] = 0.125;
+  input.calibration.middle_bias = 0.7;
+  input.swapped[Sensor::thumb_ip] = {-1.0 / 3.0, 1e-9};
+  input.first.device_time = std::chrono::nanoseconds(123456789);
+  input.first.has_device_time = true;
+  test.options.policy = flow::OverrunPolicy::catch_up;
+  test.options.most_catch_up = 7;
+  test.options.silent_after = std::chrono::milliseconds(321);
+  auto& deformer = test.options.sculptor.deformer;
+  deformer.supports = {{{0.5, 1.0}, {2.0, 0.25}}, {{3, {0.75, 2.0}}}};
+  deformer.csrbf = {deform::Wendland::c6, deform::Polynomial::linear, 0.07,
+                    deform::PointOrder::octree, deform::Storage::dense};
+  deformer.evaluation.weight_bytes = 12345;
+  deformer.injective = deform::InjectiveOptions{0.8, 33, 0.04};
+  Setup setup = test::setup_of(test);
+  setup.hands[0].size = {0.2, 0.09};
+  setup.hands[0].swapped_size = {0.17, 0.07};
+  setup.gloves[1].facts = {{"serial", "42"}, {"firmware", "2.1"}};
+  setup.gloves[1].counts = {1023, true};
+  setup.gloves[1].abilities.light = true;
+  return setup;
+}
+
+Setup read_back(const std::vector<std::byte>& bytes) {
+  auto reader = TakeReader::of(bytes, "test");
+  REQUIRE(reader);
+  CHECK_FALSE(reader->next().has_value());
+  CHECK(reader->strange() == 0);
+  return reader->setup();
+}
+
+} // namespace
+
+TEST_SUITE("take_reader") {
+  TEST_CASE("a reader that was written from FORMAT.md alone finds what was recorded") {
+    RecordedLoop live(Mode::type1);
+    live.setup = unusual_setup();
+    live.record();
+    test::play(live, 80);
+    const auto recorded = live.end();
+    REQUIRE(recorded);
+    const auto lines = told_by_python(live.path);
+    std::size_t at = 0;
+    const Setup& setup = live.setup;
+    CHECK(lines[at]["chunk"] == "HEAD");
+    CHECK(lines[at]["wall"] == setup.begun.time_since_epoch().count());
+    CHECK(lines[at]["host"] == ns(setup.begun_host));
+    CHECK(lines[at]["program"] == "test 1.0");
+    CHECK(lines[at++]["wearer"] == "anna");
+    for (unsigned glove = 0; glove < 2; ++glove) {
+      CHECK(lines[at]["number"] == glove);
+      CHECK(lines[at]["source"] == "sim");
+      CHECK(lines[at++]["sensors"] == sensors_22.bits);
+    }
+    CHECK(lines[2]["facts"] == json::parse(R"([["serial", "42"], ["firmware", "2.1"]])"));
+    CHECK(lines[2]["abilities"] == 2);
+    for (unsigned hand = 0; hand < 2; ++hand, ++at) {
+      CHECK(lines[at]["side"] == hand);
+      CHECK(lines[at]["size"][0] == setup.hands[hand].size.length_m);
+      CHECK(lines[at]["swapped_size"][0] == setup.hands[hand].swapped_size.length_m);
+      CHECK(lines[at]["swapped_size"][1] == setup.hands[hand].swapped_size.breadth_m);
+      CHECK(lines[at]["gated"] == 0);
+      CHECK(lines[at]["adapt"] == json::parse("[1, 4095, 1]"));
+      CHECK(is_sample(lines[at]["first"], hand, setup.hands[hand].first));
+      check_calibration(lines[at]["own"], setup.hands[hand].calibration);
+      check_calibration(lines[at]["swapped"], setup.hands[hand].swapped);
+    }
+    const auto& options = setup.loop->options;
+    CHECK(lines[at]["mesh"] == "ball.obj");
+    CHECK(lines[at]["vertices"] == setup.loop->mesh_sum.vertices);
+    CHECK(lines[at]["crc"] == setup.loop->mesh_sum.crc);
+    CHECK(lines[at]["poses"][1][3] == setup.loop->placement.T_stage_wrist[1](0, 3));
+    CHECK(lines[at]["poses"][1][4] == setup.loop->placement.T_stage_wrist[1](1, 0));
+    CHECK(lines[at]["rate_hz"] == 333.0);
+    CHECK(lines[at]["policy"] == 1);
+    CHECK(lines[at]["switch"] == 3);
+    CHECK(lines[at]["mode"] == 1);
+    CHECK(lines[at]["piece"] == options.sculptor.piece_length);
+    CHECK(lines[at]["shared"] == json::parse("[[0.5, 1.0], [2.0, 0.25]]"));
+    CHECK(lines[at]["own"] == json::parse("[[3, 0.75, 2.0]]"));
+    CHECK(lines[at]["kernel"] == 3);
+    CHECK(lines[at]["merge"] == 0.07);
+    CHECK(lines[at]["most_links"] == 33);
+    CHECK(lines[at++]["least_gap"] == 0.04);
+    auto reader = TakeReader::open(live.path);
+    REQUIRE(reader);
+    for (; const auto entry = reader->next(); ++at) {
+      REQUIRE(lines[at]["chunk"] == "TAPE");
+      if (const auto* sample = std::get_if<driver::RecordedSample>(&*entry))
+        CHECK(is_sample(lines[at], sample->glove, sample->sample));
+      if (const auto* request = std::get_if<flow::Request>(&*entry))
+        CHECK(lines[at]["request"] == static_cast<int>(*request));
+      if (const auto* tick = std::get_if<flow::TapedTick>(&*entry)) {
+        CHECK(lines[at]["tick"] == tick->number);
+        CHECK(lines[at]["scheduled"] == ns(tick->scheduled));
+        CHECK(lines[at]["woke"] == ns(tick->woke));
+      }
+    }
+    REQUIRE(at + 1 == lines.size());
+    CHECK(lines[at]["chunk"] == "END ");
+    CHECK(lines[at]["ticks"] == 80);
+    CHECK(lines[at]["samples"] == recorded->samples);
+    CHECK(lines[at]["has_shape"] == 1);
+    CHECK(lines[at]["crc"] == sum_of(live.test.loop->final_shape()).crc);
+  }
+
+  TEST_CASE("a setup that is read and written again is the same to the byte") {
+    std::uint32_t chunks = 0;
+    const auto bytes = setup_bytes(unusual_setup(), chunks);
+    const Setup read = read_back(bytes);
+    std::uint32_t again = 0;
+    CHECK(setup_bytes(read, again) == bytes);
+    CHECK(again == chunks);
+    CHECK(chunks == 6);
+  }
+
+  TEST_CASE("numbers that no loop may have are refused, one by one, and never come out") {
+    std::uint32_t chunks = 0;
+    const auto bytes = setup_bytes(unusual_setup(), chunks);
+    auto reader = driver::ChunkReader::of(bytes, "test");
+    REQUIRE(reader);
+    while (const auto chunk = reader->next()) {
+      if (chunk->type != driver::chunk_type("LOOP") && chunk->type != driver::chunk_type("HAND"))
+        continue;
+      std::uint64_t refused = 0;
+      // NaN, infinity, and the largest of everything, at each place where a number may stand.
+      for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity(), 1e300}) {
+        const auto pattern = std::bit_cast<std::array<std::byte, 8>>(bad);
+        for (std::size_t at = 0; at + 8 <= chunk->payload.size(); ++at) {
+          std::vector<std::byte> payload(chunk->payload.begin(), chunk->payload.end());
+          std::copy(pattern.begin(), pattern.end(),
+                    payload.begin() + static_cast<std::ptrdiff_t>(at));
+          Setup setup;
+          if (!read_setup_chunk(chunk->type, payload, setup)) {
+            ++refused;
+            CHECK_FALSE(setup.loop.has_value());
+            continue;
+          }
+          for (const auto& hand : setup.hands) {
+            for (const auto& line : hand.calibration.sensors)
+              CHECK(std::abs(line.gain_rad_per_count) < 1e7);
+            CHECK(hand.size.length_m < 2.0);
+          }
+          if (!setup.loop) continue;
+          CHECK(setup.loop->placement.T_stage_wrist[0].matrix().allFinite());
+          CHECK(setup.loop->options.rate_hz <= 1e4);
+          CHECK(setup.loop->options.sculptor.deformer.supports.are_usable());
+        }
+      }
+      CHECK(refused > 100);
+    }
+  }
+}

@@ -1,0 +1,189 @@
+#include <nendo/recording/take_tools.hpp>
+
+#include <algorithm>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include <nendo/recording/loop_replay.hpp>
+
+#include "support/takes.hpp"
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::recording;
+using flow::Mode;
+using test::RecordedLoop;
+
+namespace {
+
+/// A short recording in many chunks.
+struct Take {
+  RecordedLoop live{Mode::type1};
+  std::string bytes;
+  std::filesystem::path other = live.folder.path() / "other.nendo";
+  std::filesystem::path made = live.folder.path() / "made.nendo";
+
+  explicit Take(std::uint64_t ticks = 40) {
+    live.record({.file = {},
+                 .keep_last = {},
+                 .kept_stem = {},
+                 .keep_on_switch = false,
+                 .tell = {},
+                 .chunk_time = 1ms});
+    for (std::uint64_t part = 0; part < ticks / 10; ++part) {
+      const HostTime begin = HostClock::now();
+      for (std::uint64_t at = 0; at < 10; ++at) {
+        for (const Side side : {Side::left, Side::right}) {
+          GloveSample sample =
+              test::bent_sample(side, static_cast<int>(part + at), begin + at * 1ms);
+          sample.sequence = 10 * part + at;
+          live.test.rings[flow::Placement::index_of(side)]->try_push(sample);
+        }
+        live.test.loop->tick(10 * part + at, HostClock::now());
+      }
+      std::this_thread::sleep_for(30ms); // a chunk of its own, mostly
+    }
+    REQUIRE(live.end());
+    bytes = test::file_bytes(live.path);
+  }
+  /// Of the recording with one byte changed, or cut off there.
+  void damage(std::size_t at) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+    test::write_bytes(other, damaged);
+  }
+  void cut_off(std::size_t at) { test::write_bytes(other, bytes.substr(0, at)); }
+};
+
+std::vector<Entry> entries_of(const std::filesystem::path& path) {
+  auto reader = TakeReader::open(path);
+  REQUIRE(reader);
+  std::vector<Entry> entries;
+  while (auto entry = reader->next())
+    entries.push_back(*entry);
+  return entries;
+}
+
+std::uint64_t ticks_in(const std::vector<Entry>& entries) {
+  return static_cast<std::uint64_t>(
+      std::count_if(entries.begin(), entries.end(), [](const Entry& entry) {
+        return std::holds_alternative<flow::TapedTick>(entry);
+      }));
+}
+
+} // namespace
+
+TEST_SUITE("take_tools") {
+  TEST_CASE("a summary counts what is there and what is missing, by the numbers of the samples") {
+    RecordedLoop live(Mode::type1);
+    live.record();
+    const HostTime begin = HostClock::now();
+    for (std::uint64_t at = 0; at < 100; ++at) {
+      for (const Side side : {Side::left, Side::right}) {
+        if (side == Side::right && at % 10 == 3) continue; // lost on the way
+        GloveSample sample = test::bent_sample(side, 5, begin + at * 10ms);
+        sample.sequence = at;
+        live.test.rings[flow::Placement::index_of(side)]->try_push(sample);
+      }
+      live.test.loop->tick(2 * at, begin + at * 10ms, begin + at * 10ms); // each other is missed
+    }
+    live.test.requests.try_push(flow::Request::undo);
+    live.test.loop->tick(200, begin + 1s, begin + 1s);
+    REQUIRE(live.end());
+    const auto summary = summarise(live.path);
+    REQUIRE(summary);
+    CHECK(summary->is_whole());
+    CHECK(summary->ending.has_value());
+    CHECK(summary->gloves[0].samples == 100);
+    CHECK(summary->gloves[0].lost == 0);
+    CHECK(summary->gloves[0].rate_hz() == doctest::Approx(100.0));
+    CHECK(summary->gloves[0].longest_pause == 10ms);
+    CHECK(summary->gloves[1].samples == 90);
+    CHECK(summary->gloves[1].lost == 10);
+    CHECK(summary->gloves[1].longest_pause == 20ms);
+    CHECK(summary->ticks == 101);
+    CHECK(summary->missed == 100);
+    CHECK(summary->requests == std::array<std::uint64_t, flow::requests.size()>{0, 0, 0, 1});
+    CHECK(summary->gaps == 0);
+  }
+
+  TEST_CASE(
+      "whatever byte is damaged, or wherever it ends, it is seen, and repair saves the rest") {
+    Take take;
+    const std::uint64_t whole = entries_of(take.live.path).size();
+    CHECK(summarise(take.live.path)->is_whole());
+    for (std::size_t at = 0; at < take.bytes.size(); at += 1 + take.bytes.size() / 101) {
+      for (const bool cuts : {false, true}) {
+        CAPTURE(at);
+        CAPTURE(cuts);
+        if (cuts) {
+          take.cut_off(at);
+        } else {
+          take.damage(at);
+        }
+        const auto summary = summarise(take.other);
+        CHECK((!summary || !summary->is_whole() || !summary->ending));
+        std::filesystem::remove(take.made);
+        const auto repaired = repair_take(take.other, take.made);
+        if (!repaired) { // nothing but the header was left
+          CHECK(repaired.error().code == Errc::bad_input);
+          CHECK(cuts);
+          continue;
+        }
+        const auto mended = summarise(take.made);
+        REQUIRE(mended);
+        CHECK(mended->damage_count == 0);
+        const auto saved = entries_of(take.made);
+        CHECK(saved.size() <= whole + 1);
+        // One chunk's worth at most: of the setup, which may leave the gloves unknown, or a tape's.
+        if (!cuts && summary && summary->gloves.size() == 2) CHECK(ticks_in(saved) >= 10);
+      }
+    }
+  }
+
+  TEST_CASE(
+      "a part from the beginning replays exactly; one from the middle says that it does not") {
+    Take take(60);
+    const auto all = entries_of(take.live.path);
+    const auto tick_time = [&](std::uint64_t number) {
+      for (const Entry& entry : all) {
+        const auto* tick = std::get_if<flow::TapedTick>(&entry);
+        if (tick != nullptr && tick->number == number) return tick->woke;
+      }
+      return HostTime{};
+    };
+    const HostTime begun = take.live.setup.begun_host;
+    REQUIRE(cut_take(take.live.path, take.made, 0s, tick_time(35) - begun));
+    const auto beginning = entries_of(take.made);
+    REQUIRE(beginning.size() < all.size());
+    CHECK(ticks_in(beginning) == 35);
+    const auto replay = LoopReplay::make(take.live.setup, take.live.test.model);
+    const auto same = LoopReplay::make(take.live.setup, take.live.test.model);
+    REQUIRE((replay && same));
+    for (std::size_t at = 0; at < beginning.size(); ++at) {
+      (*replay)->feed(beginning[at]);
+      (*same)->feed(all[at]);
+    }
+    CHECK((*replay)->is_exact());
+    CHECK((*replay)->loop().final_shape() == (*same)->loop().final_shape());
+
+    REQUIRE(cut_take(take.live.path, take.other, tick_time(20) - begun, 1h));
+    const auto middle = entries_of(take.other);
+    REQUIRE(std::holds_alternative<Gap>(middle.front()));
+    CHECK(std::get<Gap>(middle.front()).entries + middle.size() - 1 == all.size());
+    CHECK(ticks_in(middle) == 40);
+    CHECK(summarise(take.other)->is_whole());
+    const auto refused = cut_take(take.live.path, take.live.folder.path() / "none", 1h, 2h);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == Errc::bad_input);
+  }
+
+  TEST_CASE("no file is written over") {
+    Take take(10);
+    test::write_bytes(take.made, "precious");
+    CHECK(repair_take(take.live.path, take.made).error().code == Errc::failed);
+    CHECK(cut_take(take.live.path, take.made, 0s, 1h).error().code == Errc::failed);
+    CHECK(test::file_bytes(take.made) == "precious");
+  }
+}

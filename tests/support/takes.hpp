@@ -1,0 +1,105 @@
+#pragma once
+// Recordings for tests: of a loop whose rings the test fills, and of random entries.
+
+#include <algorithm>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nendo/recording/recorder.hpp>
+
+#include "support/flow_fixtures.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace nendo::test {
+
+inline std::string file_bytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+/// What a recorder of this loop would be told.
+inline recording::Setup setup_of(const LoopUnderTest& test) {
+  recording::Setup setup = recording::begin_setup("test 1.0");
+  setup.wearer = "anna";
+  for (const auto& input : test.inputs) {
+    driver::GloveInfo glove;
+    glove.source = "sim";
+    glove.model = "a glove of the test's";
+    glove.side = input.skeleton.side();
+    glove.sensors = sensors_22;
+    glove.rate_hz = 90.0;
+    setup.gloves.push_back(glove);
+    setup.hands.push_back(recording::hand_setup(input, {}, {}));
+  }
+  setup.loop = recording::LoopSetup{"ball.obj", recording::sum_of(test.model.vertices),
+                                    test.placement, test.options, "AVX2"};
+  return setup;
+}
+
+/// A loop of two hands with a recorder at its tape.
+struct RecordedLoop {
+  TemporaryFolder folder;
+  std::filesystem::path path = folder.path() / "take.nendo";
+  flow::Tape tape;
+  LoopUnderTest test;
+  recording::Setup setup;
+  std::unique_ptr<recording::Recorder> recorder;
+  std::vector<std::string> told; ///< by the recorder's thread; read it after end()
+
+  explicit RecordedLoop(flow::Mode mode, hand::FilterKind filter = hand::FilterKind::off,
+                        bool adapts = false, bool injective = false,
+                        flow::SwitchAction action = flow::SwitchAction::none)
+      : test(mode, 16, 1000.0, action, true, filter,
+             adapts ? std::optional(CountScale{}) : std::nullopt, &tape,
+             injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt),
+        setup(setup_of(test)) {}
+
+  void record(recording::RecorderOptions options = {}) {
+    if (options.file.empty() && options.keep_last == HostClock::duration::zero())
+      options.file = path;
+    options.tell = [this](std::string_view line) { told.emplace_back(line); };
+    auto begun = recording::Recorder::begin(setup, tape, std::move(options));
+    if (!begun) throw std::runtime_error(begun.error().message);
+    recorder = *std::move(begun);
+  }
+  Result<recording::Recorded> end() {
+    return recorder->end(recording::sum_of(test.loop->final_shape()));
+  }
+};
+
+/// What people do: hands that bend at random, requests, a switch that is turned now and then, and
+/// ticks that find several samples or none.
+inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  HostTime now = HostClock::now();
+  int bent = 0;
+  std::uint64_t sequence = 0;
+  WristSwitch position = WristSwitch::off;
+  for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+    for (auto samples = random() % 3; samples > 0; --samples, ++sequence) {
+      bent = std::clamp(bent + static_cast<int>(random() % 5) - 2, 0, 30);
+      now += std::chrono::milliseconds(11);
+      if (random() % 40 == 0)
+        position = position == WristSwitch::on ? WristSwitch::off : WristSwitch::on;
+      for (const Side side : {Side::left, Side::right}) {
+        GloveSample sample = bent_sample(side, side == Side::left ? bent : bent / 2, now);
+        sample.wrist_switch = position;
+        sample.sequence = sequence;
+        played.test.rings[flow::Placement::index_of(side)]->try_push(sample);
+      }
+    }
+    if (random() % 20 == 0)
+      played.test.requests.try_push(flow::requests[random() % flow::requests.size()]);
+    played.test.frame_after_tick(tick);
+  }
+}
+
+} // namespace nendo::test
