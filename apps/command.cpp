@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,50 @@ std::string not_negative(const std::string& text) {
   return text.find('-') == std::string::npos ? "" : text + ": use a whole number, 0 or above";
 }
 
+bool is_shown(const CLI::App* command) {
+  return !command->get_group().empty();
+}
+
+/// The words of a type like "TEXT:{left,right}", which is how CLI11 tells what one_of() said.
+std::vector<std::string> choices_in(const std::string& type) {
+  std::vector<std::string> choices;
+  const std::size_t open = type.find('{');
+  if (open == std::string::npos) return choices;
+  std::istringstream words(type.substr(open + 1, type.find('}') - open - 1));
+  for (std::string word; std::getline(words, word, ',');)
+    choices.push_back(word);
+  return choices;
+}
+
+OptionModel model_of(const CLI::Option& option) {
+  OptionModel model;
+  if (option.get_positional()) model.names.push_back(option.get_name(true));
+  for (const std::string& name : option.get_snames())
+    model.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames())
+    model.names.push_back("--" + name);
+  if (option.get_type_size() != 0) {
+    const std::string type = option.get_type_name();
+    model.value = type.substr(0, type.find(':'));
+    model.choices = choices_in(type);
+    model.default_value = option.get_default_str();
+    model.required = option.get_required();
+    model.repeats = option.get_expected_max() == CLI::detail::expected_max_vector_size;
+  }
+  model.summary = option.get_description();
+  if (option.get_group() != "Options") model.heading = option.get_group();
+  return model;
+}
+
+CommandModel model_of(const CLI::App& app) {
+  CommandModel model{app.get_name(), app.get_description(), app.get_footer(), {}, {}};
+  for (const CLI::Option* option : app.get_options())
+    model.options.push_back(model_of(*option));
+  for (const CLI::App* command : app.get_subcommands(is_shown))
+    model.commands.push_back(model_of(*command));
+  return model;
+}
+
 int report_usage(const CLI::App& app, const std::string& first_word, const std::string& what) {
   const auto chosen = app.get_subcommands();
   if (!chosen.empty()) {
@@ -38,7 +83,7 @@ int report_usage(const CLI::App& app, const std::string& first_word, const std::
     std::cerr << "nendo: " << what << " (see nendo --help)\n";
   } else {
     std::string known;
-    for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    for (const auto* command : app.get_subcommands(is_shown)) {
       known += (known.empty() ? "" : ", ") + command->get_name();
     }
     std::cerr << "nendo: "
@@ -106,6 +151,14 @@ void Command::set_footer(const std::string& text) {
 
 void Command::on_chosen(std::function<int()> command) {
   app_->callback([chosen = chosen_, command = std::move(command)] { *chosen = command; });
+}
+
+void Command::hide() {
+  app_->group("");
+}
+
+CommandModel Command::model() const {
+  return model_of(*app_);
 }
 
 void Command::require_command() {

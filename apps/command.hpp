@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <string>
 
+#include "manual/command_model.hpp"
+
 namespace CLI { // NOLINT(readability-identifier-naming): theirs
 class App;
 class Option;
@@ -51,6 +53,10 @@ public:
   void on_chosen(std::function<int()> command);
   /// It does nothing by itself: one of its commands must follow.
   void require_command();
+  /// It is in no list of commands: not for users.
+  void hide();
+  /// All that was described so far, as --help says it.
+  CommandModel model() const;
 
 private:
   CLI::App* app_;

@@ -13,6 +13,7 @@ void add_devices(Command& program);
 void add_doctor(Command& program);
 void add_emulate(Command& program);
 void add_info(Command& program);
+void add_manual(Command& program);
 void add_monitor(Command& program);
 void add_poses(Command& program);
 void add_record(Command& program);
@@ -20,5 +21,6 @@ void add_recording(Command& program);
 void add_replay(Command& program);
 void add_run(Command& program);
 void add_stress(Command& program);
+void add_udev(Command& program);
 
 } // namespace nendo::app

@@ -4,11 +4,16 @@
 // doctor_command.cpp.
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <nendo/driver/devices.hpp>
+
+#include "udev/rule_files.hpp"
 
 namespace nendo::app {
 
@@ -35,5 +40,25 @@ struct PortFacts {
 std::vector<Finding> judge_ports(const PortFacts& facts);
 /// The same for this machine, now. Blocks for less than a second.
 std::vector<Finding> check_ports();
+
+/// What the checks of the machine judge; what could not be found out is no finding.
+struct MachineFacts {
+  std::optional<std::uint64_t> priority_limit; ///< RLIMIT_RTPRIO, of this process
+  std::optional<std::uint64_t> memory_limit;   ///< RLIMIT_MEMLOCK in bytes; the largest: unlimited
+  bool has_priority = false;                   ///< CAP_SYS_NICE, for which the limit does not count
+  bool has_memory = false;                     ///< CAP_IPC_LOCK, likewise
+  bool has_limits_file = false;                ///< /etc/security/limits.d/nendo.conf is there
+  std::map<std::string, int> governors;        ///< of the CPUs' frequencies, and how many have each
+  std::optional<bool> fine_timers;             ///< the kernel's timers are better than its tick
+  bool has_udev = false;                       ///< udev runs
+  std::vector<RuleFile> rules;
+};
+
+/// Reads /proc, /sys, /run and /etc below `root`. Blocks briefly.
+MachineFacts read_machine(const std::filesystem::path& root);
+/// All findings about the machine: limits, clocks, rules. Pure.
+std::vector<Finding> judge_machine(const MachineFacts& facts);
+/// The same for this machine, now.
+std::vector<Finding> check_machine();
 
 } // namespace nendo::app

@@ -15,7 +15,7 @@ namespace nendo::app {
 namespace {
 
 /// A subject each.
-constexpr std::array subjects{check_ports};
+constexpr std::array subjects{check_ports, check_machine};
 
 std::string_view name_of(Weight weight) {
   return weight == Weight::failure ? "failure" : "warning";

@@ -73,13 +73,13 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
   struct Grabber {
     std::string_view name;
     std::string_view harm;
-    std::string_view remedy;
+    std::string_view units;
+    bool heeds_rules; ///< our udev rules make it keep off
   };
   constexpr std::array grabbers{
       Grabber{"ModemManager", "holds a new adapter for 10 to 20 s and sends modem commands to it",
-              "sudo systemctl mask --now ModemManager, or a udev rule with ID_MM_DEVICE_IGNORE"},
-      Grabber{"brltty", "may take an adapter for a Braille display's",
-              "sudo systemctl mask --now brltty brltty-udev"},
+              "ModemManager", true},
+      Grabber{"brltty", "may take an adapter for a Braille display's", "brltty brltty-udev", false},
   };
   const auto unmarked = std::find_if(
       facts.candidates.begin(), facts.candidates.end(), [](const GloveCandidate& candidate) {
@@ -88,9 +88,11 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
   if (unmarked == facts.candidates.end()) return;
   for (const Grabber& grabber : grabbers) {
     if (!runs(facts, grabber.name)) continue;
+    const std::string mask = "sudo systemctl mask --now " + std::string(grabber.units);
+    const std::string bind = "sudo nendo udev bind " + unmarked->device + " --as right (or left)";
     found.push_back({Weight::warning, "grabber", unmarked->device,
                      std::string(grabber.name) + " runs and " + std::string(grabber.harm),
-                     std::string(grabber.remedy)});
+                     grabber.heeds_rules ? bind + ", or " + mask : mask});
   }
 }
 

@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
                        add_poses(program);
                        add_devices(program);
                        add_doctor(program);
+                       add_udev(program);
                        add_info(program);
                        add_calibration(program);
                        add_deform(program);
@@ -37,6 +38,7 @@ int run(int argc, char** argv) {
                        add_recording(program);
                        add_stress(program);
                        add_bench(program);
+                       add_manual(program);
                      });
 }
 

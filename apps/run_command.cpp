@@ -17,6 +17,7 @@
 #include "kernel_options.hpp"
 #include "loop_options.hpp"
 #include "run_report.hpp"
+#include "service/service_notice.hpp"
 
 namespace nendo::app {
 namespace {
@@ -114,7 +115,13 @@ int run(CommandOptions& options) {
   Bell bell;
   const auto hands = open_hands(wanted, *model, bell);
   if (!hands) return report(hands.error());
-  const auto outcome = run_session(wanted, *hands, *std::move(model), progress_for(wanted));
+  ServiceNotice service;
+  const auto progress = [&service, shown = progress_for(wanted)](const flow::Frame& frame,
+                                                                 double elapsed_s) {
+    service.alive();
+    shown(frame, elapsed_s);
+  };
+  const auto outcome = run_session(wanted, *hands, *std::move(model), progress);
   if (!outcome) return report(outcome.error());
   print_summary(wanted, *hands, *outcome);
   return outcome->recording.has_failed ? static_cast<int>(Errc::failed) : 0;

@@ -7,9 +7,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "discovery/device_table.hpp"
 #include "discovery/programs.hpp"
 #include "discovery/udev_records.hpp"
-#include "discovery/usb_adapters.hpp"
+#include "fivedt_usb/fivedt_usb_protocol.hpp"
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
 #include "transport/port_access.hpp"
@@ -92,14 +93,17 @@ TEST_SUITE("programs") {
   TEST_CASE("USB numbers tell gloves and adapters") {
     CHECK(usb_glove_name({0x0D7F, 0x0100}) == "Essential Reality P5");
     CHECK(usb_glove_name({0x0D7F, 0x0101}).empty());
-    for (const unsigned product : {0x0000U, 0x0001U, 0x0017U})
-      CHECK(usb_glove_name({0x5D70, static_cast<std::uint16_t>(product)}) ==
-            "5DT Data Glove Ultra");
-    CHECK(usb_glove_name({0x5D70, 0xFFFF}).empty());
+    // The table has the numbers that the driver can read a model from, and no others.
+    for (unsigned product = 0; product <= 0xFFFF; ++product) {
+      const auto number = static_cast<std::uint16_t>(product);
+      if (usb_glove_name({0x5D70, number}).empty() == fivedt_usb::model_of(number).has_value())
+        FAIL("5d70:" << product);
+    }
+    CHECK(usb_glove_name({0x5D70, 0x0017}) == "5DT Data Glove Ultra");
     CHECK(usb_glove_name({0x0403, 0x6001}).empty());
-    REQUIRE(find_usb_adapter(0x0403, 0x6001) != nullptr);
-    CHECK(find_usb_adapter(0x0403, 0x6001)->module == "ftdi_sio");
-    CHECK(find_usb_adapter(0x0403, 0x6002) == nullptr);
+    REQUIRE(find_usb_adapter({0x0403, 0x6001}) != nullptr);
+    CHECK(find_usb_adapter({0x0403, 0x6001})->module == "ftdi_sio");
+    CHECK(find_usb_adapter({0x0403, 0x6002}) == nullptr);
     CHECK(to_string(UsbId{0x0D7F, 0x0100}) == "0d7f:0100");
   }
 

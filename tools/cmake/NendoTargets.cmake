@@ -3,12 +3,37 @@
 
 set(NENDO_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them")
 
+include(CheckPIESupported)
+check_pie_supported() # or CMake would not link a target that asks for it as such
+
+# What Debian's own packages are built with. An overrun buffer ends the program instead of running somebody's code, and
+# neither the program's place nor its tables of addresses can be counted on.
+function(nendo_harden target)
+  if(NOT NENDO_HARDEN OR NENDO_SANITIZE)
+    return()
+  endif()
+  get_target_property(type ${target} TYPE)
+  set(release $<CONFIG:Release,RelWithDebInfo>)
+  target_compile_options(${target} PRIVATE $<${release}:-fstack-protector-strong -fstack-clash-protection
+    -Wp,-U_FORTIFY_SOURCE,-D_FORTIFY_SOURCE=2>)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_options(${target} PRIVATE $<${release}:-fcf-protection>)
+  endif()
+  if(type MATCHES "EXECUTABLE|SHARED")
+    target_link_options(${target} PRIVATE $<${release}:LINKER:-z,relro,-z,now,-z,noexecstack>)
+  endif()
+  if(NOT type STREQUAL "EXECUTABLE" AND BUILD_SHARED_LIBS) # a library's own calls stay in it, and can be inlined
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+  endif()
+endfunction()
+
 function(nendo_settings target scope)
   target_compile_features(${target} ${scope} cxx_std_20)
   if(scope STREQUAL "INTERFACE")
     return()
   endif()
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET default)
+  nendo_harden(${target})
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
     -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2
     $<$<BOOL:${NENDO_WERROR}>:-Werror>)
@@ -60,6 +85,7 @@ function(nendo_library name)
   add_library(nendo::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
   target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS include FILES ${ARG_HEADERS})
-  install(TARGETS ${target} EXPORT nendoTargets FILE_SET HEADERS
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS ${target} EXPORT nendoTargets FILE_SET HEADERS COMPONENT development
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 endfunction()

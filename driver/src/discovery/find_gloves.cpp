@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <set>
@@ -11,33 +10,21 @@
 
 #include <nendo/driver/open_glove.hpp>
 
+#include "discovery/device_table.hpp"
 #include "discovery/programs.hpp"
 #include "discovery/stable_names.hpp"
 #include "discovery/udev_records.hpp"
-#include "discovery/usb_adapters.hpp"
 #include "transport/ftdi_latency.hpp"
 #include "transport/port_access.hpp"
 #include "transport/serial_ports.hpp"
 #include "transport/sysfs.hpp"
 #include "transport/usb_device.hpp"
 #include "transport/usb_identity.hpp"
-#include "usb/open_usb_glove.hpp"
 
 namespace nendo::driver {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Names that only a glove has in its own description. Not the maker Immersion, which also made
-/// digitisers that hang on a serial port.
-constexpr std::array<std::string_view, 2> glove_names{"cyberglove", "cybertouch"};
-
-bool names_a_glove(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::any_of(glove_names.begin(), glove_names.end(),
-                     [&](std::string_view name) { return text.find(name) != std::string::npos; });
-}
 
 std::string join(std::string_view first, std::string_view second) {
   return std::string(first) + (first.empty() || second.empty() ? "" : " ") + std::string(second);
@@ -75,7 +62,7 @@ std::string serial_spec(const std::string& name) {
 std::string why_maybe(const SerialPortInfo& port) {
   if (port.bluetooth) return "may be a glove: Bluetooth serial port";
   if (!port.usb) return "may be a glove: serial port";
-  const UsbAdapter* const adapter = find_usb_adapter(port.usb->vendor_id, port.usb->product_id);
+  const UsbAdapter* const adapter = find_usb_adapter(id_of(*port.usb));
   return adapter != nullptr
              ? "may be a glove: USB-serial adapter (" + std::string(adapter->maker) + ")"
              : "may be a glove: USB serial device";
@@ -169,7 +156,7 @@ std::vector<GloveCandidate> list_candidates(const UsbBus& usb) {
     const std::string_view glove = usb_glove_name({device.vendor_id, device.product_id});
     if (!glove.empty()) {
       found.push_back(judge_usb_glove(device, glove));
-    } else if (const auto* adapter = find_usb_adapter(device.vendor_id, device.product_id)) {
+    } else if (const auto* adapter = find_usb_adapter({device.vendor_id, device.product_id})) {
       found.push_back(judge_portless(device, *adapter));
     }
   }

@@ -37,15 +37,11 @@ UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
 }
 
 Error usb_permission_error(const UsbIdentity& identity) {
-  std::array<char, 96> rule{};
-  std::snprintf(rule.data(), rule.size(),
-                R"(ATTR{idVendor}=="%04x", ATTR{idProduct}=="%04x", TAG+="uaccess")",
-                unsigned{identity.vendor_id}, unsigned{identity.product_id});
   const std::string node = node_of(identity);
   return {Errc::no_permission, "USB device " + to_string(id_of(identity)) + " at " + node +
-                                   ": no permission to open it; a udev rule with " + rule.data() +
-                                   " mends it for good, sudo chown $USER " + node +
-                                   " until it is plugged in again"};
+                                   ": no permission to open it; sudo nendo udev install mends it "
+                                   "for good, sudo chown $USER " +
+                                   node + " until it is plugged in again"};
 }
 
 } // namespace nendo::driver

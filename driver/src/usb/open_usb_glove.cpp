@@ -1,11 +1,13 @@
 #include "usb/open_usb_glove.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
 #include <system_error>
 #include <utility>
 
+#include "discovery/device_table.hpp"
 #include "fivedt_usb/fivedt_usb_driver.hpp"
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
 #include "p5/p5_driver.hpp"
@@ -14,30 +16,24 @@
 namespace nendo::driver {
 namespace {
 
-struct UsbGlove {
-  std::string_view name;
-  std::string_view ids; ///< for messages
-  bool (*is)(UsbId id) noexcept;
+/// A maker's gloves have one driver.
+struct UsbDriver {
+  std::uint16_t vendor;
   Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, const UsbWanted& wanted,
                                          HostTime deadline);
 };
 
-constexpr std::array usb_gloves{
-    UsbGlove{"Essential Reality P5", "0d7f:0100",
-             [](UsbId id) noexcept { return id == p5::usb_id; }, open_p5},
-    UsbGlove{"5DT Data Glove Ultra", "5d70:0000 to 5d70:0017",
-             [](UsbId id) noexcept {
-               return id.vendor == fivedt_usb::vendor_id &&
-                      fivedt_usb::model_of(id.product).has_value();
-             },
-             open_fivedt_usb},
+constexpr std::array usb_drivers{
+    UsbDriver{p5::usb_id.vendor, open_p5},
+    UsbDriver{fivedt_usb::vendor_id, open_fivedt_usb},
 };
 
-const UsbGlove* find(UsbId id) noexcept {
-  for (const UsbGlove& glove : usb_gloves) {
-    if (glove.is(id)) return &glove;
-  }
-  return nullptr;
+const UsbDriver* find_driver(UsbId id) noexcept {
+  if (usb_glove_name(id).empty()) return nullptr;
+  const auto* const found =
+      std::find_if(usb_drivers.begin(), usb_drivers.end(),
+                   [&](const UsbDriver& driver) { return driver.vendor == id.vendor; });
+  return found != usb_drivers.end() ? found : nullptr;
 }
 
 /// Four hexadecimal digits.
@@ -62,28 +58,28 @@ Result<UsbId> id_of(const GloveSpec& spec) {
 
 Error unknown(const GloveSpec& spec) {
   std::string known;
-  for (const UsbGlove& glove : usb_gloves)
-    known.append(known.empty() ? "" : ", ").append(glove.ids).append(" (").append(glove.name) +=
-        ')';
+  const auto models = usb_glove_models();
+  for (std::size_t first = 0, next = 0; first < models.size(); first = next) {
+    while (next < models.size() && models[next].name == models[first].name)
+      ++next;
+    known += (known.empty() ? "" : ", ") + to_string(models[first].id);
+    if (next - first > 1) known += " to " + to_string(models[next - 1].id);
+    known.append(" (").append(models[first].name) += ')';
+  }
   return {Errc::usage, spec.text + ": no driver for this USB device; known: " + known};
 }
 
 } // namespace
 
-std::string_view usb_glove_name(UsbId id) noexcept {
-  const UsbGlove* const glove = find(id);
-  return glove != nullptr ? glove->name : std::string_view{};
-}
-
 Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime deadline) {
   const auto id = id_of(spec);
   if (!id) return id.error();
-  const UsbGlove* const glove = find(*id);
-  if (glove == nullptr) return unknown(spec);
+  const UsbDriver* const driver = find_driver(*id);
+  if (driver == nullptr) return unknown(spec);
   UsbWanted wanted{*id, {}, {}};
   if (const auto serial = spec.options.find("serial"); serial != spec.options.end())
     wanted.serial = serial->second;
-  return glove->open(spec, wanted, deadline);
+  return driver->open(spec, wanted, deadline);
 }
 
 Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> /*side*/) {

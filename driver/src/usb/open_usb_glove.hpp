@@ -17,9 +17,6 @@
 
 namespace nendo::driver {
 
-/// What the glove with this number is called; empty if nendo has no driver for it.
-std::string_view usb_glove_name(UsbId id) noexcept;
-
 /// The table's entry for `usb:VID:PID[?serial=TEXT&hand=left|right]`. `side` is not needed: the
 /// glove, or the option, says which hand it is.
 Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> side);

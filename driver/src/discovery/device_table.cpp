@@ -1,0 +1,76 @@
+#include "discovery/device_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace nendo::driver {
+namespace {
+
+constexpr std::string_view ultra = "5DT Data Glove Ultra";
+
+// The numbers of a 5DT Ultra have a bit for the left hand, two for its link, of which one value is
+// unused, and one for five sensors (VRPN's driver).
+constexpr std::array models{
+    UsbGloveModel{{0x0D7F, 0x0100}, "Essential Reality P5"},
+    UsbGloveModel{{0x5D70, 0x0000}, ultra},
+    UsbGloveModel{{0x5D70, 0x0001}, ultra},
+    UsbGloveModel{{0x5D70, 0x0002}, ultra},
+    UsbGloveModel{{0x5D70, 0x0003}, ultra},
+    UsbGloveModel{{0x5D70, 0x0006}, ultra},
+    UsbGloveModel{{0x5D70, 0x0007}, ultra},
+    UsbGloveModel{{0x5D70, 0x0010}, ultra},
+    UsbGloveModel{{0x5D70, 0x0011}, ultra},
+    UsbGloveModel{{0x5D70, 0x0012}, ultra},
+    UsbGloveModel{{0x5D70, 0x0013}, ultra},
+    UsbGloveModel{{0x5D70, 0x0016}, ultra},
+    UsbGloveModel{{0x5D70, 0x0017}, ultra},
+};
+
+// 0403:6001 is also a CyberGlove III itself; Prolific's is what early users plug gloves into; the
+// other two are the chips of hobbyists' gloves.
+constexpr std::array adapters{
+    UsbAdapter{{0x0403, 0x6001}, "FTDI", "ftdi_sio"},
+    UsbAdapter{{0x067B, 0x2303}, "Prolific", "pl2303"},
+    UsbAdapter{{0x10C4, 0xEA60}, "Silicon Labs", "cp210x"},
+    UsbAdapter{{0x1A86, 0x7523}, "WCH", "ch341"},
+};
+
+// Not the maker Immersion, which also made digitisers that hang on a serial port.
+constexpr std::array<std::string_view, 2> names{"cyberglove", "cybertouch"};
+
+} // namespace
+
+std::span<const UsbGloveModel> usb_glove_models() noexcept {
+  return models;
+}
+
+std::span<const UsbAdapter> usb_adapters() noexcept {
+  return adapters;
+}
+
+std::span<const std::string_view> glove_names() noexcept {
+  return names;
+}
+
+std::string_view usb_glove_name(UsbId id) noexcept {
+  const auto* const found = std::find_if(
+      models.begin(), models.end(), [&](const UsbGloveModel& model) { return model.id == id; });
+  return found != models.end() ? found->name : std::string_view{};
+}
+
+const UsbAdapter* find_usb_adapter(UsbId id) noexcept {
+  const auto* const found =
+      std::find_if(adapters.begin(), adapters.end(),
+                   [&](const UsbAdapter& adapter) { return adapter.id == id; });
+  return found != adapters.end() ? found : nullptr;
+}
+
+bool names_a_glove(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::any_of(names.begin(), names.end(),
+                     [&](std::string_view name) { return text.find(name) != std::string::npos; });
+}
+
+} // namespace nendo::driver

@@ -1,0 +1,105 @@
+#include <nendo/driver/udev_rules.hpp>
+
+#include <array>
+#include <cctype>
+#include <cstdio>
+
+#include "discovery/device_table.hpp"
+
+namespace nendo::driver {
+namespace {
+
+// udev(7): ATTRS and SUBSYSTEMS look at the device and its parents, and all of a rule's must meet
+// one of them. A glove's port, its adapter and what lies between thus match by the same line.
+std::string by_numbers(const UsbGloveModel& model) {
+  std::array<char, 96> match{};
+  std::snprintf(match.data(), match.size(), R"(ATTRS{idVendor}=="%04x", ATTRS{idProduct}=="%04x")",
+                unsigned{model.id.vendor}, unsigned{model.id.product});
+  return std::string(match.data()) + R"(, ENV{ID_NENDO_GLOVE}="1", ENV{ID_NENDO_MODEL}=")" +
+         std::string(model.name) + "\"\n";
+}
+
+/// udev has no matching without regard to case: "ab" becomes "*[Aa][Bb]*".
+std::string anywhere(std::string_view word) {
+  std::string pattern = "*";
+  for (const char c : word) {
+    const auto letter = static_cast<unsigned char>(c);
+    pattern += {'[', static_cast<char>(std::toupper(letter)),
+                static_cast<char>(std::tolower(letter)), ']'};
+  }
+  return pattern + '*';
+}
+
+std::string by_name(std::string_view word) {
+  std::string rules;
+  for (const std::string_view attribute : {"manufacturer", "product"}) {
+    const std::string match = "ATTRS{" + std::string(attribute) + "}==\"" + anywhere(word) + "\", ";
+    rules += match + "ENV{ID_NENDO_GLOVE}=\"1\"\n";
+    rules += match + "ATTRS{serial}==\"?*\", ENV{.NENDO_SERIAL}=\"$attr{serial}\"\n";
+  }
+  return rules;
+}
+
+std::string adapters_left_out() {
+  std::string list;
+  for (const UsbAdapter& adapter : usb_adapters())
+    list += (list.empty() ? "" : ", ") + to_string(adapter.id);
+  return list;
+}
+
+std::string identification() {
+  std::string text(udev_file_mark);
+  text +=
+      "which USB devices are data gloves, and what follows. Changes are lost;\n"
+      "# what you bind with `nendo udev bind` is in 60-nendo-local.rules, which is read first.\n"
+      "ACTION==\"remove\", GOTO=\"nendo_end\"\n"
+      "SUBSYSTEMS==\"usb\", GOTO=\"nendo_usb\"\n" // != would hold if any parent is another
+      "GOTO=\"nendo_end\"\nLABEL=\"nendo_usb\"\n\n"
+      "# Gloves with USB numbers of their own.\n";
+  for (const UsbGloveModel& model : usb_glove_models())
+    text += by_numbers(model);
+  text += "\n# What calls itself a glove.\n";
+  for (const std::string_view name : glove_names())
+    text += by_name(name);
+  text += "\n# Not here, because anything may hang on them: " + adapters_left_out() +
+          ".\n"
+          "# `nendo udev bind PORT --as right` binds one of those by its serial number.\n"
+          "ENV{ID_NENDO_GLOVE}!=\"1\", GOTO=\"nendo_end\"\n\n"
+          "# ModemManager would hold a new port for 10 to 20 s and send modem commands to it.\n"
+          "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ENV{ID_MM_DEVICE_IGNORE}=\"1\"\n"
+          "SUBSYSTEM==\"tty\", ENV{ID_MM_PORT_IGNORE}=\"1\"\n\n"
+          "# A name that stays. What a device calls itself must not lead out of the folder.\n"
+          "SUBSYSTEM==\"tty\", ENV{ID_NENDO_HAND}==\"left|right\", "
+          "SYMLINK+=\"nendo/$env{ID_NENDO_HAND}\"\n"
+          "SUBSYSTEM==\"tty\", ENV{ID_NENDO_HAND}==\"\", ENV{.NENDO_SERIAL}==\"?*\", "
+          "ENV{.NENDO_SERIAL}!=\"*/*\", SYMLINK+=\"nendo/glove-$env{.NENDO_SERIAL}\"\n\n"
+          "# FTDI adapters keep short replies back for 16 ms unless told otherwise.\n"
+          "SUBSYSTEM==\"usb-serial\", DRIVER==\"ftdi_sio\", ATTR{latency_timer}!=\"1\", "
+          "ATTR{latency_timer}=\"1\"\n"
+          "LABEL=\"nendo_end\"\n";
+  return text;
+}
+
+// Below 73: that is where systemd turns the tag into the permission. The USB device itself only
+// where the glove has no port, so that nobody can take a port's kernel driver away.
+std::string grant() {
+  const std::string rights =
+      "TAG+=\"uaccess\", GROUP=\"" + std::string(glove_group) + "\", MODE=\"0660\"\n";
+  return std::string(udev_file_mark) +
+         "who may open data gloves. Changes are lost.\n"
+         "# uaccess: the user at the screen; the group: a machine without one.\n"
+         "ACTION==\"remove\", GOTO=\"nendo_uaccess_end\"\n"
+         "ENV{ID_NENDO_GLOVE}!=\"1\", GOTO=\"nendo_uaccess_end\"\n"
+         "SUBSYSTEM==\"tty\", " +
+         rights +
+         "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ENV{ID_NENDO_MODEL}==\"?*\", " +
+         rights + "LABEL=\"nendo_uaccess_end\"\n";
+}
+
+} // namespace
+
+std::vector<UdevFile> udev_files() {
+  return {{"60-nendo.rules", identification()}, {"61-nendo-uaccess.rules", grant()}};
+}
+
+} // namespace nendo::driver

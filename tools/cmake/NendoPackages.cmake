@@ -1,0 +1,76 @@
+# Debian packages, split as Debian does: the program, the libraries (named by their soname, so that two versions can be
+# installed beside each other), what one builds programs with, and the udev rules, which are no version's and therefore
+# a package of their own. tools/package builds and checks them.
+set(NENDO_SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(library_package libnendo${NENDO_SOVERSION})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_CONTACT "Nendo maintainers <maintainers@nendo.example>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_ALL program library development udev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
+  ${PROJECT_BINARY_DIR}/driver/base ${PROJECT_BINARY_DIR}/driver ${PROJECT_BINARY_DIR}/hand ${PROJECT_BINARY_DIR}/deform
+  ${PROJECT_BINARY_DIR}/apps/flow ${PROJECT_BINARY_DIR}/apps/recording)
+
+# nendo_package(COMPONENT NAME SECTION SUMMARY TEXT): `TEXT` follows the line that all of them share.
+function(nendo_package component name section summary text)
+  string(TOUPPER ${component} key)
+  set(CPACK_DEBIAN_${key}_PACKAGE_NAME ${name} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${key}_PACKAGE_SECTION ${section} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${key}_DESCRIPTION "${summary}
+Nendo turns data gloves into hands that shape 3-D models: drivers for
+CyberGloves, LucidGloves, 5DT, Forte and P5 gloves, and a loop at a fixed
+rate that deforms a mesh with the fingertips of both hands.
+.
+${text}" PARENT_SCOPE)
+  set(doc ${CMAKE_INSTALL_DATADIR}/doc/${name})
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/debian/copyright DESTINATION ${doc} COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/debian/changelog.gz DESTINATION ${doc} COMPONENT ${component})
+endfunction()
+
+nendo_package(program nendo science "data gloves that shape 3-D models"
+  "This package has the program.")
+nendo_package(library ${library_package} libs "data gloves that shape 3-D models - libraries"
+  "This package has the shared libraries.")
+nendo_package(development libnendo-dev libdevel "data gloves that shape 3-D models - for building programs"
+  "This package has headers, and files for CMake and pkg-config.")
+nendo_package(udev nendo-udev misc "data gloves that shape 3-D models - udev rules"
+  "This package has the rules by which udev knows data gloves, lets the user at
+the screen open them, and keeps ModemManager off them.")
+
+set(same "(= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${library_package} ${same}, nendo-udev (>= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS nendo-udev)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
+  ${PROJECT_BINARY_DIR}/debian/triggers ${PROJECT_BINARY_DIR}/debian/shlibs)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} ${same}, libeigen3-dev")
+set(CPACK_DEBIAN_UDEV_PACKAGE_ARCHITECTURE all)
+
+# Files that debhelper would make.
+string(TIMESTAMP when "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH, if that is set
+file(WRITE ${PROJECT_BINARY_DIR}/debian/changelog "nendo (${PROJECT_VERSION}) bookworm; urgency=medium
+
+  * CHANGELOG.md says what changed.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${when}
+")
+execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/debian/changelog COMMAND_ERROR_IS_FATAL ANY)
+file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
+set(shlibs "")
+foreach(name base driver hand deform flow recording)
+  string(APPEND shlibs "libnendo_${name} ${NENDO_SOVERSION} ${library_package} (>= ${PROJECT_VERSION})\n")
+endforeach()
+file(WRITE ${PROJECT_BINARY_DIR}/debian/shlibs "${shlibs}")
+
+include(CPack)
