@@ -15,6 +15,7 @@ void add_emulate(Command& program);
 void add_info(Command& program);
 void add_manual(Command& program);
 void add_monitor(Command& program);
+void add_picture(Command& program);
 void add_poses(Command& program);
 void add_record(Command& program);
 void add_recording(Command& program);
@@ -22,5 +23,6 @@ void add_replay(Command& program);
 void add_run(Command& program);
 void add_stress(Command& program);
 void add_udev(Command& program);
+void add_view(Command& program);
 
 } // namespace nendo::app

@@ -23,6 +23,7 @@ int run(int argc, char** argv) {
                      "4 no permission, 5 bad input file.",
                      [](Command& program) {
                        add_run(program);
+                       add_view(program);
                        add_monitor(program);
                        add_calibrate(program);
                        add_poses(program);
@@ -32,6 +33,7 @@ int run(int argc, char** argv) {
                        add_info(program);
                        add_calibration(program);
                        add_deform(program);
+                       add_picture(program);
                        add_emulate(program);
                        add_record(program);
                        add_replay(program);

@@ -16,6 +16,7 @@
 #include "cli.hpp"
 #include "commands.hpp"
 #include "printable.hpp"
+#include "recorded_model.hpp"
 
 namespace nendo::app {
 namespace {
@@ -57,24 +58,6 @@ Result<void> check(const Options& options) {
   const auto extension = std::filesystem::path(options.out).extension();
   if (extension == ".obj" || extension == ".ply") return {};
   return Error{Errc::usage, "--out " + options.out + ": end the name in .obj or .ply"};
-}
-
-/// The model that was recorded, or the one that was asked for.
-Result<deform::Mesh> model_of(const Options& options, const recording::LoopSetup& loop) {
-  auto model = deform::read_mesh(options.mesh.empty() ? loop.mesh : options.mesh);
-  if (!model) {
-    if (!options.mesh.empty()) return model.error();
-    return Error{Errc::bad_input, printable(model.error().message) +
-                                      "; that is the model that was recorded, name it with --mesh"};
-  }
-  if (recording::sum_of(model->vertices) == loop.mesh_sum) return model;
-  if (options.mesh.empty()) {
-    return Error{Errc::bad_input, printable(loop.mesh) +
-                                      ": is not as it was when it was recorded; name the model of "
-                                      "then with --mesh, or another"};
-  }
-  note(options.mesh + ": another model than was recorded; its shape will be another, too");
-  return model;
 }
 
 HostTime host_time(const recording::Setup& setup, double seconds) {
@@ -166,7 +149,7 @@ int replay(const Options& options) {
                                         ": gloves were recorded, but no loop that shapes "
                                         "a model; shape one with `nendo run --right "
                                         "replay:FILE`"});
-  auto model = model_of(options, *reader->setup().loop);
+  auto model = recorded_model(*reader->setup().loop, options.mesh);
   if (!model) return report(model.error());
   const std::string simd(deform::simd_names().front());
   if (reader->setup().loop->simd != simd) {

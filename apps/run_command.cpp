@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "filter_options.hpp"
 #include "kernel_options.hpp"
+#include "live_view.hpp"
 #include "loop_options.hpp"
 #include "run_report.hpp"
 #include "service/service_notice.hpp"
@@ -29,6 +30,7 @@ struct CommandOptions {
   FilterArguments filter;
   KernelOptions kernel;
   LoopArguments loop;
+  ViewOptions view;
   bool injective = false;
   bool not_injective = false;
 };
@@ -47,22 +49,37 @@ std::string dated_name() {
 
 // An hour of sculpting must not end in a file that cannot be written, so the place is looked at
 // before.
-Result<void> check_output(const std::string& out) {
+Result<void> check_place(const std::string& option, const std::string& out) {
   const std::filesystem::path path(out);
-  const auto extension = path.extension();
-  if (extension != ".obj" && extension != ".ply") {
-    return Error{Errc::usage, "--out " + out + ": end the name in .obj or .ply"};
-  }
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   if (std::filesystem::is_directory(path)) {
-    return Error{Errc::usage, "--out " + out + ": that is a folder; name a file in it"};
+    return Error{Errc::usage, option + " " + out + ": that is a folder; name a file in it"};
   }
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     return Error{Errc::failed,
-                 "--out " + out + ": " + folder.string() +
+                 option + " " + out + ": " + folder.string() +
                      " is not a folder that you may write to; make it or choose another"};
   }
   return {};
+}
+
+Result<void> check_picture(const std::string& option, const std::string& out) {
+  if (out.empty()) return {};
+  if (std::filesystem::path(out).extension() != ".png")
+    return Error{Errc::usage, option + " " + out + ": end the name in .png"};
+  return check_place(option, out);
+}
+
+Result<void> check_outputs(const CommandOptions& options) {
+  const RunOptions& run = options.run;
+  const auto extension = std::filesystem::path(run.out).extension();
+  if (extension != ".obj" && extension != ".ply")
+    return Error{Errc::usage, "--out " + run.out + ": end the name in .obj or .ply"};
+  if (const auto fine = check_place("--out", run.out); !fine) return fine;
+  if (const auto fine = check_picture("--picture", run.picture); !fine) return fine;
+  if (!options.view.screenshot.empty() && options.view.frames == 0)
+    return Error{Errc::usage, "--screenshot: say with --frames N after how many pictures"};
+  return check_picture("--screenshot", options.view.screenshot);
 }
 
 Result<void> check(CommandOptions& options) {
@@ -98,7 +115,7 @@ Result<void> check(CommandOptions& options) {
   if (run.out.empty()) run.out = dated_name();
   if (const auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
   if (run.mesh.empty()) run.mesh = shipped_model("moai.obj").string();
-  return check_output(run.out);
+  return check_outputs(options);
 }
 
 int run(CommandOptions& options) {
@@ -112,8 +129,17 @@ int run(CommandOptions& options) {
   RunOptions& wanted = options.run;
   const flow::RealtimeProcess process(wanted.realtime);
   wanted.grants = process.grants();
+  flow::RequestRing requests(64);
+  wanted.loop.requests = &requests;
+  wanted.loop.sculptor.deformer.undo_bytes = undo_bytes_for(*model);
+  std::unique_ptr<Onlooker> window;
+  if (options.view.window) {
+    auto opened = open_live_view(options.view, wanted, requests, *model);
+    if (!opened) return report(opened.error());
+    window = *std::move(opened);
+  }
   Bell bell;
-  const auto hands = open_hands(wanted, *model, bell);
+  auto hands = open_hands(wanted, *model, bell);
   if (!hands) return report(hands.error());
   ServiceNotice service;
   const auto progress = [&service, shown = progress_for(wanted)](const flow::Frame& frame,
@@ -121,18 +147,14 @@ int run(CommandOptions& options) {
     service.alive();
     shown(frame, elapsed_s);
   };
-  const auto outcome = run_session(wanted, *hands, *std::move(model), progress);
+  const auto outcome = run_session(wanted, *hands, *std::move(model), progress, window.get());
   if (!outcome) return report(outcome.error());
   print_summary(wanted, *hands, *outcome);
   return outcome->recording.has_failed ? static_cast<int>(Errc::failed) : 0;
 }
 
-} // namespace
-
-void add_run(Command& program) {
-  auto options = std::make_shared<CommandOptions>();
+void add_run_options(Command& command, const std::shared_ptr<CommandOptions>& options) {
   RunOptions& run_options = options->run;
-  Command command = program.add_command("run", "Shapes a model with one or two gloves");
   std::string gloves;
   for (const auto& [grammar, summary] : driver::driver_summaries()) {
     gloves += "\n  " + std::string(grammar) + "\n      " + std::string(summary);
@@ -171,8 +193,31 @@ void add_run(Command& program) {
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
+  command.add_option("--picture", run_options.picture,
+                     "Where to draw the model and the hands before and after, .png");
   command.add_flag("--json", run_options.json, "Progress and summary as JSON, an object a line");
+  command.add_option("--screenshot", options->view.screenshot,
+                     "Where the window's last picture goes, .png");
+  command.add_option("--frames", options->view.frames,
+                     "The window's pictures after which it ends; 0: when it is closed");
   command.on_chosen([options] { return run(*options); });
+}
+
+} // namespace
+
+void add_run(Command& program) {
+  auto options = std::make_shared<CommandOptions>();
+  Command command = program.add_command("run", "Shapes a model with one or two gloves");
+  command.add_flag("--view", options->view.window, "Opens the live window, as `nendo view` does");
+  add_run_options(command, options);
+}
+
+void add_view(Command& program) {
+  auto options = std::make_shared<CommandOptions>();
+  options->view.window = true;
+  Command command = program.add_command(
+      "view", "As `nendo run`, in a window with the model, the hands and a panel");
+  add_run_options(command, options);
 }
 
 } // namespace nendo::app

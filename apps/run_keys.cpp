@@ -8,6 +8,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli.hpp"
+#include "run_session.hpp"
 
 namespace nendo::app {
 namespace {
@@ -27,9 +28,10 @@ std::string numbered(const std::string& out, int number) {
   return path.replace_filename(name).string();
 }
 
-RunKeys::RunKeys(flow::RequestRing& requests, const flow::DeformLoop& loop,
-                 const deform::Mesh& model, std::string out, RunRecorder* keeper)
-    : requests_(requests), loop_(loop), model_(model), out_(std::move(out)), keeper_(keeper) {
+RunKeys::RunKeys(const RunOptions& options, const flow::DeformLoop& loop, const deform::Mesh& model,
+                 RunRecorder* keeper)
+    : requests_(*options.loop.requests), loop_(loop), model_(model), out_(options.out),
+      keeper_(keeper) {
   if (!keys_.are_there()) return;
   note("keys: g lets go, takes hold again; c keeps the shape so far; u undoes; s saves; " +
        std::string(keeper_ != nullptr ? "k keeps the recording of what was just done; " : "") +

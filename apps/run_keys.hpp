@@ -15,11 +15,11 @@ namespace nendo::app {
 
 class RunKeys {
 public:
-  /// `out` names the shape that the run ends with; those saved on the way get a number. `keeper`
+  /// Asks in options.loop.requests; saved shapes are called as options.out and numbered. `keeper`
   /// keeps what was done last, if there is one. All must outlive this. Says on standard error what
   /// the keys are, if any can come.
-  RunKeys(flow::RequestRing& requests, const flow::DeformLoop& loop, const deform::Mesh& model,
-          std::string out, RunRecorder* keeper);
+  RunKeys(const RunOptions& options, const flow::DeformLoop& loop, const deform::Mesh& model,
+          RunRecorder* keeper);
 
   /// Waits so long for a key, and does what it stands for; `latest` is what the user sees. False:
   /// the run is to end.

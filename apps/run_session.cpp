@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <future>
+#include <iterator>
 #include <limits>
 #include <thread>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "cli.hpp"
 #include "glove_light.hpp"
 #include "run_keys.hpp"
+#include "run_picture.hpp"
 #include "touching_glove.hpp"
 
 namespace nendo::app {
@@ -149,13 +151,6 @@ std::pair<double, double> least_and_largest(const deform::Supports& supports) {
   return {least, largest};
 }
 
-// For some dozens of whole shapes, of which strokes mostly change parts.
-std::size_t undo_bytes_for(const deform::Mesh& model) {
-  constexpr std::size_t most = std::size_t{64} << 20;
-  constexpr std::size_t a_vertex = 64 * 3 * sizeof(float);
-  return std::min(most, a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
-}
-
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
 // room elsewhere.
 Result<void> keep(const std::string& out, const deform::Mesh& shape) {
@@ -203,21 +198,82 @@ private:
   std::vector<std::unique_ptr<GloveLight>> lights_;
 };
 
-// Follows the loop from the main thread until it ends or is to end.
-void watch(const RunOptions& options, flow::DeformLoop& loop, const std::atomic<bool>& ended,
-           HostTime start, HoldLights& lights, RunKeys& keys, const Progress& progress) {
-  HostTime next_report = start;
+// The thread on which a loop runs.
+class LoopThread {
+public:
+  LoopThread(flow::DeformLoop& loop, const RunOptions& options)
+      : start(HostClock::now()), thread_([this, &loop, &options] {
+          prepared_.set_value(flow::make_thread_realtime(options.realtime));
+          loop.run(over_, ticks_for(options));
+          ended = true;
+        }) {}
+  ~LoopThread() { stop(); }
+  LoopThread(const LoopThread&) = delete;
+  LoopThread& operator=(const LoopThread&) = delete;
+
+  std::vector<flow::Grant> grants() { return prepared_.get_future().get(); }
+  void stop() {
+    over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  const HostTime start;
+  std::atomic<bool> ended{false};
+
+private:
+  std::atomic<bool> over_{false};
+  std::promise<std::vector<flow::Grant>> prepared_;
+  std::thread thread_;
+};
+
+// What the main thread follows while a loop runs.
+struct Watched {
+  const RunOptions& options;
+  flow::DeformLoop& loop;
+  const LoopThread& thread;
+  HoldLights& lights;
+  RunPicture& picture;
+  RunKeys& keys;
+  const Progress& progress;
+  Onlooker* onlooker;
+};
+
+// Until the loop ends or is to end.
+Onlooker::Verdict watch(const Watched& of) {
+  using Verdict = Onlooker::Verdict;
+  HostTime next_report = of.thread.start;
   bool unreported = false;
-  while (!ended && !stop_requested() && !is_over(options, start)) {
-    if (!keys.obey(milliseconds(20), loop.frames().front())) return;
-    if (loop.frames().update()) {
+  auto verdict = Verdict::go_on;
+  const milliseconds patience(of.onlooker == nullptr ? 20 : 0);
+  auto& frames = of.loop.frames();
+  while (verdict == Verdict::go_on && !of.thread.ended && !stop_requested() &&
+         !is_over(of.options, of.thread.start)) {
+    if (!of.keys.obey(patience, frames.front())) return Verdict::end;
+    const bool fresh = frames.update();
+    if (fresh) {
       unreported = true;
-      lights.show(loop.frames().front().held);
+      of.lights.show(frames.front().held);
+      of.picture.see(frames.front());
     }
+    if (of.onlooker != nullptr) verdict = of.onlooker->look(of.loop, fresh);
     if (HostClock::now() < next_report) continue;
-    if (unreported) progress(loop.frames().front(), to_seconds(HostClock::now() - start));
+    if (unreported) of.progress(frames.front(), to_seconds(HostClock::now() - of.thread.start));
     unreported = false;
     next_report += milliseconds(250);
+  }
+  return verdict;
+}
+
+// No loop drains the rings now: each hand's newest sample is where the next loop begins.
+void take_newest(std::vector<OpenHand>& hands) {
+  for (auto& hand : hands) {
+    const HostTime end = HostClock::now() + milliseconds(25); // a silent glove keeps its pose
+    bool any = false;
+    do {
+      while (hand.ring->try_pop(hand.first))
+        any = true;
+      if (!any) std::this_thread::sleep_for(milliseconds(1));
+    } while (!any && HostClock::now() < end);
   }
 }
 
@@ -237,6 +293,12 @@ bool is_over(const RunOptions& options, HostTime start) noexcept {
   if (options.duration_s <= 0.0) return false;
   const bool on_grid = ticks_for(options) != std::numeric_limits<std::uint64_t>::max();
   return !on_grid && to_seconds(HostClock::now() - start) >= options.duration_s;
+}
+
+std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
+  constexpr std::size_t most = std::size_t{64} << 20;
+  constexpr std::size_t a_vertex = 64 * 3 * sizeof(float);
+  return std::min(most, a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
 }
 
 Result<void> check_radius(const std::string& text) {
@@ -268,7 +330,8 @@ Result<std::vector<OpenHand>> open_hands(RunOptions& options, const deform::Mesh
 }
 
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
-                              const deform::Mesh& model) {
+                              const deform::Mesh& model,
+                              const std::optional<flow::Placement>& kept_placement) {
   const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
@@ -282,7 +345,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   // between them.
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
-  const auto placement = placement_for(hands, inputs, model);
+  const auto placement = kept_placement ? *kept_placement : placement_for(hands, inputs, model);
   auto setup = setup_of(inputs, placement, loop_options);
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {
@@ -292,50 +355,63 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   return PlacedLoop{std::move(loop), largest_radius, std::move(setup)};
 }
 
-Result<RunOutcome> run_session(RunOptions options, const std::vector<OpenHand>& hands,
-                               deform::Mesh model, const Progress& progress) {
-  flow::RequestRing requests(64);
-  options.loop.requests = &requests;
-  options.loop.sculptor.deformer.undo_bytes = undo_bytes_for(model);
+Result<RunOutcome> run_session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
+                               const Progress& progress, Onlooker* onlooker) {
+  flow::RequestRing own_requests(64);
+  if (options.loop.requests == nullptr) options.loop.requests = &own_requests;
   RunRecorder recorder(options);
   auto placed = place_loop(recorder.recorded(options), hands, model);
   if (!placed) return placed.error();
-  flow::DeformLoop& loop = *placed->loop;
   if (const auto begun = recorder.begin(options, placed->setup, hands, model); !begun)
     return begun.error();
-  std::atomic<bool> over{false};
-  std::atomic<bool> ended{false};
-  std::promise<std::vector<flow::Grant>> prepared;
-  const HostTime start = HostClock::now();
-  std::thread loop_thread([&] {
-    prepared.set_value(flow::make_thread_realtime(options.realtime));
-    loop.run(over, ticks_for(options));
-    ended = true;
-  });
-  std::vector<flow::Grant> grants = options.grants;
-  for (auto& grant : prepared.get_future().get())
-    grants.push_back(std::move(grant));
-  for (const auto& line : flow::refusals(grants))
-    note(line);
+  RecordingOutcome recording;
   HoldLights lights(options.loop.switch_action, hands);
-  {
-    RunKeys keys(requests, loop, model, options.out,
-                 options.recording.keep_last_s > 0.0 ? &recorder : nullptr);
-    watch(options, loop, ended, start, lights, keys, progress);
+  RunPicture picture(options.picture, model, placed->setup.options);
+  std::vector<flow::Grant> grants = options.grants;
+  auto verdict = Onlooker::Verdict::renew;
+  double elapsed_s = 0.0;
+  for (bool first = true; verdict == Onlooker::Verdict::renew; first = false) {
+    if (!first) {
+      onlooker->change(options, model);
+      take_newest(hands);
+      auto anew = place_loop(options, hands, model, placed->setup.placement);
+      if (!anew) {
+        const auto kept = keep(options.out, model); // what has been shaped is not lost with it
+        return kept ? anew.error() : kept.error();
+      }
+      placed = std::move(anew);
+    }
+    if (onlooker != nullptr) onlooker->begin(*placed, model, hands);
+    LoopThread thread(*placed->loop, options);
+    auto of_thread = thread.grants();
+    if (first) {
+      std::move(of_thread.begin(), of_thread.end(), std::back_inserter(grants));
+      for (const auto& line : flow::refusals(grants))
+        note(line);
+    }
+    {
+      const bool keeps = first && options.recording.keep_last_s > 0.0;
+      RunKeys keys(options, *placed->loop, model, keeps ? &recorder : nullptr);
+      verdict = watch({options, *placed->loop, thread, lights, picture, keys, progress, onlooker});
+    }
+    thread.stop();
+    elapsed_s = to_seconds(HostClock::now() - thread.start);
+    if (options.duration_s > 0.0)
+      options.duration_s = std::max(1e-3, options.duration_s - elapsed_s);
+    model.vertices = placed->loop->final_shape();
+    if (first) recording = recorder.end(model);
+    if (first && verdict == Onlooker::Verdict::renew && options.recording.wanted())
+      note("the recording ends here, because the loop is made anew");
+    if (placed->loop->frames().update()) picture.see(placed->loop->frames().front());
   }
-  over = true;
-  loop_thread.join();
-  const double elapsed_s = to_seconds(HostClock::now() - start);
   lights.put_out();
   for (const auto& hand : hands)
     hand.glove->stop();
-
-  model.vertices = loop.final_shape();
-  const auto recording = recorder.end(model);
   if (const auto kept = keep(options.out, model); !kept) return kept.error();
-  return RunOutcome{loop.stats(),   elapsed_s,   model.vertices.cols(),
-                    placed->radius, options.out, std::move(grants),
-                    recording};
+  if (const auto drawn = picture.write(model.vertices); !drawn) return drawn.error();
+  return RunOutcome{
+      placed->loop->stats(), elapsed_s, model.vertices.cols(), placed->radius, options.out,
+      std::move(grants),     recording};
 }
 
 } // namespace nendo::app

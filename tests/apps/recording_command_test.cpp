@@ -101,7 +101,7 @@ TEST_SUITE("recording_command") {
     CHECK(stressed.exit_code == 0);
   }
 
-  TEST_CASE("nendo record takes samples without a loop; info tells of them") {
+  TEST_CASE("nendo record takes samples without a loop, and info tells of them") {
     const TemporaryFolder folder;
     const std::string take = (folder.path() / "gloves.nendo").string();
     const auto done = test::nendo({"record", "sim:wave?hand=left", "sim:pinch?rate=50", "--out",

@@ -143,7 +143,7 @@ TEST_SUITE("take_tools") {
   }
 
   TEST_CASE(
-      "a part from the beginning replays exactly; one from the middle says that it does not") {
+      "a part from the beginning replays exactly, one from the middle says that it does not") {
     Take take(60);
     const auto all = entries_of(take.live.path);
     const auto tick_time = [&](std::uint64_t number) {

@@ -1,0 +1,27 @@
+#include "recorded_model.hpp"
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli.hpp"
+#include "printable.hpp"
+
+namespace nendo::app {
+
+Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
+  auto model = deform::read_mesh(named.empty() ? loop.mesh : named);
+  if (!model) {
+    if (!named.empty()) return model.error();
+    return Error{Errc::bad_input, printable(model.error().message) +
+                                      "; that is the model that was recorded, name it with --mesh"};
+  }
+  if (recording::sum_of(model->vertices) == loop.mesh_sum) return model;
+  if (named.empty()) {
+    return Error{Errc::bad_input, printable(loop.mesh) +
+                                      ": is not as it was when it was recorded; name the model of "
+                                      "then with --mesh, or another"};
+  }
+  note(named + ": another model than was recorded; its shape will be another, too");
+  return model;
+}
+
+} // namespace nendo::app

@@ -1,0 +1,16 @@
+#pragma once
+// The model over which a loop was recorded.
+
+#include <string>
+
+#include <nendo/recording/setup.hpp>
+
+namespace nendo::app {
+
+/// Read from the file that `named` says, or from the recorded one where that is empty; says on
+/// standard error if it is another model than was recorded. Errors: as deform::read_mesh();
+/// bad_input, if the recorded file is no longer what it was.
+Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop,
+                                    const std::string& named = {});
+
+} // namespace nendo::app

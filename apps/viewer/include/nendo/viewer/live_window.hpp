@@ -1,0 +1,91 @@
+#pragma once
+// The live window: the scene, a camera for the mouse, and a panel to see how the loop does and to
+// ask it for something. It reads frames and never waits for the loop, nor the loop for it. All of
+// this on the main thread, as windows demand.
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nendo/flow/frame.hpp>
+#include <nendo/flow/request.hpp>
+#include <nendo/flow/sculptor.hpp>
+#include <nendo/viewer/gl_renderer.hpp>
+
+struct GLFWwindow;
+
+namespace nendo::viewer {
+
+/// What a loop cannot change while it runs: it is made anew, from the shape as it is.
+struct LoopSettings {
+  flow::Mode mode = flow::Mode::type1;
+  deform::Wendland kernel = deform::Wendland::c2;
+  std::array<double, 5> radius_m{}; ///< of each finger, on the stage, thumb to little finger
+
+  friend bool operator==(const LoopSettings&, const LoopSettings&) = default;
+};
+
+/// What the panel tells beside the frame.
+struct Gauges {
+  std::string model;                 ///< its name
+  double rate_hz = 0.0;              ///< wanted
+  std::array<std::string, 2> gloves; ///< their names; empty: none
+  std::array<std::uint64_t, 2> bad_records{};
+  std::array<std::uint64_t, 2> lost{}; ///< samples that found no room
+  double restart_ms = 0.0;             ///< of the last change of settings; 0: none yet
+};
+
+/// What a person wants, since the last picture.
+struct Wishes {
+  std::vector<flow::Request> requests;
+  std::optional<LoopSettings> settings; ///< to go on with, in place of those in force
+  bool reset = false;                   ///< back to the model as it was loaded
+  bool record = false;                  ///< the recording is to begin, or to end
+  bool quit = false;
+};
+
+class LiveWindow {
+public:
+  /// Opens a window. Errors: failed (no screen, no OpenGL 3.3), with what to do without.
+  static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, Size size);
+  ~LiveWindow();
+  LiveWindow(const LiveWindow&) = delete;
+  LiveWindow& operator=(const LiveWindow&) = delete;
+
+  /// Another loop, over this model. Keeps the camera unless there was none.
+  void begin(const deform::BlockLayout& layout, const SceneBuilder& builder,
+             const LoopSettings& settings);
+  /// One picture, of the latest frame; waits for the screen, 20 ms at most without one. fresh: the
+  /// frame is another one than before.
+  Wishes show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
+  /// With a can_record, the panel has a button for it; `recording` is what it says.
+  void offer_recording(bool can_record, bool recording) noexcept;
+
+  Image screenshot() const; ///< of what was shown last
+  /// As viewer::silhouette(), of what was shown last, by OpenGL.
+  Image silhouette(Size size);
+  const Camera& camera() const noexcept { return camera_; }
+  const Scene& scene() const noexcept { return scene_; } ///< but for its model's places
+  std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
+
+private:
+  struct Panel;
+  LiveWindow() = default;
+  void follow_mouse();
+  void draw_panel(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes);
+
+  GLFWwindow* window_ = nullptr;
+  std::unique_ptr<GlRenderer> renderer_;
+  std::unique_ptr<Panel> panel_;
+  std::optional<SceneBuilder> builder_;
+  HoldFollower holds_;
+  Moment moment_;
+  SceneParts parts_;
+  Scene scene_;
+  Camera camera_;
+  bool framed_ = false;
+};
+
+} // namespace nendo::viewer

@@ -1,0 +1,51 @@
+#pragma once
+// What there is to see at one moment: of a mesh alone, of a frame of the running loop, or of a
+// recording. A take is a list of moments; whoever draws need not know where they came from.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <nendo/flow/frame.hpp>
+
+namespace nendo::viewer {
+
+using TipPlaces = Eigen::Matrix<double, 3, 5>; ///< thumb to little finger
+
+struct SeenHand {
+  hand::HandPose pose; ///< on the stage, metres
+  TipPlaces starts;    ///< of its control vectors, on the stage, metres; equal to the tips: none
+  bool silent = false; ///< its glove has stopped sending
+};
+
+struct Moment {
+  double time_s = 0.0;
+  deform::Points vertices;                      ///< 3 by #vertices, model units
+  std::array<std::optional<SeenHand>, 2> hands; ///< by flow::Placement::index_of(side)
+  bool held = false; ///< the hands hold the model; otherwise there are no control vectors
+  std::array<double, 5> radius_m{}; ///< of each fingertip's support, on the stage; 0: not shown
+};
+
+/// Where the fingertips took hold, which frames do not say: a hold begins where `held` becomes true
+/// or a commit or an undo is counted. Exact if it sees every frame; otherwise off by what the
+/// fingers moved between two that it saw.
+class HoldFollower {
+public:
+  void follow(const flow::Frame& frame) noexcept;
+  /// On the stage, metres. slot: flow::Placement::index_of(side).
+  const TipPlaces& starts(std::size_t slot) const noexcept { return starts_[slot]; }
+
+private:
+  std::array<TipPlaces, 2> starts_{TipPlaces::Zero(), TipPlaces::Zero()};
+  std::uint64_t commits_ = 0;
+  std::uint64_t undos_ = 0;
+  bool held_ = false;
+};
+
+/// All of a frame but its vertices and its time, which are left as they are.
+void see_hands(const flow::Frame& frame, const HoldFollower& holds, Moment& moment);
+
+/// The radii of five fingers on the stage. supports: the loop's; the largest of each finger counts.
+std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre);
+
+} // namespace nendo::viewer

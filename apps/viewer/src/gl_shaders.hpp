@@ -1,0 +1,71 @@
+#pragma once
+// What runs on the graphics card: the lights of light_maps.cpp without shadows.
+
+namespace nendo::viewer {
+
+inline constexpr const char* vertex_shader = R"(#version 330
+uniform mat4 clip_of_world;
+uniform bool from_blocks;
+uniform samplerBuffer block_places;   // 64 x, 64 y, 64 z, and again
+uniform samplerBuffer block_normals;
+uniform float scale;
+uniform vec3 offset;
+layout(location = 0) in vec3 given_place;
+layout(location = 1) in vec3 given_normal;
+out vec3 place;
+out vec3 normal;
+vec3 of_block(samplerBuffer blocks) {
+  int at = gl_VertexID / 64 * 192 + gl_VertexID % 64;
+  return vec3(texelFetch(blocks, at).r, texelFetch(blocks, at + 64).r, texelFetch(blocks, at + 128).r);
+}
+void main() {
+  place = from_blocks ? scale * of_block(block_places) + offset : given_place;
+  normal = from_blocks ? of_block(block_normals) : given_normal;
+  gl_Position = clip_of_world * vec4(place, 1.0);
+}
+)";
+
+inline constexpr const char* fragment_shader = R"(#version 330
+uniform vec3 eye, colour, key, fill, rim;
+uniform float gloss, opacity, rim_opacity, grid, fade, height;
+uniform bool flat_white, unlit;
+in vec3 place;
+in vec3 normal;
+out vec4 shown;
+vec3 screen(vec3 linear) {
+  vec3 soft = mix(linear, 0.8 + (linear - 0.8) / (1.0 + (linear - 0.8) / 0.2), greaterThan(linear, vec3(0.8)));
+  return pow(max(soft, 0.0), vec3(1.0 / 2.2));
+}
+vec3 background() {
+  float t = smoothstep(0.0, 1.0, 1.0 - gl_FragCoord.y / height);
+  return mix(vec3(0.86, 0.885, 0.91), vec3(0.70, 0.70, 0.695), t);
+}
+float line(float coordinate) {
+  float width = max(0.0015, fwidth(coordinate));
+  float off = abs(fract(coordinate / grid + 0.5) - 0.5) * grid;
+  return clamp((width - off) / width + 0.5, 0.0, 1.0) * 0.0015 / width;
+}
+void main() {
+  if (flat_white) { shown = vec4(1.0); return; }
+  vec3 sight = normalize(eye - place);
+  if (grid > 0.0) {
+    float near = clamp(1.25 - 1.25 * length(place.xz) / fade, 0.0, 1.0);
+    float drawn = max(line(place.x), line(place.z));
+    shown = vec4(screen(background() * mix(1.0, 0.9 * (1.0 - 0.3 * drawn), near)), 1.0);
+    return;
+  }
+  vec3 n = length(normal) > 0.0 ? normalize(normal) : sight;
+  if (dot(n, sight) < 0.0) n = -n;
+  float across = 1.0 - clamp(dot(n, sight), 0.0, 1.0);
+  float part = mix(opacity, rim_opacity, across * across * across);
+  if (unlit) { shown = vec4(screen(colour), part); return; }
+  vec3 light = vec3(0.54 * (0.71 + 0.29 * n.y));
+  light += max(0.0, (dot(n, key) + 0.12) / 1.12) * vec3(1.42, 1.35, 1.25);
+  light += max(0.0, (dot(n, fill) + 0.3) / 1.3) * vec3(0.22, 0.27, 0.34);
+  light += across * across * max(0.0, (dot(n, rim) + 0.2) / 1.2) * vec3(0.62, 0.66, 0.72);
+  float highlight = pow(max(0.0, dot(n, normalize(key + sight))), 32.0);
+  shown = vec4(screen(colour * light + gloss * highlight * vec3(1.42, 1.35, 1.25)), part);
+}
+)";
+
+} // namespace nendo::viewer

@@ -1,0 +1,199 @@
+#include "panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+namespace nendo::viewer {
+
+using flow::Request;
+using hand::Joint;
+
+namespace {
+
+constexpr std::array finger_names{"thumb", "index", "middle", "ring", "little"};
+constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2, deform::Wendland::c4,
+                             deform::Wendland::c6};
+constexpr float least_radius_cm = 1.0F;
+constexpr float most_radius_cm = 40.0F;
+
+struct Key {
+  int key;
+  const char* shown;
+  const char* does;
+};
+constexpr std::array key_table{
+    Key{GLFW_KEY_G, "g", "grab: the hands take hold"},
+    Key{GLFW_KEY_L, "l", "let go; what is shaped stays"},
+    Key{GLFW_KEY_C, "c", "commit: this shape becomes the rest shape"},
+    Key{GLFW_KEY_U, "u", "undo the last commit"},
+    Key{GLFW_KEY_R, "r", "record, where that is offered"},
+    Key{GLFW_KEY_H, "h", "hands' skin on and off"},
+    Key{GLFW_KEY_B, "b", "bones on and off"},
+    Key{GLFW_KEY_V, "v", "control vectors on and off"},
+    Key{GLFW_KEY_D, "d", "radii on and off"},
+    Key{GLFW_KEY_Q, "q", "quit; the shape is written"},
+    Key{GLFW_KEY_SLASH, "?", "this list"},
+};
+
+// How far two joints that follow each other are turned, degrees.
+float bend_deg(const hand::HandPose& pose, Joint from, Joint to) {
+  const Eigen::Matrix3d turn = pose[from].linear().transpose() * pose[to].linear();
+  const double cosine = std::clamp((turn.trace() - 1.0) / 2.0, -1.0, 1.0);
+  return static_cast<float>(to_degrees(std::acos(cosine)));
+}
+
+// Three joints a finger, from its root.
+std::array<float, 15> bends_of(const hand::HandPose& pose) {
+  std::array<float, 15> bends{};
+  bends[0] = bend_deg(pose, Joint::wrist, Joint::thumb_metacarpal);
+  bends[1] = bend_deg(pose, Joint::thumb_metacarpal, Joint::thumb_proximal);
+  bends[2] = bend_deg(pose, Joint::thumb_proximal, Joint::thumb_distal);
+  for (std::size_t finger = 1; finger < 5; ++finger) {
+    const std::size_t metacarpal = index_of(Joint::index_metacarpal) + 5 * (finger - 1);
+    for (std::size_t joint = 0; joint < 3; ++joint)
+      bends[3 * finger + joint] = bend_deg(pose, static_cast<Joint>(metacarpal + joint),
+                                           static_cast<Joint>(metacarpal + joint + 1));
+  }
+  return bends;
+}
+
+void chart(const char* name, const Strip& strip, const char* unit) {
+  char words[64];
+  std::snprintf(words, sizeof words, "most %.2f %s", static_cast<double>(strip.most()), unit);
+  ImGui::PlotLines(name, strip.data(), strip.size(), strip.oldest(), words, 0.0F,
+                   std::max(1.0F, strip.most()), ImVec2(200.0F, 44.0F));
+}
+
+} // namespace
+
+float Strip::most() const noexcept {
+  return *std::max_element(values_.begin(), values_.end());
+}
+
+void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
+  if (frame.ticks == 0) return;
+  const auto ms = [](HostClock::duration time) {
+    return static_cast<float>(1e3 * to_seconds(time));
+  };
+  late_ms.add(std::max(0.0F, ms(frame.woke - frame.scheduled)));
+  gap_ms.add(
+      static_cast<float>(std::abs(static_cast<double>(ms(frame.since_last)) - 1e3 / rate_hz)));
+  last_tick = frame.tick;
+}
+
+void LiveWindow::Panel::buttons(const flow::Frame& frame, Wishes& wishes) {
+  ImGui::TextUnformatted(frame.held ? "The hands hold the model." : "The hands have let go.");
+  const auto ask = [&](const char* words, Request request) {
+    if (ImGui::Button(words)) wishes.requests.push_back(request);
+    ImGui::SameLine();
+  };
+  ask("Grab", Request::grab);
+  ask("Let go", Request::let_go);
+  ask("Commit", Request::commit);
+  ask("Undo", Request::undo);
+  if (ImGui::Button("Reset")) wishes.reset = true;
+  if (can_record && ImGui::Button(recording ? "Stop recording" : "Record")) wishes.record = true;
+}
+
+void LiveWindow::Panel::settings(Wishes& wishes) {
+  int mode = static_cast<int>(wanted.mode);
+  ImGui::RadioButton("type1: pull", &mode, 0);
+  ImGui::SameLine();
+  ImGui::RadioButton("type2: strokes", &mode, 1);
+  wanted.mode = static_cast<flow::Mode>(mode);
+  if (ImGui::BeginCombo("kernel", std::string(deform::name_of(wanted.kernel)).c_str())) {
+    for (const auto kernel : kernels)
+      if (ImGui::Selectable(std::string(deform::name_of(kernel)).c_str(), kernel == wanted.kernel))
+        wanted.kernel = kernel;
+    ImGui::EndCombo();
+  }
+  ImGui::Checkbox("one radius for all fingers", &one_radius);
+  for (std::size_t finger = 0; finger < (one_radius ? 1 : finger_names.size()); ++finger) {
+    auto radius_cm = static_cast<float>(100.0 * wanted.radius_m[finger]);
+    if (ImGui::SliderFloat(one_radius ? "radius" : finger_names[finger], &radius_cm,
+                           least_radius_cm, most_radius_cm, "%.1f cm"))
+      wanted.radius_m[finger] =
+          static_cast<double>(std::clamp(radius_cm, least_radius_cm, most_radius_cm)) / 100;
+  }
+  if (one_radius) wanted.radius_m.fill(wanted.radius_m[0]);
+  if (wanted == in_force) {
+    ImGui::TextDisabled("as in force");
+  } else if (ImGui::Button("Apply")) {
+    wishes.settings = wanted;
+  } else {
+    ImGui::SameLine();
+    ImGui::TextDisabled("restarts the loop from this shape; undo begins anew");
+  }
+}
+
+void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) const {
+  ImGui::Text("%g Hz wanted, %llu ticks, %llu missed", gauges.rate_hz,
+              static_cast<unsigned long long>(frame.ticks),
+              static_cast<unsigned long long>(frame.missed));
+  chart("late", late_ms, "ms after its deadline");
+  chart("uneven", gap_ms, "ms off the period");
+  chart("picture", pictures_ms, "ms a picture");
+  if (gauges.restart_ms > 0.0) ImGui::Text("the last change took %.1f ms", gauges.restart_ms);
+}
+
+void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) const {
+  for (const Side side : {Side::left, Side::right}) {
+    const std::size_t slot = flow::Placement::index_of(side);
+    const auto& hand = frame.hands[slot];
+    if (!hand.present) continue;
+    ImGui::Text("%s: %s", std::string(name_of(side)).c_str(), gauges.gloves[slot].c_str());
+    ImGui::Text("%llu samples%s, %llu bad records, %llu lost",
+                static_cast<unsigned long long>(hand.samples), hand.silent ? " (silent)" : "",
+                static_cast<unsigned long long>(gauges.bad_records[slot]),
+                static_cast<unsigned long long>(gauges.lost[slot]));
+    const auto bends = bends_of(hand.pose);
+    ImGui::PushID(static_cast<int>(slot));
+    ImGui::PlotHistogram("joints", bends.data(), static_cast<int>(bends.size()), 0,
+                         "thumb to little, degrees", 0.0F, 110.0F, ImVec2(200.0F, 60.0F));
+    ImGui::PopID();
+  }
+}
+
+void LiveWindow::Panel::keys(SceneParts& parts, Wishes& wishes) {
+  if (ImGui::GetIO().WantTextInput) return;
+  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
+                                     {GLFW_KEY_L, Request::let_go},
+                                     {GLFW_KEY_C, Request::commit},
+                                     {GLFW_KEY_U, Request::undo}})
+    if (pressed(key)) wishes.requests.push_back(request);
+  for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts.hands},
+                                  {GLFW_KEY_B, &parts.bones},
+                                  {GLFW_KEY_V, &parts.vectors},
+                                  {GLFW_KEY_D, &parts.radii}})
+    if (pressed(key)) *part = !*part;
+  if (pressed(GLFW_KEY_R) && can_record) wishes.record = true;
+  if (pressed(GLFW_KEY_Q)) wishes.quit = true;
+  if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
+  if (!keys_shown) return;
+  ImGui::Begin("Keys", &keys_shown, ImGuiWindowFlags_AlwaysAutoResize);
+  for (const Key& key : key_table)
+    ImGui::Text("%-3s %s", key.shown, key.does);
+  ImGui::TextUnformatted("mouse: drag turns, middle or shift drag shifts, wheel zooms");
+  ImGui::End();
+}
+
+void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes) {
+  ImGui::SetNextWindowPos(ImVec2(10.0F, 10.0F), ImGuiCond_FirstUseEver);
+  ImGui::Begin("Nendo", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::Text("%s   (? for keys)", gauges.model.c_str());
+  panel_->buttons(frame, wishes);
+  if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings(wishes);
+  if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
+    panel_->timing(frame, gauges);
+  if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
+    panel_->hands(frame, gauges);
+  ImGui::End();
+  panel_->keys(parts_, wishes);
+}
+
+} // namespace nendo::viewer

@@ -1,0 +1,58 @@
+#pragma once
+// A viewer beside a loop, as `nendo view` is one, but for the window: polls frames and makes scenes
+// of them on a thread of its own.
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include <nendo/viewer/scene.hpp>
+
+#include "support/flow_fixtures.hpp"
+
+namespace nendo::test {
+
+class PollingViewer {
+public:
+  /// Polls a thousand times a second, and is the frames' only reader. Returns when it has drawn
+  /// once.
+  explicit PollingViewer(LoopUnderTest& test) : thread_([this, &test] { look_on(test); }) {
+    while (scenes_ == 0)
+      std::this_thread::yield();
+  }
+  ~PollingViewer() { end(); }
+  PollingViewer(const PollingViewer&) = delete;
+  PollingViewer& operator=(const PollingViewer&) = delete;
+
+  /// How many scenes it made.
+  std::uint64_t end() {
+    over_ = true;
+    if (thread_.joinable()) thread_.join();
+    return scenes_;
+  }
+
+private:
+  void look_on(LoopUnderTest& test) {
+    const viewer::SceneBuilder builder(test.model, test.placement.units_per_metre);
+    viewer::HoldFollower holds;
+    viewer::Moment moment;
+    viewer::Scene scene;
+    for (auto next = HostClock::now(); !over_;) {
+      next += std::chrono::milliseconds(1);
+      std::this_thread::sleep_until(next);
+      if (!test.loop->frames().update() && scenes_ > 0) continue;
+      const flow::Frame& frame = test.loop->frames().front();
+      holds.follow(frame);
+      viewer::see_hands(frame, holds, moment);
+      test.loop->layout().unpack(frame.shape, moment.vertices);
+      builder.build(moment, {}, scene);
+      ++scenes_;
+    }
+  }
+
+  std::atomic<bool> over_{false};
+  std::atomic<std::uint64_t> scenes_{0};
+  std::thread thread_;
+};
+
+} // namespace nendo::test

@@ -1,0 +1,132 @@
+// The live window, on a screen that exists in memory alone.
+
+#include <csignal>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <nendo/viewer/live_window.hpp>
+#include <nendo/viewer/picture.hpp>
+
+#include "support/flow_fixtures.hpp"
+#include "support/restraint.hpp"
+
+using namespace nendo;
+using namespace nendo::viewer;
+
+namespace {
+
+/// An Xvfb of this test's own; its number is in DISPLAY while it lives.
+class MemoryScreen {
+public:
+  MemoryScreen() {
+    int ends[2];
+    if (::pipe(ends) != 0) return;
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      ::dup2(ends[1], 3);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp",
+               nullptr);
+      ::_exit(127);
+    }
+    ::close(ends[1]);
+    std::string number;
+    for (char digit = 0; ::read(ends[0], &digit, 1) == 1 && digit != '\n';)
+      number += digit;
+    ::close(ends[0]);
+    is_there_ = !number.empty();
+    if (is_there_) ::setenv("DISPLAY", (":" + number).c_str(), 1);
+  }
+  ~MemoryScreen() {
+    ::unsetenv("DISPLAY");
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGTERM);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  bool is_there() const noexcept { return is_there_; }
+
+private:
+  pid_t pid_ = 0;
+  bool is_there_ = false;
+};
+
+double intersection_over_union(const Image& a, const Image& b) {
+  double both = 0.0;
+  double either = 0.0;
+  for (std::size_t at = 0; at < a.pixels().size(); ++at) {
+    const bool in_a = a.pixels()[at][0] > 127;
+    const bool in_b = b.pixels()[at][0] > 127;
+    both += in_a && in_b ? 1.0 : 0.0;
+    either += in_a || in_b ? 1.0 : 0.0;
+  }
+  return either > 0.0 ? both / either : 0.0;
+}
+
+} // namespace
+
+TEST_SUITE("window") {
+  TEST_CASE("without a screen there is one line that says what to do instead") {
+    ::unsetenv("DISPLAY");
+    ::unsetenv("WAYLAND_DISPLAY");
+    const auto window = LiveWindow::open("test", {320, 240});
+    REQUIRE_FALSE(window);
+    CHECK(window.error().code == Errc::failed);
+    CHECK(window.error().message.find("nendo picture") != std::string::npos);
+    CHECK(window.error().message.find('\n') == std::string::npos);
+  }
+
+  TEST_CASE("OpenGL draws what the processor draws, and sends only blocks that changed") {
+    if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
+    const MemoryScreen screen;
+    if (!screen.is_there()) {
+      MESSAGE("no Xvfb here, so the window is not tested; tools/setup check installs it");
+      return;
+    }
+    test::LoopUnderTest test(flow::Mode::type1);
+    constexpr Size size{400, 300};
+    auto opened = LiveWindow::open("test", size);
+    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
+    LiveWindow& window = **opened;
+    const SceneBuilder builder(test.model, test.placement.units_per_metre);
+    window.begin(test.loop->layout(), builder, {});
+    const auto blocks = test.loop->layout().block_count();
+
+    HoldFollower holds;
+    for (std::uint64_t tick = 0; tick < 4; ++tick) {
+      test.bend(static_cast<int>(8 * tick), HostClock::now());
+      const flow::Frame& frame = test.frame_after_tick(tick);
+      const auto before = window.blocks_sent();
+      const auto wishes = window.show(frame, true, {});
+      CHECK_FALSE(wishes.quit);
+      CHECK(wishes.requests.empty());
+      if (tick == 0) CHECK(window.blocks_sent() - before == blocks);
+      const auto sent = window.blocks_sent();
+      window.show(frame, true, {}); // the same frame again: nothing has changed
+      CHECK(window.blocks_sent() == sent);
+
+      holds.follow(frame);
+      Moment moment;
+      see_hands(frame, holds, moment);
+      test.loop->layout().unpack(frame.shape, moment.vertices);
+      Scene scene;
+      builder.build(moment, {}, scene);
+      const Image by_processor = silhouette(scene, window.camera(), size);
+      CHECK(intersection_over_union(by_processor, window.silhouette(size)) > 0.97);
+    }
+    // And not the same whatever is drawn: the model before it was shaped, seen from elsewhere.
+    Camera other = window.camera();
+    other.orbit(200.0, 0.0);
+    Scene scene = window.scene();
+    Moment moment;
+    moment.vertices = 0.7 * test.model.vertices;
+    builder.build(moment, {}, scene);
+    CHECK(intersection_over_union(silhouette(scene, other, size), window.silhouette(size)) < 0.9);
+    const Image shown = window.screenshot();
+    CHECK(shown.size() == size);
+    CHECK_FALSE(shown == Image(size, shown.at(0, 0)));
+  }
+}
