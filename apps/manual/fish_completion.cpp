@@ -3,7 +3,7 @@
 namespace nendo::app {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string out = "'";
   for (const char c : text.substr(0, text.find('\n'))) {
     if (c == '\'' || c == '\\') out += '\\';
@@ -25,11 +25,11 @@ std::string option_line(const OptionModel& option, const std::string& where) {
     }
   }
   if (!choices.empty()) {
-    line += (option.is_positional() ? " -f -a " : " -x -a ") + quoted(choices);
+    line += (option.is_positional() ? " -f -a " : " -x -a ") + in_quotes(choices);
   } else if (!option.is_positional() && !option.value.empty()) {
     line += " -r";
   }
-  return line + " -d " + quoted(option.summary) + '\n';
+  return line + " -d " + in_quotes(option.summary) + '\n';
 }
 
 /// `seen` is a condition: the words before this command's own are there.
@@ -40,12 +40,12 @@ void add(const CommandModel& command, const std::string& seen, std::string& text
   const std::string here =
       inner_names.empty() ? seen : seen + "; and not __fish_seen_subcommand_from" + inner_names;
   for (const CommandModel& inner : command.commands) {
-    text += "complete -c nendo -n " + quoted(here) + " -f -a " + inner.name + " -d " +
-            quoted(inner.summary) + '\n';
+    text += "complete -c nendo -n " + in_quotes(here) + " -f -a " + inner.name + " -d " +
+            in_quotes(inner.summary) + '\n';
   }
   for (const OptionModel& option : command.options) {
     if (!option.is_positional() || !option.choices.empty())
-      text += option_line(option, " -n " + quoted(here));
+      text += option_line(option, " -n " + in_quotes(here));
   }
   for (const CommandModel& inner : command.commands)
     add(inner, seen + "; and __fish_seen_subcommand_from " + inner.name, text);
