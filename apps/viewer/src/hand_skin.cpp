@@ -9,7 +9,6 @@ namespace nendo::viewer {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using hand::Finger;
 using hand::Joint;
 
 namespace {
