@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
-#include <condition_variable>
-#include <mutex>
 #include <stop_token>
-#include <thread>
+#include <system_error>
 #include <vector>
 
 #include <nendo/driver/sample_record.hpp>
 
 #include "glove_options.hpp"
 #include "glove_spec.hpp"
+#include "stream/reader_thread.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -84,20 +83,10 @@ public:
   const GloveInfo& info() const noexcept override { return info_; }
 
   Result<void> start(SampleRing& ring) override {
-    if (started_) return Error{Errc::failed, info_.source + ": start() was called twice"};
-    try {
-      reader_ = std::jthread([this, &ring](const std::stop_token& stop) { replay(stop, ring); });
-    } catch (const std::system_error& error) {
-      return Error{Errc::failed, info_.source + ": no thread for the reader: " + error.what()};
-    }
-    started_ = true;
-    return {};
+    return reader_.start(info_.source,
+                         [this, &ring](const std::stop_token& stop) { replay(stop, ring); });
   }
-
-  void stop() noexcept override {
-    reader_.request_stop();
-    if (reader_.joinable()) reader_.join();
-  }
+  void stop() noexcept override { reader_.stop(); }
 
   GloveStats stats() const noexcept override {
     GloveStats stats;
@@ -133,7 +122,7 @@ private:
     HostTime due = begin;
     for (; sample; sample = source.next()) {
       due = begin + scaled(sample->arrival - first);
-      if (!wait_until(stop, due)) return std::nullopt;
+      if (!reader_.wait_until(stop, due)) return std::nullopt;
       const std::uint64_t sequence = sequence_base + (sample->sequence - first_sequence);
       if (sequence > next_sequence_)
         missed_.fetch_add(sequence - next_sequence_, std::memory_order_relaxed);
@@ -164,13 +153,6 @@ private:
         1.0 / std::clamp(info_.rate_hz, least_rate_hz, most_rate_hz)));
   }
 
-  /// False: it is to stop.
-  bool wait_until(const std::stop_token& stop, HostTime due) {
-    std::unique_lock lock(mutex_);
-    wake_.wait_until(lock, stop, due, [] { return false; });
-    return !stop.stop_requested();
-  }
-
   std::string path_;
   Settings settings_;
   std::uint8_t number_;
@@ -179,10 +161,7 @@ private:
   std::atomic<std::uint64_t> records_{0};
   std::atomic<std::uint64_t> missed_{0};
   std::atomic<std::uint64_t> ring_refused_{0};
-  std::mutex mutex_; ///< nobody else takes it: the wait wants one
-  std::condition_variable_any wake_;
-  bool started_ = false;
-  std::jthread reader_; // last: joined before what it uses is gone
+  ReaderThread reader_; // last: joined before what it uses is gone
 };
 
 std::vector<RecordedGlove> gloves_of(ChunkReader reader) {

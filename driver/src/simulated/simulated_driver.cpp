@@ -5,19 +5,17 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <stop_token>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include <nendo/driver/simulated_glove.hpp>
 
 #include "simulated/hand_motion.hpp"
 #include "simulated/typical_wearer.hpp"
+#include "stream/reader_thread.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -39,20 +37,10 @@ public:
   const GloveInfo& info() const noexcept override { return info_; }
 
   Result<void> start(SampleRing& ring) override {
-    if (started_) return Error{Errc::failed, info_.source + ": start() was called twice"};
-    try {
-      reader_ = std::jthread([this, &ring](const std::stop_token& stop) { read(stop, ring); });
-    } catch (const std::system_error& error) {
-      return Error{Errc::failed, info_.source + ": no thread for the reader: " + error.what()};
-    }
-    started_ = true;
-    return {};
+    return reader_.start(info_.source,
+                         [this, &ring](const std::stop_token& stop) { read(stop, ring); });
   }
-
-  void stop() noexcept override {
-    reader_.request_stop();
-    if (reader_.joinable()) reader_.join();
-  }
+  void stop() noexcept override { reader_.stop(); }
 
   GloveStats stats() const noexcept override {
     GloveStats stats;
@@ -66,13 +54,7 @@ public:
 private:
   void read(const std::stop_token& stop, SampleRing& ring) {
     begin_ = HostClock::now();
-    std::mutex mutex;
-    std::condition_variable_any
-        wake; // woken by `stop` alone: a slow glove stops as promptly as a fast one
-    std::unique_lock lock(mutex);
-    for (std::int64_t tick = 0;; ++tick) {
-      wake.wait_until(lock, stop, begin_ + tick * period_, [] { return false; });
-      if (stop.stop_requested()) return;
+    for (std::int64_t tick = 0; reader_.wait_until(stop, begin_ + tick * period_); ++tick) {
       tick = std::max(tick, (HostClock::now() - begin_) / period_);
       deliver(tick * period_, ring);
     }
@@ -102,8 +84,7 @@ private:
   HostTime begin_; ///< used by the reader thread only
   std::atomic<std::uint64_t> records_{0};
   std::atomic<std::uint64_t> ring_refused_{0};
-  bool started_ = false;
-  std::jthread reader_; // last: joined before what it uses is gone
+  ReaderThread reader_; // last: joined before what it uses is gone
 };
 
 template <class Number>

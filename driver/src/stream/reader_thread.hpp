@@ -1,0 +1,54 @@
+#pragma once
+// The reader thread of a glove that is in this process: it sleeps to deadlines, and stops at once.
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <nendo/base/result.hpp>
+#include <nendo/base/units.hpp>
+
+namespace nendo::driver {
+
+class ReaderThread {
+public:
+  /// Runs `read` until it returns, which it does soon after `stop` was asked for. `source` names
+  /// the glove. Errors: failed (called twice, no thread).
+  Result<void> start(const std::string& source,
+                     std::function<void(const std::stop_token& stop)> read) {
+    if (started_) return Error{Errc::failed, source + ": start() was called twice"};
+    try {
+      thread_ = std::jthread(std::move(read));
+    } catch (const std::system_error& error) {
+      return Error{Errc::failed, source + ": no thread for the reader: " + error.what()};
+    }
+    started_ = true;
+    return {};
+  }
+
+  /// Asks for it, and waits for the end. Idempotent.
+  void stop() noexcept {
+    thread_.request_stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  /// For `read`: sleeps until `due`. False: it is to stop.
+  bool wait_until(const std::stop_token& stop, HostTime due) {
+    std::unique_lock lock(mutex_);
+    wake_.wait_until(lock, stop, due, [] { return false; });
+    return !stop.stop_requested();
+  }
+
+private:
+  std::mutex mutex_; ///< nobody else takes it: the wait wants one
+  std::condition_variable_any wake_;
+  bool started_ = false;
+  std::jthread thread_; // last: joined before what it uses is gone
+};
+
+} // namespace nendo::driver
