@@ -33,9 +33,8 @@ std::string radii_text(const LoopSettings& settings, double units_per_metre) {
 class LiveView final : public Onlooker {
 public:
   LiveView(std::unique_ptr<LiveWindow> window, const ViewOptions& options, const RunOptions& run,
-           flow::RequestRing& requests, deform::Points loaded)
-      : window_(std::move(window)), options_(options), requests_(requests),
-        loaded_(std::move(loaded)) {
+           deform::Points loaded)
+      : window_(std::move(window)), options_(options), loaded_(std::move(loaded)) {
     gauges_.model = std::filesystem::path(run.mesh).filename().string();
     gauges_.rate_hz = run.loop.rate_hz;
   }
@@ -43,6 +42,7 @@ public:
   void begin(const PlacedLoop& placed, const deform::Mesh& model,
              const std::vector<OpenHand>& hands) override {
     hands_ = &hands;
+    requests_ = placed.setup.options.requests;
     units_per_metre_ = placed.setup.placement.units_per_metre;
     // The scene keeps its place when a shape that has been pulled about begins a new loop.
     if (!builder_) builder_.emplace(model, units_per_metre_);
@@ -65,7 +65,7 @@ public:
     wishes_ = window_->show(loop.frames().front(), fresh, gauges_);
     if (fresh) ++shown_;
     for (const auto request : wishes_.requests)
-      requests_.try_push(request); // full: the loop stands still, and asking again is as good
+      requests_->try_push(request); // full: the loop stands still, and asking again is as good
     if (options_.frames > 0 && shown_ >= options_.frames) {
       if (!options_.screenshot.empty())
         if (const auto done = write_png(options_.screenshot, window_->screenshot()); !done)
@@ -90,7 +90,7 @@ public:
 private:
   std::unique_ptr<LiveWindow> window_;
   ViewOptions options_;
-  flow::RequestRing& requests_;
+  flow::RequestRing* requests_ = nullptr; ///< the loop's
   deform::Points loaded_;
   std::optional<SceneBuilder> builder_;
   const std::vector<OpenHand>* hands_ = nullptr;
@@ -105,12 +105,11 @@ private:
 } // namespace
 
 Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions& options, const RunOptions& run,
-                                                 flow::RequestRing& requests,
                                                  const deform::Mesh& model) {
   auto window = LiveWindow::open("Nendo", window_size);
   if (!window) return window.error();
   return std::unique_ptr<Onlooker>(
-      std::make_unique<LiveView>(*std::move(window), options, run, requests, model.vertices));
+      std::make_unique<LiveView>(*std::move(window), options, run, model.vertices));
 }
 
 } // namespace nendo::app
@@ -120,7 +119,7 @@ Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions& options, con
 namespace nendo::app {
 
 Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions&, const RunOptions&,
-                                                 flow::RequestRing&, const deform::Mesh&) {
+                                                 const deform::Mesh&) {
   return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
                              "libimgui-dev and libgl-dev and build it again, or draw files with "
                              "`nendo picture`"};

@@ -17,6 +17,7 @@
 #include "kernel_options.hpp"
 #include "live_view.hpp"
 #include "loop_options.hpp"
+#include "open_hands.hpp"
 #include "run_report.hpp"
 #include "service/service_notice.hpp"
 
@@ -129,12 +130,9 @@ int run(CommandOptions& options) {
   RunOptions& wanted = options.run;
   const flow::RealtimeProcess process(wanted.realtime);
   wanted.grants = process.grants();
-  flow::RequestRing requests(64);
-  wanted.loop.requests = &requests;
-  wanted.loop.sculptor.deformer.undo_bytes = undo_bytes_for(*model);
   std::unique_ptr<Onlooker> window;
   if (options.view.window) {
-    auto opened = open_live_view(options.view, wanted, requests, *model);
+    auto opened = open_live_view(options.view, wanted, *model);
     if (!opened) return report(opened.error());
     window = *std::move(opened);
   }
@@ -142,12 +140,14 @@ int run(CommandOptions& options) {
   auto hands = open_hands(wanted, *model, bell);
   if (!hands) return report(hands.error());
   ServiceNotice service;
-  const auto progress = [&service, shown = progress_for(wanted)](const flow::Frame& frame,
-                                                                 double elapsed_s) {
+  Followers followers;
+  followers.progress = [&service, shown = progress_for(wanted)](const flow::Frame& frame,
+                                                                double elapsed_s) {
     service.alive();
     shown(frame, elapsed_s);
   };
-  const auto outcome = run_session(wanted, *hands, *std::move(model), progress, window.get());
+  followers.onlooker = window.get();
+  const auto outcome = run_session(wanted, *hands, *std::move(model), followers);
   if (!outcome) return report(outcome.error());
   print_summary(wanted, *hands, *outcome);
   return outcome->recording.has_failed ? static_cast<int>(Errc::failed) : 0;

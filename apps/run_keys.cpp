@@ -8,7 +8,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli.hpp"
-#include "run_session.hpp"
+#include "run_options.hpp"
 
 namespace nendo::app {
 namespace {
@@ -28,24 +28,23 @@ std::string numbered(const std::string& out, int number) {
   return path.replace_filename(name).string();
 }
 
-RunKeys::RunKeys(const RunOptions& options, const flow::DeformLoop& loop, const deform::Mesh& model,
-                 RunRecorder* keeper)
-    : requests_(*options.loop.requests), loop_(loop), model_(model), out_(options.out),
-      keeper_(keeper) {
+RunKeys::RunKeys(const RunOptions& options, const deform::Mesh& model, RunRecorder& recorder)
+    : requests_(*options.loop.requests), model_(model), out_(options.out), recorder_(recorder) {
   if (!keys_.are_there()) return;
   note("keys: g lets go, takes hold again; c keeps the shape so far; u undoes; s saves; " +
-       std::string(keeper_ != nullptr ? "k keeps the recording of what was just done; " : "") +
+       std::string(recorder_.keeps() ? "k keeps the recording of what was just done; " : "") +
        "q ends");
 }
 
-bool RunKeys::obey(std::chrono::milliseconds patience, const flow::Frame& latest) {
+bool RunKeys::obey(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
   const auto key = keys_.next(patience);
   if (!key) return true;
-  if (*key == 'g') ask(latest.held ? flow::Request::let_go : flow::Request::grab);
+  const bool held = loop.frames().front().held;
+  if (*key == 'g') ask(held ? flow::Request::let_go : flow::Request::grab);
   if (*key == 'c' || *key == ' ') ask(flow::Request::commit);
   if (*key == 'u') ask(flow::Request::undo);
-  if (*key == 's') save(latest);
-  if (*key == 'k' && keeper_ != nullptr) keeper_->keep();
+  if (*key == 's') save(loop);
+  if (*key == 'k') recorder_.keep();
   if (*key != 'q') return true;
   wait_until_heard();
   return false;
@@ -63,13 +62,13 @@ void RunKeys::ask(flow::Request request) {
     tell("the loop does not answer, so it was not asked to " + std::string(name_of(request)));
 }
 
-void RunKeys::save(const flow::Frame& latest) {
+void RunKeys::save(flow::DeformLoop& loop) {
   std::string file;
   do
     file = numbered(out_, ++saved_);
   while (std::filesystem::exists(file));
   deform::Mesh shape = model_;
-  loop_.layout().unpack(latest.shape, shape.vertices);
+  loop.layout().unpack(loop.frames().front().shape, shape.vertices);
   const auto written = deform::write_mesh(file, shape);
   tell(written ? "saved as " + file : written.error().message);
 }

@@ -15,27 +15,24 @@ namespace nendo::app {
 
 class RunKeys {
 public:
-  /// Asks in options.loop.requests; saved shapes are called as options.out and numbered. `keeper`
-  /// keeps what was done last, if there is one. All must outlive this. Says on standard error what
-  /// the keys are, if any can come.
-  RunKeys(const RunOptions& options, const flow::DeformLoop& loop, const deform::Mesh& model,
-          RunRecorder* keeper);
+  /// Asks in options.loop.requests; saved shapes are called as options.out and numbered. All must
+  /// outlive this. Says on standard error what the keys are, if any can come.
+  RunKeys(const RunOptions& options, const deform::Mesh& model, RunRecorder& recorder);
 
-  /// Waits so long for a key, and does what it stands for; `latest` is what the user sees. False:
-  /// the run is to end.
-  bool obey(std::chrono::milliseconds patience, const flow::Frame& latest);
+  /// Waits so long for a key, and does what it stands for; the user sees the frame at the front.
+  /// False: the run is to end.
+  bool obey(std::chrono::milliseconds patience, flow::DeformLoop& loop);
 
 private:
   void ask(flow::Request request);
-  void save(const flow::Frame& latest);
+  void save(flow::DeformLoop& loop);
   void wait_until_heard() const;
 
   Keys keys_;
   flow::RequestRing& requests_;
-  const flow::DeformLoop& loop_;
   const deform::Mesh& model_;
   std::string out_;
-  RunRecorder* keeper_;
+  RunRecorder& recorder_;
   int saved_ = 0;
 };
 

@@ -6,7 +6,7 @@
 
 #include "cli.hpp"
 #include "durations.hpp"
-#include "run_session.hpp"
+#include "place_loop.hpp"
 
 namespace nendo::app {
 
@@ -44,11 +44,6 @@ void add_recording_options(Command& command, RecordingOptions& options) {
       .under("Recording");
 }
 
-PlacedSetup setup_of(const std::vector<flow::HandInput>& inputs, const flow::Placement& placement,
-                     const flow::LoopOptions& options) {
-  return {inputs, placement, options};
-}
-
 recording::Setup begin_setup(const std::vector<OpenHand>& hands, const std::string& wearer) {
   recording::Setup setup = recording::begin_setup("nendo " NENDO_VERSION);
   setup.wearer = wearer;
@@ -57,14 +52,8 @@ recording::Setup begin_setup(const std::vector<OpenHand>& hands, const std::stri
   return setup;
 }
 
-RunRecorder::RunRecorder(const RunOptions& options) {
-  if (options.recording.wanted()) tape_.emplace();
-}
-
-RunOptions RunRecorder::recorded(const RunOptions& options) {
-  RunOptions taped = options;
-  if (tape_) taped.loop.tape = &*tape_;
-  return taped;
+RunRecorder::RunRecorder(const RecordingOptions& options) {
+  if (options.wanted()) tape_.emplace();
 }
 
 Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& placed,
@@ -90,14 +79,16 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
   auto recorder = recording::Recorder::begin(setup, *tape_, std::move(wanted));
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);
+  keeps_ = options.recording.keep_last_s > 0.0;
   return {};
 }
 
 void RunRecorder::keep() noexcept {
-  if (recorder_) recorder_->keep();
+  if (keeps_) recorder_->keep();
 }
 
 RecordingOutcome RunRecorder::end(const deform::Mesh& shape) {
+  keeps_ = false;
   if (!recorder_) return {};
   const auto recorded = recorder_->end(recording::sum_of(shape.vertices));
   if (!recorded) return {std::nullopt, true}; // what it is was told at once

@@ -13,6 +13,7 @@
 
 namespace nendo::app {
 
+struct PlacedSetup;
 struct RunOptions;
 
 struct RecordingOptions {
@@ -34,27 +35,20 @@ struct RecordingOutcome {
   bool has_failed = false;
 };
 
-/// What a loop was made of, besides its hands' sizes and its model's file.
-struct PlacedSetup {
-  std::vector<flow::HandInput> inputs;
-  flow::Placement placement;
-  flow::LoopOptions options;
-};
-PlacedSetup setup_of(const std::vector<flow::HandInput>& inputs, const flow::Placement& placement,
-                     const flow::LoopOptions& options);
-
 /// Who, when and with what: the beginning of every recording's setup. By the hands' order.
 recording::Setup begin_setup(const std::vector<OpenHand>& hands, const std::string& wearer);
 
 class RunRecorder {
 public:
-  explicit RunRecorder(const RunOptions& options);
-  /// The options with the tape in them, if one is wanted.
-  RunOptions recorded(const RunOptions& options);
+  explicit RunRecorder(const RecordingOptions& options);
+  /// What the loop is to record on; null: nothing is wanted of it.
+  flow::Tape* tape() noexcept { return tape_ ? &*tape_ : nullptr; }
   /// Before the loop runs. Error: failed, if the file cannot be made.
   Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
                      const std::vector<OpenHand>& hands, const deform::Mesh& model);
-  /// What was done last becomes a file; nothing without --keep-last. Any thread, wait-free.
+  /// Whether keep() does anything: with --keep-last, from begin() to end().
+  bool keeps() const noexcept { return keeps_; }
+  /// What was done last becomes a file. Wait-free.
   void keep() noexcept;
   /// After the loop's last tick.
   RecordingOutcome end(const deform::Mesh& shape);
@@ -62,6 +56,7 @@ public:
 private:
   std::optional<flow::Tape> tape_;
   std::unique_ptr<recording::Recorder> recorder_;
+  bool keeps_ = false;
 };
 
 } // namespace nendo::app

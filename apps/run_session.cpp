@@ -10,145 +10,22 @@
 #include <utility>
 
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/driver/devices.hpp>
 
 #include "cli.hpp"
 #include "glove_light.hpp"
 #include "run_keys.hpp"
 #include "run_picture.hpp"
-#include "touching_glove.hpp"
 
 namespace nendo::app {
 namespace {
 
 using std::chrono::milliseconds;
 
-// Of the model's longest side. On the stage that is 16 cm: a finger shapes what is about it, and
-// its neighbours' supports overlap with it enough that no ridge is left between two fingers that
-// press together.
-constexpr double default_radius_fraction = 0.2;
-// A cut of type 2, of the radius: far below the step at which a single finger would fold the
-// surface (0.47).
-constexpr double piece_fraction = 0.05;
-
-// Both hands that the machine has, or simulated ones. A glove that is there but cannot be used is
-// an error.
-Result<std::vector<OpenHand>> open_any(Bell* bell) {
-  std::vector<OpenHand> hands;
-  std::string why;
-  for (const Side side : {Side::left, Side::right}) {
-    auto hand = open_hand("auto:" + std::string(name_of(side)), side, bell);
-    if (hand) {
-      hands.push_back(*std::move(hand));
-    } else if (hand.error().code != Errc::no_device) {
-      return hand.error();
-    } else {
-      why = hand.error().message;
-    }
-  }
-  if (!hands.empty()) return hands;
-  const auto candidates = driver::find_gloves();
-  if (std::any_of(candidates.begin(), candidates.end(),
-                  [](const auto& c) { return c.identified; })) {
-    note(why); // one is plugged in, but does not answer
-  }
-  note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
-       "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
-  for (const Side side : {Side::left, Side::right}) {
-    auto hand = open_hand("sim", side, bell);
-    if (!hand) return hand.error();
-    hands.push_back(*std::move(hand));
-  }
-  return hands;
-}
-
-Result<OpenHand> open_touching(const RunOptions& options, const deform::Mesh& model,
-                               const std::string& spec, Side side, Bell* bell) {
-  auto touching = open_touching_glove(spec, side, model, options.length.size({}));
-  if (!touching) return touching.error();
-  OpenHand hand = hand_of(std::move(touching->glove), side, bell);
-  hand.T_stage_wrist = touching->T_stage_wrist;
-  return hand;
-}
-
-Result<std::vector<OpenHand>> open_named(const RunOptions& options, const deform::Mesh& model,
-                                         Bell* bell) {
-  std::vector<OpenHand> hands;
-  for (const auto& [spec, side] :
-       {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
-    if (spec->empty()) continue;
-    auto hand = is_touching(*spec) ? open_touching(options, model, *spec, side, bell)
-                                   : open_hand(*spec, side, bell);
-    if (!hand) return hand.error();
-    hands.push_back(*std::move(hand));
-  }
-  return hands;
-}
-
-std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
-                                       const RunOptions& options) {
-  std::vector<flow::HandInput> inputs;
-  inputs.reserve(hands.size());
-  for (const auto& hand : hands) {
-    const hand::HandSkeleton skeleton(hand.side, options.length.size(hand.known.own.size));
-    inputs.push_back({hand.ring.get(), skeleton, hand.known.own.calibration, hand.first});
-    inputs.back().filter = options.filter;
-    inputs.back().swapped = hand.known.swapped.calibration;
-    inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(hand.known.swapped.size));
-    inputs.back().adapt = hand.known.adapt;
-  }
-  return inputs;
-}
-
-flow::Placement placement_for(const std::vector<OpenHand>& open,
-                              const std::vector<flow::HandInput>& inputs,
-                              const deform::Mesh& model) {
-  std::array<std::optional<flow::Fingertips>, 2> tips;
-  for (const auto& hand : inputs) {
-    const auto angles = hand::joint_angles(hand.first, hand.calibration);
-    tips[flow::Placement::index_of(hand.skeleton.side())] =
-        hand.skeleton.pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
-  }
-  flow::Placement placement = flow::place_hands(model, tips);
-  for (const auto& hand : open) {
-    if (hand.T_stage_wrist)
-      placement.T_stage_wrist[flow::Placement::index_of(hand.side)] = *hand.T_stage_wrist;
-  }
-  return placement;
-}
-
-double longest_side(const deform::Mesh& model) {
-  return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
-}
-
-Error bad_radius(const std::string& text, const std::string& why) {
-  return {Errc::usage, "--radius " + text + ": " + why +
-                           "; use a length > 0 in the mesh's units, five with commas between (or "
-                           "ten, left hand first), or leave it out"};
-}
-
-Result<deform::Supports> supports_for(const std::string& radius, Eigen::Index fingertips,
-                                      double model_size) {
-  if (radius.empty())
-    return deform::one_radius(default_radius_fraction * (model_size > 0.0 ? model_size : 1.0));
-  auto supports = deform::parse_supports_by_point(radius, fingertips);
-  if (!supports)
-    return bad_radius(radius, "does not fit " + std::to_string(fingertips) + " fingertips");
-  return *std::move(supports);
-}
-
-std::pair<double, double> least_and_largest(const deform::Supports& supports) {
-  double least = supports.shared.front().radius;
-  double largest = least;
-  const auto count = [&](const deform::Support& support) {
-    least = std::min(least, support.radius);
-    largest = std::max(largest, support.radius);
-  };
-  for (const auto& support : supports.shared)
-    count(support);
-  for (const auto& own : supports.own)
-    count(own.support);
-  return {least, largest};
+// For some dozens of whole shapes, of which strokes mostly change parts.
+std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
+  constexpr std::size_t most = std::size_t{64} << 20;
+  constexpr std::size_t a_vertex = 64 * 3 * sizeof(float);
+  return std::min(most, a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
 }
 
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
@@ -163,17 +40,6 @@ Result<void> keep(const std::string& out, const deform::Mesh& shape) {
     return written.error();
   return Error{Errc::failed,
                written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
-}
-
-Result<void> check_switch(flow::SwitchAction action, const std::vector<OpenHand>& hands) {
-  const bool any = std::any_of(hands.begin(), hands.end(), [](const OpenHand& hand) {
-    return hand.glove->info().abilities.wrist_switch;
-  });
-  if (any || action == flow::SwitchAction::none) return {};
-  return Error{Errc::usage, "--switch " + std::string(name_of(action)) + ": " +
-                                hands.front().glove->info().source +
-                                (hands.size() > 1 ? " and the other glove have" : " has") +
-                                " no wrist switch that nendo can read; leave --switch out"};
 }
 
 // The lights of the gloves whose switches do something: lit while the hands hold the model. Given
@@ -226,44 +92,6 @@ private:
   std::thread thread_;
 };
 
-// What the main thread follows while a loop runs.
-struct Watched {
-  const RunOptions& options;
-  flow::DeformLoop& loop;
-  const LoopThread& thread;
-  HoldLights& lights;
-  RunPicture& picture;
-  RunKeys& keys;
-  const Progress& progress;
-  Onlooker* onlooker;
-};
-
-// Until the loop ends or is to end.
-Onlooker::Verdict watch(const Watched& of) {
-  using Verdict = Onlooker::Verdict;
-  HostTime next_report = of.thread.start;
-  bool unreported = false;
-  auto verdict = Verdict::go_on;
-  const milliseconds patience(of.onlooker == nullptr ? 20 : 0);
-  auto& frames = of.loop.frames();
-  while (verdict == Verdict::go_on && !of.thread.ended && !stop_requested() &&
-         !is_over(of.options, of.thread.start)) {
-    if (!of.keys.obey(patience, frames.front())) return Verdict::end;
-    const bool fresh = frames.update();
-    if (fresh) {
-      unreported = true;
-      of.lights.show(frames.front().held);
-      of.picture.see(frames.front());
-    }
-    if (of.onlooker != nullptr) verdict = of.onlooker->look(of.loop, fresh);
-    if (HostClock::now() < next_report) continue;
-    if (unreported) of.progress(frames.front(), to_seconds(HostClock::now() - of.thread.start));
-    unreported = false;
-    next_report += milliseconds(250);
-  }
-  return verdict;
-}
-
 // No loop drains the rings now: each hand's newest sample is where the next loop begins.
 void take_newest(std::vector<OpenHand>& hands) {
   for (auto& hand : hands) {
@@ -276,6 +104,144 @@ void take_newest(std::vector<OpenHand>& hands) {
     } while (!any && HostClock::now() < end);
   }
 }
+
+// One run: its loop, which may be made anew, and what follows it.
+class Session {
+public:
+  Session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
+          const Followers& followers)
+      : options_(std::move(options)), hands_(hands), model_(std::move(model)),
+        followers_(followers), recorder_(options_.recording),
+        lights_(options_.loop.switch_action, hands_) {
+    options_.loop.requests = &requests_;
+    options_.loop.sculptor.deformer.undo_bytes = undo_bytes_for(model_);
+    options_.loop.tape = recorder_.tape();
+    options_.loop.sinks.assign(followers_.outlets.begin(), followers_.outlets.end());
+  }
+
+  Result<RunOutcome> run() {
+    auto placed = place_loop(options_, hands_, model_);
+    if (!placed) return placed.error();
+    placed_ = *std::move(placed);
+    const auto begun = recorder_.begin(options_, placed_.setup, hands_, model_);
+    if (!begun) return begun.error();
+    RunPicture picture(options_.picture, model_, placed_.setup.options);
+    RunKeys keys(options_, model_, recorder_);
+    if (const auto shown = show_outlets(); !shown) return shown.error();
+    auto verdict = run_loop(picture, keys);
+    const auto recording = recorder_.end(model_);
+    options_.loop.tape = nullptr;
+    if (verdict == Verdict::renew && options_.recording.wanted())
+      note("the recording ends here, because the loop is made anew");
+    while (verdict == Verdict::renew) {
+      if (const auto renewed = renew(); !renewed) return renewed.error();
+      if (const auto shown = show_outlets(); !shown) return shown.error();
+      verdict = run_loop(picture, keys);
+    }
+    lights_.put_out();
+    for (const auto& hand : hands_)
+      hand.glove->stop();
+    if (const auto kept = keep(options_.out, model_); !kept) return kept.error();
+    if (const auto drawn = picture.write(model_.vertices); !drawn) return drawn.error();
+    return RunOutcome{placed_.loop->stats(),
+                      elapsed_s_,
+                      model_.vertices.cols(),
+                      placed_.radius,
+                      options_.out,
+                      std::move(options_.grants),
+                      recording};
+  }
+
+private:
+  using Verdict = Onlooker::Verdict;
+
+  Result<void> show_outlets() {
+    for (Outlet* outlet : followers_.outlets)
+      if (const auto begun = outlet->begin(placed_, model_, hands_); !begun) return begun.error();
+    return {};
+  }
+
+  // The ring has one pushing thread, which is this one.
+  void pass_on_requests() {
+    for (Outlet* outlet : followers_.outlets)
+      while (const auto request = outlet->next_request())
+        requests_.try_push(*request); // full: the loop stands still, and asking again is as good
+  }
+
+  // Until the loop has ended; model_ is then as it left it.
+  Verdict run_loop(RunPicture& picture, RunKeys& keys) {
+    flow::DeformLoop& loop = *placed_.loop;
+    if (followers_.onlooker != nullptr) followers_.onlooker->begin(placed_, model_, hands_);
+    LoopThread thread(loop, options_);
+    tell_refusals(thread.grants());
+    const Verdict verdict = watch(thread, picture, keys);
+    thread.stop();
+    elapsed_s_ = to_seconds(HostClock::now() - thread.start);
+    model_.vertices = loop.final_shape();
+    if (loop.frames().update()) picture.see(loop.frames().front());
+    return verdict;
+  }
+
+  // Each loop's thread asks for the same rights; they are told of once.
+  void tell_refusals(std::vector<flow::Grant> of_thread) {
+    if (told_) return;
+    told_ = true;
+    std::move(of_thread.begin(), of_thread.end(), std::back_inserter(options_.grants));
+    for (const auto& line : flow::refusals(options_.grants))
+      note(line);
+  }
+
+  Verdict watch(const LoopThread& thread, RunPicture& picture, RunKeys& keys) {
+    auto& frames = placed_.loop->frames();
+    const milliseconds patience(followers_.onlooker == nullptr ? 20 : 0);
+    HostTime next_report = thread.start;
+    bool unreported = false;
+    auto verdict = Verdict::go_on;
+    while (verdict == Verdict::go_on && !thread.ended && !stop_requested() &&
+           !is_over(options_, thread.start)) {
+      if (!keys.obey(patience, *placed_.loop)) return Verdict::end;
+      const bool fresh = frames.update();
+      if (fresh) {
+        unreported = true;
+        lights_.show(frames.front().held);
+        picture.see(frames.front());
+      }
+      pass_on_requests();
+      if (followers_.onlooker != nullptr) verdict = followers_.onlooker->look(*placed_.loop, fresh);
+      if (HostClock::now() < next_report) continue;
+      if (unreported)
+        followers_.progress(frames.front(), to_seconds(HostClock::now() - thread.start));
+      unreported = false;
+      next_report += milliseconds(250);
+    }
+    return verdict;
+  }
+
+  Result<void> renew() {
+    if (options_.duration_s > 0.0)
+      options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
+    followers_.onlooker->change(options_, model_);
+    take_newest(hands_);
+    auto anew = place_loop(options_, hands_, model_, placed_.setup.placement);
+    if (!anew) {
+      const auto kept = keep(options_.out, model_); // what has been shaped is not lost with it
+      return kept ? anew.error() : kept.error();
+    }
+    placed_ = *std::move(anew);
+    return {};
+  }
+
+  RunOptions options_;
+  std::vector<OpenHand>& hands_;
+  deform::Mesh model_;
+  const Followers& followers_;
+  flow::RequestRing requests_{64};
+  RunRecorder recorder_;
+  HoldLights lights_;
+  PlacedLoop placed_;
+  double elapsed_s_ = 0.0; ///< of the latest loop
+  bool told_ = false;
+};
 
 } // namespace
 
@@ -295,123 +261,9 @@ bool is_over(const RunOptions& options, HostTime start) noexcept {
   return !on_grid && to_seconds(HostClock::now() - start) >= options.duration_s;
 }
 
-std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
-  constexpr std::size_t most = std::size_t{64} << 20;
-  constexpr std::size_t a_vertex = 64 * 3 * sizeof(float);
-  return std::min(most, a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
-}
-
-Result<void> check_radius(const std::string& text) {
-  if (text.empty() || deform::parse_supports_by_point(text, 10)) return {};
-  return bad_radius(text, "is none");
-}
-
-Result<std::vector<OpenHand>> open_hands(RunOptions& options, const deform::Mesh& model,
-                                         Bell& bell) {
-  if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.bell = &bell;
-  const bool named = !options.left.empty() || !options.right.empty();
-  Bell* const rung = options.loop.bell;
-  auto hands = named ? open_named(options, model, rung) : open_any(rung);
-  if (!hands) return hands;
-  if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
-    return fine.error();
-  {
-    const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
-    if (readers.grant()) options.grants.push_back(*readers.grant());
-    for (auto& hand : *hands) {
-      if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
-    }
-  }
-  for (auto& hand : *hands) {
-    if (const auto came = wait_for_first_sample(hand); !came) return came.error();
-    if (const auto done = calibrate(hand, options.calibration); !done) return done.error();
-  }
-  return hands;
-}
-
-Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
-                              const deform::Mesh& model,
-                              const std::optional<flow::Placement>& kept_placement) {
-  const double size = longest_side(model);
-  flow::LoopOptions loop_options = options.loop;
-  auto& sculptor = loop_options.sculptor;
-  auto inputs = inputs_of(hands, options);
-  auto supports = supports_for(options.radius, 5 * static_cast<Eigen::Index>(inputs.size()), size);
-  if (!supports) return supports.error();
-  const auto [least_radius, largest_radius] = least_and_largest(*supports);
-  sculptor.deformer.supports = *std::move(supports);
-  sculptor.piece_length = piece_fraction * least_radius;
-  // Live fingertips meet; the exact solution for two that nearly touch would tear the surface
-  // between them.
-  sculptor.deformer.csrbf.merge_fraction = 0.05;
-
-  const auto placement = kept_placement ? *kept_placement : placement_for(hands, inputs, model);
-  auto setup = setup_of(inputs, placement, loop_options);
-  auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
-  if (!is_solved(loop->grab_status())) {
-    return Error{Errc::failed, "the hands cannot take hold of the model: " +
-                                   std::string(deform::describe(loop->grab_status()))};
-  }
-  return PlacedLoop{std::move(loop), largest_radius, std::move(setup)};
-}
-
 Result<RunOutcome> run_session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
-                               const Progress& progress, Onlooker* onlooker) {
-  flow::RequestRing own_requests(64);
-  if (options.loop.requests == nullptr) options.loop.requests = &own_requests;
-  RunRecorder recorder(options);
-  auto placed = place_loop(recorder.recorded(options), hands, model);
-  if (!placed) return placed.error();
-  if (const auto begun = recorder.begin(options, placed->setup, hands, model); !begun)
-    return begun.error();
-  RecordingOutcome recording;
-  HoldLights lights(options.loop.switch_action, hands);
-  RunPicture picture(options.picture, model, placed->setup.options);
-  std::vector<flow::Grant> grants = options.grants;
-  auto verdict = Onlooker::Verdict::renew;
-  double elapsed_s = 0.0;
-  for (bool first = true; verdict == Onlooker::Verdict::renew; first = false) {
-    if (!first) {
-      onlooker->change(options, model);
-      take_newest(hands);
-      auto anew = place_loop(options, hands, model, placed->setup.placement);
-      if (!anew) {
-        const auto kept = keep(options.out, model); // what has been shaped is not lost with it
-        return kept ? anew.error() : kept.error();
-      }
-      placed = std::move(anew);
-    }
-    if (onlooker != nullptr) onlooker->begin(*placed, model, hands);
-    LoopThread thread(*placed->loop, options);
-    auto of_thread = thread.grants();
-    if (first) {
-      std::move(of_thread.begin(), of_thread.end(), std::back_inserter(grants));
-      for (const auto& line : flow::refusals(grants))
-        note(line);
-    }
-    {
-      const bool keeps = first && options.recording.keep_last_s > 0.0;
-      RunKeys keys(options, *placed->loop, model, keeps ? &recorder : nullptr);
-      verdict = watch({options, *placed->loop, thread, lights, picture, keys, progress, onlooker});
-    }
-    thread.stop();
-    elapsed_s = to_seconds(HostClock::now() - thread.start);
-    if (options.duration_s > 0.0)
-      options.duration_s = std::max(1e-3, options.duration_s - elapsed_s);
-    model.vertices = placed->loop->final_shape();
-    if (first) recording = recorder.end(model);
-    if (first && verdict == Onlooker::Verdict::renew && options.recording.wanted())
-      note("the recording ends here, because the loop is made anew");
-    if (placed->loop->frames().update()) picture.see(placed->loop->frames().front());
-  }
-  lights.put_out();
-  for (const auto& hand : hands)
-    hand.glove->stop();
-  if (const auto kept = keep(options.out, model); !kept) return kept.error();
-  if (const auto drawn = picture.write(model.vertices); !drawn) return drawn.error();
-  return RunOutcome{
-      placed->loop->stats(), elapsed_s, model.vertices.cols(), placed->radius, options.out,
-      std::move(grants),     recording};
+                               const Followers& followers) {
+  return Session(std::move(options), hands, std::move(model), followers).run();
 }
 
 } // namespace nendo::app

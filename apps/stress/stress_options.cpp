@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "cli.hpp"
+#include "place_loop.hpp"
 #include "stress/load.hpp"
 
 namespace nendo::app {

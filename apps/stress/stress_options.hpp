@@ -7,7 +7,7 @@
 
 #include "durations.hpp"
 #include "loop_options.hpp"
-#include "run_session.hpp"
+#include "run_options.hpp"
 #include "stress/conditions.hpp"
 
 namespace nendo::app {

@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "cli.hpp"
+#include "open_hands.hpp"
+#include "run_session.hpp"
 #include "stress/load.hpp"
 
 namespace nendo::app {

@@ -6,6 +6,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
+#include "open_hands.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 
@@ -66,8 +67,8 @@ TEST_SUITE("run_session") {
     auto hands = open_hands(options, mesh, bell);
     REQUIRE(hands);
     Renewer renewer;
-    const auto outcome = run_session(
-        options, *hands, mesh, [](const auto&, double) {}, &renewer);
+    const auto outcome =
+        run_session(options, *hands, mesh, {[](const auto&, double) {}, &renewer});
     REQUIRE(outcome);
     REQUIRE(renewer.begun.size() == 4);
     CHECK(renewer.begun[0] == mesh.vertices);

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "open_hands.hpp"
 #include "run_session.hpp"
 #include "support/program.hpp"
 #include "support/surface_distance.hpp"

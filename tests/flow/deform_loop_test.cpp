@@ -190,6 +190,34 @@ TEST_SUITE("deform_loop") {
     CHECK(HostClock::now() - asked < 2s); // a period is 5 ms; the rest is for a loaded machine
   }
 
+  TEST_CASE("every frame is shown to every sink, also those that no reader took") {
+    struct Sink final : flow::FrameSink {
+      void show(const Frame& frame) noexcept override {
+        if (frame.ticks != seen + 1) in_order = false;
+        seen = frame.ticks;
+        tips = frame.hands[0].pose.fingertip_positions();
+      }
+      std::uint64_t seen = 0;
+      bool in_order = true;
+      flow::Fingertips tips = flow::Fingertips::Zero();
+    };
+    std::array<Sink, 2> sinks;
+    LoopUnderTest test(Mode::type1);
+    test.options.sinks = {&sinks[0], &sinks[1]};
+    flow::DeformLoop loop(test.model, test.placement, test.inputs, test.options);
+    for (std::uint64_t tick = 0; tick < 5; ++tick) {
+      test.bend(static_cast<int>(tick), HostClock::now());
+      loop.tick(tick, HostClock::now());
+    }
+    REQUIRE(loop.frames().update());
+    for (const Sink& sink : sinks) {
+      CHECK(sink.seen == 5);
+      CHECK(sink.in_order);
+      CHECK((sink.tips.array() == loop.frames().front().hands[0].pose.fingertip_positions().array())
+                .all());
+    }
+  }
+
   TEST_CASE("after a swap a jump is judged by the gains of the glove that is there") {
     // 40 counts in 11 ms are no movement at 0.0125 rad each, and one at a tenth of that.
     for (const bool slow_first : {true, false}) {

@@ -189,7 +189,11 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   if (runs.deform) frame.status = shape(frame);
   record.solved_ns = now_ns();
   describe(record, frame);
-  if (runs.publish) frames_.publish();
+  if (runs.publish) {
+    for (FrameSink* sink : options_.sinks)
+      sink->show(frame);
+    frames_.publish();
+  }
   record.published_ns = now_ns();
   record_latencies(record);
   if (options_.tape != nullptr) options_.tape->tick(record.tick, record.scheduled, record.woke);

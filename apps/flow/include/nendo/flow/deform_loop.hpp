@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <nendo/flow/frame.hpp>
+#include <nendo/flow/frame_sink.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
 #include <nendo/flow/request.hpp>
@@ -45,7 +46,7 @@ struct TickStages {
   bool input = true;   ///< drains the rings
   bool hands = true;   ///< joints and fingertips
   bool deform = true;  ///< field and vertices
-  bool publish = true; ///< gives the frame to the reader
+  bool publish = true; ///< gives the frame to the reader and the sinks
 };
 
 struct LoopOptions : PaceOptions {
@@ -57,6 +58,8 @@ struct LoopOptions : PaceOptions {
   RequestRing* requests = nullptr;
   /// What is taken goes there, too. Must outlive it.
   Tape* tape = nullptr;
+  /// Each is shown every frame. Must outlive the loop.
+  std::vector<FrameSink*> sinks;
   /// What the hands' rings ring: needed by OverrunPolicy::sample. Must outlive the loop.
   Bell* bell = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);

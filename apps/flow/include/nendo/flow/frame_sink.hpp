@@ -1,0 +1,16 @@
+#pragma once
+// Who wants every frame, where LatestValue gives the newest one to a single reader.
+
+#include <nendo/flow/frame.hpp>
+
+namespace nendo::flow {
+
+class FrameSink {
+public:
+  virtual ~FrameSink() = default;
+  /// Called on the loop's thread, as a part of the tick: wait-free, and without allocation, lock or
+  /// system call.
+  virtual void show(const Frame& frame) noexcept = 0;
+};
+
+} // namespace nendo::flow

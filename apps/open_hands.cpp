@@ -1,0 +1,104 @@
+#include "open_hands.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <nendo/driver/devices.hpp>
+
+#include "cli.hpp"
+#include "touching_glove.hpp"
+
+namespace nendo::app {
+namespace {
+
+// Both hands that the machine has, or simulated ones. A glove that is there but cannot be used is
+// an error.
+Result<std::vector<OpenHand>> open_any(Bell* bell) {
+  std::vector<OpenHand> hands;
+  std::string why;
+  for (const Side side : {Side::left, Side::right}) {
+    auto hand = open_hand("auto:" + std::string(name_of(side)), side, bell);
+    if (hand) {
+      hands.push_back(*std::move(hand));
+    } else if (hand.error().code != Errc::no_device) {
+      return hand.error();
+    } else {
+      why = hand.error().message;
+    }
+  }
+  if (!hands.empty()) return hands;
+  const auto candidates = driver::find_gloves();
+  if (std::any_of(candidates.begin(), candidates.end(),
+                  [](const auto& c) { return c.identified; })) {
+    note(why); // one is plugged in, but does not answer
+  }
+  note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
+       "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
+  for (const Side side : {Side::left, Side::right}) {
+    auto hand = open_hand("sim", side, bell);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  return hands;
+}
+
+Result<OpenHand> open_touching(const RunOptions& options, const deform::Mesh& model,
+                               const std::string& spec, Side side, Bell* bell) {
+  auto touching = open_touching_glove(spec, side, model, options.length.size({}));
+  if (!touching) return touching.error();
+  OpenHand hand = hand_of(std::move(touching->glove), side, bell);
+  hand.T_stage_wrist = touching->T_stage_wrist;
+  return hand;
+}
+
+Result<std::vector<OpenHand>> open_named(const RunOptions& options, const deform::Mesh& model,
+                                         Bell* bell) {
+  std::vector<OpenHand> hands;
+  for (const auto& [spec, side] :
+       {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
+    if (spec->empty()) continue;
+    auto hand = is_touching(*spec) ? open_touching(options, model, *spec, side, bell)
+                                   : open_hand(*spec, side, bell);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  return hands;
+}
+
+Result<void> check_switch(flow::SwitchAction action, const std::vector<OpenHand>& hands) {
+  const bool any = std::any_of(hands.begin(), hands.end(), [](const OpenHand& hand) {
+    return hand.glove->info().abilities.wrist_switch;
+  });
+  if (any || action == flow::SwitchAction::none) return {};
+  return Error{Errc::usage, "--switch " + std::string(name_of(action)) + ": " +
+                                hands.front().glove->info().source +
+                                (hands.size() > 1 ? " and the other glove have" : " has") +
+                                " no wrist switch that nendo can read; leave --switch out"};
+}
+
+} // namespace
+
+Result<std::vector<OpenHand>> open_hands(RunOptions& options, const deform::Mesh& model,
+                                         Bell& bell) {
+  if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.bell = &bell;
+  const bool named = !options.left.empty() || !options.right.empty();
+  Bell* const rung = options.loop.bell;
+  auto hands = named ? open_named(options, model, rung) : open_any(rung);
+  if (!hands) return hands;
+  if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
+    return fine.error();
+  {
+    const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
+    if (readers.grant()) options.grants.push_back(*readers.grant());
+    for (auto& hand : *hands) {
+      if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
+    }
+  }
+  for (auto& hand : *hands) {
+    if (const auto came = wait_for_first_sample(hand); !came) return came.error();
+    if (const auto done = calibrate(hand, options.calibration); !done) return done.error();
+  }
+  return hands;
+}
+
+} // namespace nendo::app

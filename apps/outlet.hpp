@@ -1,0 +1,26 @@
+#pragma once
+// Where the frames of a run go while it runs: to other programs, other machines.
+
+#include <optional>
+#include <vector>
+
+#include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/request.hpp>
+
+#include "place_loop.hpp"
+
+namespace nendo::app {
+
+/// Is shown every frame, in the tick.
+class Outlet : public flow::FrameSink {
+public:
+  /// Before each loop's first tick, while no loop runs: what it is made of, and the model as it
+  /// begins. All live until the loop has ended.
+  virtual Result<void> begin(const PlacedLoop& placed, const deform::Mesh& model,
+                             const std::vector<OpenHand>& hands) = 0;
+  /// What it asks of the loop next, if anything. Called over and over from the main thread; never
+  /// blocks.
+  virtual std::optional<flow::Request> next_request() { return std::nullopt; }
+};
+
+} // namespace nendo::app

@@ -1,0 +1,36 @@
+#pragma once
+// A loop over the hands that are open, placed so that they hold the model between them.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "open_hand.hpp"
+#include "run_options.hpp"
+
+namespace nendo::app {
+
+/// What a loop was made of, besides its hands' sizes and its model's file.
+struct PlacedSetup {
+  std::vector<flow::HandInput> inputs;
+  flow::Placement placement;
+  flow::LoopOptions options; ///< with the supports in model units
+};
+
+struct PlacedLoop {
+  std::unique_ptr<flow::DeformLoop> loop;
+  double radius = 0.0; ///< the largest
+  PlacedSetup setup;
+};
+
+/// As options.loop says, with the supports that options.radius says. Without a placement the hands
+/// are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
+Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
+                              const deform::Mesh& model,
+                              const std::optional<flow::Placement>& placement = {});
+
+/// Whether a --radius is one, for hands at all. Error: usage.
+Result<void> check_radius(const std::string& text);
+
+} // namespace nendo::app

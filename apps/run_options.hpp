@@ -1,0 +1,34 @@
+#pragma once
+// What a run is asked for.
+
+#include <string>
+#include <vector>
+
+#include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/realtime.hpp>
+
+#include "glove_calibration.hpp"
+#include "hand_length.hpp"
+#include "run_recording.hpp"
+
+namespace nendo::app {
+
+struct RunOptions {
+  std::string left;        ///< GLOVE; empty: not asked for
+  std::string right;       ///< GLOVE; empty: not asked for
+  std::string mesh;        ///< empty: the shipped model
+  std::string out;         ///< empty: a name made of date and time
+  std::string picture;     ///< empty: none
+  double duration_s = 0.0; ///< 0: until a stop signal
+  std::string radius;      ///< as deform::parse_supports_by_point; empty: of the model's size
+  bool json = false;
+  CalibrationOptions calibration;
+  HandLength length;
+  hand::FilterOptions filter; ///< of both hands
+  flow::LoopOptions loop;
+  RecordingOptions recording;
+  flow::RealtimeOptions realtime;  ///< of the loop's thread
+  std::vector<flow::Grant> grants; ///< what was asked for before, of the process and the readers
+};
+
+} // namespace nendo::app
