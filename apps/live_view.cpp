@@ -40,8 +40,9 @@ public:
   }
 
   void begin(const PlacedLoop& placed, const deform::Mesh& model,
-             const std::vector<OpenHand>& hands) override {
+             const std::vector<OpenHand>& hands, const RunOptions& options) override {
     hands_ = &hands;
+    gauges_.recording = options.recording.on;
     requests_ = placed.setup.options.requests;
     units_per_metre_ = placed.setup.placement.units_per_metre;
     // The scene keeps its place when a shape that has been pulled about begins a new loop.
@@ -73,13 +74,14 @@ public:
       return Verdict::end;
     }
     if (wishes_.quit) return Verdict::end;
-    if (!wishes_.settings && !wishes_.reset) return Verdict::go_on;
+    if (!wishes_.settings && !wishes_.reset && !wishes_.record) return Verdict::go_on;
     changed_at_ = HostClock::now();
     return Verdict::renew;
   }
 
   void change(RunOptions& options, deform::Mesh& model) override {
     if (wishes_.reset) model.vertices = loaded_;
+    if (wishes_.record) options.recording.on = !options.recording.on;
     if (!wishes_.settings) return;
     options.loop.sculptor.mode = wishes_.settings->mode;
     options.loop.sculptor.deformer.csrbf.kernel = wishes_.settings->kernel;

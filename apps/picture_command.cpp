@@ -13,6 +13,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "output_place.hpp"
 #include "take.hpp"
 
 namespace nendo::app {
@@ -62,8 +63,7 @@ Result<Wanted> check(const Options& options) {
   if (!options.numbered && pixels > 6e7)
     return bad("--size " + options.size, "too large for " + std::to_string(panels) +
                                              " pictures on one sheet; use less, or --numbered");
-  if (std::filesystem::path(options.out).extension() != ".png")
-    return bad("--out " + options.out, "end the name in .png");
+  if (const auto fine = check_place("--out", options.out, {".png"}); !fine) return fine.error();
   return Wanted{*view, *size};
 }
 

@@ -15,6 +15,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "output_place.hpp"
 #include "printable.hpp"
 #include "recorded_model.hpp"
 
@@ -54,10 +55,7 @@ Result<void> check(const Options& options) {
     return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
   if (options.loops && options.no_clock)
     return Error{Errc::usage, "--loop and --no-clock: give one of them"};
-  if (options.out.empty()) return {};
-  const auto extension = std::filesystem::path(options.out).extension();
-  if (extension == ".obj" || extension == ".ply") return {};
-  return Error{Errc::usage, "--out " + options.out + ": end the name in .obj or .ply"};
+  return check_place("--out", options.out, {".obj", ".ply"});
 }
 
 HostTime host_time(const recording::Setup& setup, double seconds) {

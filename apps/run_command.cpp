@@ -1,12 +1,11 @@
 // nendo run: the main job, from gloves to a deformed model.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <memory>
-
-#include <unistd.h>
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/flow/tick_grid.hpp>
@@ -18,6 +17,7 @@
 #include "live_view.hpp"
 #include "loop_options.hpp"
 #include "open_hands.hpp"
+#include "output_place.hpp"
 #include "run_report.hpp"
 #include "service/service_notice.hpp"
 
@@ -48,39 +48,17 @@ std::string dated_name() {
   return name;
 }
 
-// An hour of sculpting must not end in a file that cannot be written, so the place is looked at
-// before.
-Result<void> check_place(const std::string& option, const std::string& out) {
-  const std::filesystem::path path(out);
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (std::filesystem::is_directory(path)) {
-    return Error{Errc::usage, option + " " + out + ": that is a folder; name a file in it"};
-  }
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    return Error{Errc::failed,
-                 option + " " + out + ": " + folder.string() +
-                     " is not a folder that you may write to; make it or choose another"};
-  }
-  return {};
-}
-
-Result<void> check_picture(const std::string& option, const std::string& out) {
-  if (out.empty()) return {};
-  if (std::filesystem::path(out).extension() != ".png")
-    return Error{Errc::usage, option + " " + out + ": end the name in .png"};
-  return check_place(option, out);
-}
-
 Result<void> check_outputs(const CommandOptions& options) {
   const RunOptions& run = options.run;
-  const auto extension = std::filesystem::path(run.out).extension();
-  if (extension != ".obj" && extension != ".ply")
-    return Error{Errc::usage, "--out " + run.out + ": end the name in .obj or .ply"};
-  if (const auto fine = check_place("--out", run.out); !fine) return fine;
-  if (const auto fine = check_picture("--picture", run.picture); !fine) return fine;
-  if (!options.view.screenshot.empty() && options.view.frames == 0)
+  const ViewOptions& view = options.view;
+  if (!view.window && (view.frames > 0 || !view.screenshot.empty()))
+    return Error{Errc::usage, "--frames and --screenshot are the window's; add --view"};
+  if (!view.screenshot.empty() && view.frames == 0)
     return Error{Errc::usage, "--screenshot: say with --frames N after how many pictures"};
-  return check_picture("--screenshot", options.view.screenshot);
+  if (auto fine = check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
+  if (auto fine = check_place("--picture", run.picture, {".png"}); !fine) return fine;
+  if (auto fine = check_place("--record", run.recording.file); !fine) return fine;
+  return check_place("--screenshot", view.screenshot, {".png"});
 }
 
 Result<void> check(CommandOptions& options) {
@@ -150,7 +128,10 @@ int run(CommandOptions& options) {
   const auto outcome = run_session(wanted, *hands, *std::move(model), followers);
   if (!outcome) return report(outcome.error());
   print_summary(wanted, *hands, *outcome);
-  return outcome->recording.has_failed ? static_cast<int>(Errc::failed) : 0;
+  const bool recorded =
+      std::all_of(outcome->recordings.begin(), outcome->recordings.end(),
+                  [](const auto& of_loop) { return of_loop.recorded.has_value(); });
+  return recorded ? 0 : static_cast<int>(Errc::failed);
 }
 
 void add_run_options(Command& command, const std::shared_ptr<CommandOptions>& options) {

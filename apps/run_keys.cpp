@@ -1,6 +1,5 @@
 #include "run_keys.hpp"
 
-#include <filesystem>
 #include <iostream>
 #include <thread>
 #include <utility>
@@ -8,6 +7,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli.hpp"
+#include "output_place.hpp"
 #include "run_options.hpp"
 
 namespace nendo::app {
@@ -20,13 +20,6 @@ void tell(const std::string& what) {
 }
 
 } // namespace
-
-std::string numbered(const std::string& out, int number) {
-  std::filesystem::path path(out);
-  const std::string name =
-      path.stem().string() + "-" + std::to_string(number) + path.extension().string();
-  return path.replace_filename(name).string();
-}
 
 RunKeys::RunKeys(const RunOptions& options, const deform::Mesh& model, RunRecorder& recorder)
     : requests_(*options.loop.requests), model_(model), out_(options.out), recorder_(recorder) {
@@ -63,10 +56,7 @@ void RunKeys::ask(flow::Request request) {
 }
 
 void RunKeys::save(flow::DeformLoop& loop) {
-  std::string file;
-  do
-    file = numbered(out_, ++saved_);
-  while (std::filesystem::exists(file));
+  const std::string file = next_free_name(out_, saved_);
   deform::Mesh shape = model_;
   loop.layout().unpack(loop.frames().front().shape, shape.vertices);
   const auto written = deform::write_mesh(file, shape);

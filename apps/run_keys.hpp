@@ -36,7 +36,4 @@ private:
   int saved_ = 0;
 };
 
-/// "shape.obj" and 2 become "shape-2.obj".
-std::string numbered(const std::string& out, int number);
-
 } // namespace nendo::app

@@ -2,13 +2,22 @@
 
 #include <filesystem>
 
+#include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/simd.hpp>
 
 #include "cli.hpp"
 #include "durations.hpp"
+#include "output_place.hpp"
 #include "place_loop.hpp"
 
 namespace nendo::app {
+namespace {
+
+std::filesystem::path model_beside(const std::string& recording) {
+  return std::filesystem::path(recording).replace_extension(".model.obj");
+}
+
+} // namespace
 
 Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction action) {
   if (!keep_last.empty()) {
@@ -19,12 +28,13 @@ Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction 
       return Error{Errc::usage,
                    "--keep-last " + keep_last + ": an hour at most; --record keeps all"};
     keep_last_s = *seconds;
-    kept_stem = std::filesystem::path(out).replace_extension().string();
   }
+  on = !file.empty();
+  kept_stem = std::filesystem::path(out).replace_extension().string();
   if (action == flow::SwitchAction::keep && keep_last_s <= 0.0)
     return Error{Errc::usage, "--switch keep: say how much with --keep-last, e.g. 60s"};
   std::error_code ignored;
-  if (!file.empty() && std::filesystem::exists(file, ignored)) {
+  if (on && std::filesystem::exists(file, ignored)) {
     return Error{Errc::failed, "--record " + file +
                                    ": is there already, and no recording is written over; name "
                                    "another file or move it away"};
@@ -52,34 +62,62 @@ recording::Setup begin_setup(const std::vector<OpenHand>& hands, const std::stri
   return setup;
 }
 
-RunRecorder::RunRecorder(const RecordingOptions& options) {
-  if (options.wanted()) tape_.emplace();
+flow::Tape* RunRecorder::tape_for(const RecordingOptions& options) {
+  tape_ = options.wanted() ? std::make_unique<flow::Tape>() : nullptr;
+  return tape_.get();
+}
+
+std::string RunRecorder::next_name(const RecordingOptions& options) {
+  const std::string first = options.file.empty() ? options.kept_stem + ".nendo" : options.file;
+  std::error_code ignored;
+  std::string name = first;
+  while (std::filesystem::exists(name, ignored) ||
+         std::filesystem::exists(model_beside(name), ignored))
+    name = next_free_name(first, number_);
+  return name;
+}
+
+// Whoever replays the loop needs the model that it began with.
+Result<std::string> RunRecorder::model_file(const RunOptions& options, const deform::Mesh& model,
+                                            const std::string& take) {
+  const auto sum = recording::sum_of(model.vertices);
+  if (!loaded_) loaded_ = sum;
+  std::filesystem::path file = options.mesh;
+  if (sum != *loaded_) {
+    file = model_beside(take);
+    if (const auto written = deform::write_mesh(file, model); !written) return written.error();
+  }
+  std::error_code ignored;
+  return std::filesystem::absolute(file, ignored).string();
 }
 
 Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& placed,
                                 const std::vector<OpenHand>& hands, const deform::Mesh& model) {
   if (!tape_) return {};
+  const auto& asked = options.recording;
+  const std::string name = next_name(asked);
+  outcomes_.push_back({asked.on ? name : "", std::nullopt});
   recording::Setup setup = begin_setup(hands, options.calibration.user);
   for (std::size_t at = 0; at < hands.size(); ++at) {
     setup.hands.push_back(recording::hand_setup(placed.inputs[at],
                                                 options.length.size(hands[at].known.own.size),
                                                 options.length.size(hands[at].known.swapped.size)));
   }
-  std::error_code ignored;
-  setup.loop = recording::LoopSetup{std::filesystem::absolute(options.mesh, ignored).string(),
-                                    recording::sum_of(model.vertices), placed.placement,
+  const auto mesh = model_file(options, model, name);
+  if (!mesh) return mesh.error();
+  setup.loop = recording::LoopSetup{*mesh, recording::sum_of(model.vertices), placed.placement,
                                     placed.options, std::string(deform::simd_names().front())};
   recording::RecorderOptions wanted;
-  wanted.file = options.recording.file;
+  if (asked.on) wanted.file = name;
   wanted.keep_last = std::chrono::duration_cast<HostClock::duration>(
-      std::chrono::duration<double>(options.recording.keep_last_s));
-  wanted.kept_stem = options.recording.kept_stem;
+      std::chrono::duration<double>(asked.keep_last_s));
+  wanted.kept_stem = asked.kept_stem;
   wanted.keep_on_switch = options.loop.switch_action == flow::SwitchAction::keep;
   wanted.tell = note;
   auto recorder = recording::Recorder::begin(setup, *tape_, std::move(wanted));
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);
-  keeps_ = options.recording.keep_last_s > 0.0;
+  keeps_ = asked.keep_last_s > 0.0;
   return {};
 }
 
@@ -87,12 +125,12 @@ void RunRecorder::keep() noexcept {
   if (keeps_) recorder_->keep();
 }
 
-RecordingOutcome RunRecorder::end(const deform::Mesh& shape) {
+void RunRecorder::end(const deform::Mesh& shape) {
   keeps_ = false;
-  if (!recorder_) return {};
+  if (!recorder_) return;
   const auto recorded = recorder_->end(recording::sum_of(shape.vertices));
-  if (!recorded) return {std::nullopt, true}; // what it is was told at once
-  return {*recorded, false};
+  if (recorded) outcomes_.back().recorded = *recorded; // otherwise what it is was told at once
+  recorder_.reset();
 }
 
 } // namespace nendo::app

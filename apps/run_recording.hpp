@@ -17,33 +17,37 @@ struct PlacedSetup;
 struct RunOptions;
 
 struct RecordingOptions {
-  std::string file;      ///< empty: none
+  bool on = false;       ///< a file is recorded
+  std::string file;      ///< its name, or what the names of later ones are made of
   std::string keep_last; ///< as parse_duration(); empty: nothing is kept in memory
   double keep_last_s = 0.0;
   std::string kept_stem; ///< what kept files are called by
 
-  bool wanted() const noexcept { return !file.empty() || keep_last_s > 0.0; }
-  /// Reads `keep_last`; kept files stand beside `out`. Errors: usage; failed (the file is there).
+  bool wanted() const noexcept { return on || keep_last_s > 0.0; }
+  /// Reads `keep_last`; what has no name stands beside `out`. Errors: usage; failed (the file is
+  /// there).
   Result<void> check(const std::string& out, flow::SwitchAction action);
 };
 
 /// --record and --keep-last.
 void add_recording_options(Command& command, RecordingOptions& options);
 
+/// Of one loop.
 struct RecordingOutcome {
-  std::optional<recording::Recorded> recorded; ///< nothing: not asked for, or not all was recorded
-  bool has_failed = false;
+  std::string file;                            ///< empty: only kept in memory
+  std::optional<recording::Recorded> recorded; ///< nothing: not all was
 };
 
 /// Who, when and with what: the beginning of every recording's setup. By the hands' order.
 recording::Setup begin_setup(const std::vector<OpenHand>& hands, const std::string& wearer);
 
+/// Each loop of a run is a recording of its own, numbered after the first, with the model that it
+/// began with beside it unless that is the one that was loaded.
 class RunRecorder {
 public:
-  explicit RunRecorder(const RecordingOptions& options);
-  /// What the loop is to record on; null: nothing is wanted of it.
-  flow::Tape* tape() noexcept { return tape_ ? &*tape_ : nullptr; }
-  /// Before the loop runs. Error: failed, if the file cannot be made.
+  /// What the next loop is to record on; null: nothing is wanted of it.
+  flow::Tape* tape_for(const RecordingOptions& options);
+  /// Before the loop runs. Error: failed, if the files cannot be made; nothing is recorded then.
   Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
                      const std::vector<OpenHand>& hands, const deform::Mesh& model);
   /// Whether keep() does anything: with --keep-last, from begin() to end().
@@ -51,11 +55,20 @@ public:
   /// What was done last becomes a file. Wait-free.
   void keep() noexcept;
   /// After the loop's last tick.
-  RecordingOutcome end(const deform::Mesh& shape);
+  void end(const deform::Mesh& shape);
+  /// Of every loop that was to be recorded and has ended, or has not begun.
+  const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }
 
 private:
-  std::optional<flow::Tape> tape_;
+  std::string next_name(const RecordingOptions& options);
+  Result<std::string> model_file(const RunOptions& options, const deform::Mesh& model,
+                                 const std::string& take);
+
+  std::unique_ptr<flow::Tape> tape_;
   std::unique_ptr<recording::Recorder> recorder_;
+  std::optional<recording::ShapeSum> loaded_; ///< of the model in the file that was named
+  int number_ = 1;                            ///< of the latest recording's name
+  std::vector<RecordingOutcome> outcomes_;
   bool keeps_ = false;
 };
 

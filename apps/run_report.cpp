@@ -157,31 +157,34 @@ void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
               static_cast<unsigned long long>(stats.held_apart_ticks));
 }
 
-// Of the file, or of the files that were kept.
-ordered_json recording_json(const RunOptions& options, const RecordingOutcome& outcome) {
-  if (!options.recording.wanted()) return nullptr;
-  ordered_json line{{"file", options.recording.file}, {"failed", outcome.has_failed}};
-  if (!outcome.recorded) return line;
-  line["samples"] = outcome.recorded->samples;
-  line["ticks"] = outcome.recorded->ticks;
-  line["lost"] = outcome.recorded->lost;
-  line["bytes"] = outcome.recorded->bytes;
-  line["kept"] = outcome.recorded->kept;
-  return line;
+ordered_json recordings_json(const std::vector<RecordingOutcome>& recordings) {
+  auto lines = ordered_json::array();
+  for (const auto& [file, recorded] : recordings) {
+    ordered_json line{{"file", file}, {"failed", !recorded}};
+    if (recorded) {
+      line["samples"] = recorded->samples;
+      line["ticks"] = recorded->ticks;
+      line["lost"] = recorded->lost;
+      line["bytes"] = recorded->bytes;
+      line["kept"] = recorded->kept;
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
-void print_recording(const RunOptions& options, const RecordingOutcome& outcome) {
-  if (!options.recording.wanted()) return;
-  if (!outcome.recorded) {
-    std::printf("  %-14s not complete, as was told\n", "recording");
-    return;
+void print_recordings(const std::vector<RecordingOutcome>& recordings) {
+  for (const auto& [file, recorded] : recordings) {
+    const std::string name = file.empty() ? "" : file + ", ";
+    if (!recorded) {
+      std::printf("  %-14s %snot complete, as was told\n", "recording", name.c_str());
+      continue;
+    }
+    std::printf("  %-14s %s%s bytes, %llu entries lost, %llu kept\n", "recording", name.c_str(),
+                thousands(static_cast<double>(recorded->bytes)).c_str(),
+                static_cast<unsigned long long>(recorded->lost),
+                static_cast<unsigned long long>(recorded->kept));
   }
-  const bool is_filed = !options.recording.file.empty();
-  std::printf("  %-14s %s%s bytes, %llu entries lost, %llu kept\n", "recording",
-              is_filed ? (options.recording.file + ", ").c_str() : "",
-              thousands(static_cast<double>(outcome.recorded->bytes)).c_str(),
-              static_cast<unsigned long long>(outcome.recorded->lost),
-              static_cast<unsigned long long>(outcome.recorded->kept));
 }
 
 void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
@@ -229,7 +232,7 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
   line["vertices"] = outcome.vertices;
   line["vertices_per_s"] =
       static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) / outcome.elapsed_s;
-  line["recording"] = recording_json(options, outcome.recording);
+  line["recordings"] = recordings_json(outcome.recordings);
   line["result"] = outcome.result;
   std::cout << line.dump() << std::endl;
 }
@@ -271,7 +274,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
                         outcome.elapsed_s)
                   .c_str(),
               thousands(static_cast<double>(outcome.vertices)).c_str());
-  print_recording(options, outcome.recording);
+  print_recordings(outcome.recordings);
   std::printf("  %-14s %s\n", "result", outcome.result.c_str());
   std::fflush(stdout);
 }

@@ -111,51 +111,42 @@ public:
   Session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
           const Followers& followers)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
-        followers_(followers), recorder_(options_.recording),
-        lights_(options_.loop.switch_action, hands_) {
+        followers_(followers), lights_(options_.loop.switch_action, hands_) {
     options_.loop.requests = &requests_;
     options_.loop.sculptor.deformer.undo_bytes = undo_bytes_for(model_);
-    options_.loop.tape = recorder_.tape();
     options_.loop.sinks.assign(followers_.outlets.begin(), followers_.outlets.end());
   }
 
   Result<RunOutcome> run() {
-    auto placed = place_loop(options_, hands_, model_);
-    if (!placed) return placed.error();
-    placed_ = *std::move(placed);
-    const auto begun = recorder_.begin(options_, placed_.setup, hands_, model_);
-    if (!begun) return begun.error();
+    if (const auto begun = begin_loop({}); !begun) return begun.error();
     RunPicture picture(options_.picture, model_, placed_.setup.options);
     RunKeys keys(options_, model_, recorder_);
-    if (const auto shown = show_outlets(); !shown) return shown.error();
-    auto verdict = run_loop(picture, keys);
-    const auto recording = recorder_.end(model_);
-    options_.loop.tape = nullptr;
-    if (verdict == Verdict::renew && options_.recording.wanted())
-      note("the recording ends here, because the loop is made anew");
-    while (verdict == Verdict::renew) {
-      if (const auto renewed = renew(); !renewed) return renewed.error();
-      if (const auto shown = show_outlets(); !shown) return shown.error();
-      verdict = run_loop(picture, keys);
+    while (run_loop(picture, keys) == Verdict::renew) {
+      if (const auto renewed = renew(); !renewed) {
+        const auto kept = keep(options_.out, model_); // what has been shaped is not lost with it
+        return kept ? renewed.error() : kept.error();
+      }
     }
     lights_.put_out();
     for (const auto& hand : hands_)
       hand.glove->stop();
     if (const auto kept = keep(options_.out, model_); !kept) return kept.error();
     if (const auto drawn = picture.write(model_.vertices); !drawn) return drawn.error();
-    return RunOutcome{placed_.loop->stats(),
-                      elapsed_s_,
-                      model_.vertices.cols(),
-                      placed_.radius,
-                      options_.out,
-                      std::move(options_.grants),
-                      recording};
+    return RunOutcome{placed_.loop->stats(), elapsed_s_,   model_.vertices.cols(),
+                      placed_.radius,        options_.out, std::move(options_.grants),
+                      recorder_.outcomes()};
   }
 
 private:
   using Verdict = Onlooker::Verdict;
 
-  Result<void> show_outlets() {
+  Result<void> begin_loop(const std::optional<flow::Placement>& placement) {
+    options_.loop.tape = recorder_.tape_for(options_.recording);
+    auto placed = place_loop(options_, hands_, model_, placement);
+    if (!placed) return placed.error();
+    placed_ = *std::move(placed);
+    if (const auto begun = recorder_.begin(options_, placed_.setup, hands_, model_); !begun)
+      return begun.error();
     for (Outlet* outlet : followers_.outlets)
       if (const auto begun = outlet->begin(placed_, model_, hands_); !begun) return begun.error();
     return {};
@@ -171,13 +162,15 @@ private:
   // Until the loop has ended; model_ is then as it left it.
   Verdict run_loop(RunPicture& picture, RunKeys& keys) {
     flow::DeformLoop& loop = *placed_.loop;
-    if (followers_.onlooker != nullptr) followers_.onlooker->begin(placed_, model_, hands_);
+    if (followers_.onlooker != nullptr)
+      followers_.onlooker->begin(placed_, model_, hands_, options_);
     LoopThread thread(loop, options_);
     tell_refusals(thread.grants());
     const Verdict verdict = watch(thread, picture, keys);
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
     model_.vertices = loop.final_shape();
+    recorder_.end(model_);
     if (loop.frames().update()) picture.see(loop.frames().front());
     return verdict;
   }
@@ -222,13 +215,7 @@ private:
       options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
     followers_.onlooker->change(options_, model_);
     take_newest(hands_);
-    auto anew = place_loop(options_, hands_, model_, placed_.setup.placement);
-    if (!anew) {
-      const auto kept = keep(options_.out, model_); // what has been shaped is not lost with it
-      return kept ? anew.error() : kept.error();
-    }
-    placed_ = *std::move(anew);
-    return {};
+    return begin_loop(placed_.setup.placement);
   }
 
   RunOptions options_;

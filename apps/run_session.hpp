@@ -19,7 +19,7 @@ struct RunOutcome {
   double radius = 0.0; ///< the largest
   std::string result;
   std::vector<flow::Grant> grants;
-  RecordingOutcome recording;
+  std::vector<RecordingOutcome> recordings; ///< one a loop
 };
 
 /// How many deadlines of the grid a run lasts; no end where the clock alone says when it is over.
@@ -36,13 +36,15 @@ public:
   enum class Verdict { go_on, end, renew };
 
   virtual ~Onlooker() = default;
-  /// Before each loop's first tick. `model` is what it shapes; all live until the next call.
+  /// Before each loop's first tick. `model` is what it shapes; all live until the next call but
+  /// `options`, which are those in force.
   virtual void begin(const PlacedLoop& placed, const deform::Mesh& model,
-                     const std::vector<OpenHand>& hands) = 0;
+                     const std::vector<OpenHand>& hands, const RunOptions& options) = 0;
   /// Called over and over, and by its return sets the pace: within 30 ms. fresh: frames().front()
   /// is another one than at the call before.
   virtual Verdict look(flow::DeformLoop& loop, bool fresh) = 0;
-  /// After `renew`, the loop has ended and left `model`: what is to be different.
+  /// After `renew`, the loop has ended and left `model`: what is to be different. The next loop is
+  /// recorded if `options.recording` says so, to a file of its own.
   virtual void change(RunOptions& options, deform::Mesh& model) = 0;
 };
 
@@ -56,7 +58,7 @@ struct Followers {
 /// Runs until the duration is over, a stop signal comes, or a key (run_keys.hpp) or the onlooker,
 /// if any, says so, then writes the shape; says on standard error which rights were refused. A loop
 /// that is made anew goes on from the shape and the poses as they are, with the hands where they
-/// were; the outcome is then the last one's, the recording the first one's. Blocks.
+/// were; the outcome is then the last one's, with every recording. Blocks.
 Result<RunOutcome> run_session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
                                const Followers& followers);
 

@@ -17,6 +17,7 @@
 #include "bench/table1_paper.hpp"
 #include "bench/table1_picture.hpp"
 #include "cli.hpp"
+#include "output_place.hpp"
 
 namespace nendo::app {
 namespace {
@@ -107,6 +108,8 @@ int bench_table1(const Options& options) {
   constexpr double longest_s = 600.0;
   if (!(options.seconds_per_cell > 0.0 && options.seconds_per_cell <= longest_s))
     return report({Errc::usage, "--seconds-per-cell: more than 0, at most 600"});
+  if (const auto fine = check_place("--picture", options.picture); !fine)
+    return report(fine.error());
   if (const auto chosen = choose_simd(options.simd); !chosen) return report(chosen.error());
   if (!options.json) print_heading();
   for (const Table1Layout& layout : table1_layouts) {

@@ -13,6 +13,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "output_place.hpp"
 #include "stress/report.hpp"
 
 namespace nendo::app {
@@ -61,19 +62,9 @@ Result<void> write_files(const StressArguments& arguments, const StressOptions& 
   return replace_file(arguments.picture, stress_picture(options, outcome));
 }
 
-// A long test must not end in a file that cannot be written.
-Result<void> check_folder(const char* option, const std::string& path) {
-  if (path.empty()) return {};
-  const std::filesystem::path file(path);
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(file) && ::access(folder.c_str(), W_OK | X_OK) == 0) return {};
-  return Error{Errc::failed, std::string(option) + " " + path +
-                                 ": cannot be written there; name a file in a folder of yours"};
-}
-
 Result<void> check_files(const StressArguments& arguments) {
-  if (const auto fine = check_folder("--hgrm", arguments.hgrm); !fine) return fine.error();
-  return check_folder("--picture", arguments.picture);
+  if (auto fine = check_place("--hgrm", arguments.hgrm); !fine) return fine;
+  return check_place("--picture", arguments.picture);
 }
 
 int run(const StressArguments& arguments) {

@@ -50,7 +50,7 @@ TEST_SUITE("recording_command") {
   TEST_CASE("a run that was recorded replays to the same shape, to the byte, in both modes") {
     for (const std::string mode : {"type1", "type2"}) {
       const RecordedRun run({"--mode", mode, "--filter", "one-euro"});
-      const json recorded = last_object(run.done)["recording"];
+      const json recorded = last_object(run.done)["recordings"][0];
       CHECK(recorded["lost"] == 0);
       CHECK(recorded["failed"] == false);
       CHECK(recorded["bytes"] == std::filesystem::file_size(run.take));

@@ -4,7 +4,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
-#include "run_keys.hpp"
+#include "output_place.hpp"
 #include "support/program.hpp"
 #include "support/terminal_program.hpp"
 

@@ -138,12 +138,7 @@ TEST_SUITE("kept_ring") {
   TEST_CASE("keep() and the switch at the wrist make files while the loop runs") {
     RecordedLoop live(Mode::type1);
     const auto stem = live.folder.path() / "clay";
-    live.record({.file = {},
-                 .keep_last = 60s,
-                 .kept_stem = stem,
-                 .keep_on_switch = true,
-                 .tell = {},
-                 .chunk_time = 10ms});
+    live.record({.keep_last = 60s, .kept_stem = stem, .keep_on_switch = true, .chunk_time = 10ms});
     test::play(live, 30);
     live.recorder->keep();
     const auto first = std::filesystem::path(stem.string() + ".kept-1.nendo");
@@ -175,12 +170,7 @@ TEST_SUITE("kept_ring") {
       const auto stem = folder.path() / "clay";
       const int ended_by = signal_that_ends([&] {
         RecordedLoop live(Mode::type1);
-        live.record({.file = {},
-                     .keep_last = 60s,
-                     .kept_stem = stem,
-                     .keep_on_switch = false,
-                     .tell = {},
-                     .chunk_time = 1ms});
+        live.record({.keep_last = 60s, .kept_stem = stem, .chunk_time = 1ms});
         test::play(live, 100);
         std::this_thread::sleep_for(200ms); // the recorder's thread takes it meanwhile, mostly
         if (crash == SIGABRT) std::abort();
@@ -201,12 +191,7 @@ TEST_SUITE("kept_ring") {
     const int ended_by = signal_that_ends([&] {
       {
         RecordedLoop live(Mode::type1);
-        live.record({.file = {},
-                     .keep_last = 60s,
-                     .kept_stem = stem,
-                     .keep_on_switch = false,
-                     .tell = {},
-                     .chunk_time = 1ms});
+        live.record({.keep_last = 60s, .kept_stem = stem, .chunk_time = 1ms});
       }
       ::kill(::getpid(), SIGSEGV);
       ::pause();

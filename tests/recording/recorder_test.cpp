@@ -88,12 +88,7 @@ TEST_SUITE("recorder") {
 
   TEST_CASE("what the loop took is in the file soon, without waiting for the end") {
     RecordedLoop live(Mode::type1);
-    live.record({.file = {},
-                 .keep_last = {},
-                 .kept_stem = {},
-                 .keep_on_switch = false,
-                 .tell = {},
-                 .chunk_time = 20ms});
+    live.record({.chunk_time = 20ms});
     test::play(live, 100);
     CHECK(test::within(20s, [&] { return counts_of(live.path).ticks == 100; }));
     CHECK_FALSE(counts_of(live.path).has_ending);
@@ -111,12 +106,7 @@ TEST_SUITE("recorder") {
 
   TEST_CASE("a disk that fills up: one warning, what is written stays whole, the loop goes on") {
     RecordedLoop live(Mode::type1);
-    live.record({.file = {},
-                 .keep_last = {},
-                 .kept_stem = {},
-                 .keep_on_switch = false,
-                 .tell = {},
-                 .chunk_time = 1ms});
+    live.record({.chunk_time = 1ms});
     const SmallDisk small(64 * 1024);
     test::play(live, 100); // a third of what fits
     CHECK(test::within(20s, [&] { return counts_of(live.path).ticks > 0; }));
@@ -139,12 +129,7 @@ TEST_SUITE("recorder") {
     RecordedLoop live(Mode::type1);
     live.path = live.folder.path() / "stick" / "take.nendo";
     std::filesystem::create_directory(live.path.parent_path());
-    live.record({.file = {},
-                 .keep_last = {},
-                 .kept_stem = {},
-                 .keep_on_switch = false,
-                 .tell = {},
-                 .chunk_time = 1ms});
+    live.record({.chunk_time = 1ms});
     std::filesystem::remove_all(live.path.parent_path());
     test::play(live, 50);
     const auto recorded = live.end();

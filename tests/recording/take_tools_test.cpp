@@ -25,12 +25,7 @@ struct Take {
   std::filesystem::path made = live.folder.path() / "made.nendo";
 
   explicit Take(std::uint64_t ticks = 40) {
-    live.record({.file = {},
-                 .keep_last = {},
-                 .kept_stem = {},
-                 .keep_on_switch = false,
-                 .tell = {},
-                 .chunk_time = 1ms});
+    live.record({.chunk_time = 1ms});
     for (std::uint64_t part = 0; part < ticks / 10; ++part) {
       const HostTime begin = HostClock::now();
       for (std::uint64_t at = 0; at < 10; ++at) {

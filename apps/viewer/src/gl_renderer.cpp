@@ -8,8 +8,8 @@
 
 #include <nendo/base/units.hpp>
 
-#include "exact_trig.hpp"
 #include "gl_shaders.hpp"
+#include "light_maps.hpp"
 
 namespace nendo::viewer {
 
@@ -43,14 +43,6 @@ void set(GLuint program, const char* name, float value) {
 }
 void set(GLuint program, const char* name, int value) {
   glUniform1i(glGetUniformLocation(program, name), value);
-}
-
-Vector3f turned(const Vector3f& direction, double azimuth_deg) {
-  const auto s = static_cast<float>(exact_sine(from_degrees(azimuth_deg)));
-  const auto c = static_cast<float>(exact_cosine(from_degrees(azimuth_deg)));
-  return Vector3f(c * direction.x() + s * direction.z(), direction.y(),
-                  c * direction.z() - s * direction.x())
-      .normalized();
 }
 
 template <class T>

@@ -60,6 +60,8 @@ std::vector<float> parts_of(const std::vector<std::pair<float, float>>& sums) {
   return parts;
 }
 
+} // namespace
+
 Vector3f turned(const Vector3f& direction, double azimuth_deg) {
   const auto s = static_cast<float>(exact_sine(from_degrees(azimuth_deg)));
   const auto c = static_cast<float>(exact_cosine(from_degrees(azimuth_deg)));
@@ -67,8 +69,6 @@ Vector3f turned(const Vector3f& direction, double azimuth_deg) {
                   c * direction.z() - s * direction.x())
       .normalized();
 }
-
-} // namespace
 
 DepthMap::DepthMap(const Scene& scene, const Vector3f& toward, int side)
     : corner_(Eigen::Vector2f::Zero()), side_(side),

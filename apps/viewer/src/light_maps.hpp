@@ -31,6 +31,9 @@ private:
   std::vector<float> nearest_; ///< along `toward`; the lowest number where nothing is
 };
 
+/// A direction that goes round with the view, about the upright axis. Unit.
+Eigen::Vector3f turned(const Eigen::Vector3f& direction, double azimuth_deg);
+
 struct Light {
   Eigen::Vector3f toward; ///< unit
   Eigen::Vector3f colour; ///< linear

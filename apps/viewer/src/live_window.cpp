@@ -139,11 +139,6 @@ Wishes LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gaug
   return wishes;
 }
 
-void LiveWindow::offer_recording(bool can_record, bool recording) noexcept {
-  panel_->can_record = can_record;
-  panel_->recording = recording;
-}
-
 void LiveWindow::follow_mouse() {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse) return;

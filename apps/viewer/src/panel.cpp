@@ -30,7 +30,7 @@ constexpr std::array key_table{
     Key{GLFW_KEY_L, "l", "let go; what is shaped stays"},
     Key{GLFW_KEY_C, "c", "commit: this shape becomes the rest shape"},
     Key{GLFW_KEY_U, "u", "undo the last commit"},
-    Key{GLFW_KEY_R, "r", "record, where that is offered"},
+    Key{GLFW_KEY_R, "r", "record from this shape on, and end that"},
     Key{GLFW_KEY_H, "h", "hands' skin on and off"},
     Key{GLFW_KEY_B, "b", "bones on and off"},
     Key{GLFW_KEY_V, "v", "control vectors on and off"},
@@ -85,7 +85,7 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
   last_tick = frame.tick;
 }
 
-void LiveWindow::Panel::buttons(const flow::Frame& frame, Wishes& wishes) {
+void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes) {
   ImGui::TextUnformatted(frame.held ? "The hands hold the model." : "The hands have let go.");
   const auto ask = [&](const char* words, Request request) {
     if (ImGui::Button(words)) wishes.requests.push_back(request);
@@ -96,7 +96,7 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, Wishes& wishes) {
   ask("Commit", Request::commit);
   ask("Undo", Request::undo);
   if (ImGui::Button("Reset")) wishes.reset = true;
-  if (can_record && ImGui::Button(recording ? "Stop recording" : "Record")) wishes.record = true;
+  if (ImGui::Button(gauges.recording ? "End the recording" : "Record")) wishes.record = true;
 }
 
 void LiveWindow::Panel::settings(Wishes& wishes) {
@@ -171,7 +171,7 @@ void LiveWindow::Panel::keys(SceneParts& parts, Wishes& wishes) {
                                   {GLFW_KEY_V, &parts.vectors},
                                   {GLFW_KEY_D, &parts.radii}})
     if (pressed(key)) *part = !*part;
-  if (pressed(GLFW_KEY_R) && can_record) wishes.record = true;
+  if (pressed(GLFW_KEY_R)) wishes.record = true;
   if (pressed(GLFW_KEY_Q)) wishes.quit = true;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (!keys_shown) return;
@@ -186,7 +186,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Wish
   ImGui::SetNextWindowPos(ImVec2(10.0F, 10.0F), ImGuiCond_FirstUseEver);
   ImGui::Begin("Nendo", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::Text("%s   (? for keys)", gauges.model.c_str());
-  panel_->buttons(frame, wishes);
+  panel_->buttons(frame, gauges, wishes);
   if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings(wishes);
   if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
     panel_->timing(frame, gauges);

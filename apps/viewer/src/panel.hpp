@@ -31,11 +31,9 @@ struct LiveWindow::Panel {
   std::uint64_t last_tick = 0;
   bool keys_shown = false;
   bool one_radius = true;
-  bool can_record = false;
-  bool recording = false;
 
   void follow(const flow::Frame& frame, double rate_hz);
-  void buttons(const flow::Frame& frame, Wishes& wishes);
+  void buttons(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes);
   void settings(Wishes& wishes);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;

@@ -16,14 +16,14 @@
 namespace nendo::recording {
 
 struct RecorderOptions {
-  std::filesystem::path file; ///< empty: none. It may not be there yet
+  std::filesystem::path file{}; ///< empty: none. It may not be there yet
   /// So much is kept in memory; 0: nothing.
   HostClock::duration keep_last{};
   /// "clay" for clay.kept-1.nendo and so on, and for clay.crash.nendo.
-  std::filesystem::path kept_stem;
+  std::filesystem::path kept_stem{};
   bool keep_on_switch = false; ///< keep() when a glove's switch is turned on
   /// One line for people, from the recorder's thread: what was kept where, what failed.
-  std::function<void(std::string_view)> tell;
+  std::function<void(std::string_view)> tell{};
   /// A chunk is written, and is on the disk, so often: what a crash can cost.
   HostClock::duration chunk_time = std::chrono::milliseconds(500);
 };

@@ -34,6 +34,7 @@ struct Gauges {
   std::array<std::string, 2> gloves; ///< their names; empty: none
   std::array<std::uint64_t, 2> bad_records{};
   std::array<std::uint64_t, 2> lost{}; ///< samples that found no room
+  bool recording = false;              ///< goes on now
   double restart_ms = 0.0;             ///< of the last change of settings; 0: none yet
 };
 
@@ -60,8 +61,6 @@ public:
   /// One picture, of the latest frame; waits for the screen, 20 ms at most without one. fresh: the
   /// frame is another one than before.
   Wishes show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
-  /// With a can_record, the panel has a button for it; `recording` is what it says.
-  void offer_recording(bool can_record, bool recording) noexcept;
 
   Image screenshot() const; ///< of what was shown last
   /// As viewer::silhouette(), of what was shown last, by OpenGL.
