@@ -44,6 +44,7 @@ public:
     hands_ = &hands;
     gauges_.recording = options.recording.on;
     requests_ = placed.setup.options.requests;
+    wrists_ = placed.setup.options.wrists;
     units_per_metre_ = placed.setup.placement.units_per_metre;
     // The scene keeps its place when a shape that has been pulled about begins a new loop.
     if (!builder_) builder_.emplace(model, units_per_metre_);
@@ -67,6 +68,7 @@ public:
     if (fresh) ++shown_;
     for (const auto request : wishes_.requests)
       requests_->try_push(request); // full: the loop stands still, and asking again is as good
+    if (wishes_.wrist) wrists_->try_push(*wishes_.wrist); // full: the next one says it again
     if (options_.frames > 0 && shown_ >= options_.frames) {
       if (!options_.screenshot.empty())
         if (const auto done = write_png(options_.screenshot, window_->screenshot()); !done)
@@ -93,6 +95,7 @@ private:
   std::unique_ptr<LiveWindow> window_;
   ViewOptions options_;
   flow::RequestRing* requests_ = nullptr; ///< the loop's
+  flow::WristRing* wrists_ = nullptr;     ///< the loop's
   deform::Points loaded_;
   std::optional<SceneBuilder> builder_;
   const std::vector<OpenHand>* hands_ = nullptr;

@@ -44,8 +44,10 @@ void print_loop(const TakeSummary& summary) {
   for (const flow::Request request : flow::requests) {
     std::printf(" %llu %s%s", number(summary.requests[static_cast<std::size_t>(request)]),
                 std::string(flow::name_of(request)).c_str(),
-                request == flow::requests.back() ? "\n" : ",");
+                request == flow::requests.back() ? "" : ",");
   }
+  if (summary.wrist_moves > 0) std::printf(", %llu wrist moves", number(summary.wrist_moves));
+  std::printf("\n");
 }
 
 ordered_json gloves_json(const TakeSummary& summary) {
@@ -76,6 +78,7 @@ ordered_json loop_json(const TakeSummary& summary) {
   for (const flow::Request request : flow::requests)
     line["requests"][std::string(flow::name_of(request))] =
         summary.requests[static_cast<std::size_t>(request)];
+  line["wrist_moves"] = summary.wrist_moves;
   return line;
 }
 

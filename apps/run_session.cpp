@@ -113,6 +113,7 @@ public:
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
         followers_(followers), lights_(options_.loop.switch_action, hands_) {
     options_.loop.requests = &requests_;
+    options_.loop.wrists = &wrists_;
     options_.loop.sculptor.deformer.undo_bytes = undo_bytes_for(model_);
     options_.loop.sinks.assign(followers_.outlets.begin(), followers_.outlets.end());
   }
@@ -215,7 +216,7 @@ private:
       options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
     followers_.onlooker->change(options_, model_);
     take_newest(hands_);
-    return begin_loop(placed_.setup.placement);
+    return begin_loop(placed_.loop->placement());
   }
 
   RunOptions options_;
@@ -223,6 +224,7 @@ private:
   deform::Mesh model_;
   const Followers& followers_;
   flow::RequestRing requests_{64};
+  flow::WristRing wrists_{64};
   RunRecorder recorder_;
   HoldLights lights_;
   PlacedLoop placed_;

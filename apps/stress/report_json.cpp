@@ -53,6 +53,7 @@ ordered_json environment_json(const StressOptions& options, const StressOutcome&
                     {"vertices", outcome.vertices},
                     {"gloves", outcome.gloves},
                     {"load", options.load},
+                    {"pictures", outcome.pictures},
                     {"realtime", grants_json(outcome.grants)}};
   if (machine.rt_runtime_us) line["rt_runtime_us"] = *machine.rt_runtime_us;
   ordered_json stages{"sleep"};

@@ -87,6 +87,9 @@ void print_environment(const StressOutcome& outcome, const ordered_json& report)
     load += (load.empty() ? "; own load " : ", ") + kind.get<std::string>();
   std::printf("  %-14s %s; %td vertices, %s%s\n", "ticks", stages.c_str(), outcome.vertices,
               about["mode"].get<std::string>().c_str(), load.c_str());
+  if (outcome.pictures > 0)
+    std::printf("  %-14s %llu pictures in the live window meanwhile\n", "looked on",
+                static_cast<unsigned long long>(outcome.pictures));
   for (const auto& grant : outcome.grants) {
     const std::string how = " (" + grant.why + "); to have it, " + grant.remedy;
     std::printf("  %-14s %s%s\n", grant.granted ? "granted" : "REFUSED", grant.wanted.c_str(),

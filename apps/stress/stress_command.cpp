@@ -13,6 +13,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "live_view.hpp"
 #include "output_place.hpp"
 #include "stress/report.hpp"
 
@@ -76,7 +77,13 @@ int run(const StressArguments& arguments) {
   const auto model = deform::read_mesh(options->run.mesh);
   if (!model) return report(model.error());
   install_stop_signals();
-  const auto outcome = run_stress(*options, *model, progress_for(*options));
+  std::unique_ptr<Onlooker> window;
+  if (arguments.view) {
+    auto opened = open_live_view({}, options->run, *model);
+    if (!opened) return report(opened.error());
+    window = *std::move(opened);
+  }
+  const auto outcome = run_stress(*options, *model, progress_for(*options), window.get());
   if (isatty(STDERR_FILENO) != 0) std::cerr << "\r\x1b[K";
   if (!outcome) return report(outcome.error());
   const ordered_json results = stress_json(*options, **outcome);
@@ -140,6 +147,8 @@ void add_stress(Command& program) {
                      "OBJ or PLY file; without it, the shipped Moai");
   command.add_option("--mode", arguments->mode, "type1 or type2");
   command.add_option("--radius", arguments->run.radius, "As of nendo run");
+  command.add_flag("--view", arguments->view,
+                   "Looks on with the live window, to see what that costs the loop");
   arguments->loop.add_to(command, true);
   add_reports(command, *arguments);
   command.on_chosen([arguments] { return run(*arguments); });

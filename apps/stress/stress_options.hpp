@@ -26,6 +26,7 @@ struct StressArguments {
   std::string hgrm;
   std::string picture;
   std::string compare;
+  bool view = false;
   bool json = false;
   LoopArguments loop{.priority = flow::usual_priority};
   RunOptions run;

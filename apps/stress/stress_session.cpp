@@ -9,7 +9,6 @@
 
 #include "cli.hpp"
 #include "open_hands.hpp"
-#include "run_session.hpp"
 #include "stress/load.hpp"
 
 namespace nendo::app {
@@ -66,16 +65,27 @@ private:
   std::vector<flow::TickRecord> batch_;
 };
 
+/// Waits some milliseconds, with an onlooker for as long as it looks. True: it wants the end.
+bool look_on(Onlooker* onlooker, flow::DeformLoop& loop, std::uint64_t& pictures) {
+  if (onlooker == nullptr) {
+    std::this_thread::sleep_for(milliseconds(4));
+    return false;
+  }
+  ++pictures;
+  return onlooker->look(loop, loop.frames().update()) == Onlooker::Verdict::end;
+}
+
 void watch(const StressOptions& options, Collector& collector, const std::atomic<bool>& ended,
-           StressOutcome& outcome, const StressProgress& progress) {
+           StressOutcome& outcome, const StressProgress& progress, Onlooker* onlooker,
+           flow::DeformLoop& loop) {
   HostTime next_report = outcome.start;
   while (!ended && !is_over(options.run, outcome.start)) {
-    std::this_thread::sleep_for(milliseconds(4));
+    const bool enough = look_on(onlooker, loop, outcome.pictures);
     collector.collect();
     const auto& worst = outcome.tally.worst();
     outcome.broke =
         options.break_at && !worst.empty() && worst.front().lateness > *options.break_at;
-    outcome.stopped = stop_requested();
+    outcome.stopped = enough || stop_requested();
     if (outcome.broke || outcome.stopped) return;
     if (HostClock::now() < next_report) continue;
     progress(outcome.tally, to_seconds(HostClock::now() - outcome.start));
@@ -84,7 +94,7 @@ void watch(const StressOptions& options, Collector& collector, const std::atomic
 }
 
 void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRing& ring,
-              StressOutcome& outcome, const StressProgress& progress) {
+              StressOutcome& outcome, const StressProgress& progress, Onlooker* onlooker) {
   std::atomic<bool> over{false};
   std::atomic<bool> ended{false};
   std::promise<Prepared> prepared;
@@ -105,7 +115,7 @@ void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRi
     outcome.grants.push_back(std::move(grant));
   }
   Collector collector(ring, thread.thread, outcome);
-  watch(options, collector, ended, outcome, progress);
+  watch(options, collector, ended, outcome, progress, onlooker, loop);
   over = true;
   loop_thread.join();
   collector.collect();
@@ -117,7 +127,8 @@ void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRi
 } // namespace
 
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
-                                                  const StressProgress& progress) {
+                                                  const StressProgress& progress,
+                                                  Onlooker* onlooker) {
   RunOptions& run = options.run;
   auto outcome = std::make_unique<StressOutcome>(run.loop);
   const flow::RealtimeProcess process(run.realtime);
@@ -137,9 +148,14 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   outcome->grants = run.grants;
   flow::TickRing ring(records_kept);
   run.loop.records = &ring;
+  flow::RequestRing requests(64);
+  flow::WristRing wrists(64);
+  run.loop.requests = &requests;
+  run.loop.wrists = &wrists;
   const auto placed = place_loop(run, *hands, model);
   if (!placed) return placed.error();
-  run_loop(options, *placed->loop, ring, *outcome, progress);
+  if (onlooker != nullptr) onlooker->begin(*placed, model, *hands, run);
+  run_loop(options, *placed->loop, ring, *outcome, progress, onlooker);
   for (const auto& hand : *hands)
     hand.glove->stop();
   const flow::LoopStats& stats = placed->loop->stats();

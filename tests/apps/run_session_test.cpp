@@ -36,7 +36,9 @@ public:
     if (++frames_ == 1) {
       loop.layout().unpack(loop.frames().front().shape, shape_);
       const double jump = (shape_ - begun.back()).colwise().norm().maxCoeff();
-      if (begun.size() > 1) most_jump = std::max(most_jump, jump);
+      const auto pause = HostClock::now() - left_at_;
+      if (begun.size() > 1 && pause < std::chrono::milliseconds(250))
+        most_jump = std::max(most_jump, jump);
     }
     if (frames_ < 40) return Verdict::go_on;
     return begun.size() < 4 ? Verdict::renew : Verdict::end;
@@ -44,6 +46,7 @@ public:
   void change(RunOptions& options, deform::Mesh& model) override {
     options.recording.on = unrecorded && *unrecorded != begun.size();
     left.push_back(model.vertices);
+    left_at_ = HostClock::now();
     auto& mode = options.loop.sculptor.mode;
     mode = mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
   }
@@ -51,11 +54,12 @@ public:
   std::vector<deform::Points> begun, left;
   std::vector<flow::Mode> modes;
   std::vector<Eigen::Matrix4d> wrists;
-  double most_jump = 0.0;
+  double most_jump = 0.0;                ///< of the shape over a pause of a quarter second or less
   std::optional<std::size_t> unrecorded; ///< this loop alone is not; nothing: none is
 
 private:
   int frames_ = 0;
+  HostTime left_at_{};
   deform::Points shape_;
 };
 

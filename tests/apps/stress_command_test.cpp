@@ -6,7 +6,9 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
+#include "support/memory_screen.hpp"
 #include "support/program.hpp"
+#include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
 using nendo::test::is_one_line_about;
@@ -228,5 +230,22 @@ TEST_SUITE("stress") {
         CHECK(report_of(done)["ended"] == "stopped");
       }
     }
+  }
+
+  TEST_CASE("the live window looks on, and without a screen there is one line about it") {
+    const std::vector<std::string> seen{"stress", "-i", "5000", "-D",     "1",     "--floor",
+                                        "0",      "-p", "0",    "--view", "--json"};
+    {
+      const nendo::test::MemoryScreen screen;
+      // Mesa's own memory is not for our sanitizers, in a child either.
+      if (screen.is_there() && nendo::test::restraint_is_counted) {
+        const json report = report_of(nendo::test::nendo(seen));
+        CHECK(report["environment"]["pictures"] > 0);
+        CHECK(report["ticks"].get<int>() + report["missed"].get<int>() == 200);
+      }
+    }
+    const auto unseen = nendo::test::nendo(seen);
+    CHECK(unseen.exit_code == 1);
+    CHECK(is_one_line_about(unseen.err, "window"));
   }
 }

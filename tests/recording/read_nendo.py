@@ -79,7 +79,7 @@ def end(b):
 
 
 def tape(b):
-    forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 4: lambda e: {"gap": e.take("Q")},
+    forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
              3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():

@@ -42,6 +42,7 @@ inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
 struct LoopUnderTest {
   std::vector<std::unique_ptr<SampleRing>> rings;
   flow::RequestRing requests{16};
+  flow::WristRing wrists{16};
   deform::Mesh model;
   flow::Placement placement;
   std::vector<flow::HandInput> inputs; ///< these two as the loop was made of them
@@ -75,6 +76,7 @@ struct LoopUnderTest {
     options.rate_hz = rate_hz;
     options.switch_action = switch_action;
     options.requests = &requests;
+    options.wrists = &wrists;
     options.sculptor.mode = mode;
     options.sculptor.deformer.undo_bytes = std::size_t{4} << 20;
     options.sculptor.deformer.supports = deform::one_radius(0.5);

@@ -75,8 +75,8 @@ struct RecordedLoop {
   }
 };
 
-/// What people do: hands that bend at random, requests, a switch that is turned now and then, and
-/// ticks that find several samples or none.
+/// What people do: hands that bend and move at random, requests, a switch that is turned now and
+/// then, and ticks that find several samples or none.
 inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
   std::mt19937 random(seed);
   HostTime now = HostClock::now();
@@ -98,6 +98,15 @@ inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
     }
     if (random() % 20 == 0)
       played.test.requests.try_push(flow::requests[random() % flow::requests.size()]);
+    if (random() % 20 == 0) {
+      const Side side = random() % 2 == 0 ? Side::left : Side::right;
+      Eigen::Isometry3d wrist =
+          played.test.placement.T_stage_wrist[flow::Placement::index_of(side)];
+      wrist.translation().y() += 1e-3 * static_cast<double>(random() % 20);
+      wrist.rotate(
+          Eigen::AngleAxisd(1e-3 * static_cast<double>(random() % 20), Eigen::Vector3d::UnitX()));
+      played.test.wrists.try_push(flow::WristMove::to(side, wrist));
+    }
     played.test.frame_after_tick(tick);
   }
 }

@@ -1,58 +1,20 @@
 // The live window, on a screen that exists in memory alone.
 
-#include <csignal>
 #include <cstdlib>
-#include <string>
-#include <thread>
 
 #include <doctest/doctest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <nendo/viewer/live_window.hpp>
 #include <nendo/viewer/picture.hpp>
 
 #include "support/flow_fixtures.hpp"
+#include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
 
 using namespace nendo;
 using namespace nendo::viewer;
 
 namespace {
-
-/// An Xvfb of this test's own; its number is in DISPLAY while it lives.
-class MemoryScreen {
-public:
-  MemoryScreen() {
-    int ends[2];
-    if (::pipe(ends) != 0) return;
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      ::dup2(ends[1], 3);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp",
-               nullptr);
-      ::_exit(127);
-    }
-    ::close(ends[1]);
-    std::string number;
-    for (char digit = 0; ::read(ends[0], &digit, 1) == 1 && digit != '\n';)
-      number += digit;
-    ::close(ends[0]);
-    is_there_ = !number.empty();
-    if (is_there_) ::setenv("DISPLAY", (":" + number).c_str(), 1);
-  }
-  ~MemoryScreen() {
-    ::unsetenv("DISPLAY");
-    if (pid_ <= 0) return;
-    ::kill(pid_, SIGTERM);
-    ::waitpid(pid_, nullptr, 0);
-  }
-  bool is_there() const noexcept { return is_there_; }
-
-private:
-  pid_t pid_ = 0;
-  bool is_there_ = false;
-};
 
 double intersection_over_union(const Image& a, const Image& b) {
   double both = 0.0;
@@ -81,7 +43,7 @@ TEST_SUITE("window") {
 
   TEST_CASE("OpenGL draws what the processor draws, and sends only blocks that changed") {
     if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
-    const MemoryScreen screen;
+    const test::MemoryScreen screen;
     if (!screen.is_there()) {
       MESSAGE("no Xvfb here, so the window is not tested; tools/setup check installs it");
       return;

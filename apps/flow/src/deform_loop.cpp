@@ -119,11 +119,22 @@ void DeformLoop::take_requests() noexcept {
   });
 }
 
+void DeformLoop::take_wrists() noexcept {
+  if (options_.wrists == nullptr) return;
+  options_.wrists->drain([this](const WristMove& move) noexcept {
+    if (!move.is_usable()) return;
+    if (options_.tape != nullptr) options_.tape->wrist(move);
+    for (Hand& hand : hands_)
+      if (hand.slot == Placement::index_of(move.side)) hand.T_stage_wrist = move.T_stage_wrist();
+  });
+}
+
 void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
   for (const auto& hand : hands_) {
     HandFrame& shown = frame.hands[hand.slot];
     shown.pose = hand.skeleton().pose(hand.angles, hand.T_stage_wrist);
+    shown.T_stage_wrist = hand.T_stage_wrist;
     shown.present = true;
     shown.silent = hand.silent;
     shown.samples = stats_.samples[hand.slot];
@@ -180,6 +191,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   const auto now_ns = [&]() noexcept { return saturated_ns(HostClock::now() - record.woke); };
   if (runs.input) {
     take_requests();
+    take_wrists();
     take_samples(record);
   }
   record.drained_ns = now_ns();
@@ -244,6 +256,14 @@ void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) no
     if (pacer.end_tick(HostClock::now())) ++stats_.overruns;
     stats_.missed += std::min(pacer.next(), most_ticks) - due.number - 1;
   }
+}
+
+Placement DeformLoop::placement() const {
+  Placement placement;
+  placement.units_per_metre = units_per_metre_;
+  for (const Hand& hand : hands_)
+    placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
+  return placement;
 }
 
 Points DeformLoop::final_shape() {

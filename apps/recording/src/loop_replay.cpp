@@ -33,6 +33,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   }
   flow::LoopOptions options = setup.loop->options;
   options.requests = &replay->requests_;
+  options.wrists = &replay->wrists_;
   replay->loop_ =
       std::make_unique<flow::DeformLoop>(model, setup.loop->placement, std::move(inputs), options);
   if (!is_solved(replay->loop_->grab_status()))
@@ -50,6 +51,8 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     take(*sample);
   } else if (const auto* request = std::get_if<flow::Request>(&entry)) {
     exact_ = requests_.try_push(*request) && exact_;
+  } else if (const auto* move = std::get_if<flow::WristMove>(&entry)) {
+    exact_ = wrists_.try_push(*move) && exact_;
   } else if (const auto* tick = std::get_if<flow::TapedTick>(&entry)) {
     loop_->tick(tick->number, tick->scheduled, tick->woke);
     return true;

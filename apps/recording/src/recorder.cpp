@@ -104,6 +104,7 @@ private:
     put(request);
     ++recorded_.requests;
   }
+  void add(const flow::WristMove& move) { put(move); }
   void add(const flow::TapedTick& tick) {
     tell_lost(tick.lost);
     put(tick);

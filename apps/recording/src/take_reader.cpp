@@ -11,6 +11,7 @@ using driver::RecordKind;
 constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
+constexpr std::size_t wrist_bytes = 57;
 
 struct EntryWriter {
   ByteWriter& writer;
@@ -27,6 +28,14 @@ struct EntryWriter {
     writer.u64_le(tick.number);
     driver::put_time(writer, tick.scheduled);
     driver::put_time(writer, tick.woke);
+  }
+  void operator()(const flow::WristMove& move) const {
+    driver::put_record_head(writer, RecordKind::wrist, wrist_bytes);
+    writer.u8(static_cast<std::uint8_t>(move.side));
+    for (const double number : move.position_m)
+      writer.f64_le(number);
+    for (const double number : move.turn_xyzw)
+      writer.f64_le(number);
   }
   void operator()(const Gap& gap) const {
     driver::put_record_head(writer, RecordKind::gap, gap_bytes);
@@ -52,6 +61,19 @@ std::optional<Entry> tick_of(ByteReader& reader) {
       !driver::is_usable_time(tick.woke.time_since_epoch()))
     return std::nullopt;
   return tick;
+}
+
+std::optional<Entry> wrist_of(ByteReader& reader) {
+  flow::WristMove move;
+  const std::uint8_t side = reader.u8();
+  for (double& number : move.position_m)
+    number = reader.f64_le();
+  for (double& number : move.turn_xyzw)
+    number = reader.f64_le();
+  if (reader.overrun() || side > static_cast<std::uint8_t>(Side::right) || !move.is_usable())
+    return std::nullopt;
+  move.side = static_cast<Side>(side);
+  return move;
 }
 
 std::optional<Ending> ending_of(std::span<const std::byte> payload) {
@@ -137,6 +159,8 @@ std::optional<Entry> TakeReader::entry_of(const driver::TapeRecord& record) {
     if (!reader.overrun()) entry = request_of(request);
   } else if (record.is(RecordKind::tick)) {
     entry = tick_of(reader);
+  } else if (record.is(RecordKind::wrist)) {
+    entry = wrist_of(reader);
   } else if (record.is(RecordKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

@@ -29,6 +29,7 @@ public:
     summary_.last = std::max(summary_.last, sample.arrival);
   }
   void operator()(flow::Request request) { ++summary_.requests[static_cast<std::size_t>(request)]; }
+  void operator()(const flow::WristMove&) { ++summary_.wrist_moves; }
   void operator()(const flow::TapedTick& tick) {
     if (summary_.ticks > 0) {
       if (tick.number < next_tick_) ++summary_.ticks_out_of_order;

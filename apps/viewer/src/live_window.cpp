@@ -127,7 +127,7 @@ Wishes LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gaug
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  follow_mouse();
+  follow_mouse(frame, wishes);
   draw_panel(frame, gauges, wishes);
   ImGui::Render();
   renderer_->draw(scene_, camera_, size);
@@ -139,9 +139,29 @@ Wishes LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gaug
   return wishes;
 }
 
-void LiveWindow::follow_mouse() {
+// True: the mouse holds a hand, and does nothing else.
+bool LiveWindow::move_hand(const flow::Frame& frame, Wishes& wishes) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantCaptureMouse) return;
+  const Size size{static_cast<int>(io.DisplaySize.x), static_cast<int>(io.DisplaySize.y)};
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Right)) hand_mover_.let_go();
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Right))
+    hand_mover_.take(camera_, frame, {io.MousePos.x, io.MousePos.y}, size);
+  if (!hand_mover_.holds()) return false;
+  const auto dx = static_cast<double>(io.MouseDelta.x);
+  const auto dy = static_cast<double>(io.MouseDelta.y);
+  if (io.KeyShift) {
+    hand_mover_.turn(camera_, dx, dy);
+  } else {
+    hand_mover_.shift(camera_, dx, dy, static_cast<double>(io.DisplaySize.y));
+  }
+  hand_mover_.push(camera_, static_cast<double>(io.MouseWheel));
+  if (dx != 0.0 || dy != 0.0 || io.MouseWheel != 0.0F) wishes.wrist = hand_mover_.move();
+  return true;
+}
+
+void LiveWindow::follow_mouse(const flow::Frame& frame, Wishes& wishes) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse || move_hand(frame, wishes)) return;
   const auto dx = static_cast<double>(io.MouseDelta.x);
   const auto dy = static_cast<double>(io.MouseDelta.y);
   const bool shifts = ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||

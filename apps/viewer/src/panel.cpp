@@ -134,9 +134,9 @@ void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) c
   ImGui::Text("%g Hz wanted, %llu ticks, %llu missed", gauges.rate_hz,
               static_cast<unsigned long long>(frame.ticks),
               static_cast<unsigned long long>(frame.missed));
-  chart("late", late_ms, "ms after its deadline");
-  chart("uneven", gap_ms, "ms off the period");
-  chart("picture", pictures_ms, "ms a picture");
+  chart("late", late_ms, "ms");
+  chart("uneven", gap_ms, "ms");
+  chart("picture", pictures_ms, "ms");
   if (gauges.restart_ms > 0.0) ImGui::Text("the last change took %.1f ms", gauges.restart_ms);
 }
 
@@ -178,7 +178,9 @@ void LiveWindow::Panel::keys(SceneParts& parts, Wishes& wishes) {
   ImGui::Begin("Keys", &keys_shown, ImGuiWindowFlags_AlwaysAutoResize);
   for (const Key& key : key_table)
     ImGui::Text("%-3s %s", key.shown, key.does);
-  ImGui::TextUnformatted("mouse: drag turns, middle or shift drag shifts, wheel zooms");
+  ImGui::TextUnformatted("mouse: drag turns, middle or shift drag shifts, wheel zooms;\n"
+                         "right drag on a hand moves it, with shift turns it, with the wheel\n"
+                         "pushes and pulls it");
   ImGui::End();
 }
 

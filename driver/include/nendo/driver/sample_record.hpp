@@ -17,7 +17,7 @@ inline constexpr ChunkType glove_chunk = chunk_type("GLOV"); ///< one for each g
 inline constexpr ChunkType tape_chunk = chunk_type("TAPE");  ///< what happened, in its order
 
 /// Kinds of entries; unknown ones are passed over.
-enum class RecordKind : std::uint8_t { sample = 1, request = 2, tick = 3, gap = 4 };
+enum class RecordKind : std::uint8_t { sample = 1, request = 2, tick = 3, gap = 4, wrist = 5 };
 
 /// One entry of a tape: its kind and what it holds.
 struct TapeRecord {

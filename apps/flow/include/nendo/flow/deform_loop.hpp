@@ -56,6 +56,8 @@ struct LoopOptions : PaceOptions {
   TickRing* records = nullptr;
   /// What the loop is asked for while it runs. Must outlive it.
   RequestRing* requests = nullptr;
+  /// Where its hands go while it runs. Must outlive it.
+  WristRing* wrists = nullptr;
   /// What is taken goes there, too. Must outlive it.
   Tape* tape = nullptr;
   /// Each is shown every frame. Must outlive the loop.
@@ -93,6 +95,8 @@ public:
   /// One reader thread may poll it while the loop runs.
   FrameExchange& frames() noexcept { return frames_; }
   const LoopStats& stats() const noexcept { return stats_; }
+  /// Where the hands are; not while the loop runs.
+  Placement placement() const;
   /// Makes points in the mesh's order of a frame's shape. Any thread.
   const deform::BlockLayout& layout() const noexcept { return sculptor_.layout(); }
   /// The shape as it stands when the loop has ended, nothing of a stroke left out. 3 by #vertices.
@@ -101,6 +105,7 @@ public:
 private:
   void tick(const Pacer::Due& due) noexcept;
   void take_requests() noexcept;
+  void take_wrists() noexcept;
   void take_samples(TickRecord& record) noexcept;
   void follow_switches() noexcept;
   void compute_hands(Frame& frame) noexcept;

@@ -1,7 +1,7 @@
 #pragma once
-// What the loop took, in the order in which it took it: samples, requests, and the ticks that
-// closed over them. Whoever gives the same to another loop of the same options gets the same shape,
-// bit for bit.
+// What the loop took, in the order in which it took it: samples, requests, wrists, and the ticks
+// that closed over them. Whoever gives the same to another loop of the same options gets the same
+// shape, bit for bit.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include <nendo/base/units.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/request.hpp>
+#include <nendo/flow/wrist_move.hpp>
 
 namespace nendo::flow {
 
@@ -28,7 +29,7 @@ struct TapedTick {
   std::uint64_t lost = 0; ///< entries that had found the tape full until then
 };
 
-using TapeEntry = std::variant<TakenSample, Request, TapedTick>;
+using TapeEntry = std::variant<TakenSample, Request, WristMove, TapedTick>;
 
 /// From the loop to a recorder, through a ring; a full one refuses what comes, and the next tick
 /// that finds room tells how much that was. The loop's side is wait-free.
@@ -41,6 +42,7 @@ public:
     ring_.try_push(TakenSample{hand, sample});
   }
   void request(Request request) noexcept { ring_.try_push(request); }
+  void wrist(const WristMove& move) noexcept { ring_.try_push(move); }
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {
     ring_.try_push(TapedTick{number, scheduled, woke, ring_.counters().refused});
   }

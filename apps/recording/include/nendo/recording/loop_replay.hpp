@@ -29,6 +29,7 @@ private:
 
   std::vector<std::unique_ptr<SampleRing>> rings_;
   flow::RequestRing requests_{1024};
+  flow::WristRing wrists_{1024};
   std::unique_ptr<flow::DeformLoop> loop_;
   bool exact_ = true;
 };

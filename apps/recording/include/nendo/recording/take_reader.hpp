@@ -22,7 +22,8 @@ struct Gap {
   std::uint64_t entries = 0; ///< 0: nobody knows how many
 };
 
-using Entry = std::variant<driver::RecordedSample, flow::Request, flow::TapedTick, Gap>;
+using Entry =
+    std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::TapedTick, Gap>;
 
 /// What a recorder says when it has come to its end.
 struct Ending {

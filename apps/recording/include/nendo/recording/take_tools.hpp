@@ -27,6 +27,7 @@ struct TakeSummary {
   Setup setup;
   std::vector<GloveSummary> gloves; ///< by their numbers
   std::array<std::uint64_t, flow::requests.size()> requests{};
+  std::uint64_t wrist_moves = 0;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0; ///< deadlines between ticks
   std::uint64_t ticks_out_of_order = 0;

@@ -13,6 +13,7 @@
 #include <nendo/flow/request.hpp>
 #include <nendo/flow/sculptor.hpp>
 #include <nendo/viewer/gl_renderer.hpp>
+#include <nendo/viewer/hand_mover.hpp>
 
 struct GLFWwindow;
 
@@ -41,6 +42,7 @@ struct Gauges {
 /// What a person wants, since the last picture.
 struct Wishes {
   std::vector<flow::Request> requests;
+  std::optional<flow::WristMove> wrist; ///< a hand that the mouse holds is to be there
   std::optional<LoopSettings> settings; ///< to go on with, in place of those in force
   bool reset = false;                   ///< back to the model as it was loaded
   bool record = false;                  ///< the recording is to begin, or to end
@@ -72,7 +74,8 @@ public:
 private:
   struct Panel;
   LiveWindow() = default;
-  void follow_mouse();
+  void follow_mouse(const flow::Frame& frame, Wishes& wishes);
+  bool move_hand(const flow::Frame& frame, Wishes& wishes);
   void draw_panel(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes);
 
   GLFWwindow* window_ = nullptr;
@@ -84,6 +87,7 @@ private:
   SceneParts parts_;
   Scene scene_;
   Camera camera_;
+  HandMover hand_mover_;
   bool framed_ = false;
 };
 
