@@ -5,6 +5,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "recorded_model.hpp"
 #include "recording_report.hpp"
 
 namespace nendo::app {
@@ -15,6 +16,8 @@ struct Options {
   std::string out;
   double from_s = 0.0;
   std::optional<double> to_s;
+  std::string mesh;
+  double rate_hz = 10.0;
   bool json = false;
 };
 
@@ -78,6 +81,23 @@ int cut(const Options& options) {
   return 0;
 }
 
+int shapes(const Options& options) {
+  constexpr double most_hz = 10'000.0;
+  if (!(options.rate_hz > 0.0 && options.rate_hz <= most_hz))
+    return report({Errc::usage, "--rate: use more than 0 and at most 10000 shapes a second"});
+  const auto reader = recording::TakeReader::open(options.file);
+  if (!reader) return report(reader.error());
+  if (!reader->setup().loop)
+    return report({Errc::bad_input, options.file + ": gloves were recorded, but no loop, whose "
+                                                   "shapes there would be"});
+  const auto model = recorded_model(*reader->setup().loop, options.mesh);
+  if (!model) return report(model.error());
+  const auto made = recording::add_shapes(options.file, options.out, *model, options.rate_hz);
+  if (!made) return report(made.error());
+  print_made(options, made->shapes, "shapes", made->bytes);
+  return 0;
+}
+
 } // namespace
 
 void add_recording(Command& program) {
@@ -106,6 +126,14 @@ void add_recording(Command& program) {
   cutting.add_option("--to", options->to_s, "Seconds from the beginning; without it, the end");
   cutting.add_option("--out", options->out, "The new file").required();
   cutting.on_chosen([options] { return cut(*options); });
+
+  Command shaping = command.add_command(
+      "shapes", "Makes a new file with shapes in it, for programs that have no loop");
+  shaping.add_option("FILE", options->file, "A recording; it stays as it is").required();
+  shaping.add_option("--rate", options->rate_hz, "Shapes a second, 12 bytes a vertex each");
+  shaping.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
+  shaping.add_option("--out", options->out, "The new file").required();
+  shaping.on_chosen([options] { return shapes(*options); });
 }
 
 } // namespace nendo::app

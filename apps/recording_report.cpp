@@ -47,6 +47,7 @@ void print_loop(const TakeSummary& summary) {
                 request == flow::requests.back() ? "" : ",");
   }
   if (summary.wrist_moves > 0) std::printf(", %llu wrist moves", number(summary.wrist_moves));
+  if (summary.shapes > 0) std::printf(", %llu shapes", number(summary.shapes));
   std::printf("\n");
 }
 
@@ -79,6 +80,7 @@ ordered_json loop_json(const TakeSummary& summary) {
     line["requests"][std::string(flow::name_of(request))] =
         summary.requests[static_cast<std::size_t>(request)];
   line["wrist_moves"] = summary.wrist_moves;
+  line["shapes"] = summary.shapes;
   return line;
 }
 

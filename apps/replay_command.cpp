@@ -40,6 +40,8 @@ struct Replayed {
   bool to_the_end = false;
   bool exact = false;           ///< nothing was missing
   std::optional<bool> the_same; ///< as the live run's shape; nothing: it does not tell
+  std::uint64_t shapes = 0;     ///< recorded ones that were compared
+  double farthest = 0.0;        ///< of a vertex from where they have it, model units
   double elapsed_s = 0.0;
   deform::Points shape;
 };
@@ -83,6 +85,18 @@ private:
   std::optional<HostTime> begun_;
 };
 
+// With the shape that is recorded behind the latest tick, if one is.
+void compare_shapes(recording::TakeReader& reader, flow::DeformLoop& loop, Replayed& done) {
+  const auto recorded = reader.take_shape();
+  if (!recorded) return;
+  loop.frames().update();
+  loop.layout().unpack(loop.frames().front().shape, done.shape);
+  const auto distance = recording::distance_between(*recorded, done.shape);
+  if (!distance) return;
+  ++done.shapes;
+  done.farthest = std::max(done.farthest, *distance);
+}
+
 Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) {
   auto reader = recording::TakeReader::open(options.file);
   if (!reader) return reader.error();
@@ -95,6 +109,7 @@ Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) 
   Replayed done;
   done.to_the_end = true;
   while (const auto entry = reader->next()) {
+    compare_shapes(*reader, (*replay)->loop(), done);
     if (const auto* tick = std::get_if<flow::TapedTick>(&*entry)) {
       if (tick->woke >= last) done.to_the_end = false;
       pace.wait_for(tick->woke);
@@ -103,6 +118,7 @@ Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) 
     }
     if ((*replay)->feed(*entry)) ++done.ticks;
   }
+  if (done.to_the_end) compare_shapes(*reader, (*replay)->loop(), done);
   done.exact = (*replay)->is_exact() && reader->chunks().damage_count() == 0;
   done.elapsed_s = to_seconds(HostClock::now() - start);
   done.shape = (*replay)->loop().final_shape();
@@ -121,6 +137,8 @@ void print(const Options& options, const Replayed& done) {
         {"to_the_end", done.to_the_end}, {"exact", done.exact}, {"same_shape", nullptr},
         {"vertices", sum.vertices},      {"crc32c", sum.crc},   {"result", options.out}};
     if (done.the_same) line["same_shape"] = *done.the_same;
+    line["shapes"] = done.shapes;
+    line["farthest_from_shapes"] = done.farthest;
     std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << std::endl;
     return;
@@ -135,6 +153,9 @@ void print(const Options& options, const Replayed& done) {
                     ? "nothing is missing\n"
                     : "something is missing in the recording, so the shape may be another\n");
   }
+  if (done.shapes > 0)
+    std::printf("%llu recorded shapes; no vertex is farther than %.3g from where they have it\n",
+                static_cast<unsigned long long>(done.shapes), done.farthest);
   std::fflush(stdout);
 }
 

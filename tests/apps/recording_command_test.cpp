@@ -151,6 +151,16 @@ TEST_SUITE("recording_command") {
     const auto beginning = test::nendo({"replay", part, "--no-clock", "--json"});
     CHECK(last_object(beginning)["exact"] == true);
     CHECK(test::nendo({"recording", "repair", bad, "--out", mended}).exit_code == 1); // is there
+    const auto shaped = run.path("shaped.nendo");
+    CHECK(
+        test::nendo({"recording", "shapes", run.take, "--rate", "20", "--out", shaped}).exit_code ==
+        0);
+    const auto again = last_object(test::nendo({"replay", shaped, "--no-clock", "--json"}));
+    CHECK(again["shapes"] > 5);
+    CHECK(again["farthest_from_shapes"] < 1e-6);
+    CHECK(again["same_shape"] == true);
+    CHECK(test::nendo({"recording", "shapes", run.take, "--rate", "nan", "--out", shaped})
+              .exit_code == 2);
   }
 
   TEST_CASE("a program that is killed leaves a recording that is whole up to the last second") {

@@ -92,12 +92,18 @@ def tape(b):
     return entries
 
 
+def shape(b):
+    o = {"tick": b.take("Q"), "vertices": b.take("I")}
+    o["xyz"] = b.take(f"{3 * o['vertices']}f")
+    return o
+
+
 def main():
     data = open(sys.argv[1], "rb").read()
     assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 0, crc32c(data[:12])), "header"
     at = 16
     number = 0
-    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "TAPE": tape, "END ": end}
+    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "TAPE": tape, "SHAP": shape, "END ": end}
     while at < len(data):
         magic, kind, size, found, check = struct.unpack_from("<4s4sIII", data, at)
         assert magic == b"NCHK" and check == crc32c(data[at:at + 16]) and found == number, f"chunk header at {at}"

@@ -11,6 +11,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <nendo/recording/take_tools.hpp>
+
 #include "support/takes.hpp"
 
 using namespace nendo;
@@ -226,5 +228,36 @@ TEST_SUITE("take_reader") {
       }
       CHECK(refused > 100);
     }
+  }
+
+  TEST_CASE("shapes are where and what FORMAT.md says") {
+    RecordedLoop live(Mode::type1);
+    live.record();
+    for (std::uint64_t tick = 0; tick < 20; ++tick) {
+      live.test.bend(static_cast<int>(tick), HostClock::now());
+      live.test.frame_after_tick(tick);
+    }
+    const auto last = live.test.vertices_of(live.test.loop->frames().front());
+    REQUIRE(live.end());
+    const auto with = live.folder.path() / "with.nendo";
+    REQUIRE(add_shapes(live.path, with, live.test.model, 1e9));
+    std::uint64_t tick = 0;
+    std::uint64_t shapes = 0;
+    json shape;
+    for (const auto& line : told_by_python(with)) {
+      if (line.contains("tick") && line["chunk"] == "TAPE") tick = line["tick"];
+      if (line["chunk"] != "SHAP") continue;
+      ++shapes;
+      CHECK(line["tick"] == tick);
+      shape = line;
+    }
+    CHECK(shapes == 20);
+    REQUIRE(shape["vertices"] == last.cols());
+    double farthest = 0.0;
+    for (Eigen::Index at = 0; at < last.size(); ++at)
+      farthest =
+          std::max(farthest, std::abs(shape["xyz"][static_cast<std::size_t>(at)].get<double>() -
+                                      last.data()[at]));
+    CHECK(farthest < 1e-6);
   }
 }

@@ -181,4 +181,71 @@ TEST_SUITE("take_tools") {
     CHECK(cut_take(take.live.path, take.made, 0s, 1h).error().code == Errc::failed);
     CHECK(test::file_bytes(take.made) == "precious");
   }
+
+  TEST_CASE(
+      "shapes that are added are those of the live loop, and the recording replays as before") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      RecordedLoop live(mode);
+      live.record();
+      std::vector<deform::Points> shapes;
+      const HostTime begin = HostClock::now();
+      for (std::uint64_t tick = 0; tick < 50; ++tick) {
+        live.test.bend(static_cast<int>(tick % 25), begin + tick * 11ms);
+        shapes.push_back(live.test.vertices_of(live.test.frame_after_tick(tick)));
+      }
+      REQUIRE(live.end());
+      const auto with = live.folder.path() / "with.nendo";
+      const auto made = add_shapes(live.path, with, live.test.model, 100.0); // of 1 kHz
+      REQUIRE(made);
+      CHECK(made->shapes == 5);
+      auto reader = TakeReader::open(with);
+      REQUIRE(reader);
+      auto replay = LoopReplay::make(reader->setup(), live.test.model);
+      REQUIRE(replay);
+      std::vector<RecordedShape> read;
+      const auto take = [&] {
+        if (auto shape = reader->take_shape()) read.push_back(*std::move(shape));
+      };
+      while (const auto entry = reader->next()) {
+        take();
+        (*replay)->feed(*entry);
+      }
+      take();
+      REQUIRE(read.size() == 5);
+      for (const auto& shape : read) {
+        CHECK(shape.tick % 10 == 0);
+        const auto distance = distance_between(shape, shapes[shape.tick]);
+        REQUIRE(distance);
+        CHECK(*distance < 1e-6); // half a float's last place of a ball of radius 1
+      }
+      CHECK((*replay)->loop().final_shape() == live.test.loop->final_shape());
+      CHECK(reader->ending()->shape == sum_of(live.test.loop->final_shape()));
+      const auto summary = summarise(with);
+      REQUIRE(summary);
+      CHECK(summary->strange + summary->damage_count == 0);
+      CHECK(summary->counts_agree);
+      CHECK(summary->shapes == 5);
+      CHECK_FALSE(add_shapes(live.path, with, live.test.model, 100.0)); // is there
+    }
+  }
+
+  TEST_CASE("a shape's payload is read back, and a hostile one is refused") {
+    const RecordedShape shape{7, {1.0F, -2.0F, 3.5F, 0.0F, 1e-30F, 4.0F}};
+    std::vector<std::byte> payload;
+    ByteWriter writer(payload);
+    put_shape(writer, shape);
+    const auto read = read_shape(payload);
+    REQUIRE(read);
+    CHECK(read->tick == 7);
+    CHECK(read->xyz == shape.xyz);
+    for (std::size_t size = 0; size < payload.size(); ++size)
+      CHECK_FALSE(read_shape(std::span(payload).first(size)));
+    auto many = payload;
+    many[11] = std::byte{0xFF}; // vertices
+    CHECK_FALSE(read_shape(many));
+    auto nan = payload;
+    nan[14] = std::byte{0xC0};
+    nan[15] = std::byte{0x7F};
+    CHECK_FALSE(read_shape(nan));
+  }
 }

@@ -138,6 +138,9 @@ bool TakeReader::next_chunk() {
     if (chunk->type == ending_chunk) {
       ending_ = ending_of(chunk->payload);
       if (!ending_) ++strange_;
+    } else if (chunk->type == shape_chunk) {
+      shape_ = read_shape(chunk->payload);
+      ++(shape_ ? shapes_ : strange_);
     } else if (!read_setup_chunk(chunk->type, chunk->payload, setup_)) {
       ++strange_;
     }

@@ -97,6 +97,7 @@ Result<TakeSummary> summarise(const std::filesystem::path& path) {
   summary.damage_count = reader->chunks().damage_count();
   summary.damages = reader->chunks().damages();
   summary.strange = reader->strange();
+  summary.shapes = reader->shapes();
   summary.counts_agree = agree(summary);
   return summary;
 }

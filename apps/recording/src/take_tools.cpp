@@ -2,61 +2,10 @@
 
 #include <utility>
 
-#include "take_file.hpp"
+#include "take_copy.hpp"
 
 namespace nendo::recording {
 namespace {
-
-constexpr std::size_t chunk_bytes = std::size_t{1} << 16;
-
-/// A recording that is made of another one's entries.
-class TakeCopy {
-public:
-  static Result<TakeCopy> create(const std::filesystem::path& path, const Setup& setup) {
-    std::uint32_t chunks = 0;
-    const auto bytes = setup_bytes(setup, chunks);
-    auto file = TakeFile::create(path, bytes, chunks);
-    if (!file) return file.error();
-    file->sync_at_end();
-    return TakeCopy(*std::move(file));
-  }
-
-  Result<void> put(const Entry& entry) {
-    ByteWriter writer(payload_);
-    put_entry(writer, entry);
-    ++entries_;
-    if (std::holds_alternative<driver::RecordedSample>(entry)) ++ending_.samples;
-    if (std::holds_alternative<flow::Request>(entry)) ++ending_.requests;
-    if (std::holds_alternative<flow::TapedTick>(entry)) ++ending_.ticks;
-    return payload_.size() < chunk_bytes ? Result<void>() : flush();
-  }
-  Result<NewTake> end(HostTime host) {
-    if (const auto flushed = flush(); !flushed) return flushed.error();
-    ending_.host = host;
-    ByteWriter writer(payload_);
-    put_ending(writer, ending_);
-    if (const auto written = file_.append(ending_chunk, payload_); !written) return written.error();
-    if (const auto synced = file_.sync(); !synced) return synced.error();
-    NewTake made;
-    made.bytes = file_.bytes();
-    made.entries = entries_;
-    return made;
-  }
-
-private:
-  explicit TakeCopy(TakeFile file) : file_(std::move(file)) {}
-  Result<void> flush() {
-    if (payload_.empty()) return {};
-    auto written = file_.append(driver::tape_chunk, payload_);
-    payload_.clear();
-    return written;
-  }
-
-  TakeFile file_;
-  std::vector<std::byte> payload_;
-  std::uint64_t entries_ = 0;
-  Ending ending_;
-};
 
 /// Entries that belong together: all that a tick took, or one sample where no loop ran.
 class Groups {

@@ -6,12 +6,14 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include <nendo/driver/chunk_file.hpp>
 #include <nendo/driver/sample_record.hpp>
 #include <nendo/flow/tape.hpp>
+#include <nendo/recording/recorded_shape.hpp>
 #include <nendo/recording/setup.hpp>
 
 namespace nendo::recording {
@@ -52,9 +54,13 @@ public:
   /// The next entry that can be used; nothing at the end. Kinds and chunks that this nendo does not
   /// know are passed over.
   std::optional<Entry> next();
+  /// The shape after the entries up to the latest but one, or up to the latest if there is no
+  /// other; nothing: none is recorded there, or it has been taken.
+  std::optional<RecordedShape> take_shape() { return std::exchange(shape_, std::nullopt); }
   /// At the end; nothing: the recording was cut off.
   const std::optional<Ending>& ending() const noexcept { return ending_; }
   const driver::ChunkReader& chunks() const noexcept { return chunks_; }
+  std::uint64_t shapes() const noexcept { return shapes_; } ///< so far
   /// Chunks and entries whose checksum fits, but which no nendo writes.
   std::uint64_t strange() const noexcept { return strange_; }
 
@@ -67,6 +73,8 @@ private:
   Setup setup_;
   driver::TapeRecords records_{{}};
   std::optional<Ending> ending_;
+  std::optional<RecordedShape> shape_;
+  std::uint64_t shapes_ = 0;
   std::uint64_t damages_told_ = 0;
   std::uint64_t strange_ = 0;
   bool gap_due_ = false;

@@ -28,6 +28,7 @@ struct TakeSummary {
   std::vector<GloveSummary> gloves; ///< by their numbers
   std::array<std::uint64_t, flow::requests.size()> requests{};
   std::uint64_t wrist_moves = 0;
+  std::uint64_t shapes = 0;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0; ///< deadlines between ticks
   std::uint64_t ticks_out_of_order = 0;
@@ -53,7 +54,8 @@ Result<TakeSummary> summarise(const std::filesystem::path& path);
 /// What was written.
 struct NewTake {
   std::uint64_t bytes = 0;
-  std::uint64_t entries = 0; ///< of cut_take()
+  std::uint64_t entries = 0; ///< of cut_take() and add_shapes()
+  std::uint64_t shapes = 0;  ///< of add_shapes()
   std::uint64_t chunks = 0;  ///< of repair_take()
   std::uint64_t damages = 0; ///< of repair_take(): places that are gaps now
 };
@@ -67,5 +69,11 @@ Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesy
 /// at its beginning is not in it. Errors: as repair_take(); bad_input if nothing happened then.
 Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesystem::path& to,
                          HostClock::duration begin, HostClock::duration end);
+
+/// The same with so many shapes a second, each of a whole tick, the first one's always: replays the
+/// loop over `model`, which ought to be the recorded one. Shapes that it has are left out. Errors:
+/// as repair_take() and LoopReplay::make(); bad_input (too many vertices).
+Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesystem::path& to,
+                           const deform::Mesh& model, double rate_hz);
 
 } // namespace nendo::recording

@@ -1,0 +1,35 @@
+#pragma once
+// A shape in a recording. None is needed for a replay; they are for programs that have no loop, and
+// to compare with what a replay on another machine makes.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <nendo/base/byte_writer.hpp>
+#include <nendo/deform/mesh.hpp>
+#include <nendo/driver/chunk_file.hpp>
+
+namespace nendo::recording {
+
+struct RecordedShape {
+  std::uint64_t tick = 0; ///< the number of the tick that made it
+  std::vector<float> xyz; ///< model units, x y z of one vertex after another
+};
+
+inline constexpr driver::ChunkType shape_chunk = driver::chunk_type("SHAP");
+/// As many as a chunk has room for.
+inline constexpr std::size_t most_recorded_vertices = (driver::most_payload_bytes - 12) / 12;
+
+RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
+/// The payload of a chunk; at most most_recorded_vertices.
+void put_shape(ByteWriter& writer, const RecordedShape& shape);
+/// Nothing if the payload is not what put_shape() writes, or has a number that is not finite.
+std::optional<RecordedShape> read_shape(std::span<const std::byte> payload);
+
+/// The greatest distance of a vertex from where `vertices` has it, model units; nothing if there
+/// are not as many.
+std::optional<double> distance_between(const RecordedShape& shape, const deform::Points& vertices);
+
+} // namespace nendo::recording
