@@ -18,6 +18,7 @@
 #include "loop_options.hpp"
 #include "open_hands.hpp"
 #include "output_place.hpp"
+#include "run_publishing.hpp"
 #include "run_report.hpp"
 #include "service/service_notice.hpp"
 
@@ -32,6 +33,7 @@ struct CommandOptions {
   KernelOptions kernel;
   LoopArguments loop;
   ViewOptions view;
+  std::vector<std::string> publish;
   bool injective = false;
   bool not_injective = false;
 };
@@ -99,6 +101,8 @@ Result<void> check(CommandOptions& options) {
 
 int run(CommandOptions& options) {
   if (const auto fine = check(options); !fine) return report(fine.error());
+  auto published = publish_to(options.publish);
+  if (!published) return report(published.error());
   auto model = deform::read_mesh(options.run.mesh);
   if (!model) return report(model.error());
   if (options.injective ||
@@ -125,8 +129,12 @@ int run(CommandOptions& options) {
     shown(frame, elapsed_s);
   };
   followers.onlooker = window.get();
-  const auto outcome = run_session(wanted, *hands, *std::move(model), followers);
+  for (const auto& outlet : *published)
+    followers.outlets.push_back(outlet.get());
+  auto outcome = run_session(wanted, *hands, *std::move(model), followers);
   if (!outcome) return report(outcome.error());
+  for (const auto& outlet : *published)
+    outcome->published.push_back(outlet->end());
   print_summary(wanted, *hands, *outcome);
   const bool recorded =
       std::all_of(outcome->recordings.begin(), outcome->recordings.end(),
@@ -171,6 +179,7 @@ void add_run_options(Command& command, const std::shared_ptr<CommandOptions>& op
                      "done (--keep-last)");
   add_recording_options(command, run_options.recording);
   add_filter_options(command, options->filter);
+  add_publish_option(command, options->publish);
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");

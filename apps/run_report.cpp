@@ -187,6 +187,39 @@ void print_recordings(const std::vector<RecordingOutcome>& recordings) {
   }
 }
 
+ordered_json published_json(const RunOutcome& outcome) {
+  auto list = ordered_json::array();
+  for (const auto& to : outcome.published) {
+    ordered_json line{{"target", to.target}, {"records", to.records}, {"bytes", to.bytes}};
+    if (to.is_segment) {
+      line["shape_changes"] = to.shape_changes;
+      line["locked"] = to.is_locked;
+    } else {
+      line["datagrams"] = to.datagrams;
+      line["lost_records"] = to.lost_records;
+      line["refused_datagrams"] = to.refused_datagrams;
+    }
+    list.push_back(std::move(line));
+  }
+  return list;
+}
+
+void print_published(const RunOutcome& outcome) {
+  for (const auto& to : outcome.published) {
+    std::printf("  %-14s %s, %llu ticks, ", "published", to.target.c_str(),
+                static_cast<unsigned long long>(to.records));
+    if (to.is_segment) {
+      std::printf("%s bytes%s\n", thousands(static_cast<double>(to.bytes)).c_str(),
+                  to.is_locked ? "" : ", not locked in memory (see --mlockall)");
+    } else {
+      std::printf("%llu datagrams, %llu refused, %llu ticks lost\n",
+                  static_cast<unsigned long long>(to.datagrams),
+                  static_cast<unsigned long long>(to.refused_datagrams),
+                  static_cast<unsigned long long>(to.lost_records));
+    }
+  }
+}
+
 void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
@@ -233,6 +266,7 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
   line["vertices_per_s"] =
       static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) / outcome.elapsed_s;
   line["recordings"] = recordings_json(outcome.recordings);
+  line["published"] = published_json(outcome);
   line["result"] = outcome.result;
   std::cout << line.dump() << std::endl;
 }
@@ -275,6 +309,7 @@ void print_summary_text(const RunOptions& options, const std::vector<OpenHand>& 
                   .c_str(),
               thousands(static_cast<double>(outcome.vertices)).c_str());
   print_recordings(outcome.recordings);
+  print_published(outcome);
   std::printf("  %-14s %s\n", "result", outcome.result.c_str());
   std::fflush(stdout);
 }

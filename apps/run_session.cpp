@@ -123,10 +123,7 @@ public:
     RunPicture picture(options_.picture, model_, placed_.setup.options);
     RunKeys keys(options_, model_, recorder_);
     while (run_loop(picture, keys) == Verdict::renew) {
-      if (const auto renewed = renew(); !renewed) {
-        const auto kept = keep(options_.out, model_); // what has been shaped is not lost with it
-        return kept ? renewed.error() : kept.error();
-      }
+      if (const auto renewed = renew(); !renewed) return after_keeping(renewed.error());
     }
     lights_.put_out();
     for (const auto& hand : hands_)
@@ -209,6 +206,12 @@ private:
       next_report += milliseconds(250);
     }
     return verdict;
+  }
+
+  // What has been shaped is not lost with what cannot go on.
+  Error after_keeping(const Error& error) {
+    const auto kept = keep(options_.out, model_);
+    return kept ? error : kept.error();
   }
 
   Result<void> renew() {

@@ -85,6 +85,10 @@ TEST_SUITE("proofs") {
     prove("latest_value.hpp", latest_value_scenarios());
   }
 
+  TEST_CASE("the sequence lock's stage keeps its laws, and needs every order that it states") {
+    prove("sequence_stage.hpp", sequence_stage_scenarios());
+  }
+
   TEST_CASE("the pool of frames keeps its laws over the ring's") {
     prove("frame_pool.hpp", frame_pool_scenarios());
   }

@@ -6,6 +6,7 @@
 #include <nendo/base/frame_pool.hpp>
 #include <nendo/base/latest_value.hpp>
 #include <nendo/base/overwriting_ring.hpp>
+#include <nendo/base/sequence_stage.hpp>
 #include <nendo/base/spsc_ring.hpp>
 
 #include "explorer/atomics.hpp"
@@ -155,6 +156,38 @@ struct Pool {
   }
 };
 
+/// Two slots of two words each, as a segment has them for its readers.
+struct Staged {
+  struct Slot {
+    SequenceStage<Explored> stage;
+    std::array<Explored::Atomic<Value>, 2> words;
+  };
+  std::array<Slot, 2> slots;
+  Explored::Atomic<Value> newest;
+
+  void write(Value number) {
+    Slot& slot = slots[number % 2];
+    slot.stage.open(number);
+    slot.words[0].store(number, std::memory_order_relaxed);
+    slot.words[1].store(~number, std::memory_order_relaxed);
+    slot.stage.close(number);
+    newest.store(number, std::memory_order_relaxed);
+  }
+  bool read(Value number) {
+    Slot& slot = slots[number % 2];
+    if (!slot.stage.holds(number)) return false;
+    const Value word = slot.words[0].load(std::memory_order_relaxed);
+    const Value complement = slot.words[1].load(std::memory_order_relaxed);
+    if (!slot.stage.still_holds(number)) return false;
+    require(word == number && complement == ~number, "what is read is whole, and that content");
+    return true;
+  }
+  void look() {
+    const Value number = newest.load(std::memory_order_relaxed);
+    if (number > 0) read(number);
+  }
+};
+
 } // namespace
 
 std::vector<Scenario> spsc_ring_scenarios() {
@@ -279,6 +312,25 @@ std::vector<Scenario> frame_pool_scenarios() {
          });
        }},
   };
+}
+
+std::vector<Scenario> sequence_stage_scenarios() {
+  return {{"four contents in two slots, three looks at the newest", [] {
+             const auto shared = std::make_shared<Staged>();
+             return Program{{[=] {
+                               for (Value number = 1; number <= 4; ++number)
+                                 shared->write(number);
+                             },
+                             [=] {
+                               for (int n = 0; n < 3; ++n)
+                                 shared->look();
+                             }},
+                            [=] {
+                              for (Value number = 1; number <= 5; ++number)
+                                require(shared->read(number) == (number == 3 || number == 4),
+                                        "at rest the newest are there, and only those");
+                            }};
+           }}};
 }
 
 } // namespace nendo::explorer

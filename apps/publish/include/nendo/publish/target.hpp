@@ -1,0 +1,39 @@
+#pragma once
+// Where a run publishes, as `--publish` says it.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::publish {
+
+struct SegmentTarget {
+  std::string name;              ///< of /dev/shm/nendo-NAME
+  std::optional<unsigned> group; ///< that may read it, too
+};
+
+/// A numeric address and a port, as sendto() takes them.
+struct DatagramTarget {
+  union {
+    sockaddr_storage whole; ///< all zeros at first
+    sockaddr any;
+    sockaddr_in v4;
+    sockaddr_in6 v6;
+  } address{};
+  socklen_t length = 0;
+};
+
+using Target = std::variant<SegmentTarget, DatagramTarget>;
+
+/// `shm`, `shm:NAME`, `shm:NAME?group=GROUP`; `udp:PORT` (of this machine), `udp:ADDRESS:PORT` with
+/// a numeric address, `udp:[ADDRESS]:PORT` with one of IPv6. Looks nothing up but the group. Error:
+/// usage, without the option's name.
+Result<Target> parse_target(std::string_view text);
+
+} // namespace nendo::publish

@@ -1,0 +1,292 @@
+// nendo run --publish, and readers that were written from the document alone.
+
+#include <map>
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <sys/file.h>
+
+#include "support/program.hpp"
+#include "support/shell.hpp"
+
+using namespace nendo::test;
+using nlohmann::json;
+
+namespace {
+
+std::string name_for(const std::string& what) {
+  return "test-" + std::to_string(::getpid()) + "-" + what;
+}
+std::filesystem::path segment_path(const std::string& name) {
+  return "/dev/shm/nendo-" + name;
+}
+
+std::vector<std::string> run_of(const TemporaryFolder& folder, const std::string& duration,
+                                std::vector<std::string> more) {
+  std::vector<std::string> arguments{"run",
+                                     "--left",
+                                     "sim:sculpt?seed=3",
+                                     "--right",
+                                     "sim:sculpt?seed=4",
+                                     "--mesh",
+                                     NENDO_MODELS "/head.obj",
+                                     "--duration",
+                                     duration,
+                                     "--json",
+                                     "--out",
+                                     (folder.path() / "shape.obj").string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+json summary_of(const Finished& done) {
+  const auto lines = lines_of(done.out);
+  REQUIRE_FALSE(lines.empty());
+  return json::parse(lines.back());
+}
+
+std::vector<json> objects_in(const std::string& text) {
+  std::vector<json> objects;
+  for (const auto& line : lines_of(text))
+    objects.push_back(json::parse(line));
+  return objects;
+}
+
+/// The coordinates of an OBJ file's vertices, one after another.
+std::vector<double> coordinates_in(const std::string& obj) {
+  std::vector<double> numbers;
+  for (const auto& line : lines_of(obj)) {
+    if (!line.starts_with("v ")) continue;
+    std::istringstream words(line.substr(2));
+    for (double number = 0.0; words >> number;)
+      numbers.push_back(number);
+  }
+  return numbers;
+}
+
+double furthest(const std::vector<double>& one, const std::vector<double>& other) {
+  REQUIRE(one.size() == other.size());
+  double most = 0.0;
+  for (std::size_t at = 0; at < one.size(); ++at)
+    most = std::max(most, std::abs(one[at] - other[at]));
+  return most;
+}
+
+template <class Condition>
+bool comes_true(const Condition& condition) {
+  for (int turn = 0; turn < 6000; ++turn) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+/// Other programs, by the shell, each with its output in a file of `folder`. Killed at the end.
+class Reader {
+public:
+  Reader(const TemporaryFolder& folder, const std::string& name, const std::string& command)
+      : out_(folder.path() / name), id_(::fork()) {
+    if (id_ != 0) return;
+    const int out = ::open(out_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    ::dup2(out, STDOUT_FILENO);
+    ::dup2(out, STDERR_FILENO);
+    ::execl("/bin/sh", "sh", "-c", ("exec " + command).c_str(), nullptr);
+    ::_exit(127);
+  }
+  ~Reader() { wait_or_kill(true); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  void signal(int number) const { ::kill(id_, number); }
+  /// Waits until it has mapped this segment; false if it does not within a minute.
+  bool attaches_to(const std::string& name) const {
+    const auto maps = "/proc/" + std::to_string(id_) + "/maps";
+    return comes_true([&] { return contents(maps).find("/nendo-" + name) != std::string::npos; });
+  }
+  bool says_lines(std::size_t count) const {
+    return comes_true([&] { return lines_of(contents(out_)).size() >= count; });
+  }
+  const std::filesystem::path& out() const { return out_; }
+  /// Its exit code.
+  int wait() { return wait_or_kill(false); }
+
+private:
+  int wait_or_kill(bool kill) {
+    if (id_ <= 0) return -1;
+    if (kill) ::kill(id_, SIGKILL);
+    int status = -1;
+    ::waitpid(id_, &status, 0);
+    id_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  std::filesystem::path out_;
+  pid_t id_;
+};
+
+/// Where the index fingertips were in each tick, by number and side.
+using Tips = std::map<std::pair<std::uint64_t, std::string>, std::vector<double>>;
+
+} // namespace
+
+TEST_SUITE("publish_program") {
+  TEST_CASE("readers in C and Python, of the segment and of datagrams, see one and the same run") {
+    for (const std::string mode : {"type1", "type2"}) {
+      const TemporaryFolder folder;
+      const std::string name = name_for(mode);
+      const auto port_file = folder.path() / "port";
+      Reader datagrams(folder, "datagrams",
+                       std::string("python3 -u " NENDO_READ_DATAGRAMS " ") + port_file.string());
+      REQUIRE(appears(port_file));
+      Program run(run_of(
+          folder, "0",
+          {"--mode", mode, "--publish", "shm:" + name, "--publish", "udp:" + contents(port_file)}));
+      REQUIRE(appears(segment_path(name)));
+      Reader shape(folder, "shape", "python3 " NENDO_READ_SHAPE " " + name + " --at-end");
+      REQUIRE(shape.attaches_to(name));
+      Reader hands(folder, "hands", NENDO_READ_HANDS " " + name);
+      Reader all(folder, "all", "python3 -u " NENDO_READ_SEGMENT " " + name);
+      REQUIRE(all.says_lines(60));
+      REQUIRE(hands.says_lines(60));
+      REQUIRE(datagrams.says_lines(60));
+      run.signal(SIGINT);
+      const Finished done = run.wait(std::chrono::seconds(110));
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      const json summary = summary_of(done);
+      CHECK(hands.wait() == 0);
+      CHECK(shape.wait() == 0);
+      const int all_code = all.wait();
+      REQUIRE_MESSAGE(all_code == 0, contents(all.out()));
+      const int datagrams_code = datagrams.wait();
+      REQUIRE_MESSAGE(datagrams_code == 0, contents(datagrams.out()));
+      CHECK_FALSE(std::filesystem::exists(segment_path(name)));
+
+      auto records = objects_in(contents(all.out()));
+      const json last = records.back();
+      records.pop_back();
+      CHECK(last["newest"] == summary["ticks"]);
+      CHECK(last["seen"] == records.size());
+      REQUIRE_FALSE(records.empty());
+      CHECK(records.back()["commits"] == summary["commits"]);
+      CHECK(records.back()["mode"] == (mode == "type1" ? 1 : 2));
+      const auto& to = summary["published"];
+      CHECK(to[0]["target"] == "shm:" + name);
+      CHECK(to[0]["records"] == summary["ticks"]);
+      CHECK(to[1]["records"] == summary["ticks"]);
+      CHECK(to[1]["refused_datagrams"] == 0);
+
+      // One tick is one tick, whoever read it.
+      Tips tips;
+      for (const auto& record : records) {
+        tips[{record["number"], "left"}] =
+            record["hands"][0]["index_tip"].get<std::vector<double>>();
+        tips[{record["number"], "right"}] =
+            record["hands"][1]["index_tip"].get<std::vector<double>>();
+      }
+      std::size_t compared = 0;
+      const auto compare = [&](std::uint64_t number, const std::string& side, const json& tip) {
+        const auto found = tips.find({number, side});
+        if (found == tips.end()) return;
+        CHECK(furthest(found->second, tip.get<std::vector<double>>()) < 1e-7);
+        ++compared;
+      };
+      for (const auto& line : objects_in(contents(hands.out())))
+        for (const std::string side : {"left", "right"})
+          compare(line["number"], side, line[side]);
+      CHECK(compared > 0);
+      compared = 0;
+      auto received = objects_in(contents(datagrams.out()));
+      CHECK(received.back()["sessions"] == 1);
+      CHECK(received.back()["datagrams"] <= to[1]["datagrams"]);
+      std::size_t updates = 0;
+      for (const auto& line : received) {
+        if (line["kind"] == "hand")
+          compare(line["number"], line["side"] == 0 ? "left" : "right", line["index_tip"]);
+        if (line["kind"] == "update") ++updates;
+      }
+      CHECK(compared > 0);
+      CHECK(updates > 0);
+
+      // And the shape is the file's; type 2 leaves a little of its last strokes waiting until then.
+      const auto written = coordinates_in(contents(folder.path() / "shape.obj"));
+      const auto read = coordinates_in(contents(shape.out()));
+      const auto rest = last["rest"].get<std::vector<double>>();
+      CHECK(furthest(read, last["shape"].get<std::vector<double>>()) < 1e-9);
+      CHECK(furthest(rest, coordinates_in(contents(NENDO_MODELS "/head.obj"))) < 1e-5);
+      CHECK(furthest(written, rest) > 1e-3);
+      if (mode == "type1") CHECK(furthest(read, written) < 1e-5);
+      if (mode == "type2") CHECK(furthest(read, written) < 0.5 * furthest(written, rest));
+    }
+  }
+
+  TEST_CASE("readers that stand still, are killed, or would write, disturb nobody") {
+    const TemporaryFolder folder;
+    const std::string name = name_for("readers");
+    Program run(run_of(folder, "0", {"--publish", "shm:" + name}));
+    REQUIRE(appears(segment_path(name)));
+    Reader stalled(folder, "stalled", NENDO_READ_HANDS " " + name);
+    Reader killed(folder, "killed", NENDO_READ_HANDS " " + name);
+    Reader honest(folder, "honest", "python3 -u " NENDO_READ_SEGMENT " " + name);
+    REQUIRE(stalled.says_lines(1));
+    REQUIRE(killed.says_lines(1));
+    stalled.signal(SIGSTOP);
+    killed.signal(SIGKILL);
+    // Who may not write cannot; root may, and is not kept out.
+    if (::geteuid() != 0) CHECK(::open(segment_path(name).c_str(), O_RDWR | O_CLOEXEC) < 0);
+    const int locking = ::open(segment_path(name).c_str(), O_RDONLY | O_CLOEXEC);
+    CHECK(locking >= 0);
+    CHECK(::flock(locking, LOCK_EX | LOCK_NB) == 0);
+    const Finished second = nendo::test::nendo(run_of(folder, "1", {"--publish", "shm:" + name}));
+    CHECK(second.exit_code == 1);
+    CHECK(is_one_line_about(second.err.substr(second.err.rfind("nendo: ")), "another run"));
+    REQUIRE(honest.says_lines(30)); // all the while
+    run.signal(SIGINT);
+    const Finished done = run.wait(std::chrono::seconds(110));
+    ::close(locking);
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const json summary = summary_of(done);
+    CHECK(summary["published"][0]["records"] == summary["ticks"]);
+    const int honest_code = honest.wait();
+    REQUIRE_MESSAGE(honest_code == 0, contents(honest.out()));
+    CHECK(objects_in(contents(honest.out())).back()["newest"] == summary["ticks"]);
+    CHECK_FALSE(std::filesystem::exists(segment_path(name)));
+  }
+
+  TEST_CASE("what a killed run left is taken over by the next") {
+    const TemporaryFolder folder;
+    const std::string name = name_for("killed");
+    {
+      Program run(run_of(folder, "60", {"--publish", "shm:" + name}));
+      REQUIRE(appears(segment_path(name)));
+      run.signal(SIGKILL);
+      CHECK(run.wait().exit_code == 128 + SIGKILL);
+    }
+    CHECK(std::filesystem::exists(segment_path(name)));
+    const Finished next = nendo::test::nendo(run_of(folder, "0.5", {"--publish", "shm:" + name}));
+    CHECK_MESSAGE(next.exit_code == 0, next.err);
+    CHECK_FALSE(std::filesystem::exists(segment_path(name)));
+  }
+
+  TEST_CASE("wrong targets are wrong usage, before any glove is opened") {
+    const TemporaryFolder folder;
+    for (const std::string target : {"", "shm:a/b", "udp:example.org:9000", "udp:70000", "tcp:1"}) {
+      const Finished done = nendo::test::nendo(run_of(folder, "1", {"--publish", target}));
+      CHECK(done.exit_code == 2);
+      CHECK(is_one_line_about(done.err, "--publish"));
+    }
+    const Finished twice =
+        nendo::test::nendo(run_of(folder, "1", {"--publish", "shm:a", "--publish", "shm:a"}));
+    CHECK(twice.exit_code == 2);
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "shape.obj"));
+  }
+
+  TEST_CASE("an address to which there is no way is an error that says so") {
+    const TemporaryFolder folder;
+    const Finished done =
+        nendo::test::nendo(run_of(folder, "1", {"--publish", "udp:255.255.255.255:9000"}));
+    CHECK(done.exit_code != 0);
+    CHECK(done.exit_code != 2);
+    CHECK(is_one_line_about(done.err.substr(done.err.rfind("nendo: ")), "udp"));
+  }
+}

@@ -1,0 +1,205 @@
+#include <nendo/publish/segment.hpp>
+
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <thread>
+
+#include "publish/publish_fixtures.hpp"
+
+using namespace nendo;
+using namespace nendo::publish;
+using deform::Points;
+using flow::Mode;
+using test::LoopUnderTest;
+using test::MappedSegment;
+using test::Player;
+using test::segment_name;
+
+TEST_SUITE("segment") {
+  TEST_CASE("a frame's hands and vertices come out as they are, whatever changed since") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      LoopUnderTest test(mode, 12);
+      SegmentPublisher publisher(segment_name("frames"), {});
+      test::attach(test, {&publisher});
+      REQUIRE(publisher.begin(test::outline_of(test)));
+      const MappedSegment segment(segment_name("frames"));
+      CHECK(segment.newest() == 0);
+      CHECK(segment.header().vertices == test.model.vertices.cols());
+      CHECK(segment.setup().mode == (mode == Mode::type1 ? 1 : 2));
+      CHECK((segment.rest() - test.model.vertices).cwiseAbs().maxCoeff() < test::float_gap);
+      Player player(test);
+      Points before = test.model.vertices;
+      std::uint64_t different = 0, changes = 0;
+      for (std::uint64_t number = 1; number <= 150; ++number) {
+        const flow::Frame& frame = player.next();
+        REQUIRE(segment.newest() == number);
+        const auto record = segment.record(number);
+        const auto& head = test::head_of(record);
+        CHECK(head.number == number);
+        CHECK(head.tick == frame.tick);
+        CHECK(head.commits == frame.commits);
+        CHECK(head.undos == frame.undos);
+        CHECK(head.woke_ns == frame.woke.time_since_epoch() / std::chrono::nanoseconds(1));
+        CHECK(segment.header().heartbeat_ns == head.woke_ns);
+        CHECK(((head.flags & NENDO_PUBLISH_HELD) != 0) == frame.held);
+        for (std::size_t side = 0; side < 2; ++side) {
+          REQUIRE((head.hands[side].flags & NENDO_PUBLISH_PRESENT) != 0);
+          for (std::size_t at = 0; at < hand::joint_count; ++at) {
+            const auto& [place, turn] = head.hands[side].joints[at];
+            const auto& pose = frame.hands[side].pose.joints[at];
+            const Eigen::Quaterniond read(
+                Eigen::Quaternionf(turn[3], turn[0], turn[1], turn[2]).cast<double>());
+            for (Eigen::Index axis = 0; axis < 3; ++axis)
+              CHECK(place[axis] == static_cast<float>(pose.translation()[axis]));
+            CHECK((read.toRotationMatrix() - pose.linear()).cwiseAbs().maxCoeff() < 1e-6);
+          }
+        }
+        const Points expected = test.vertices_of(frame);
+        // unpack() gives untouched coordinates their original bits, which float does not hold.
+        CHECK((segment.shape(number) - expected).cwiseAbs().maxCoeff() < test::float_gap);
+        const bool told = head.shape_changes != changes;
+        CHECK((told || expected == before));
+        different += expected != before ? 1U : 0U;
+        changes = head.shape_changes;
+        before = expected;
+      }
+      CHECK(different > 15);
+      CHECK(publisher.counts().records == 150);
+      CHECK(publisher.counts().shape_changes == changes);
+      publisher.end();
+      CHECK(segment.has_ended());
+      CHECK(segment.newest() == 150); // and stays readable for who has it mapped
+    }
+  }
+
+  TEST_CASE("faces become triangles of the same area, over the same vertices") {
+    LoopUnderTest test(Mode::type1, 8);
+    SegmentPublisher publisher(segment_name("faces"), {});
+    REQUIRE(publisher.begin(test::outline_of(test)));
+    const MappedSegment segment(segment_name("faces"));
+    std::vector<std::uint32_t> corners(std::size_t{3} * segment.header().triangles);
+    nendo_publish_setup setup{};
+    REQUIRE(nendo_publish_read_setup(segment.base(), &setup, corners.data(), nullptr));
+    // A closed surface has twice as many triangles as vertices, less four (Euler), and the volume
+    // of a ball's inscribed polyhedron.
+    CHECK(corners.size() / 3 == 2 * (segment.header().vertices - 2));
+    double volume = 0.0;
+    for (std::size_t at = 0; at < corners.size(); at += 3) {
+      Eigen::Matrix3d sides;
+      for (Eigen::Index corner = 0; corner < 3; ++corner)
+        sides.col(corner) = test.model.vertices.col(corners[at + static_cast<std::size_t>(corner)]);
+      volume += sides.determinant() / 6.0;
+    }
+    CHECK(std::abs(volume) == doctest::Approx(4.0 / 3.0 * 3.14159265).epsilon(0.1));
+  }
+
+  TEST_CASE("a loop that is made anew keeps the segment, another model gets another one") {
+    LoopUnderTest test(Mode::type1, 10);
+    SegmentPublisher publisher(segment_name("anew"), {});
+    test::attach(test, {&publisher});
+    REQUIRE(publisher.begin(test::outline_of(test)));
+    const MappedSegment segment(segment_name("anew"));
+    Player player(test);
+    for (int n = 0; n < 20; ++n)
+      player.next();
+    test.model.vertices *= 1.5;
+    test::attach(test, {&publisher});
+    REQUIRE(publisher.begin(test::outline_of(test)));
+    CHECK_FALSE(segment.has_ended());
+    CHECK(segment.setup().generation == 2);
+    CHECK((segment.rest() - test.model.vertices).cwiseAbs().maxCoeff() < 2 * test::float_gap);
+    Player anew(test);
+    const Points shape = test.vertices_of(anew.next());
+    CHECK(segment.newest() == 21); // numbers go on
+    CHECK(test::head_of(segment.record(21)).generation == 2);
+    CHECK((segment.shape(21) - shape).cwiseAbs().maxCoeff() < 2 * test::float_gap);
+
+    LoopUnderTest larger(Mode::type1, 12);
+    test::attach(larger, {&publisher});
+    REQUIRE(publisher.begin(test::outline_of(larger)));
+    CHECK(segment.has_ended());
+    const MappedSegment other(segment_name("anew"));
+    CHECK(other.header().vertices == larger.model.vertices.cols());
+    CHECK(other.newest() == 0);
+  }
+
+  TEST_CASE(
+      "a stranger that may write, and writes garbage everywhere, changes nothing in the loop") {
+    LoopUnderTest test(Mode::type1, 10);
+    LoopUnderTest alone(Mode::type1, 10);
+    SegmentPublisher publisher(segment_name("garbage"), {});
+    test::attach(test, {&publisher});
+    REQUIRE(publisher.begin(test::outline_of(test)));
+    const std::string path = "/dev/shm/nendo-" + segment_name("garbage");
+    REQUIRE(::chmod(path.c_str(), 0600) == 0); // its own user can
+    const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+    const std::size_t words = plan_segment(test::outline_of(test)).segment_bytes / 8;
+    void* const base = ::mmap(nullptr, 8 * words, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    ::close(file);
+    REQUIRE(base != MAP_FAILED);
+    std::atomic<bool> over{false};
+    std::atomic<std::uint64_t> written{0};
+    std::thread stranger([&] {
+      auto* const garbage = static_cast<AtomicWord*>(base);
+      for (std::mt19937_64 random(3); !over; ++written)
+        garbage[random() % words].store(random(), std::memory_order_relaxed);
+    });
+    Player player(test);
+    Player other(alone);
+    for (int n = 0; n < 100 || written < 100'000; ++n)
+      REQUIRE(test.vertices_of(player.next()) == alone.vertices_of(other.next()));
+    over = true;
+    stranger.join();
+    ::munmap(base, 8 * words);
+    CHECK(test.loop->stats().failed == alone.loop->stats().failed);
+    CHECK(publisher.counts().records == test.loop->stats().ticks);
+    publisher.end();
+    CHECK(::access(path.c_str(), F_OK) != 0);
+  }
+
+  TEST_CASE("fields that there is no room for are left out together, and marked") {
+    LoopUnderTest test(Mode::type1, 8);
+    SegmentPublisher publisher(segment_name("room"), {});
+    test::attach(test, {&publisher});
+    auto outline = test::outline_of(test);
+    outline.functions = 3;
+    outline.most_fields = 1;
+    REQUIRE(publisher.begin(outline));
+    const MappedSegment segment(segment_name("room"));
+    Player player(test);
+    for (int n = 0; n < 5; ++n)
+      player.next();
+    const auto record = segment.record(5);
+    const auto& head = test::head_of(record);
+    CHECK((head.flags & NENDO_PUBLISH_FIELDS_LEFT_OUT) != 0);
+    CHECK(head.fields == 0);
+    CHECK(head.fields_bytes == 0);
+  }
+
+  TEST_CASE("a reader takes no segment whose sizes lead outside of it") {
+    LoopUnderTest test(Mode::type1, 8);
+    SegmentPublisher publisher(segment_name("judge"), {});
+    REQUIRE(publisher.begin(test::outline_of(test)));
+    const MappedSegment segment(segment_name("judge"));
+    const auto bytes = segment.header().segment_bytes;
+    std::vector<std::uint64_t> copy(bytes / 8);
+    const auto usable = [&] { return nendo_publish_is_usable(copy.data(), bytes) != 0; };
+    const auto begin = [&] { std::memcpy(copy.data(), segment.base(), bytes); };
+    begin();
+    CHECK(usable());
+    CHECK_FALSE(nendo_publish_is_usable(copy.data(), bytes - 8) != 0);
+    CHECK_FALSE(nendo_publish_is_usable(copy.data(), 100) != 0);
+    for (std::size_t at = 6; at < 13; ++at) { // offsets and strides
+      begin();
+      copy[at] = UINT64_MAX - 7;
+      CHECK_FALSE(usable());
+    }
+    for (const std::size_t at : {0U, 1U, 16U}) { // magic, byte order, state
+      begin();
+      copy[at] = 0;
+      CHECK_FALSE(usable());
+    }
+  }
+}

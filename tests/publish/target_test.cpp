@@ -1,0 +1,88 @@
+#include <nendo/publish/target.hpp>
+
+#include <array>
+
+#include <arpa/inet.h>
+#include <doctest/doctest.h>
+
+using namespace nendo;
+using namespace nendo::publish;
+
+namespace {
+
+/// Address and port as the system writes them.
+std::string told(const DatagramTarget& target) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  const bool v6 = target.address.any.sa_family == AF_INET6;
+  const void* const address =
+      v6 ? static_cast<const void*>(&target.address.v6.sin6_addr) : &target.address.v4.sin_addr;
+  ::inet_ntop(target.address.any.sa_family, address, text.data(), text.size());
+  return std::string(text.data()) + " " +
+         std::to_string(ntohs(v6 ? target.address.v6.sin6_port : target.address.v4.sin_port));
+}
+
+} // namespace
+
+TEST_SUITE("target") {
+  TEST_CASE("segments have names, and may have a group") {
+    for (const auto& [text, name] :
+         {std::pair{"shm", "run"}, {"shm:", "run"}, {"shm:left_1-a.b", "left_1-a.b"}}) {
+      const auto target = parse_target(text);
+      REQUIRE(target);
+      const auto& segment = std::get<SegmentTarget>(*target);
+      CHECK(segment.name == name);
+      CHECK_FALSE(segment.group);
+    }
+    const auto of_root = parse_target("shm:x?group=root");
+    REQUIRE(of_root);
+    CHECK(std::get<SegmentTarget>(*of_root).group == 0U);
+    const auto by_number = parse_target("shm?group=1234");
+    REQUIRE(by_number);
+    CHECK(std::get<SegmentTarget>(*by_number).group == 1234U);
+  }
+
+  TEST_CASE("datagrams go to this machine, or to an address that is named") {
+    for (const auto& [text, expected] : {std::pair{"udp:9000", "127.0.0.1 9000"},
+                                         {"udp:192.0.2.7:65535", "192.0.2.7 65535"},
+                                         {"udp:[::1]:1", "::1 1"},
+                                         {"udp:[2001:db8::7]:9000", "2001:db8::7 9000"}}) {
+      const auto target = parse_target(text);
+      REQUIRE(target);
+      CHECK(told(std::get<DatagramTarget>(*target)) == expected);
+    }
+  }
+
+  TEST_CASE("anything else is wrong usage, in one line that names it") {
+    for (const std::string text : {"",
+                                   "shm:../x",
+                                   "shm:a/b",
+                                   "shm:a b",
+                                   "shmem",
+                                   "shm:x?user=a",
+                                   "shm:x?group=",
+                                   "shm:x?group=no-such-group",
+                                   "udp",
+                                   "udp:",
+                                   "udp:0",
+                                   "udp:65536",
+                                   "udp:-1",
+                                   "udp:9000x",
+                                   "udp:localhost:9000",
+                                   "udp:1.2.3:x",
+                                   "udp:::1:9000",
+                                   "udp:[::1]",
+                                   "udp:[]:9000",
+                                   "udp:[127.0.0.1]:9000",
+                                   "udp:256.0.0.1:9000",
+                                   "tcp:9000"}) {
+      CAPTURE(text);
+      const auto target = parse_target(text);
+      REQUIRE_FALSE(target);
+      CHECK(target.error().code == Errc::usage);
+      CHECK(target.error().message.starts_with(text + ": "));
+      CHECK(target.error().message.find('\n') == std::string::npos);
+    }
+    CHECK_FALSE(parse_target("shm:" + std::string(65, 'x')));
+    CHECK_FALSE(parse_target("udp:" + std::string(5000, '9')));
+  }
+}

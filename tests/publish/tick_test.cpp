@@ -1,0 +1,99 @@
+// A tick that publishes is a tick like any other: no allocation, no lock, no system call, no page
+// that was not there; whatever its readers do.
+
+#include <thread>
+
+#include <sys/resource.h>
+
+#include <nendo/publish/datagrams.hpp>
+#include <nendo/publish/segment.hpp>
+
+#include "publish/publish_fixtures.hpp"
+#include "support/restraint.hpp"
+#include "support/sleep_only.hpp"
+
+using namespace nendo;
+using namespace nendo::publish;
+using test::LoopUnderTest;
+
+namespace {
+
+DatagramTarget port_9() {
+  DatagramTarget target;
+  target.length = sizeof target.address.v4;
+  target.address.v4.sin_family = AF_INET;
+  target.address.v4.sin_port = htons(9);
+  target.address.v4.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return target;
+}
+
+long faults_so_far() noexcept {
+  rusage usage{};
+  ::getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
+void move_and_tick(LoopUnderTest& test, std::uint64_t first, std::uint64_t ticks) {
+  const HostTime begin = HostClock::now();
+  for (std::uint64_t tick = first; tick < first + ticks; ++tick) {
+    const int bent = static_cast<int>(tick % 60);
+    test.bend(bent < 30 ? bent : 60 - bent, begin + tick * std::chrono::milliseconds(1));
+    test.loop->tick(tick, HostClock::now());
+  }
+}
+
+} // namespace
+
+TEST_SUITE("publishing_tick") {
+  TEST_CASE("with a segment, its reader and datagrams attached no tick allocates, frees, locks or "
+            "calls the system, and none meets a new page") {
+    if (!test::restraint_is_counted) return;
+    for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
+      LoopUnderTest test(mode, 16);
+      SegmentPublisher publisher(test::segment_name("tick"), {});
+      DatagramPublisher sender(port_9());
+      test::attach(test, {&publisher, &sender});
+      REQUIRE(publisher.begin(test::outline_of(test)));
+      REQUIRE(sender.begin(test::outline_of(test)));
+      const test::MappedSegment segment(test::segment_name("tick"));
+      std::atomic<bool> over{false};
+      std::uint64_t read = 0;
+      std::thread reader([&] {
+        nendo_publish_record record{};
+        while (!over || read == 0)
+          read +=
+              nendo_publish_read(segment.base(), segment.newest(), &record, nullptr, 0) ? 1U : 0U;
+      });
+      bool filtered = false;
+      long page_faults = 0;
+      test::StoppedCalls calls;
+      test::RestraintCounts counts;
+      std::thread([&] {
+        move_and_tick(test, 0, 600); // a round of every slot
+        faults_so_far();
+        filtered = test::allow_sleep_only();
+        {
+          const test::Restraint restraint;
+          const long before = faults_so_far();
+          move_and_tick(test, 600, 5000);
+          page_faults = faults_so_far() - before;
+          counts = restraint.counts();
+          calls = test::stopped_calls();
+        }
+        if (filtered) test::end_thread();
+      }).join();
+      over = true;
+      reader.join();
+      sender.end();
+      REQUIRE(filtered);
+      CHECK(calls.count == 0);
+      CHECK(counts.allocations + counts.frees + counts.locks == 0);
+      CHECK(page_faults == 0);
+      CHECK(read > 0);
+      CHECK(segment.newest() == 5600);
+      CHECK(sender.counts().records == 5600);
+      CHECK(sender.counts().sent + sender.counts().lost == 5600);
+      CHECK(test.loop->stats().failed == 0);
+    }
+  }
+}
