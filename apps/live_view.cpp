@@ -126,7 +126,8 @@ namespace nendo::app {
 Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions&, const RunOptions&,
                                                  const deform::Mesh&) {
   return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
-                             "libimgui-dev and libgl-dev and build it again, or draw files with "
+                             "libimgui-dev and libgl-dev and build it again, look on in a "
+                             "browser with `nendo run --web 8080`, or draw files with "
                              "`nendo picture`"};
 }
 

@@ -21,6 +21,7 @@
 #include "run_publishing.hpp"
 #include "run_report.hpp"
 #include "service/service_notice.hpp"
+#include "web_outlet.hpp"
 
 namespace nendo::app {
 namespace {
@@ -34,6 +35,7 @@ struct CommandOptions {
   LoopArguments loop;
   ViewOptions view;
   std::vector<std::string> publish;
+  std::string web; ///< [ADDR:]PORT; empty: none
   bool injective = false;
   bool not_injective = false;
 };
@@ -118,6 +120,12 @@ int run(CommandOptions& options) {
     if (!opened) return report(opened.error());
     window = *std::move(opened);
   }
+  std::unique_ptr<WebOutlet> browser;
+  if (!options.web.empty()) {
+    auto opened = open_web(options.web, wanted.mesh);
+    if (!opened) return report(opened.error());
+    browser = *std::move(opened);
+  }
   Bell bell;
   auto hands = open_hands(wanted, *model, bell);
   if (!hands) return report(hands.error());
@@ -131,6 +139,7 @@ int run(CommandOptions& options) {
   followers.onlooker = window.get();
   for (const auto& outlet : *published)
     followers.outlets.push_back(outlet.get());
+  if (browser) followers.outlets.push_back(browser.get());
   auto outcome = run_session(wanted, *hands, *std::move(model), followers);
   if (!outcome) return report(outcome.error());
   for (const auto& outlet : *published)
@@ -186,6 +195,9 @@ void add_run_options(Command& command, const std::shared_ptr<CommandOptions>& op
   command.add_option("--picture", run_options.picture,
                      "Where to draw the model and the hands before and after, .png");
   command.add_flag("--json", run_options.json, "Progress and summary as JSON, an object a line");
+  command.add_option("--web", options->web,
+                     "[ADDR:]PORT at which a browser shows the run, with buttons; without ADDR, a "
+                     "browser on this machine");
   command.add_option("--screenshot", options->view.screenshot,
                      "Where the window's last picture goes, .png");
   command.add_option("--frames", options->view.frames,

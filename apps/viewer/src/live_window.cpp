@@ -16,9 +16,10 @@ namespace nendo::viewer {
 namespace {
 
 Error without_window(const std::string& why) {
-  return {Errc::failed, "no window: " + why +
-                            "; on a box without a screen `nendo picture` and `nendo run --picture` "
-                            "draw files"};
+  return {Errc::failed,
+          "no window: " + why +
+              "; on a box without a screen `nendo run --web 8080` shows the run in a browser, "
+              "and `nendo picture` and `nendo run --picture` draw files"};
 }
 
 std::string glfw_error() {

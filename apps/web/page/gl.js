@@ -1,0 +1,48 @@
+// WebGL2 in fewer words.
+const glsl = name => document.getElementById('glsl-' + name).textContent
+const GLSL_HEAD = '#version 300 es\nprecision highp float;\nprecision highp int;\n'
+
+function makeShader(gl, kind, text) {
+  const shader = gl.createShader(kind)
+  gl.shaderSource(shader, GLSL_HEAD + text)
+  gl.compileShader(shader)
+  if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader))
+  return shader
+}
+
+// Uniforms by their names: program.set({ scale: 2, eye: [0, 0, 1] }).
+function makeProgram(gl, vertex, fragment, feedback = []) {
+  const program = gl.createProgram()
+  gl.attachShader(program, makeShader(gl, gl.VERTEX_SHADER, vertex))
+  gl.attachShader(program, makeShader(gl, gl.FRAGMENT_SHADER, fragment))
+  if (feedback.length > 0) gl.transformFeedbackVaryings(program, feedback, gl.SEPARATE_ATTRIBS)
+  gl.linkProgram(program)
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program))
+  const uniforms = new Map()
+  for (let at = 0; at < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++at) {
+    const { name, type } = gl.getActiveUniform(program, at)
+    uniforms.set(name, { type, place: gl.getUniformLocation(program, name) })
+  }
+  const put = (type, place, value) => {
+    if (type === gl.FLOAT) gl.uniform1f(place, value)
+    else if (type === gl.FLOAT_VEC3) gl.uniform3fv(place, value)
+    else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(place, false, value)
+    else gl.uniform1i(place, value)
+  }
+  return {
+    use(values = {}) { gl.useProgram(program); this.set(values) },
+    set(values) {
+      for (const [name, value] of Object.entries(values)) {
+        const uniform = uniforms.get(name)
+        if (uniform) put(uniform.type, uniform.place, value)
+      }
+    },
+  }
+}
+
+function makeBuffer(gl, target, data, usage) {
+  const buffer = gl.createBuffer()
+  gl.bindBuffer(target, buffer)
+  gl.bufferData(target, data, usage)
+  return buffer
+}

@@ -1,0 +1,114 @@
+// Comes, looks, and comes again when the connection is lost.
+const token = location.hash.slice(1)
+const holds = new Holds()
+let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = ''
+const counts = { updates: 0, updateBytes: 0, shapes: 0, bakes: 0, draws: 0 }
+
+const panel = new Panel(ask, (part, yes) => {
+  if (scene) scene.parts[part] = yes
+  dirty = true
+})
+try {
+  scene = new Scene(element('scene'))
+} catch (error) {
+  trouble = `No picture: ${error.message}. Figures and buttons work all the same.`
+  panel.say(trouble)
+}
+const camera = new Camera(element('scene'), () => { dirty = true })
+
+function ask(request) {
+  if (socket && socket.readyState === WebSocket.OPEN) socket.send(request)
+}
+
+function again(why) {
+  panel.connected(false)
+  panel.say(`${why} Trying again.`)
+  setTimeout(connect, patience)
+  patience = Math.min(5000, 1.6 * patience)
+}
+
+async function connect() {
+  let model
+  try {
+    const answer = await fetch('/model?token=' + token)
+    if (answer.status === 403) {
+      panel.say('This address has no token, or an old one: open the whole address that nendo printed.')
+      return
+    }
+    if (!answer.ok) return again((await answer.text()).trim() + '.')
+    model = readModel(await answer.arrayBuffer())
+  } catch (error) {
+    return again('No answer from nendo; has the run ended?')
+  }
+  panel.setModel(model)
+  if (scene) {
+    const first = !scene.shape
+    scene.setModel(model)
+    camera.home.target = [0, 0.5 * scene.height, 0]
+    camera.home.distance = Math.max(0.5, 3.0 * Math.max(0.45, scene.height))
+    if (first) camera.reset()
+  }
+  open(model)
+}
+
+function open(model) {
+  socket = new WebSocket(`ws://${location.host}/ws?token=${token}`)
+  socket.binaryType = 'arraybuffer'
+  socket.onopen = () => {
+    panel.connected(true)
+    panel.say(trouble)
+    patience = 500
+  }
+  socket.onmessage = ({ data }) => {
+    if (new DataView(data).getUint8(0) === 1) takeShape(readShape(data), model)
+    else takeUpdate(readUpdate(data))
+    dirty = true
+  }
+  socket.onclose = () => again('The connection is lost.')
+}
+
+function takeShape(shape, model) {
+  counts.shapes += 1
+  if (shape.loop !== model.loop) socket.close() // of another loop: its model is another one, too
+  else if (scene) scene.shape.takeShape(shape)
+}
+
+function takeUpdate(update) {
+  counts.updates += 1
+  counts.updateBytes += update.bytes
+  latest = update
+  holds.follow(update)
+  panel.add(update)
+  if (!scene || scene.shape.number === null) return
+  for (const step of update.steps) {
+    scene.shape.takeStep(step)
+    counts[step.bakes ? 'bakes' : 'draws'] += step.count
+  }
+  scene.shape.number = update.number
+}
+
+function picture() {
+  requestAnimationFrame(picture)
+  if (!dirty) return
+  dirty = false
+  if (scene) scene.draw(camera, latest, holds)
+  panel.draw()
+}
+
+addEventListener('resize', () => { dirty = true })
+addEventListener('hashchange', () => location.reload())
+element('scene').addEventListener('webglcontextlost', event => {
+  event.preventDefault()
+  trouble = 'The graphics card has been taken away.'
+  scene = null
+  panel.say(trouble + ' Reload the page.')
+})
+// For whoever tests this page, or plays with it.
+window.nendo = {
+  ask, counts,
+  vertices: () => Array.from(scene.shape.vertices()),
+  state: () => latest && { number: Number(latest.number), held: latest.held, commits: latest.commits, undos: latest.undos,
+    ticks: latest.ticks, open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },
+}
+connect()
+picture()

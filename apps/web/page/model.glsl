@@ -1,0 +1,18 @@
+// The model as it is now: the base, deformed by what the hands do to it.
+layout(location = 0) in vec3 base_place;
+layout(location = 1) in vec3 base_normal;
+uniform mat4 clip_of_world;
+uniform float scale;   // metres of the stage in a unit
+uniform vec3 offset;
+uniform vec3 shadow;   // the direction to the light, if this draws its shadow; otherwise zero
+out vec3 place;
+out vec3 normal;
+
+void main() {
+  vec3 x = base_place, n = base_normal;
+  deform(x, n);
+  place = scale * x + offset;
+  normal = n;
+  if (shadow.y > 0.0) place -= shadow * (max(place.y, 0.0) / shadow.y);
+  gl_Position = clip_of_world * vec4(place, 1.0);
+}

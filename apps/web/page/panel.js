@@ -1,0 +1,104 @@
+// The panel: buttons, keys, figures.
+const KEYS = [
+  ['g', 'grab: the hands take hold', 'grab'],
+  ['l', 'let go; what is shaped stays', 'let go'],
+  ['c', 'commit: this shape becomes the rest shape', 'commit'],
+  ['u', 'undo the last commit', 'undo'],
+  ['h', 'hands on and off', null, 'skin'],
+  ['b', 'bones on and off', null, 'bones'],
+  ['v', 'control vectors on and off', null, 'vectors'],
+  ['d', 'radii on and off', null, 'radii'],
+  ['f', 'facets in place of smooth shading', null, 'facets'],
+  ['?', 'this list'],
+]
+const element = id => document.getElementById(id)
+
+class Panel {
+  constructor(ask, shown) {
+    this.ask = ask
+    this.late = new Chart(element('chart-late'), 'late', 'ms')
+    this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
+    this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
+    this.buttons = [...document.querySelectorAll('[data-request]')]
+    for (const button of this.buttons) button.addEventListener('click', () => ask(button.dataset.request))
+    for (const part of ['skin', 'bones', 'vectors', 'radii', 'facets'])
+      element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
+    element('help-button').addEventListener('click', () => this.help())
+    for (const [key, words] of KEYS) {
+      const row = element('keys').insertRow()
+      row.insertCell().appendChild(document.createElement('kbd')).textContent = key
+      row.insertCell().textContent = words
+    }
+    document.addEventListener('keydown', event => this.press(event))
+    this.connected(false)
+  }
+
+  press(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return
+    const key = KEYS.find(([name]) => name === event.key)
+    if (!key) return
+    const [name, , request, part] = key
+    if (name === '?') this.help()
+    if (request) this.ask(request)
+    if (part) element('show-' + part).click()
+  }
+  help() {
+    const dialog = element('help')
+    if (dialog.open) dialog.close()
+    else dialog.showModal()
+  }
+
+  say(words) {
+    element('banner').textContent = words
+    element('banner').hidden = words === ''
+  }
+  connected(yes) {
+    for (const button of this.buttons) button.disabled = !yes
+  }
+  setModel(model) {
+    this.model = model
+    element('model').textContent = model.name
+    document.title = `${model.name} - Nendo`
+  }
+
+  add(update) {
+    const before = this.update
+    this.update = update
+    this.late.add(update.mostLate / 1000)
+    this.bytes.add(update.bytes)
+    const now = performance.now()
+    if (before && now - this.rated > 200) {
+      this.rate.add((update.ticks - this.ratedTicks) / (now - this.rated) * 1000)
+      Object.assign(this, { rated: now, ratedTicks: update.ticks })
+    } else if (!before || update.ticks < before.ticks) {
+      Object.assign(this, { rated: now, ratedTicks: update.ticks })
+    }
+  }
+
+  draw() {
+    const { update, model } = this
+    if (!update || !model) return
+    element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
+    const lost = update.lost + update.skipped
+    element('timing').textContent = `${model.rate} Hz wanted, type ${model.mode}\n${update.ticks} ticks, ${update.missed} missed` +
+      `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.commits} commits, ${update.undos} undone`
+    for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
+    update.hands.forEach((hand, slot) => this.drawGlove(hand, slot))
+  }
+  drawGlove(hand, slot) {
+    const id = 'glove-' + slot
+    let part = element(id)
+    if (!part) {
+      part = element('gloves').appendChild(document.createElement('div'))
+      Object.assign(part, { id, className: 'glove' })
+      part.appendChild(document.createElement('span'))
+      part.appendChild(document.createElement('canvas')).className = 'bars'
+    }
+    part.hidden = !hand
+    if (!hand) return
+    part.className = hand.silent ? 'glove silent' : 'glove'
+    part.firstChild.textContent = `${slot === 0 ? 'left' : 'right'}: ${hand.samples} samples` +
+      `${hand.silent ? ', silent' : ''}${hand.badRecords > 0 ? `, ${hand.badRecords} bad records` : ''}`
+    drawBends(part.lastChild, hand)
+  }
+}

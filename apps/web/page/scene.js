@@ -1,0 +1,185 @@
+// Draws: the model, the hands, what they do to it, and the ground.
+const CLAY = { colour: [0.44, 0.20, 0.115], gloss: 0.07, opacity: 1, rim_opacity: 1 }
+const SKIN = { colour: [0.10, 0.19, 0.30], gloss: 0.22, opacity: 0.74, rim_opacity: 1 }
+const SILENT = { colour: [0.22, 0.22, 0.22], gloss: 0.10, opacity: 0.6, rim_opacity: 1 }
+const BONE = { colour: [0.80, 0.78, 0.70], gloss: 0.10, opacity: 1, rim_opacity: 1 }
+const ARROW = { colour: [0.95, 0.52, 0.02], gloss: 0.20, opacity: 1, rim_opacity: 1 }
+const REACH = { colour: [0.80, 0.40, 0.05], gloss: 0, opacity: 0, rim_opacity: 0.3, unlit: true }
+const LIT = { grid: 0, dark: 0, facets: false, unlit: false, fade: 1, shadow: [0, 0, 0] }
+
+// A ball of two halves; the fourth number says to which end of a capsule a half belongs.
+function unitCapsule(rings = 8, sides = 20) {
+  const places = [], corners = []
+  for (let ring = 0; ring < 2 * rings; ++ring) {
+    const end = ring < rings ? 0 : 1
+    const latitude = Math.PI / 2 * (end ? (ring - rings) / (rings - 1) : ring / (rings - 1) - 1)
+    for (let side = 0; side < sides; ++side) {
+      const turn = 2 * Math.PI * side / sides
+      places.push(Math.cos(latitude) * Math.cos(turn), Math.cos(latitude) * Math.sin(turn), Math.sin(latitude), end)
+    }
+  }
+  for (let ring = 0; ring + 1 < 2 * rings; ++ring)
+    for (let side = 0; side < sides; ++side) {
+      const a = ring * sides + side, b = ring * sides + (side + 1) % sides
+      corners.push(a, b, b + sides, a, b + sides, a + sides)
+    }
+  return { places: new Float32Array(places), corners: new Uint16Array(corners) }
+}
+
+class Scene {
+  constructor(canvas) {
+    const gl = canvas.getContext('webgl2', { antialias: true, alpha: true, stencil: true, powerPreference: 'high-performance' })
+    if (!gl) throw new Error('this browser shows no WebGL2')
+    this.gl = gl
+    this.canvas = canvas
+    this.parts = { skin: true, bones: true, vectors: true, radii: false, facets: false }
+    const light = glsl('light')
+    this.model = makeProgram(gl, glsl('deform') + glsl('model'), light)
+    this.capsule = makeProgram(gl, glsl('capsule'), light)
+    this.ground = makeProgram(gl, glsl('ground'), light)
+    this.makeCapsules()
+    this.groundArray = gl.createVertexArray()
+    gl.bindVertexArray(this.groundArray)
+    makeBuffer(gl, gl.ARRAY_BUFFER, new Float32Array([-3, 0, -3, 3, 0, -3, -3, 0, 3, 3, 0, 3]), gl.STATIC_DRAW)
+    gl.enableVertexAttribArray(0)
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0)
+    gl.bindVertexArray(null)
+  }
+
+  makeCapsules() {
+    const { gl } = this
+    const unit = unitCapsule()
+    this.capsuleArray = gl.createVertexArray()
+    this.capsuleCorners = unit.corners.length
+    gl.bindVertexArray(this.capsuleArray)
+    makeBuffer(gl, gl.ARRAY_BUFFER, unit.places, gl.STATIC_DRAW)
+    gl.enableVertexAttribArray(0)
+    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 0, 0)
+    makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, unit.corners, gl.STATIC_DRAW)
+    this.instances = gl.createBuffer()
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.instances)
+    for (const which of [1, 2]) {
+      gl.enableVertexAttribArray(which)
+      gl.vertexAttribPointer(which, 4, gl.FLOAT, false, 32, 16 * (which - 1))
+      gl.vertexAttribDivisor(which, 1)
+    }
+    gl.bindVertexArray(null)
+  }
+
+  // The model stands on the ground about the middle, as large as on the stage.
+  setModel(model) {
+    if (this.shape) this.shape.dispose()
+    this.shape = new Shape(this.gl, model)
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
+    model.places.forEach((number, at) => {
+      low[at % 3] = Math.min(low[at % 3], number)
+      high[at % 3] = Math.max(high[at % 3], number)
+    })
+    this.scale = model.unit / model.unitsPerMetre
+    const metres = (number, axis) => number * this.scale + model.origin[axis] / model.unitsPerMetre
+    this.origin = [metres((low[0] + high[0]) / 2, 0), metres(low[1], 1), metres((low[2] + high[2]) / 2, 2)]
+    this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
+    this.height = (high[1] - low[1]) * this.scale
+    this.radii = model.radii
+  }
+
+  capsules(capsules, material) {
+    if (capsules.count === 0) return
+    const { gl } = this
+    this.capsule.use({ ...this.view, ...LIT, ...material })
+    gl.bindVertexArray(this.capsuleArray)
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.instances)
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(capsules.numbers), gl.STREAM_DRAW)
+    const triangles = () => gl.drawElementsInstanced(gl.TRIANGLES, this.capsuleCorners, gl.UNSIGNED_SHORT, 0, capsules.count)
+    if (material.opacity < 1 && material.opacity > 0) { // depth first, so that only its nearest layer is mixed in
+      gl.colorMask(false, false, false, false)
+      triangles()
+      gl.colorMask(true, true, true, true)
+    }
+    triangles()
+    gl.bindVertexArray(null)
+  }
+
+  resize() {
+    const ratio = Math.min(2, window.devicePixelRatio || 1)
+    const width = Math.round(this.canvas.clientWidth * ratio), height = Math.round(this.canvas.clientHeight * ratio)
+    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height })
+  }
+
+  draw(camera, update, holds) {
+    const { gl, canvas } = this
+    this.resize()
+    const { azimuth } = camera
+    const round = ([x, y, z]) => {
+      const [s, c] = [Math.sin(azimuth), Math.cos(azimuth)]
+      const way = [c * x + s * z, y, c * z - s * x]
+      return times(way, 1 / size(way))
+    }
+    const aspect = canvas.width / Math.max(1, canvas.height)
+    this.view = {
+      clip_of_world: camera.projection(aspect, aspect > 1.2 ? 0.16 : 0), eye: camera.eye(),
+      key: round([-0.55, 0.75, 0.55]), fill: round([0.85, 0.25, 0.50]), rim: round([0.45, 0.45, -0.80]),
+    }
+    gl.viewport(0, 0, canvas.width, canvas.height)
+    gl.clearColor(0, 0, 0, 0)
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT)
+    gl.enable(gl.DEPTH_TEST)
+    gl.enable(gl.BLEND)
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA)
+    gl.depthFunc(gl.LEQUAL)
+    if (!this.shape) return
+    const beside = this.beside(update, holds)
+    this.drawGround(beside)
+    this.model.use({ ...this.view, ...LIT, ...CLAY, scale: this.scale, offset: this.offset, facets: this.parts.facets })
+    this.shape.draw(this.model)
+    this.capsules(beside.bones, BONE)
+    this.capsules(beside.arrows, ARROW)
+    beside.skins.forEach(([skin, material]) => this.capsules(skin, material))
+    gl.depthMask(false)
+    this.capsules(beside.reaches, REACH)
+    gl.depthMask(true)
+  }
+
+  // What there is beside the model, about the scene's origin.
+  beside(update, holds) {
+    const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), skins: [] }
+    if (!update) return parts
+    update.hands.forEach((given, slot) => {
+      if (!given) return
+      const place = at => minus(at, this.origin)
+      const hand = { joints: given.joints.map(joint => ({ place: place(joint.place), turn: joint.turn })) }
+      const skin = new Capsules()
+      if (this.parts.skin) fleshOf(hand, skin)
+      if (this.parts.bones) bonesOf(hand, parts.bones)
+      const material = given.silent ? SILENT : SKIN
+      parts.skins.push([skin, this.parts.bones ? material : { ...material, opacity: 1 }])
+      const starts = holds.starts[slot]
+      if (!update.held || !starts) return
+      TIPS.forEach((tip, finger) => {
+        const start = place(starts[finger])
+        if (this.parts.vectors) arrow(start, hand.joints[tip].place, 0.007, parts.arrows)
+        if (this.parts.radii) parts.reaches.add(start, start, this.radii[finger], this.radii[finger])
+      })
+    })
+    return parts
+  }
+
+  // With the shadows on it, none of which is drawn twice: the stencil says where one is.
+  drawGround(beside) {
+    const { gl } = this
+    const fade = 2.6 * Math.min(2, Math.max(0.1, this.height))
+    this.ground.use({ ...this.view, ...LIT, grid: 0.1, fade })
+    gl.bindVertexArray(this.groundArray)
+    gl.depthMask(false)
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4)
+    gl.enable(gl.STENCIL_TEST)
+    gl.stencilFunc(gl.EQUAL, 0, 255)
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR)
+    const shadow = { dark: 0.2, fade, shadow: this.view.key }
+    this.model.use({ ...this.view, ...LIT, ...CLAY, ...shadow, scale: this.scale, offset: this.offset })
+    this.shape.draw(this.model)
+    beside.skins.forEach(([skin]) => this.capsules(skin, { ...CLAY, ...shadow }))
+    gl.disable(gl.STENCIL_TEST)
+    gl.depthMask(true)
+  }
+}

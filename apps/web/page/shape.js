@@ -1,0 +1,171 @@
+// The model's shape on the graphics card: a base, and the fields that are drawn over it. A step that
+// bakes makes a new base by transform feedback, so that no vertex ever comes from the network but
+// with a whole shape.
+const BAKE_AT_ONCE = 256 * 64 // texels; a longer step is baked in several turns
+
+function normalsOf(places, corners) {
+  const normals = new Float32Array(places.length)
+  for (let at = 0; at < corners.length; at += 3) {
+    const [a, b, c] = [3 * corners[at], 3 * corners[at + 1], 3 * corners[at + 2]]
+    const ux = places[b] - places[a], uy = places[b + 1] - places[a + 1], uz = places[b + 2] - places[a + 2]
+    const vx = places[c] - places[a], vy = places[c + 1] - places[a + 1], vz = places[c + 2] - places[a + 2]
+    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx
+    for (const corner of [a, b, c]) {
+      normals[corner] += x
+      normals[corner + 1] += y
+      normals[corner + 2] += z
+    }
+  }
+  for (let at = 0; at < normals.length; at += 3) {
+    const size = Math.hypot(normals[at], normals[at + 1], normals[at + 2]) || 1
+    for (let axis = 0; axis < 3; ++axis) normals[at + axis] /= size
+  }
+  return normals
+}
+
+class Shape {
+  constructor(gl, model) {
+    this.gl = gl
+    this.model = model
+    this.bake = makeProgram(gl, glsl('deform') + glsl('bake'), 'void main() {}', ['baked_place', 'baked_normal'])
+    this.corners = makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, model.corners, gl.STATIC_DRAW)
+    this.states = [this.makeState(), this.makeState()] // the first is the base
+    this.feedback = gl.createTransformFeedback()
+    this.texture = gl.createTexture()
+    this.pending = { count: 0, texels: [] }
+    this.number = null // of the frame whose shape this is; null: none has come
+    this.setBase(model.places)
+  }
+
+  makeState() {
+    const { gl, model } = this
+    const array = gl.createVertexArray()
+    gl.bindVertexArray(array)
+    const buffers = [0, 1].map(which => {
+      const buffer = makeBuffer(gl, gl.ARRAY_BUFFER, 12 * model.vertices, gl.DYNAMIC_COPY)
+      gl.enableVertexAttribArray(which)
+      gl.vertexAttribPointer(which, 3, gl.FLOAT, false, 0, 0)
+      return buffer
+    })
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners)
+    gl.bindVertexArray(null)
+    gl.bindBuffer(gl.ARRAY_BUFFER, null)
+    return { array, buffers }
+  }
+
+  dispose() {
+    const { gl } = this
+    for (const { array, buffers } of this.states) {
+      gl.deleteVertexArray(array)
+      buffers.forEach(buffer => gl.deleteBuffer(buffer))
+    }
+    gl.deleteBuffer(this.corners)
+    gl.deleteTransformFeedback(this.feedback)
+    gl.deleteTexture(this.texture)
+  }
+
+  setBase(places) {
+    const { gl } = this
+    const data = [places, normalsOf(places, this.model.corners)]
+    this.states[0].buffers.forEach((buffer, which) => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, data[which])
+    })
+    gl.bindBuffer(gl.ARRAY_BUFFER, null)
+    this.pending = { count: 0, texels: [] }
+  }
+
+  takeShape(shape) {
+    this.setBase(shape.places)
+    this.number = shape.number
+  }
+
+  takeStep(step) {
+    if (step.bakes) {
+      if (step.count > 0) this.bakeFields(step)
+      this.pending = { count: 0, texels: [] }
+    } else {
+      this.pending = step
+    }
+  }
+
+  // Binds the fields, for a program that contains deform.glsl.
+  sendFields(fields, program) {
+    const { gl } = this
+    const rows = Math.max(1, Math.ceil(fields.texels.length / 1024))
+    const data = new Float32Array(1024 * rows)
+    data.set(fields.texels)
+    gl.activeTexture(gl.TEXTURE0)
+    gl.bindTexture(gl.TEXTURE_2D, this.texture)
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 256, rows, 0, gl.RGBA, gl.FLOAT, data)
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST)
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST)
+    program.set({ fields: 0, field_count: fields.count })
+  }
+
+  // From the base to the other state.
+  run(fields) {
+    const { gl } = this
+    this.bake.use()
+    this.sendFields(fields, this.bake)
+    gl.bindVertexArray(this.states[0].array)
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.feedback)
+    this.states[1].buffers.forEach((buffer, which) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, which, buffer))
+    gl.enable(gl.RASTERIZER_DISCARD)
+    gl.beginTransformFeedback(gl.POINTS)
+    gl.drawArrays(gl.POINTS, 0, this.model.vertices)
+    gl.endTransformFeedback()
+    gl.disable(gl.RASTERIZER_DISCARD)
+    this.states[1].buffers.forEach((_, which) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, which, null))
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, null)
+    gl.bindVertexArray(null)
+  }
+
+  bakeFields(step) {
+    for (const part of inParts(step, BAKE_AT_ONCE)) {
+      this.run(part)
+      this.states.reverse()
+    }
+  }
+
+  // The vertices as the shader makes them, in the mesh's order and units.
+  vertices() {
+    const { gl, model } = this
+    this.run(this.pending)
+    const read = new Float32Array(3 * model.vertices)
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.states[1].buffers[0])
+    gl.getBufferSubData(gl.ARRAY_BUFFER, 0, read)
+    gl.bindBuffer(gl.ARRAY_BUFFER, null)
+    const result = new Float64Array(3 * model.vertices)
+    model.order.forEach((vertex, at) => {
+      for (let axis = 0; axis < 3; ++axis)
+        result[3 * vertex + axis] = model.origin[axis] + model.unit * read[3 * at + axis]
+    })
+    return result
+  }
+
+  draw(program) {
+    const { gl } = this
+    this.sendFields(this.pending, program)
+    gl.bindVertexArray(this.states[0].array)
+    gl.drawElements(gl.TRIANGLES, this.model.corners.length, gl.UNSIGNED_INT, 0)
+    gl.bindVertexArray(null)
+  }
+}
+
+// Whole fields, so many texels at once.
+function inParts(step, most) {
+  const parts = []
+  let part = { count: 0, texels: [] }
+  for (let at = 0, field = 0; field < step.count; ++field) {
+    const size = 4 * (1 + (step.texels[at + 2] ? 3 : 0) + 2 * step.texels[at])
+    if (part.count > 0 && part.texels.length + size > 4 * most) {
+      parts.push(part)
+      part = { count: 0, texels: [] }
+    }
+    for (let n = at; n < at + size; ++n) part.texels.push(step.texels[n])
+    part.count += 1
+    at += size
+  }
+  return [...parts, part]
+}

@@ -1,0 +1,86 @@
+#pragma once
+// One connection: what it has sent so far, what waits for it, and until when it must move. No call
+// blocks.
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nendo/base/descriptor.hpp>
+#include <nendo/web/server.hpp>
+
+#include "feed.hpp"
+#include "socket_frames.hpp"
+
+namespace nendo::web {
+
+using SharedBytes = std::shared_ptr<const std::vector<std::byte>>;
+SharedBytes shared_bytes(std::string_view text);
+
+class Connection {
+public:
+  enum class Stage {
+    head,   ///< its request is coming in
+    answer, ///< is sent what it asked for; then it ends
+    socket, ///< a WebSocket
+    linger, ///< all is sent; what it still sends is thrown away until it closes
+    over,
+  };
+
+  Connection(Descriptor socket, HostTime now, const ServerLimits& limits);
+
+  int fd() const noexcept { return socket_.get(); }
+  Stage stage() const noexcept { return stage_; }
+  HostTime since() const noexcept { return since_; }
+  /// What poll() is to wait for.
+  short events() const noexcept;
+  /// Reads what is there into incoming(), as far as that has room. False: it has ended.
+  bool receive(HostTime now);
+  std::string& incoming() noexcept { return incoming_; }
+  /// Sends what the system takes.
+  void flush(HostTime now);
+
+  /// Queues an answer, after which the connection ends.
+  void answer(std::string head, SharedBytes body, HostTime now);
+  /// It is a WebSocket from now on.
+  void upgrade(std::string head, HostTime now);
+  /// Queues a message or a control frame of a WebSocket.
+  void send(Opcode opcode, const SharedBytes& payload, bool is_shape, HostTime now);
+  void send_control(std::string frame, HostTime now);
+  /// Says so, and ends.
+  void close(CloseCode code, HostTime now);
+
+  /// Whether an update may be queued: not while it catches up.
+  bool has_room() const noexcept { return !catching_up_; }
+  bool is_overdue(HostTime now) const noexcept;
+  /// Sends a ping if it is time.
+  void keep_alive(HostTime now);
+
+  ClientReader reader;
+  Feed feed;
+
+private:
+  struct Part {
+    SharedBytes bytes;
+    bool is_shape = false;
+  };
+  void queue(SharedBytes bytes, bool is_shape, HostTime now);
+  void end_sending(HostTime now);
+
+  Descriptor socket_;
+  const ServerLimits& limits_;
+  Stage stage_ = Stage::head;
+  HostTime since_; ///< of its stage
+  std::string incoming_;
+  std::deque<Part> waiting_;
+  std::size_t sent_of_first_ = 0;
+  std::size_t small_bytes_ = 0; ///< of what waits, without shapes
+  bool catching_up_ = false;
+  bool closes_ = false;    ///< ends when all is sent
+  HostTime moved_;         ///< when it last took a byte, or nothing waited
+  HostTime empty_;         ///< when nothing waited last
+  HostTime heard_, asked_; ///< of a WebSocket: its last bytes, the last ping
+};
+
+} // namespace nendo::web

@@ -1,0 +1,105 @@
+#pragma once
+// The bytes of PROTOCOL.md: written in the tick, into room that is there.
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
+#include <nendo/flow/frame.hpp>
+
+namespace nendo::web {
+
+static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
+
+enum class MessageType : std::uint8_t { shape = 1, update = 2 };
+enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
+
+/// Of an update message; its fields are in PROTOCOL.md's order and have no gaps.
+struct UpdateHead {
+  std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
+  std::uint8_t held = 0;
+  std::uint8_t hands = 0; ///< bits 0, 1: left, right is there; bits 2, 3: it is silent
+  std::uint8_t status = 0;
+  std::uint32_t steps = 0;
+  std::uint64_t number = 0;
+  std::uint64_t tick = 0;
+  std::uint64_t ticks = 0;
+  std::uint64_t missed = 0;
+  std::uint32_t commits = 0;
+  std::uint32_t undos = 0;
+  float late_us = 0.0F;
+  float most_late_us = 0.0F;
+  float since_last_us = 0.0F;
+  std::uint32_t lost = 0;
+  std::uint32_t skipped = 0;
+  std::uint32_t links = 0;
+  std::uint32_t samples[2]{};
+  std::uint32_t bad_records[2]{};
+};
+static_assert(sizeof(UpdateHead) == 88);
+
+struct ShapeHead {
+  std::uint8_t type = static_cast<std::uint8_t>(MessageType::shape);
+  std::uint8_t spare = 0;
+  std::uint16_t loop = 0; ///< as the model's
+  std::uint32_t vertices = 0;
+  std::uint64_t number = 0;
+};
+static_assert(sizeof(ShapeHead) == 16);
+
+/// In front of the model, in PROTOCOL.md's order, without gaps.
+struct ModelHead {
+  char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
+  std::uint32_t version = 1;
+  std::uint32_t vertices = 0;
+  std::uint32_t triangles = 0;
+  std::uint32_t name_bytes = 0;
+  double rate_hz = 0.0;
+  double unit = 1.0;
+  double origin[3]{};
+  double units_per_metre = 1.0;
+  double diagonal = 0.0;
+  float radius_m[5]{};
+  std::uint16_t mode = 1;
+  std::uint16_t loop = 0; ///< which of a run it is; the server counts them
+};
+static_assert(sizeof(ModelHead) == 104);
+
+inline constexpr std::size_t joint_bytes = 12;
+inline constexpr std::size_t hand_bytes = 12 + hand::joint_count * joint_bytes;
+inline constexpr std::size_t step_head_bytes = 4;
+
+/// The most that a field of so many functions takes.
+constexpr std::size_t field_bytes(std::size_t functions) noexcept {
+  return 8 + 48 + functions * 28;
+}
+
+/// Writes one after another; there must be room.
+class WireWriter {
+public:
+  explicit WireWriter(std::span<std::byte> room) noexcept : room_(room) {}
+
+  template <class T>
+  void put(const T& value) noexcept {
+    std::memcpy(room_.data() + used_, &value, sizeof value);
+    used_ += sizeof value;
+  }
+  std::size_t used() const noexcept { return used_; }
+
+private:
+  std::span<std::byte> room_;
+  std::size_t used_ = 0;
+};
+
+/// These may run in the tick.
+UpdateHead head_of(const flow::Frame& frame) noexcept;
+void write_hand(const hand::HandPose& pose, WireWriter& out) noexcept;
+/// origin and unit: BlockLayout's. Functions without a coefficient are left out.
+void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,
+                double unit, WireWriter& out) noexcept;
+
+} // namespace nendo::web

@@ -1,0 +1,38 @@
+#pragma once
+// The browser's view as a run's outlet.
+
+#include <memory>
+#include <string>
+
+#include <nendo/web/server.hpp>
+
+#include "outlet.hpp"
+
+namespace nendo::app {
+
+class WebOutlet final : public Outlet {
+public:
+  explicit WebOutlet(std::unique_ptr<web::Server> server) noexcept : server_(std::move(server)) {}
+
+  /// Error: bad_input (a model with more vertices than browsers take).
+  Result<void> begin(const PlacedLoop& placed, const deform::Mesh& model,
+                     const std::vector<OpenHand>& hands) override;
+  void show(const flow::Frame& frame) noexcept override { tap_->show(frame); }
+  /// Also tells the server how the gloves do.
+  std::optional<flow::Request> next_request() override;
+
+  const web::Server& server() const noexcept { return *server_; }
+  std::string name; ///< of the model, for people
+
+private:
+  std::unique_ptr<web::Server> server_;
+  std::shared_ptr<web::FrameTap> tap_;
+  const std::vector<OpenHand>* hands_ = nullptr;
+  HostTime next_look_{};
+};
+
+/// Opens the server that --web asks for, and says on standard error where it is to be found. Errors
+/// as web::parse_endpoint() and web::Server::open().
+Result<std::unique_ptr<WebOutlet>> open_web(const std::string& endpoint, const std::string& mesh);
+
+} // namespace nendo::app

@@ -1,0 +1,68 @@
+// The first byte chooses what the rest is: a request's head, or what a client sends over its
+// WebSocket, in chunks.
+
+#include "admission.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "socket_frames.hpp"
+
+using namespace nendo::web;
+
+namespace {
+
+void require(bool law) {
+  if (!law) std::abort();
+}
+
+bool is_within(std::string_view part, std::string_view whole) {
+  return part.empty() ||
+         (part.data() >= whole.data() && part.data() + part.size() <= whole.data() + whole.size());
+}
+
+void check_head(std::string_view bytes) {
+  const HttpHead head = parse_head(bytes);
+  require(head.bytes <= std::min(bytes.size(), most_head_bytes));
+  if (head.status != 200) return;
+  require(bytes.substr(head.bytes - 4, 4) == "\r\n\r\n");
+  require(head.request.headers.size() <= most_headers);
+  for (const auto& [name, value] : head.request.headers)
+    require(!name.empty() && is_within(name, bytes) && is_within(value, bytes));
+  const Admission admission = admit(head.request, "0123456789abcdef0123456789abcdef");
+  require(admission.status == 200 || !admission.why.empty());
+  const bool needs_token = admission.status == 200 && admission.resource != Resource::page;
+  require(!needs_token || head.request.query.find("0123456789abcdef") != std::string_view::npos);
+}
+
+void check_frames(std::string_view bytes, std::size_t chunk) {
+  ClientReader reader;
+  std::string waiting;
+  std::size_t told = 0;
+  bool failed = false;
+  for (std::size_t at = 0; at < bytes.size() && !failed; at += chunk) {
+    waiting += bytes.substr(at, chunk);
+    for (auto event = reader.next(waiting); event.kind != ClientEvent::Kind::nothing;
+         event = reader.next(waiting)) {
+      require(!failed && event.payload.size() <= most_client_message);
+      failed = event.kind == ClientEvent::Kind::fault;
+      told += event.payload.size();
+    }
+    require(failed || waiting.size() < ClientReader::most_pending);
+  }
+  require(told <= bytes.size());
+}
+
+} // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
+  if (*data % 2 == 0)
+    check_head(rest);
+  else
+    check_frames(rest, 1 + *data % 11);
+  return 0;
+}

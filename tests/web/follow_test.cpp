@@ -1,0 +1,226 @@
+// Whoever follows the steps has the loop's shape: the law that the page lives by, with a client
+// that was written from PROTOCOL.md alone.
+
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "feed.hpp"
+#include "following_client.hpp"
+#include "tapped_loop.hpp"
+
+using namespace nendo;
+using namespace nendo::web;
+using nendo::test::FollowingClient;
+using nendo::test::TappedLoop;
+
+namespace {
+
+/// As the server's thread does: records and shapes, over a feed, to one client.
+struct Followed {
+  TappedLoop& tapped;
+  Feed feed;
+  FollowingClient client;
+  std::size_t update_bytes = 0;
+
+  explicit Followed(TappedLoop& loop) : tapped(loop), client(loop.model) {
+    tapped.tap->listen(true);
+  }
+
+  void pass(bool room = true) {
+    std::vector<Record> records;
+    tapped.tap->take(records);
+    const auto shape = tapped.tap->take_shape();
+    if (!room) {
+      feed.skip(records);
+      return;
+    }
+    if (shape && feed.wants_shape()) {
+      CHECK(client.take(shape->message));
+      feed.got_shape(shape->number);
+    }
+    if (const auto update = feed.update(records, {tapped.tap->lost(), {}})) {
+      CHECK(client.take(*update));
+      update_bytes = update->size();
+    }
+    if (feed.wants_shape()) tapped.tap->ask_for_shape();
+  }
+  /// As a share of the diagonal.
+  double gap(const deform::Points& shape) const {
+    return (client.vertices() - shape).cwiseAbs().maxCoeff() / client.diagonal;
+  }
+  bool is_up_to_date() const { return client.follows() && !feed.wants_shape(); }
+};
+
+const std::array<std::pair<flow::Mode, bool>, 4> ways{{{flow::Mode::type1, false},
+                                                       {flow::Mode::type1, true},
+                                                       {flow::Mode::type2, false},
+                                                       {flow::Mode::type2, true}}};
+
+TappedLoop loop_of(const std::pair<flow::Mode, bool>& way) {
+  if (way.second) return TappedLoop(way.first, deform::InjectiveOptions{});
+  return TappedLoop(way.first);
+}
+
+} // namespace
+
+TEST_SUITE("follow") {
+  TEST_CASE("through grabs, commits and undos, in either mode, a follower has the loop's shape at "
+            "every tick, within 1e-5 of the diagonal") {
+    for (const auto& way : ways) {
+      CAPTURE(name_of(way.first));
+      CAPTURE(way.second);
+      TappedLoop tapped = loop_of(way);
+      Followed followed(tapped);
+      REQUIRE(followed.client.good);
+      std::mt19937 random(11);
+      int bent = 0;
+      double worst = 0.0;
+      double moved = 0.0;
+      int compared = 0;
+      for (int tick = 0; tick < 600; ++tick) {
+        bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
+        if (random() % 25 == 0)
+          tapped.test.requests.try_push(flow::requests[random() % flow::requests.size()]);
+        const auto shape = tapped.tick(bent);
+        moved = std::max(moved, (shape - tapped.test.model.vertices).cwiseAbs().maxCoeff());
+        followed.pass();
+        if (!followed.is_up_to_date()) continue;
+        worst = std::max(worst, followed.gap(shape));
+        ++compared;
+      }
+      CHECK(worst < 1e-5);
+      CHECK(moved > 0.05); // of a ball of radius 1
+      CHECK(compared > 500);
+      CHECK(followed.client.commits > 3);
+      CHECK(followed.client.undos > 3);
+      CHECK(followed.client.shapes >= static_cast<int>(followed.client.undos));
+      CHECK(followed.client.lost == 0);
+    }
+  }
+
+  TEST_CASE(
+      "a follower that takes several ticks at once, or misses some, comes to the same shape") {
+    for (const auto& way : ways) {
+      CAPTURE(name_of(way.first));
+      CAPTURE(way.second);
+      TappedLoop tapped = loop_of(way);
+      Followed followed(tapped);
+      std::mt19937 random(5);
+      int bent = 0;
+      int compared = 0;
+      for (int stretch = 0; stretch < 150; ++stretch) {
+        deform::Points shape;
+        for (auto ticks = 1 + random() % 8; ticks > 0; --ticks) {
+          bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
+          if (random() % 40 == 0)
+            tapped.test.requests.try_push(flow::requests[random() % flow::requests.size()]);
+          shape = tapped.tick(bent);
+        }
+        followed.pass(random() % 4 != 0);
+        if (!followed.is_up_to_date() || followed.client.number != followed.client.newest) continue;
+        if (followed.client.tick + 1 != tapped.test.loop->stats().ticks) continue; // it missed this
+        CHECK(followed.gap(shape) < 1e-5);
+        ++compared;
+      }
+      CHECK(compared > 30);
+      CHECK(followed.client.skipped > 50);
+    }
+  }
+
+  TEST_CASE(
+      "when nobody empties the ring, frames are lost and counted, and a fresh shape mends it") {
+    TappedLoop tapped(flow::Mode::type2);
+    Followed followed(tapped);
+    tapped.tick(0);
+    followed.pass();
+    tapped.tick(1);
+    followed.pass();
+    REQUIRE(followed.is_up_to_date());
+    const int shapes = followed.client.shapes;
+    for (int tick = 0; tick < 3000; ++tick)
+      tapped.tick(tick % 30);
+    CHECK(tapped.tap->lost() > 0);
+    for (int tick = 0; tick < 4; ++tick) { // what is in the ring, what says that some is not
+      const auto shape = tapped.tick(5 * tick);
+      followed.pass();
+      if (tick == 3) CHECK(followed.gap(shape) < 1e-5);
+    }
+    CHECK(followed.client.shapes == shapes + 1);
+    CHECK(followed.client.lost == tapped.tap->lost());
+    CHECK(followed.is_up_to_date());
+  }
+
+  TEST_CASE("radii of their own, and a finger's worth of nothing, are told as they are") {
+    std::vector<deform::OwnSupport> own;
+    for (Eigen::Index point = 0; point < 10; ++point)
+      own.push_back({point, {0.2 + 0.05 * static_cast<double>(point), 1.0}});
+    TappedLoop tapped(flow::Mode::type1, std::nullopt, deform::with_common(own));
+    Followed followed(tapped);
+    for (int tick = 0; tick < 40; ++tick) {
+      const auto shape = tapped.tick(tick);
+      followed.pass();
+      if (followed.is_up_to_date()) CHECK(followed.gap(shape) < 1e-5);
+    }
+    CHECK(followed.is_up_to_date());
+  }
+
+  TEST_CASE("the hands' joints are told to 0.01 mm and a hundredth of a degree") {
+    TappedLoop tapped(flow::Mode::type1);
+    Followed followed(tapped);
+    for (int tick = 0; tick < 60; ++tick) {
+      tapped.tick(tick);
+      followed.pass();
+      const flow::Frame& frame = tapped.test.loop->frames().front();
+      for (std::size_t slot = 0; slot < 2; ++slot) {
+        REQUIRE(followed.client.present[slot]);
+        for (std::size_t joint = 0; joint < 26; ++joint) {
+          const auto& pose = frame.hands[slot].pose.joints[joint];
+          CHECK((followed.client.joints[slot][joint] - pose.translation()).norm() < 1e-5);
+          const Eigen::Quaterniond turn(pose.linear());
+          CHECK(followed.client.turns[slot][joint].angularDistance(turn) < 2e-4);
+        }
+      }
+    }
+  }
+
+  TEST_CASE("an ordinary frame of two hands takes hundreds of bytes") {
+    for (const auto& way : ways) {
+      TappedLoop tapped = loop_of(way);
+      Followed followed(tapped);
+      for (int tick = 0; tick < 30; ++tick) {
+        tapped.tick(tick / 10);
+        followed.pass();
+      }
+      CHECK(followed.update_bytes > 88 + 2 * 324);
+      CHECK(followed.update_bytes < 1500);
+    }
+  }
+
+  TEST_CASE("the model's message has the mesh: its places, order and triangles") {
+    const TappedLoop tapped(flow::Mode::type1);
+    const FollowingClient client(tapped.model);
+    REQUIRE(client.good);
+    const deform::Mesh& mesh = tapped.test.model;
+    CHECK(client.name == "ball");
+    CHECK(client.mode == 1);
+    REQUIRE(client.order.size() == static_cast<std::size_t>(mesh.vertices.cols()));
+    double worst = 0.0;
+    for (std::size_t at = 0; at < client.order.size(); ++at)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        worst = std::max(
+            worst, std::abs(client.origin[axis] +
+                            client.unit * static_cast<double>(client.rest[3 * at + axis]) -
+                            mesh.vertices(static_cast<Eigen::Index>(axis), client.order[at])));
+    CHECK(worst < 1e-6);
+    double volume = 0.0; // of the closed surface, by its triangles
+    for (std::size_t at = 0; at < client.corners.size(); at += 3) {
+      const auto corner = [&](std::size_t n) -> Eigen::Vector3d {
+        return mesh.vertices.col(client.order[client.corners[at + n]]);
+      };
+      volume += corner(0).dot(corner(1).cross(corner(2))) / 6.0;
+    }
+    CHECK(volume > 3.9); // a ball's, 4.19, less what flat triangles cut off
+    CHECK(volume < 4.19);
+  }
+}

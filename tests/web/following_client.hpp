@@ -1,0 +1,235 @@
+#pragma once
+// A client of the WebSocket, written from PROTOCOL.md: follows a shape by the steps that it is
+// sent, in float, as a graphics card does.
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::test {
+
+class FollowingClient {
+public:
+  explicit FollowingClient(const std::vector<std::byte>& model) {
+    Bytes in{model};
+    const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
+    in.at = 8;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 1;
+    const auto vertices = in.take<std::uint32_t>();
+    const auto triangles = in.take<std::uint32_t>();
+    const auto name_bytes = in.take<std::uint32_t>();
+    rate_hz = in.take<double>();
+    unit = in.take<double>();
+    for (double& axis : origin)
+      axis = in.take<double>();
+    units_per_metre = in.take<double>();
+    diagonal = in.take<double>();
+    in.at += 20;
+    mode = in.take<std::uint16_t>();
+    loop = in.take<std::uint16_t>();
+    rest = in.take_all<float>(3 * vertices);
+    order = in.take_all<std::uint32_t>(vertices);
+    corners = in.take_all<std::uint32_t>(3 * triangles);
+    name.assign(reinterpret_cast<const char*>(model.data()) + in.at, name_bytes);
+    good = good && in.at + name_bytes == model.size();
+  }
+
+  /// False if the message is none.
+  bool take(const std::vector<std::byte>& message) {
+    Bytes in{message};
+    const auto type = in.take<std::uint8_t>();
+    if (type == 1) take_shape(in);
+    if (type == 2) take_update(in);
+    return (type == 1 || type == 2) && in.at == message.size();
+  }
+
+  /// In the mesh's order and units.
+  deform::Points vertices() const {
+    std::vector<float> shape = base;
+    for (const Field& field : pending)
+      apply(field, shape);
+    deform::Points points(3, static_cast<Eigen::Index>(order.size()));
+    for (std::size_t at = 0; at < order.size(); ++at)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        points(static_cast<Eigen::Index>(axis), order[at]) =
+            origin[axis] + unit * static_cast<double>(shape[3 * at + axis]);
+    return points;
+  }
+  bool follows() const noexcept { return number > 0; }
+
+  // Of the model.
+  bool good = false;
+  double rate_hz = 0.0, unit = 1.0, units_per_metre = 1.0, diagonal = 0.0;
+  std::array<double, 3> origin{};
+  unsigned mode = 0, loop = 0;
+  std::vector<float> rest;
+  std::vector<std::uint32_t> order, corners;
+  std::string name;
+  // Of the latest messages.
+  std::uint64_t number = 0; ///< the frame that vertices() is of; 0: none
+  std::uint64_t newest = 0; ///< the frame that was told of last
+  std::uint64_t tick = 0;
+  bool held = false;
+  std::uint32_t commits = 0, undos = 0, lost = 0, skipped = 0;
+  std::array<std::array<Eigen::Vector3d, 26>, 2> joints{};
+  std::array<std::array<Eigen::Quaterniond, 26>, 2> turns{};
+  std::array<bool, 2> present{};
+  int shapes = 0, updates = 0;
+
+private:
+  struct Bytes {
+    const std::vector<std::byte>& bytes;
+    std::size_t at = 0;
+    template <class T>
+    T take() {
+      T value{};
+      if (at + sizeof value <= bytes.size()) std::memcpy(&value, bytes.data() + at, sizeof value);
+      at += sizeof value;
+      return value;
+    }
+    template <class T>
+    std::vector<T> take_all(std::size_t count) {
+      std::vector<T> values(count);
+      for (T& value : values)
+        value = take<T>();
+      return values;
+    }
+  };
+  struct Function {
+    std::array<float, 3> centre, coefficient;
+    float inverse_radius;
+  };
+  struct Field {
+    unsigned kernel = 0;
+    std::array<float, 12> polynomial{};
+    std::vector<Function> functions;
+  };
+
+  void take_shape(Bytes& in) {
+    ++shapes;
+    in.at += 1;
+    if (in.take<std::uint16_t>() != loop) good = false;
+    const auto vertices = in.take<std::uint32_t>();
+    number = in.take<std::uint64_t>();
+    base = in.take_all<float>(3 * vertices);
+    pending.clear();
+  }
+
+  void take_update(Bytes& in) {
+    ++updates;
+    held = in.take<std::uint8_t>() != 0;
+    const auto hands = in.take<std::uint8_t>();
+    in.at += 1;
+    const auto steps = in.take<std::uint32_t>();
+    newest = in.take<std::uint64_t>();
+    tick = in.take<std::uint64_t>();
+    in.at = 40;
+    commits = in.take<std::uint32_t>();
+    undos = in.take<std::uint32_t>();
+    in.at = 60;
+    lost = in.take<std::uint32_t>();
+    skipped = in.take<std::uint32_t>();
+    in.at = 88;
+    for (unsigned slot = 0; slot < 2; ++slot) {
+      present[slot] = (hands >> slot & 1U) != 0;
+      if (present[slot]) take_hand(in, slot);
+    }
+    for (std::uint32_t step = 0; step < steps; ++step)
+      take_step(in);
+    if (steps > 0 && number > 0) number = newest;
+  }
+
+  void take_hand(Bytes& in, unsigned slot) {
+    Eigen::Vector3d wrist;
+    for (double& axis : wrist)
+      axis = static_cast<double>(in.take<float>());
+    for (std::size_t joint = 0; joint < 26; ++joint) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis)
+        joints[slot][joint][axis] = wrist[axis] + 1e-5 * in.take<std::int16_t>();
+      const std::array<unsigned, 3> words{in.take<std::uint16_t>(), in.take<std::uint16_t>(),
+                                          in.take<std::uint16_t>()};
+      const unsigned largest = words[0] >> 15U | words[1] >> 15U << 1U;
+      Eigen::Vector4d parts = Eigen::Vector4d::Zero();
+      unsigned next = 0;
+      for (unsigned part = 0; part < 4; ++part)
+        if (part != largest)
+          parts[part] = ((words[next++] & 0x7FFFU) / 32767.0 * 2.0 - 1.0) / std::sqrt(2.0);
+      parts[largest] = std::sqrt(std::max(0.0, 1.0 - parts.squaredNorm()));
+      turns[slot][joint] = Eigen::Quaterniond(parts[3], parts[0], parts[1], parts[2]);
+    }
+  }
+
+  void take_step(Bytes& in) {
+    const bool bakes = in.take<std::uint8_t>() == 1;
+    in.at += 1;
+    std::vector<Field> fields(in.take<std::uint16_t>());
+    for (Field& field : fields)
+      take_field(in, field);
+    if (number == 0) return; // without a shape there is nothing to apply it to
+    pending.clear();
+    if (!bakes) {
+      pending = fields;
+      return;
+    }
+    for (const Field& field : fields)
+      apply(field, base);
+  }
+
+  static void take_field(Bytes& in, Field& field) {
+    field.kernel = in.take<std::uint8_t>();
+    const auto flags = in.take<std::uint8_t>();
+    field.functions.resize(in.take<std::uint16_t>());
+    const float shared = (flags & 2U) != 0 ? in.take<float>() : 0.0F;
+    if ((flags & 1U) != 0)
+      for (float& number : field.polynomial)
+        number = in.take<float>();
+    for (Function& function : field.functions) {
+      for (float& axis : function.centre)
+        axis = in.take<float>();
+      for (float& axis : function.coefficient)
+        axis = in.take<float>();
+      function.inverse_radius = (flags & 2U) != 0 ? shared : in.take<float>();
+    }
+  }
+
+  static float psi(unsigned kernel, float t) {
+    const float u = 1 - t;
+    if (kernel == 0) return u * u;
+    if (kernel == 1) return std::pow(u, 4.0F) * (4 * t + 1);
+    if (kernel == 2) return std::pow(u, 6.0F) * (35 * t * t + 18 * t + 3) / 3;
+    return std::pow(u, 8.0F) * (32 * t * t * t + 25 * t * t + 8 * t + 1);
+  }
+
+  static void apply(const Field& field, std::vector<float>& shape) {
+    for (std::size_t at = 0; at < shape.size(); at += 3) {
+      const std::array<float, 3> x{shape[at], shape[at + 1], shape[at + 2]};
+      std::array<float, 3> sum{};
+      for (std::size_t row = 0; row < 3; ++row) {
+        sum[row] = field.polynomial[4 * row];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          sum[row] += field.polynomial[4 * row + 1 + axis] * x[axis];
+      }
+      for (const Function& function : field.functions) {
+        float squared = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          squared += (x[axis] - function.centre[axis]) * (x[axis] - function.centre[axis]);
+        const float t = std::sqrt(squared) * function.inverse_radius;
+        if (t >= 1) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          sum[axis] += function.coefficient[axis] * psi(field.kernel, t);
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        shape[at + axis] += sum[axis];
+    }
+  }
+
+  std::vector<float> base;
+  std::vector<Field> pending;
+};
+
+} // namespace nendo::test

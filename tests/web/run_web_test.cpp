@@ -1,0 +1,101 @@
+// `nendo run --web`, from outside.
+
+#include <doctest/doctest.h>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "following_client.hpp"
+#include "support/program.hpp"
+#include "web_client.hpp"
+
+using namespace nendo;
+using nendo::test::FollowingClient;
+using nendo::test::WebClient;
+
+namespace {
+
+struct Address {
+  std::uint16_t port = 0;
+  std::string token;
+};
+
+/// As it stands on the program's standard error, once it does.
+Address address_of(const test::Program& program) {
+  const std::string before = "http://127.0.0.1:";
+  for (int turn = 0; turn < 6000; ++turn) {
+    const std::string said = program.err_so_far();
+    const auto at = said.find(before);
+    if (at != std::string::npos && said.find('\n', at) != std::string::npos) {
+      const auto mark = said.find("/#", at);
+      return {static_cast<std::uint16_t>(std::stoi(said.substr(at + before.size()))),
+              said.substr(mark + 2, said.find('\n', at) - mark - 2)};
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return {};
+}
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+} // namespace
+
+TEST_SUITE("run_web") {
+  TEST_CASE(
+      "a browser's client follows a run to the shape that it writes, and lets go on the way") {
+    for (const auto* mode : {"type1", "type2"}) {
+      CAPTURE(mode);
+      const test::TemporaryFolder folder;
+      const auto out = folder.path() / "clay.ply";
+      test::Program program({"run", "--left", "sim:sculpt?seed=7", "--right", "sim:sculpt?seed=7",
+                             "--mode", mode, "--web", "0", "--out", out.string()});
+      const Address address = address_of(program);
+      REQUIRE(address.token.size() == 32);
+      CHECK(WebClient(address.port, "").get("/").status == 200);
+      CHECK(WebClient(address.port, "").get("/model").status == 403);
+      test::Answer model;
+      while (model.status != 200 && model.status != 403) { // until the loop has begun
+        WebClient asks(address.port, address.token);
+        model = asks.get(asks.with_token("/model"));
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+      REQUIRE(model.status == 200);
+      FollowingClient follower(bytes_of(model.body));
+      REQUIRE(follower.good);
+      CHECK(follower.name == "moai.obj");
+      WebClient client(address.port, address.token);
+      REQUIRE(client.open_socket() == 101);
+      bool asked = false;
+      while (!asked || follower.held) {
+        const auto frame = client.next();
+        REQUIRE(frame);
+        if (frame->opcode == 2) REQUIRE(follower.take(frame->payload));
+        if (asked || follower.updates < 100) continue;
+        asked = client.say("let go");
+      }
+      program.signal(SIGTERM);
+      while (const auto frame = client.next())
+        if (frame->opcode == 2) CHECK(follower.take(frame->payload));
+      CHECK(program.wait().exit_code == 0);
+      const auto written = deform::read_mesh(out);
+      REQUIRE(written);
+      const auto shape = follower.vertices();
+      REQUIRE(written->vertices.cols() == shape.cols());
+      CHECK((written->vertices - shape).cwiseAbs().maxCoeff() < 1e-5 * follower.diagonal);
+      const auto rest = deform::read_mesh(NENDO_MODELS "/moai.obj");
+      REQUIRE(rest);
+      CHECK((rest->vertices - shape).cwiseAbs().maxCoeff() > 1e-3); // something was shaped
+    }
+  }
+
+  TEST_CASE("an address that is none, or not this machine's, is one line before anything begins") {
+    const auto nonsense = test::nendo({"run", "--left", "sim", "--web", "localhost:80"});
+    CHECK(nonsense.exit_code == 2);
+    CHECK(test::is_one_line_about(nonsense.err, "--web localhost:80"));
+    const auto elsewhere = test::nendo({"run", "--left", "sim", "--web", "192.0.2.1:8080"});
+    CHECK(elsewhere.exit_code == 1);
+    CHECK(test::is_one_line_about(elsewhere.err, "no address of this machine"));
+  }
+}

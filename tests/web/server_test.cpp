@@ -1,0 +1,163 @@
+#include <nendo/web/server.hpp>
+
+#include <doctest/doctest.h>
+
+#include "served.hpp"
+
+using namespace nendo;
+using namespace nendo::web;
+using nendo::test::follow_until;
+using nendo::test::FollowingClient;
+using nendo::test::open_server;
+using nendo::test::Served;
+using nendo::test::TappedLoop;
+using nendo::test::wait_for;
+using nendo::test::WebClient;
+
+TEST_SUITE("server") {
+  TEST_CASE("the page is one whole thing that may run nothing but itself") {
+    const auto server = open_server();
+    const auto page = WebClient(*server).get("/");
+    REQUIRE(page.status == 200);
+    CHECK(page.body.find("<canvas") != std::string::npos);
+    CHECK(page.body.find("class Shape") != std::string::npos);
+    CHECK(page.body.find("vec2 wendland") != std::string::npos);
+    for (const auto* outside : {"src=", "@import", "https://", "NENDO-NONCE", "embed "}) {
+      CAPTURE(outside);
+      CHECK(page.body.find(outside) == std::string::npos);
+    }
+    CHECK(page.head.find("default-src 'none'; script-src 'nonce-") != std::string::npos);
+    CHECK(page.head.find("frame-ancestors 'none'") != std::string::npos);
+    CHECK(page.head.find("unsafe") == std::string::npos);
+    const auto at = page.head.find("'nonce-") + 7;
+    const std::string nonce = page.head.substr(at, page.head.find('\'', at) - at);
+    CHECK(nonce.size() == 32);
+    CHECK(page.body.find("<script nonce=\"" + nonce + "\">") != std::string::npos);
+    CHECK(WebClient(*server).get("/").head != page.head); // another nonce each time
+    CHECK(page.body.find(server->token()) == std::string::npos);
+    CHECK(server->url() == "http://" + server->endpoint().authority() + "/#" + server->token());
+  }
+
+  TEST_CASE("a wrong origin, host or token is refused, and there is nothing before a loop begins") {
+    const auto server = open_server();
+    const auto status = [&](const std::string& path, const std::string& headers = {},
+                            const std::string& host = {}) {
+      return WebClient(*server).get(path, headers, host).status;
+    };
+    const std::string model = WebClient(*server).with_token("/model");
+    CHECK(status(model) == 503);
+    const TappedLoop tapped(flow::Mode::type1);
+    server->present(tapped.tap, tapped.model);
+    CHECK(wait_for([&] { return status(model) == 200; }));
+    CHECK(status("/model") == 403);
+    CHECK(status("/model?token=00000000000000000000000000000000") == 403);
+    CHECK(status(model, "Origin: http://evil.example\r\n") == 403);
+    CHECK(status(model, {}, "evil.example:80") == 403);
+    CHECK(status("/", {}, "evil.example:80") == 403);
+    CHECK(status("/favicon.ico") == 404);
+    CHECK(WebClient(*server).open_socket("Origin: http://evil.example\r\n") == 403);
+    WebClient post(*server);
+    post.send("POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    CHECK(post.answer().status == 405);
+    WebClient noise(*server);
+    noise.send("\x16\x03\x01\x02\r\n\r\n"); // the begin of TLS
+    CHECK(noise.answer().status == 400);
+    CHECK(server->counters().refused >= 9);
+  }
+
+  TEST_CASE("the second server at a port is told what is wrong") {
+    const auto server = open_server();
+    const auto second = Server::open(server->endpoint());
+    REQUIRE_FALSE(second);
+    CHECK(second.error().message.find("choose another port") != std::string::npos);
+    CHECK_FALSE(Server::open({"192.0.2.1", 0})); // no machine's own
+  }
+
+  TEST_CASE("buttons reach the loop, and who says anything else is sent away") {
+    Served served(flow::Mode::type1);
+    served.begin();
+    WebClient client(*served.server);
+    REQUIRE(client.open_socket() == 101);
+    CHECK(client.accept);
+    FollowingClient follower(served.tapped.model);
+    follower.loop = 1;
+    CHECK(follow_until(client, follower, [&] { return follower.follows() && follower.held; }));
+    client.say("let go");
+    CHECK(follow_until(client, follower, [&] { return !follower.held; }));
+    CHECK(follower.commits == 1);
+    client.say("grab");
+    CHECK(follow_until(client, follower, [&] { return follower.held; }));
+    client.say("commit");
+    CHECK(follow_until(client, follower, [&] { return follower.commits == 2; }));
+    client.say("undo");
+    CHECK(follow_until(client, follower, [&] { return follower.undos == 1; }));
+    client.say("", 0x89); // ping
+    bool answered = false;
+    while (!answered) {
+      const auto frame = client.next();
+      REQUIRE(frame);
+      answered = frame->opcode == 10;
+    }
+    client.say("format the disk");
+    unsigned code = 0;
+    while (const auto frame = client.next())
+      if (frame->opcode == 8) code = frame->close_code();
+    CHECK(code == 1008);
+    CHECK(client.is_ended());
+  }
+
+  TEST_CASE("over the network, too, a follower has the shape that the loop ends with") {
+    for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
+      CAPTURE(name_of(mode));
+      auto served = std::make_unique<Served>(mode);
+      served->begin();
+      WebClient client(*served->server);
+      REQUIRE(client.open_socket() == 101);
+      FollowingClient follower(served->tapped.model);
+      follower.loop = 1;
+      for (const auto* request : {"commit", "undo", "commit"}) {
+        const int updates = follower.updates + 30;
+        CHECK(follow_until(client, follower, [&] { return follower.updates > updates; }));
+        client.say(request);
+      }
+      CHECK(follow_until(client, follower, [&] { return follower.commits >= 2; }));
+      served->end();
+      served->tapped.test.loop->frames().update();
+      const auto& frame = served->tapped.test.loop->frames().front();
+      const auto shape = served->tapped.test.vertices_of(frame);
+      CHECK(follow_until(client, follower, [&] { return follower.number == frame.ticks; }));
+      CHECK((follower.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * follower.diagonal);
+      CHECK((shape - served->tapped.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
+      CHECK(follower.good);
+      served->server.reset(); // says goodbye
+      unsigned code = 0;
+      while (const auto left = client.next())
+        if (left->opcode == 8) code = left->close_code();
+      CHECK(code == 1001);
+    }
+  }
+
+  TEST_CASE("a loop that is made anew sends its clients away, who come again to its model") {
+    Served served(flow::Mode::type1);
+    served.begin();
+    WebClient client(*served.server);
+    REQUIRE(client.open_socket() == 101);
+    FollowingClient follower(served.tapped.model);
+    follower.loop = 1;
+    CHECK(follow_until(client, follower, [&] { return follower.follows(); }));
+    const TappedLoop next(flow::Mode::type2);
+    served.server->present(next.tap, next.model);
+    unsigned code = 0;
+    while (const auto frame = client.next())
+      if (frame->opcode == 8) code = frame->close_code();
+    CHECK(code == 1012);
+    WebClient again(*served.server);
+    const auto model = again.get(again.with_token("/model"));
+    REQUIRE(model.status == 200);
+    const auto bytes = std::as_bytes(std::span(model.body));
+    const FollowingClient second({bytes.begin(), bytes.end()});
+    CHECK(second.good);
+    CHECK(second.loop == 2);
+    CHECK(second.mode == 2);
+  }
+}

@@ -1,0 +1,82 @@
+// The loop is sacred, with a tap at it, too: shapes asked for over and over, and nobody who empties
+// the ring for long.
+
+#include <atomic>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include <nendo/flow/realtime.hpp>
+
+#include "support/restraint.hpp"
+#include "support/sleep_only.hpp"
+#include "tapped_loop.hpp"
+
+using namespace nendo;
+using nendo::test::TappedLoop;
+
+// The sanitizers' own run-time makes calls and allocates.
+TEST_SUITE("tapped_loop" * doctest::skip(!nendo::test::restraint_is_counted)) {
+  TEST_CASE("with a tap that is listened to and asked for shapes, a tick makes no system call, no "
+            "allocation and takes no lock") {
+    for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
+      CAPTURE(name_of(mode));
+      TappedLoop tapped(mode, deform::InjectiveOptions{});
+      tapped.tap->listen(true);
+      std::atomic<bool> over{false};
+      std::atomic<std::uint64_t> records{0};
+      std::atomic<std::uint64_t> shapes{0};
+      std::thread server([&] {
+        while (!over) {
+          std::vector<web::Record> taken;
+          tapped.tap->take(taken);
+          records += taken.size();
+          if (tapped.tap->take_shape()) ++shapes;
+          tapped.tap->ask_for_shape();
+          std::this_thread::yield();
+        }
+      });
+      bool filtered = false;
+      test::StoppedCalls calls;
+      test::RestraintCounts counts;
+      std::thread([&] {
+        flow::make_thread_realtime({});
+        constexpr std::array asked{flow::Request::commit, flow::Request::undo,
+                                   flow::Request::let_go, flow::Request::grab};
+        const auto run = [&](std::uint64_t first, std::uint64_t ticks) {
+          for (std::uint64_t tick = first; tick < first + ticks; ++tick) {
+            const int bent = static_cast<int>(tick % 60);
+            tapped.test.bend(bent < 30 ? bent : 60 - bent, HostClock::now());
+            if (tick % 50 == 0) tapped.test.requests.try_push(asked[tick / 50 % asked.size()]);
+            tapped.test.loop->tick(tick, HostClock::now());
+          }
+        };
+        run(0, 300);
+        filtered = test::allow_sleep_only();
+        {
+          const test::Restraint restraint;
+          run(300, 10'000);
+          counts = restraint.counts();
+          calls = test::stopped_calls();
+        }
+        if (filtered) test::end_thread();
+      }).join();
+      over = true;
+      server.join();
+      REQUIRE(filtered);
+      CHECK(calls.count == 0);
+      CHECK(calls.last == -1);
+      CHECK(counts.allocations == 0);
+      CHECK(counts.frees == 0);
+      CHECK(counts.locks == 0);
+      const auto& stats = tapped.test.loop->stats();
+      CHECK(stats.ticks == 10'300);
+      CHECK(stats.commits > 10);
+      CHECK(stats.undos > 10);
+      std::vector<web::Record> rest;
+      tapped.tap->take(rest);
+      CHECK(records + rest.size() + tapped.tap->lost() == 10'300);
+      CHECK(shapes > 0);
+    }
+  }
+}
