@@ -29,7 +29,7 @@ struct Desk {
 
   CannedTransport transport;
   Dialogue dialogue{transport, HostClock::now() + 1s};
-  Commands commands{dialogue, 30ms};
+  Commands commands{dialogue, 250ms};
 };
 
 /// What a command that is answered by `reply` says, and what it returns.

@@ -6,6 +6,9 @@ set(library_package libnendo${NENDO_SOVERSION})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+if(CMAKE_CROSSCOMPILING AND CMAKE_LIBRARY_ARCHITECTURE STREQUAL "aarch64-linux-gnu")
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64) # CPack takes this machine's otherwise
+endif()
 set(CPACK_PACKAGE_CONTACT "Nendo maintainers <maintainers@nendo.example>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

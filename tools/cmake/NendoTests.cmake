@@ -21,8 +21,12 @@ function(nendo_test name)
   nendo_precompile(${target} <doctest/doctest.h>)
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
+  set(timeout_s 120)
+  if(CMAKE_CROSSCOMPILING) # an emulator takes ten times as long
+    set(timeout_s 1200)
+  endif()
   doctest_discover_tests(${target} TEST_PREFIX "${name}/"
-    PROPERTIES TIMEOUT 120 RUN_SERIAL ${ARG_ALONE} FAIL_REGULAR_EXPRESSION "test cases: +0 ")
+    PROPERTIES TIMEOUT ${timeout_s} RUN_SERIAL ${ARG_ALONE} FAIL_REGULAR_EXPRESSION "test cases: +0 ")
 endfunction()
 
 # nendo_fuzz(<name> SOURCE ... LIBRARIES ...): a libFuzzer program fuzz_<name>; runs over its corpus in

@@ -6,6 +6,12 @@
 // Without instructions that we know: one lane at a time. Highway's emulation of four takes Clang
 // minutes to compile with sanitizers.
 #define HWY_BROKEN_EMU128 1
+#if defined(__aarch64__)
+// NEON is all that is left there: nothing is to be chosen when running. Highway would otherwise
+// compile for processors with AES, which a Raspberry Pi 4 has not, and GCC 12 does not carry such a
+// choice into the constructors that it writes itself.
+#define TOOLCHAIN_MISS_SYS_AUXV_H
+#endif
 #include <hwy/detect_targets.h>
 
 #undef HWY_DISABLED_TARGETS
