@@ -12,6 +12,7 @@ void add_deform(Command& program);
 void add_devices(Command& program);
 void add_doctor(Command& program);
 void add_emulate(Command& program);
+void add_export(Command& program);
 void add_info(Command& program);
 void add_manual(Command& program);
 void add_monitor(Command& program);

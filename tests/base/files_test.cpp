@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <nendo/base/file_replacement.hpp>
+
 #include "support/temporary_folder.hpp"
 
 using namespace nendo;
@@ -68,5 +70,30 @@ TEST_SUITE("files") {
       CHECK_FALSE(read_file(path, 100, "test"));
     }
     CHECK(entries(folder.path()) == 2);
+  }
+
+  TEST_CASE("a file written piece by piece has its name when it is whole, and not before") {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "file";
+    REQUIRE(replace_file(path, "old"));
+    const auto read = [&] { return *read_file(path, 100, "test"); };
+    {
+      auto dropped = FileReplacement::begin(path);
+      REQUIRE(dropped);
+      REQUIRE(dropped->write(std::string_view("new")));
+      CHECK(read() == "old");
+    }
+    CHECK(entries(folder.path()) == 1);
+    auto begun = FileReplacement::begin(path);
+    REQUIRE(begun);
+    FileReplacement file = *std::move(begun);
+    REQUIRE(file.write(std::string_view("new, ")));
+    REQUIRE(file.write(std::string_view("in two")));
+    CHECK(file.size() == 11);
+    CHECK(read() == "old");
+    REQUIRE(file.finish());
+    CHECK(read() == "new, in two");
+    CHECK(entries(folder.path()) == 1);
+    CHECK_FALSE(FileReplacement::begin(folder.path()));
   }
 }

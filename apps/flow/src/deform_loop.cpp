@@ -133,6 +133,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
   for (const auto& hand : hands_) {
     HandFrame& shown = frame.hands[hand.slot];
+    shown.angles = hand.angles;
     shown.pose = hand.skeleton().pose(hand.angles, hand.T_stage_wrist);
     shown.T_stage_wrist = hand.T_stage_wrist;
     shown.present = true;

@@ -43,8 +43,19 @@ double length_of_hand(const hand::HandPose& pose) {
 
 } // namespace
 
-HandSkin::HandSkin(Side side)
-    : bind_(hand::HandSkeleton(side).pose(open_angles(), Eigen::Isometry3d::Identity())) {
+hand::HandPose HandSkin::bind_pose(Side side) {
+  return hand::HandSkeleton(side).pose(open_angles(), Eigen::Isometry3d::Identity());
+}
+
+std::array<HandSkin::JointShare, 4> HandSkin::influences(std::size_t place) const {
+  const Influence& influence = influences_[place];
+  std::array<JointShare, 4> shares;
+  for (std::size_t rank = 0; rank < shares.size(); ++rank)
+    shares[rank] = {fleshed_bones()[influence.bones[rank]].joint, influence.weights[rank]};
+  return shares;
+}
+
+HandSkin::HandSkin(Side side) : bind_(bind_pose(side)) {
   const auto lines = bone_lines(bind_);
   SkinMesh mesh = skin_about(lines);
   places_ = std::move(mesh.places);

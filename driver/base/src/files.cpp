@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <nendo/base/file_replacement.hpp>
+
 namespace nendo {
 namespace {
 
@@ -33,19 +35,6 @@ fs::path temporary_beside(const fs::path& target) {
     name += "." + std::to_string(part);
   name += ".tmp";
   return name;
-}
-
-/// 0, or the error number of the step that failed.
-int write_and_rename(const fs::path& temporary, const fs::path& target, std::string_view contents) {
-  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!file.is_open()) return errno;
-  const bool done = write_all(file.get(), std::as_bytes(std::span(contents))) &&
-                    ::fsync(file.get()) == 0 && file.close() &&
-                    ::rename(temporary.c_str(), target.c_str()) == 0;
-  if (done) return 0;
-  const int error_number = errno;
-  ::unlink(temporary.c_str());
-  return error_number;
 }
 
 } // namespace
@@ -115,22 +104,57 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t most_bytes,
   return contents;
 }
 
-Result<void> replace_file(const fs::path& path, std::string_view contents) {
-  const auto failed = [&](const std::string& what) {
-    return Error{Errc::failed, path.string() + ": " + what};
-  };
-  const fs::path target = target_of(path);
+FileReplacement::FileReplacement(fs::path path, fs::path target)
+    : path_(std::move(path)), target_(std::move(target)) {}
+
+FileReplacement::FileReplacement(FileReplacement&& other) noexcept
+    : path_(std::move(other.path_)), target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})), file_(std::move(other.file_)),
+      size_(other.size_) {}
+
+FileReplacement::~FileReplacement() {
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+Error FileReplacement::failure(int error_number) const {
+  return {Errc::failed, path_.string() + ": cannot be written: " + why(error_number) +
+                            "; make room or choose a folder that you may write to"};
+}
+
+Result<FileReplacement> FileReplacement::begin(const fs::path& path) {
+  FileReplacement begun(path, target_of(path));
   std::error_code ignored;
-  const fs::file_status status = fs::status(target, ignored);
+  const fs::file_status status = fs::status(begun.target_, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    return failed("is not a regular file; name another");
-  const int error_number = write_and_rename(temporary_beside(target), target, contents);
-  if (error_number != 0) {
-    return failed("cannot be written: " + why(error_number) +
-                  "; make room or choose a folder that you may write to");
-  }
-  sync_folder_of(target);
+    return Error{Errc::failed, path.string() + ": is not a regular file; name another"};
+  fs::path temporary = temporary_beside(begun.target_);
+  begun.file_ =
+      Descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!begun.file_.is_open()) return begun.failure(errno);
+  begun.temporary_ = std::move(temporary);
+  return begun;
+}
+
+Result<void> FileReplacement::write(std::span<const std::byte> bytes) {
+  if (!write_all(file_.get(), bytes)) return failure(errno);
+  size_ += bytes.size();
   return {};
+}
+
+Result<void> FileReplacement::finish() {
+  const bool done = ::fsync(file_.get()) == 0 && file_.close() &&
+                    ::rename(temporary_.c_str(), target_.c_str()) == 0;
+  if (!done) return failure(errno);
+  temporary_.clear();
+  sync_folder_of(target_);
+  return {};
+}
+
+Result<void> replace_file(const fs::path& path, std::string_view contents) {
+  auto file = FileReplacement::begin(path);
+  if (!file) return file.error();
+  if (const auto written = file->write(contents); !written) return written;
+  return file->finish();
 }
 
 fs::path target_of(const fs::path& path) {

@@ -21,7 +21,8 @@ struct HandFrame {
   hand::HandPose pose;  ///< on the stage, metres
   /// Where the hand is; the joints of the wrist, where a glove measures them, turn it from there.
   Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();
-  std::uint64_t samples = 0; ///< received since the loop began
+  std::uint64_t samples = 0;  ///< received since the loop began
+  hand::JointAngles angles{}; ///< of which the pose is made
 };
 
 struct Frame {

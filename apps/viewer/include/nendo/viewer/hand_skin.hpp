@@ -20,6 +20,15 @@ public:
   /// hand is large.
   void drape(const hand::HandPose& pose, const Eigen::Vector3d& origin_m, Surface& surface) const;
 
+  /// The open hand about which the skin was made; its wrist is the origin.
+  static hand::HandPose bind_pose(Side side);
+  struct JointShare {
+    hand::Joint joint;
+    float weight; ///< sum 1; 0: not used
+  };
+  /// The joints that carry a place of drape()'s.
+  std::array<JointShare, 4> influences(std::size_t place) const;
+
 private:
   struct Influence {
     std::array<std::uint8_t, 4> bones{};

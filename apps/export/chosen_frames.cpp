@@ -1,0 +1,80 @@
+#include "export/chosen_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace nendo::app {
+namespace {
+
+constexpr double most_s = 1e7; // as long as a take may be
+
+Error too_many() {
+  return {Errc::usage, "--rate, --from, --to: that would be more than " +
+                           std::to_string(most_export_frames) +
+                           " frames; export a part, or fewer a second"};
+}
+
+} // namespace
+
+Result<void> check(const Choice& choice) {
+  const double to_s = choice.to_s.value_or(most_s);
+  if (!(choice.from_s >= 0.0 && choice.from_s < to_s && to_s <= most_s))
+    return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
+  if (choice.rate_hz && !(*choice.rate_hz > 0.0 && *choice.rate_hz <= most_export_rate_hz))
+    return Error{Errc::usage, "--rate: use frames a second above 0 and up to 10000"};
+  return {};
+}
+
+Result<ChosenFrames> ChosenFrames::make(FrameSource& source, const Choice& choice) {
+  if (const auto fine = check(choice); !fine) return fine.error();
+  ChosenFrames chosen(source, choice);
+  const double end_s = std::min(choice.to_s.value_or(most_s), source.duration_s());
+  while ((chosen.is_ahead_ = source.next()) && source.time_s() < choice.from_s) {
+    if (choice.stop != nullptr && *choice.stop) break;
+  }
+  if (!chosen.is_ahead_ || source.time_s() > choice.to_s.value_or(most_s)) {
+    return Error{Errc::bad_input, "there is no frame from --from to --to; the take lasts " +
+                                      std::to_string(source.duration_s()) + " s"};
+  }
+  chosen.first_s_ = source.time_s();
+  chosen.even_ = choice.rate_hz.has_value();
+  if (!chosen.even_) return chosen;
+  const double rate_hz = *choice.rate_hz;
+  constexpr double rounding = 1e-6; // of a period
+  const double periods = std::max(0.0, (end_s - chosen.first_s_) * rate_hz + rounding);
+  if (!(periods < static_cast<double>(most_export_frames))) return too_many();
+  chosen.count_ = static_cast<std::uint64_t>(periods) + 1;
+  const double source_hz = source.rate_hz();
+  chosen.slack_s_ = 0.5 / (source_hz > rate_hz ? source_hz : rate_hz);
+  return chosen;
+}
+
+Result<bool> ChosenFrames::next() {
+  if (choice_.stop != nullptr && *choice_.stop)
+    return Error{Errc::failed, "stopped before the end"};
+  if (even_) {
+    if (made_ == *count_) return false;
+    time_s_ = first_s_ + static_cast<double>(made_) / *choice_.rate_hz;
+    hold_nearest(time_s_);
+  } else {
+    if (!is_ahead_ && !source_->next()) return false;
+    is_ahead_ = false;
+    if (source_->time_s() > choice_.to_s.value_or(most_s)) return false;
+    if (made_ == most_export_frames) return too_many();
+    time_s_ = source_->time_s();
+  }
+  ++made_;
+  return true;
+}
+
+/// The last that comes no later than half a period of the source after the moment: where frames are
+/// missing, the one before stays.
+void ChosenFrames::hold_nearest(double moment_s) {
+  while (is_ahead_ && source_->time_s() <= moment_s + slack_s_) {
+    held_ = source_->frame();
+    is_ahead_ = source_->next();
+  }
+}
+
+} // namespace nendo::app

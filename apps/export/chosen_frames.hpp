@@ -1,0 +1,68 @@
+#pragma once
+// The frames of a take that an export has: of a part of it, each of them or at an even rate. At a
+// rate the frame nearest to each moment is taken, so that every one is a shape that nendo made and
+// none is a mixture.
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include <nendo/base/result.hpp>
+
+#include "frame_source.hpp"
+
+namespace nendo::app {
+
+struct Choice {
+  double from_s = 0.0;             ///< since the take began
+  std::optional<double> to_s{};    ///< nothing: to its end
+  std::optional<double> rate_hz{}; ///< nothing: every frame, at its own time
+  /// True ends the export; must outlive it.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+inline constexpr double most_export_rate_hz = 10'000.0;
+inline constexpr std::uint64_t most_export_frames = 1'000'000;
+
+/// Errors: usage (times or a rate that cannot be).
+Result<void> check(const Choice& choice);
+
+class ChosenFrames {
+public:
+  /// Goes to the first of them; `source` has had no next() yet and must outlive this. Blocks.
+  /// Errors: as check(); bad_input (no frame in that time), usage (too many frames).
+  static Result<ChosenFrames> make(FrameSource& source, const Choice& choice);
+
+  /// Makes the next frame; false: there is none. Errors: failed (`stop` was set), usage (more than
+  /// most_export_frames). Blocks.
+  Result<bool> next();
+  const flow::Frame& frame() const noexcept { return even_ ? held_ : source_->frame(); }
+  /// Since the take began, seconds; even at a rate, and never falling.
+  double time_s() const noexcept { return time_s_; }
+  double first_s() const noexcept { return first_s_; } ///< time_s() of the first
+  /// At a rate: how many there are.
+  std::optional<std::uint64_t> count() const noexcept { return count_; }
+  double period_s() const noexcept { return 1.0 / *choice_.rate_hz; } ///< at a rate
+  std::uint64_t made() const noexcept { return made_; }               ///< by next()
+
+  const FrameSource& source() const noexcept { return *source_; }
+  /// The latest frame's shape in the mesh's order, model units; `out` is 3 by #vertices.
+  void vertices(deform::Points& out) const { source_->layout().unpack(frame().shape, out); }
+
+private:
+  ChosenFrames(FrameSource& source, const Choice& choice) : source_(&source), choice_(choice) {}
+  void hold_nearest(double moment_s);
+
+  FrameSource* source_;
+  Choice choice_;
+  bool even_ = false;     ///< at a rate
+  bool is_ahead_ = false; ///< the source's frame has not been shown
+  double slack_s_ = 0.0;  ///< a frame that comes so much later is the nearest
+  double first_s_ = 0.0;
+  double time_s_ = 0.0;
+  std::optional<std::uint64_t> count_;
+  std::uint64_t made_ = 0;
+  flow::Frame held_;
+};
+
+} // namespace nendo::app

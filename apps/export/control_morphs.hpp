@@ -1,0 +1,52 @@
+#pragma once
+// A take of Type-1 as morph targets, exactly: as long as the fingertips keep hold, the start points
+// are frozen and the rest shape is displaced by sum_j u_j(x) w_j, with an influence u_j for each
+// start point and its control vector w_j (nendo/deform/field.hpp). That is linear in the vectors,
+// so targets along the axes for each, and their weights over time, are the whole take.
+//
+// With one radius u_j is 1 at its start point and 0 at the others. With several radii there are
+// more functions than start points, and each has its own targets instead.
+
+#include <optional>
+#include <vector>
+
+#include <nendo/flow/frame.hpp>
+
+namespace nendo::app {
+
+class ControlMorphs {
+public:
+  /// A shape that is farther off than this part of the diagonal is not of that kind. (Type-1
+  /// promises as much of its own shapes.)
+  static constexpr double most_error = 1e-5;
+
+  explicit ControlMorphs(const deform::BlockLayout& layout);
+
+  /// vertices: the frame's, in the mesh's order. False: the take is not of that kind (commits, ways
+  /// in several links, polynomials, Type-2), and nothing here is of use any more.
+  bool add(const flow::Frame& frame, const deform::Points& vertices);
+
+  /// Of the frames so far; model units. Measured in the floats that a reader of targets has.
+  double greatest_error() const noexcept { return greatest_error_; }
+  /// A row for each control vector, a column a vertex; zero where no support reaches.
+  const Eigen::MatrixXf& influences() const noexcept { return influences_; }
+  /// The largest coordinate of all control vectors; 0: nothing ever moved.
+  float greatest_vector() const noexcept;
+  /// The control vectors of each frame, one after another: x y z of the first, and so on.
+  std::vector<float> vectors() const;
+
+private:
+  bool set_basis(const deform::CsrbfField& field);
+  Eigen::Matrix3Xf vectors_of(const deform::CsrbfField& field) const;
+
+  const deform::BlockLayout& layout_;
+  Eigen::Matrix3Xf rest_;
+  deform::Points centres_; ///< of the basis; none: no frame has had a field yet
+  bool cardinal_ = false;  ///< otherwise the functions themselves are the basis
+  Eigen::MatrixXf influences_;
+  std::size_t still_ = 0;      ///< frames before the basis was known
+  std::vector<float> vectors_; ///< of those after
+  double greatest_error_ = 0.0;
+};
+
+} // namespace nendo::app

@@ -1,0 +1,215 @@
+#include "export/glb_file.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include <nendo/base/byte_writer.hpp>
+#include <nendo/base/file_replacement.hpp>
+
+namespace nendo::app {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "glTF's numbers are little-endian");
+
+// glTF's names for them.
+constexpr int component_u8 = 5121;
+constexpr int component_u16 = 5123;
+constexpr int component_u32 = 5125;
+constexpr int component_f32 = 5126;
+constexpr int target_vertices = 34962;
+constexpr int target_indices = 34963;
+
+constexpr std::uint32_t magic = 0x46546C67; // "glTF"
+constexpr std::uint32_t json_chunk = 0x4E4F534A;
+constexpr std::uint32_t binary_chunk = 0x004E4942;
+constexpr std::uint64_t most_bytes = std::numeric_limits<std::uint32_t>::max();
+
+std::span<const std::byte> bytes_of(const Eigen::Matrix3Xf& vectors) {
+  return std::as_bytes(std::span(vectors.data(), static_cast<std::size_t>(vectors.size())));
+}
+
+GlbFile::Json list_of(const Eigen::Vector3f& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+void bound(GlbFile::Json& accessor, const Eigen::Matrix3Xf& vectors) {
+  accessor["min"] = list_of(vectors.rowwise().minCoeff());
+  accessor["max"] = list_of(vectors.rowwise().maxCoeff());
+}
+
+std::vector<std::uint16_t> narrowed(std::span<const std::uint32_t> indices) {
+  std::vector<std::uint16_t> narrow;
+  narrow.reserve(indices.size());
+  for (const std::uint32_t index : indices)
+    narrow.push_back(static_cast<std::uint16_t>(index));
+  return narrow;
+}
+
+// 65535 itself would be a primitive's restart.
+bool are_narrow(std::span<const std::uint32_t> indices) {
+  return std::all_of(indices.begin(), indices.end(),
+                     [](std::uint32_t index) { return index < UINT16_MAX; });
+}
+
+} // namespace
+
+GlbFile::GlbFile(std::string_view generator) {
+  json_["asset"] = {{"version", "2.0"}, {"generator", generator}};
+}
+
+GlbFile::Index GlbFile::add(std::string_view list, Json item) {
+  Json& items = json_[std::string(list)];
+  items.push_back(std::move(item));
+  return items.size() - 1;
+}
+
+GlbFile::Index GlbFile::add_view(std::span<const std::byte> bytes, std::optional<Use> use) {
+  assert(!bytes.empty());
+  Json view{{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes.size()}};
+  if (use == Use::vertices) view["target"] = target_vertices;
+  if (use == Use::indices) view["target"] = target_indices;
+  views_.push_back(std::move(view));
+  const std::size_t padded = (bytes.size() + 3) / 4 * 4;
+  bytes_ += padded;
+  // What cannot be written need not be kept.
+  if (bytes_ > most_bytes) return views_.size() - 1;
+  auto& part = parts_.emplace_back(padded);
+  std::memcpy(part.data(), bytes.data(), bytes.size());
+  return views_.size() - 1;
+}
+
+GlbFile::Index GlbFile::add_accessor(Index view, int component, std::size_t count,
+                                     const char* type) {
+  accessors_.push_back(
+      {{"bufferView", view}, {"componentType", component}, {"count", count}, {"type", type}});
+  return accessors_.size() - 1;
+}
+
+GlbFile::Index GlbFile::add_vectors(const Eigen::Matrix3Xf& vectors, Use use, bool bounded) {
+  const Index accessor = add_accessor(add_view(bytes_of(vectors), use), component_f32,
+                                      static_cast<std::size_t>(vectors.cols()), "VEC3");
+  if (bounded) bound(accessors_.back(), vectors);
+  return accessor;
+}
+
+GlbFile::Json GlbFile::sparse(std::span<const std::uint32_t> places,
+                              std::span<const float> values) {
+  const bool narrow = are_narrow(places);
+  const Index indices =
+      narrow
+          ? add_view(std::as_bytes(std::span<const std::uint16_t>(narrowed(places))), std::nullopt)
+          : add_view(std::as_bytes(places), std::nullopt);
+  const Index numbers = add_view(std::as_bytes(values), std::nullopt);
+  return {{"count", places.size()},
+          {"indices",
+           {{"bufferView", indices}, {"componentType", narrow ? component_u16 : component_u32}}},
+          {"values", {{"bufferView", numbers}}}};
+}
+
+GlbFile::Index GlbFile::add_sparse_vectors(const Eigen::Matrix3Xf& vectors) {
+  std::vector<std::uint32_t> places;
+  std::vector<float> values;
+  for (Eigen::Index at = 0; at < vectors.cols(); ++at) {
+    const auto vector = vectors.col(at);
+    if (vector.isZero(0.0F)) continue;
+    places.push_back(static_cast<std::uint32_t>(at));
+    values.insert(values.end(), vector.begin(), vector.end());
+  }
+  const std::size_t index_bytes = are_narrow(places) ? 2 : 4;
+  const bool pays =
+      places.size() * (12 + index_bytes) < 12 * static_cast<std::size_t>(vectors.cols());
+  if (!pays || places.empty()) return add_vectors(vectors, Use::vertices, true);
+  Json accessor{{"componentType", component_f32},
+                {"count", vectors.cols()},
+                {"type", "VEC3"},
+                {"sparse", sparse(places, values)}};
+  bound(accessor, vectors);
+  accessors_.push_back(std::move(accessor));
+  return accessors_.size() - 1;
+}
+
+GlbFile::Index GlbFile::add_quaternions(std::span<const float> xyzw) {
+  return add_accessor(add_view(std::as_bytes(xyzw), Use::animation), component_f32, xyzw.size() / 4,
+                      "VEC4");
+}
+
+GlbFile::Index GlbFile::add_scalars(std::span<const float> numbers, bool bounded) {
+  const Index accessor = add_accessor(add_view(std::as_bytes(numbers), Use::animation),
+                                      component_f32, numbers.size(), "SCALAR");
+  if (bounded) {
+    const auto [least, greatest] = std::minmax_element(numbers.begin(), numbers.end());
+    accessors_.back()["min"] = {*least};
+    accessors_.back()["max"] = {*greatest};
+  }
+  return accessor;
+}
+
+GlbFile::Index GlbFile::add_ones(std::size_t count, std::span<const std::uint32_t> places) {
+  const std::vector<float> ones(places.size(), 1.0F);
+  Json accessor{{"componentType", component_f32}, {"count", count}, {"type", "SCALAR"}};
+  if (!places.empty()) accessor["sparse"] = sparse(places, ones);
+  accessors_.push_back(std::move(accessor));
+  return accessors_.size() - 1;
+}
+
+GlbFile::Index GlbFile::add_indices(std::span<const std::uint32_t> indices, Use use) {
+  const bool narrow = are_narrow(indices);
+  const Index view =
+      narrow ? add_view(std::as_bytes(std::span<const std::uint16_t>(narrowed(indices))), use)
+             : add_view(std::as_bytes(indices), use);
+  return add_accessor(view, narrow ? component_u16 : component_u32, indices.size(), "SCALAR");
+}
+
+GlbFile::Index GlbFile::add_joints(std::span<const std::uint8_t> fours) {
+  return add_accessor(add_view(std::as_bytes(fours), Use::vertices), component_u8, fours.size() / 4,
+                      "VEC4");
+}
+
+GlbFile::Index GlbFile::add_weights(std::span<const float> fours) {
+  return add_accessor(add_view(std::as_bytes(fours), Use::vertices), component_f32,
+                      fours.size() / 4, "VEC4");
+}
+
+GlbFile::Index GlbFile::add_matrices(std::span<const float> sixteens) {
+  return add_accessor(add_view(std::as_bytes(sixteens), std::nullopt), component_f32,
+                      sixteens.size() / 16, "MAT4");
+}
+
+Result<std::uint64_t> GlbFile::write(const std::filesystem::path& path) const {
+  Json document = json_;
+  document["buffers"] = Json::array({{{"byteLength", bytes_}}});
+  document["bufferViews"] = views_;
+  document["accessors"] = accessors_;
+  std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  constexpr std::uint64_t heads = 12 + 8 + 8;
+  const std::uint64_t total = heads + text.size() + bytes_;
+  if (total > most_bytes) {
+    return Error{Errc::failed, path.string() + ": would be larger than 4 GiB, which a GLB file "
+                                               "cannot be; export a part with --from and --to, or "
+                                               "use a greater --tolerance or a lower --rate"};
+  }
+  auto file = FileReplacement::begin(path);
+  if (!file) return file.error();
+  std::vector<std::byte> head;
+  ByteWriter words(head);
+  for (const std::uint64_t word : {std::uint64_t{magic}, std::uint64_t{2}, total,
+                                   std::uint64_t{text.size()}, std::uint64_t{json_chunk}})
+    words.u32_le(static_cast<std::uint32_t>(word));
+  if (const auto written = file->write(head); !written) return written.error();
+  if (const auto written = file->write(text); !written) return written.error();
+  head.clear();
+  words.u32_le(static_cast<std::uint32_t>(bytes_));
+  words.u32_le(binary_chunk);
+  if (const auto written = file->write(head); !written) return written.error();
+  for (const auto& part : parts_)
+    if (const auto written = file->write(part); !written) return written.error();
+  if (const auto finished = file->finish(); !finished) return finished.error();
+  return total;
+}
+
+} // namespace nendo::app

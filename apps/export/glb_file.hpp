@@ -1,0 +1,65 @@
+#pragma once
+// A binary glTF 2.0 file (Khronos specification, sections 3.6 "Binary data storage" and 4 "GLB"):
+// numbers are put into one buffer with accessors that tell what they are; the rest of the document
+// is JSON, which whoever uses this fills.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::app {
+
+class GlbFile {
+public:
+  using Json = nlohmann::ordered_json;
+  using Index = std::size_t; ///< of accessors, nodes, and so on
+
+  enum class Use { vertices, indices, animation }; ///< of the numbers in a view
+
+  explicit GlbFile(std::string_view generator);
+
+  /// The document but for buffers, views and accessors.
+  Json& operator[](std::string_view part) { return json_[std::string(part)]; }
+  /// Appends to the list of that name ("nodes") and tells where it stands.
+  Index add(std::string_view list, Json item);
+
+  // Each gives an accessor. Numbers are finite; there is at least one.
+  /// 3 by #vectors; with their bounds, as POSITION has to have them.
+  Index add_vectors(const Eigen::Matrix3Xf& vectors, Use use, bool bounded);
+  /// What is zero in most columns, as a sparse accessor where that takes less room. Bounded.
+  Index add_sparse_vectors(const Eigen::Matrix3Xf& vectors);
+  Index add_quaternions(std::span<const float> xyzw);
+  Index add_scalars(std::span<const float> numbers, bool bounded);
+  /// `count` zeros, but ones at `places`, which rise.
+  Index add_ones(std::size_t count, std::span<const std::uint32_t> places);
+  /// As 16 bits where they are enough.
+  Index add_indices(std::span<const std::uint32_t> indices, Use use);
+  Index add_joints(std::span<const std::uint8_t> fours);
+  Index add_weights(std::span<const float> fours);
+  Index add_matrices(std::span<const float> sixteens); ///< column by column
+
+  /// A file of that name is replaced by the whole one. Blocks. Errors: failed (more than 4 GiB,
+  /// which no GLB file can be; cannot be written).
+  Result<std::uint64_t> write(const std::filesystem::path& path) const;
+
+private:
+  Index add_view(std::span<const std::byte> bytes, std::optional<Use> use);
+  Index add_accessor(Index view, int component, std::size_t count, const char* type);
+  Json sparse(std::span<const std::uint32_t> places, std::span<const float> values);
+
+  Json json_;
+  Json views_ = Json::array();
+  Json accessors_ = Json::array();
+  std::vector<std::vector<std::byte>> parts_; ///< a view each, padded to fours
+  std::uint64_t bytes_ = 0;                   ///< of all parts
+};
+
+} // namespace nendo::app

@@ -1,0 +1,178 @@
+#include "export/gltf_export.hpp"
+
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "export/control_morphs.hpp"
+#include "export/gltf_model.hpp"
+#include "export/hand_rig.hpp"
+#include "export/key_shapes.hpp"
+
+namespace nendo::app {
+namespace {
+
+using Json = GlbFile::Json;
+
+/// What of a take is not its shapes.
+struct Played {
+  bool to_the_end = false;
+  std::vector<float> times_s; ///< since the first frame; they rise
+  std::array<std::optional<HandTrack>, 2> hands;
+  double units_per_metre = 1.0;
+  double last_s = 0.0;
+};
+
+/// Is given each frame, its time since the first and its vertices; false: the rest is not wanted.
+using See = std::function<bool(const flow::Frame& frame, float time_s, const deform::Points&)>;
+
+Error not_finite(double time_s) {
+  return {Errc::bad_input, "at " + std::to_string(time_s) +
+                               " s there are numbers that 32-bit floats cannot hold; scale the "
+                               "model down, or leave the hands out with --no-hands"};
+}
+
+bool follow_hands(const flow::Frame& frame, Played& played) {
+  for (const Side side : {Side::left, Side::right}) {
+    const std::size_t slot = flow::Placement::index_of(side);
+    const flow::HandFrame& hand = frame.hands[slot];
+    if (played.times_s.size() == 1 && hand.present) played.hands[slot].emplace(side);
+    if (played.hands[slot] && !played.hands[slot]->add(hand.pose)) return false;
+  }
+  return true;
+}
+
+Result<Played> play(ChosenFrames& frames, bool hands, const See& see) {
+  Played played;
+  deform::Points vertices;
+  for (;;) {
+    const auto more = frames.next();
+    if (!more) return more.error();
+    if (!*more) break;
+    const auto time_s = static_cast<float>(frames.time_s() - frames.first_s());
+    // Ticks that followed each other at once; a player wants times that rise.
+    if (!played.times_s.empty() && !(time_s > played.times_s.back())) continue;
+    const flow::Frame& frame = frames.frame();
+    frames.vertices(vertices);
+    played.times_s.push_back(time_s);
+    if (!vertices.cast<float>().allFinite() || (hands && !follow_hands(frame, played)))
+      return not_finite(frames.time_s());
+    if (!see(frame, time_s, vertices)) return played;
+    played.units_per_metre = frame.units_per_metre;
+    played.last_s = frames.time_s();
+  }
+  played.to_the_end = true;
+  return played;
+}
+
+/// One file, with the part of its document that animates.
+struct Document {
+  explicit Document(const GltfOptions& options)
+      : file(options.generator), animation{{"name", "take"},
+                                           {"samplers", Json::array()},
+                                           {"channels", Json::array()}} {}
+
+  void animate(GlbFile::Index node, GlbFile::Index times, GlbFile::Index weights) {
+    animation["samplers"].push_back(
+        {{"input", times}, {"output", weights}, {"interpolation", "LINEAR"}});
+    animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1},
+                                     {"target", {{"node", node}, {"path", "weights"}}}});
+  }
+
+  GlbFile file;
+  Json animation;
+};
+
+Result<Exported> finish(Document& document, const GltfModel& model, const Played& played,
+                        const MorphReport& report, double first_s,
+                        const std::filesystem::path& path) {
+  GlbFile& file = document.file;
+  Json roots = Json::array({GltfModel::node});
+  model.add_to(file, played.units_per_metre, report);
+  GlbFile::Index times = 0;
+  const bool has_hands = played.hands[0] || played.hands[1];
+  if (has_hands) times = file.add_scalars(played.times_s, true);
+  for (const auto& hand : played.hands)
+    if (hand) add_hand(*hand, times, file, document.animation, roots);
+  file["scene"] = 0;
+  file.add("scenes", {{"name", "stage"}, {"nodes", std::move(roots)}});
+  if (!document.animation["channels"].empty())
+    file.add("animations", std::move(document.animation));
+  const auto bytes = file.write(path);
+  if (!bytes) return bytes.error();
+  return Exported{{path.string()}, played.times_s.size(), first_s, played.last_s, *bytes, report};
+}
+
+/// Nothing, if the take is not linear in control vectors.
+Result<std::optional<Exported>> by_control_vectors(FrameSource& source, const Choice& choice,
+                                                   const GltfOptions& options,
+                                                   const std::filesystem::path& path) {
+  auto frames = ChosenFrames::make(source, choice);
+  if (!frames) return frames.error();
+  ControlMorphs morphs(source.layout());
+  const auto played = play(*frames, options.hands,
+                           [&](const flow::Frame& frame, float, const deform::Points& vertices) {
+                             return morphs.add(frame, vertices);
+                           });
+  if (!played) return played.error();
+  if (!played->to_the_end) return std::optional<Exported>();
+  Document document(options);
+  GltfModel model(source.model(), document.file);
+  const auto weights = model.add_control_targets(morphs, document.file);
+  if (!weights.empty()) {
+    const auto times = document.file.add_scalars(played->times_s, true);
+    document.animate(GltfModel::node, times, document.file.add_scalars(weights, false));
+  }
+  const MorphReport report{true, model.target_count(), weights.empty() ? 0 : played->times_s.size(),
+                           morphs.greatest_error() / source.layout().diagonal()};
+  auto done = finish(document, model, *played, report, frames->first_s(), path);
+  if (!done) return done.error();
+  return std::optional<Exported>(*std::move(done));
+}
+
+Result<Exported> by_key_shapes(FrameSource& source, const Choice& choice,
+                               const GltfOptions& options, const std::filesystem::path& path) {
+  auto frames = ChosenFrames::make(source, choice);
+  if (!frames) return frames.error();
+  const double diagonal = source.layout().diagonal();
+  const deform::Points& rest = source.layout().original();
+  Document document(options);
+  GltfModel model(source.model(), document.file);
+  std::vector<float> key_times_s;
+  KeyShapes keys(options.tolerance * diagonal, [&](float time_s, const KeyShapes::Shape& way) {
+    key_times_s.push_back(time_s);
+    model.add_key_target(way, document.file);
+  });
+  const auto played = play(*frames, options.hands,
+                           [&](const flow::Frame&, float time_s, const deform::Points& vertices) {
+                             keys.add(time_s, (vertices - rest).cast<float>());
+                             return true;
+                           });
+  if (!played) return played.error();
+  keys.finish();
+  if (model.target_count() > 0) {
+    const auto times = document.file.add_scalars(key_times_s, true);
+    document.animate(GltfModel::node, times, model.add_key_weights(document.file));
+  }
+  // A reader adds targets to a rest shape that is rounded to floats, too.
+  const double rounding = (rest.cast<float>().cast<double>() - rest).colwise().norm().maxCoeff();
+  const MorphReport report{false, model.target_count(), key_times_s.size(),
+                           (keys.greatest_error() + rounding) / diagonal};
+  return finish(document, model, *played, report, frames->first_s(), path);
+}
+
+} // namespace
+
+Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
+                             const GltfOptions& options, const std::filesystem::path& path) {
+  auto source = open();
+  if (!source) return source.error();
+  auto exact = by_control_vectors(**source, choice, options, path);
+  if (!exact) return exact.error();
+  if (*exact) return *std::move(*exact);
+  source = open();
+  if (!source) return source.error();
+  return by_key_shapes(**source, choice, options, path);
+}
+
+} // namespace nendo::app

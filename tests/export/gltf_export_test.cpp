@@ -1,0 +1,185 @@
+#include "export/gltf_export.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nendo/viewer/hand_skin.hpp>
+
+#include "support/glb_reader.hpp"
+#include "support/recorded_motion.hpp"
+
+using namespace nendo;
+using namespace nendo::app;
+using nendo::test::Glb;
+using nendo::test::Motion;
+using nendo::test::RecordedMotion;
+
+namespace {
+
+Result<Exported> export_it(const RecordedMotion& motion, const Choice& choice = {},
+                           const GltfOptions& options = {}) {
+  return export_gltf([&] { return Result<std::unique_ptr<FrameSource>>(motion.frames()); }, choice,
+                     options, motion.path("take.glb"));
+}
+
+Glb read(const RecordedMotion& motion) {
+  return Glb(test::file_bytes(motion.path("take.glb")));
+}
+
+/// Of all frames, as an independent reader has them; parts of the diagonal.
+double farthest_off(const RecordedMotion& motion, const Glb& glb) {
+  double worst = 0.0;
+  for (std::size_t at = 0; at < motion.shapes.size(); ++at)
+    worst = std::max(worst, test::farthest(glb.vertices(0, motion.times_s[at] - motion.times_s[0]),
+                                           motion.shapes[at]));
+  return worst / motion.diagonal();
+}
+
+double way(const RecordedMotion& motion) {
+  double most = 0.0;
+  for (const auto& shape : motion.shapes)
+    most = std::max(most, test::farthest(shape, motion.played.test.model.vertices));
+  return most / motion.diagonal();
+}
+
+} // namespace
+
+TEST_SUITE("gltf_export") {
+  TEST_CASE("a take of Type-1 is its control vectors, exact at every frame, and sparse") {
+    const RecordedMotion motion(Motion{});
+    const auto done = export_it(motion);
+    REQUIRE(done);
+    REQUIRE(done->morphs);
+    CHECK(done->morphs->by_control_vectors);
+    CHECK(done->morphs->targets >= 20);
+    CHECK(done->morphs->targets <= 60);
+    CHECK(done->frames == motion.shapes.size());
+    CHECK(way(motion) > 0.005);
+    const Glb glb = read(motion);
+    const double off = farthest_off(motion, glb);
+    CHECK(off < 1e-6);
+    for (const double time_s : {0.0, 0.1, 0.2, 0.3}) {
+      const auto weights = glb.animated(0, "weights", time_s, {});
+      CHECK(weights.minCoeff() >= 0.0); // some programs take no others
+      CHECK(weights.maxCoeff() <= 1.0);
+    }
+    CHECK(done->morphs->greatest_error < 1e-6);
+    std::size_t sparse = 0;
+    for (const auto& accessor : glb.json["accessors"])
+      sparse += accessor.contains("sparse") ? 1U : 0U;
+    CHECK(sparse > 0);
+    CHECK(done->bytes == std::filesystem::file_size(motion.path("take.glb")));
+  }
+
+  TEST_CASE("commits and Type-2 become key shapes, as near as is asked for and as is said") {
+    for (const Motion& motion : {Motion{.commit_at_tick = 20}, Motion{.mode = flow::Mode::type2},
+                                 Motion{.mode = flow::Mode::type2, .injective = true}}) {
+      const RecordedMotion recorded(motion);
+      CHECK(way(recorded) > 0.005);
+      for (const double tolerance : {1e-3, 1e-4}) {
+        const auto done = export_it(recorded, {}, {.tolerance = tolerance});
+        REQUIRE(done);
+        CHECK_FALSE(done->morphs->by_control_vectors);
+        const double off = farthest_off(recorded, read(recorded));
+        CHECK(off <= done->morphs->greatest_error + 1e-6);
+        CHECK(done->morphs->greatest_error <= tolerance + 1e-6);
+        if (tolerance > 5e-4) CHECK(done->morphs->keys < recorded.shapes.size() / 2);
+      }
+    }
+  }
+
+  TEST_CASE("ways in several links are no control vectors, and are told apart by their shapes") {
+    const RecordedMotion motion(Motion{.injective = true, .bend_counts = 60.0});
+    const auto done = export_it(motion);
+    REQUIRE(done);
+    const double off = farthest_off(motion, read(motion));
+    CHECK(off <= done->morphs->greatest_error + 1e-6);
+    CHECK(off <= 1e-4 + 1e-6);
+  }
+
+  TEST_CASE("joints stand where the hands' were, and the skin follows as the viewer's does") {
+    const RecordedMotion motion(Motion{});
+    REQUIRE(export_it(motion));
+    const Glb glb = read(motion);
+    for (const std::size_t at : {std::size_t{0}, std::size_t{17}, motion.shapes.size() - 1}) {
+      const double time_s = motion.times_s[at] - motion.times_s[0];
+      for (const Side side : {Side::left, Side::right}) {
+        const auto& pose = motion.hands[at][flow::Placement::index_of(side)];
+        std::vector<Eigen::Affine3d> worlds;
+        for (std::size_t joint = 0; joint < hand::joint_count; ++joint) {
+          const auto name = std::string(name_of(static_cast<hand::Joint>(joint))) +
+                            (side == Side::left ? "_L" : "_R");
+          worlds.push_back(glb.world(glb.node_named(name), time_s));
+          CHECK((worlds.back().matrix() - pose.joints[joint].matrix()).norm() < 1e-5);
+        }
+        const auto node = glb.node_named(std::string(name_of(side)) + " hand");
+        const auto& skin = glb.json["skins"][glb.json["nodes"][node]["skin"].get<std::size_t>()];
+        const Eigen::MatrixXd inverses = glb.accessor(skin["inverseBindMatrices"]);
+        const auto& attributes =
+            glb.json["meshes"][glb.json["nodes"][node]["mesh"].get<std::size_t>()]["primitives"][0]
+                    ["attributes"];
+        const Eigen::MatrixXd places = glb.accessor(attributes["POSITION"]);
+        const Eigen::MatrixXd joints = glb.accessor(attributes["JOINTS_0"]);
+        const Eigen::MatrixXd weights = glb.accessor(attributes["WEIGHTS_0"]);
+        viewer::Surface surface;
+        viewer::HandSkin(side).drape(pose, Eigen::Vector3d::Zero(), surface);
+        REQUIRE(static_cast<std::size_t>(places.cols()) == surface.places.size());
+        double worst = 0.0;
+        for (Eigen::Index v = 0; v < places.cols(); ++v) {
+          Eigen::Vector3d skinned = Eigen::Vector3d::Zero();
+          for (int rank = 0; rank < 4; ++rank) {
+            const auto joint = static_cast<Eigen::Index>(joints(rank, v));
+            const Eigen::Matrix4d inverse = inverses.col(joint).reshaped(4, 4);
+            skinned +=
+                weights(rank, v) * (worlds[static_cast<std::size_t>(joint)].matrix() * inverse *
+                                    Eigen::Vector4d(places(0, v), places(1, v), places(2, v), 1.0))
+                                       .head<3>();
+          }
+          const Eigen::Vector3d draped = surface.places[static_cast<std::size_t>(v)].cast<double>();
+          worst = std::max(worst, (skinned - draped).norm());
+        }
+        CHECK(worst < 1e-5);
+      }
+    }
+  }
+
+  TEST_CASE("the model is in metres by its node's scale, and the hands may be left out") {
+    const RecordedMotion motion(Motion{.ticks = 20});
+    REQUIRE(export_it(motion, {}, {.hands = false}));
+    const Glb glb = read(motion);
+    CHECK(glb.json["scenes"][0]["nodes"].size() == 1);
+    CHECK_FALSE(glb.json.contains("skins"));
+    CHECK(glb.world(0, 0.0).matrix()(0, 0) ==
+          doctest::Approx(1.0 / motion.played.test.placement.units_per_metre));
+    CHECK(glb.json["asset"]["version"] == "2.0");
+    const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+    const Eigen::MatrixXd normals = glb.accessor(primitive["attributes"]["NORMAL"]);
+    CHECK((normals.colwise().norm().array() - 1.0).abs().maxCoeff() < 1e-5);
+    std::size_t triangles = 0;
+    const auto& mesh = motion.played.test.model;
+    for (std::size_t face = 0; face < mesh.face_count(); ++face)
+      triangles += mesh.face_starts[face + 1] - mesh.face_starts[face] - 2;
+    CHECK(glb.json["accessors"][primitive["indices"].get<std::size_t>()]["count"] == 3 * triangles);
+  }
+
+  TEST_CASE("a part of a take, at a rate, begins at time 0 and has the nearest frames' shapes") {
+    const RecordedMotion motion(Motion{});
+    const auto done = export_it(motion, {.from_s = 0.195, .to_s = 0.405, .rate_hz = 50.0});
+    REQUIRE(done);
+    CHECK(done->frames == 11);
+    CHECK(done->first_s == doctest::Approx(0.2));
+    const Glb glb = read(motion);
+    for (std::size_t at = 0; at < 11; ++at)
+      CHECK(test::farthest(glb.vertices(0, static_cast<double>(at) / 50.0),
+                           motion.shapes[19 + 2 * at]) < 1e-6 * motion.diagonal());
+  }
+
+  TEST_CASE("a stop leaves the file that was there") {
+    const RecordedMotion motion(Motion{.ticks = 5});
+    test::write_bytes(motion.path("take.glb"), "old");
+    const std::atomic<bool> stop{true};
+    const auto done = export_it(motion, {.stop = &stop});
+    REQUIRE_FALSE(done);
+    CHECK(done.error().code == Errc::failed);
+    CHECK(test::file_bytes(motion.path("take.glb")) == "old");
+  }
+}

@@ -1,0 +1,75 @@
+#include "export/motion_csv.hpp"
+
+#include <map>
+#include <sstream>
+
+#include <doctest/doctest.h>
+
+#include "support/recorded_motion.hpp"
+
+using namespace nendo;
+using namespace nendo::app;
+using nendo::test::Motion;
+using nendo::test::RecordedMotion;
+
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');)
+    cells.push_back(cell);
+  return cells;
+}
+
+/// By column, then row.
+std::map<std::string, std::vector<std::string>> table_of(const std::string& text) {
+  std::map<std::string, std::vector<std::string>> table;
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  const auto head = cells_of(line);
+  while (std::getline(lines, line)) {
+    const auto cells = cells_of(line);
+    REQUIRE(cells.size() == head.size());
+    for (std::size_t at = 0; at < head.size(); ++at)
+      table[head[at]].push_back(cells[at]);
+  }
+  return table;
+}
+
+} // namespace
+
+TEST_SUITE("motion_csv") {
+  TEST_CASE("a row a frame has time, status, fingertips, and angles that make those fingertips") {
+    const RecordedMotion motion(Motion{.ticks = 15, .commit_at_tick = 9});
+    const auto source = motion.frames();
+    auto frames = ChosenFrames::make(*source, {});
+    REQUIRE(frames);
+    REQUIRE(export_motion_csv(*frames, motion.path("take.csv")));
+    auto table = table_of(test::file_bytes(motion.path("take.csv")));
+    CHECK(table.size() == 6 + 2 * (2 + hand::angle_count + 15));
+    REQUIRE(table["time_s"].size() == 15);
+    CHECK(table["commits"][8] == "0");
+    CHECK(table["commits"][9] == "1");
+    CHECK(table["status"][3] == "ok");
+    CHECK(table["held"][3] == "1");
+    for (std::size_t row = 0; row < 15; ++row) {
+      CHECK(std::stod(table["time_s"][row]) == doctest::Approx(motion.times_s[row]));
+      for (const Side side : {Side::left, Side::right}) {
+        const std::string name = std::string(name_of(side)) + "_";
+        const std::size_t slot = flow::Placement::index_of(side);
+        hand::JointAngles angles;
+        for (std::size_t at = 0; at < hand::angle_count; ++at)
+          angles[hand::angle_at(at)] = from_degrees(
+              std::stod(table[name + std::string(hand::angle_names[at]) + "_deg"][row]));
+        const auto pose =
+            hand::HandSkeleton(side).pose(angles, motion.played.test.placement.T_stage_wrist[slot]);
+        const auto tip = motion.hands[row][slot][hand::Joint::ring_tip].translation();
+        CHECK((pose[hand::Joint::ring_tip].translation() - tip).norm() < 1e-5);
+        CHECK(std::stod(table[name + "ring_tip_y_m"][row]) == doctest::Approx(tip.y()));
+        CHECK(std::stod(table[name + "ring_tip_z_m"][row]) == doctest::Approx(tip.z()));
+      }
+    }
+  }
+}

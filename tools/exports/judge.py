@@ -1,0 +1,221 @@
+"""Runs in Blender: imports exports and compares vertices and joints with nendo's own. See tools/check-exports."""
+import csv
+import glob
+import json
+import math
+import os
+import struct
+import sys
+
+import bpy
+import io_anim_bvh.import_bvh
+import numpy as np
+from mathutils import Vector
+
+# Debian 12's Blender 3.4 stands on a newer Python and numpy than its importers: open(mode "U") and np.bool are no more.
+io_anim_bvh.import_bvh.open = lambda path, mode="r", *rest, **named: open(path, mode.replace("U", ""), *rest, **named)
+for name, kind in (("bool", bool), ("int", int), ("float", float), ("object", object)):
+    if name not in np.__dict__:
+        setattr(np, name, kind)
+
+WORK, MODEL = sys.argv[sys.argv.index("--") + 1:]
+FPS = 30
+NEAR = 1e-5  # of the diagonal
+complaints = 0
+
+
+def say(what, value, limit):
+    global complaints
+    fine = value <= limit
+    complaints += not fine
+    print(f"nendo: {'' if fine else 'TOO FAR: '}{what}: {value:.2e} (at most {limit:.2e})", flush=True)
+
+
+def path(name):
+    return os.path.abspath(os.path.join(WORK, name))
+
+
+def read_ply(file):
+    """The vertices of a binary little-endian PLY as nendo writes it."""
+    data = open(file, "rb").read()
+    head, _, body = data.partition(b"end_header\n")
+    count, kinds, inside = 0, [], False
+    for line in head.decode().splitlines():
+        words = line.split()
+        if words[0] == "element":
+            inside = words[1] == "vertex"
+            count = int(words[2]) if inside else count
+        elif words[0] == "property" and inside:
+            kinds.append((words[2], {"double": "<f8", "float": "<f4"}[words[1]]))
+    table = np.frombuffer(body, dtype=np.dtype(kinds), count=count)
+    return np.stack([table["x"], table["y"], table["z"]], axis=1).astype(float)
+
+
+def read_csv(name):
+    with open(path(name), newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def begin():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.context.scene.render.fps = FPS
+
+
+def go_to(frame):
+    whole = math.floor(frame)
+    bpy.context.scene.frame_set(whole, subframe=frame - whole)
+    return bpy.context.evaluated_depsgraph_get()
+
+
+def vertices(thing, graph):
+    shaped = thing.evaluated_get(graph)
+    mesh = shaped.to_mesh()
+    places = np.empty(3 * len(mesh.vertices))
+    mesh.vertices.foreach_get("co", places)
+    shaped.to_mesh_clear()
+    return places.reshape(-1, 3)
+
+
+def in_gltf(thing, graph):
+    """In the file's axes: Blender's importer turns y up into z up."""
+    world = np.array(thing.evaluated_get(graph).matrix_world)
+    places = vertices(thing, graph) @ world[:3, :3].T + world[:3, 3]
+    return np.stack([places[:, 0], places[:, 2], -places[:, 1]], axis=1)
+
+
+def scale_in(file):
+    with open(file, "rb") as glb:
+        length = struct.unpack("<12xI4x", glb.read(20))[0]
+        return json.loads(glb.read(length))["nodes"][0]["scale"][0]
+
+
+def farthest(places, wanted):
+    return float(np.max(np.linalg.norm(places - wanted, axis=1)))
+
+
+def diagonal(places):
+    return float(np.linalg.norm(places.max(axis=0) - places.min(axis=0)))
+
+
+def import_glb(name):
+    begin()
+    bpy.ops.import_scene.gltf(filepath=path(name))
+    return bpy.data.objects["model"]
+
+
+def judge_tips(name, rows, first_frame, step):
+    """Fingertip joints of the armatures against the CSV's."""
+    worst = 0.0
+    for number in range(0, len(rows), step):
+        go_to((float(rows[number]["time_s"]) - float(rows[0]["time_s"])) * FPS + first_frame)
+        for side, suffix in (("left", "_L"), ("right", "_R")):
+            for finger in ("thumb", "index", "little"):
+                for rig in (o for o in bpy.data.objects if o.type == "ARMATURE" and finger + "_tip" + suffix in o.pose.bones):
+                    place = rig.matrix_world @ rig.pose.bones[finger + "_tip" + suffix].head
+                    wanted = [float(rows[number][f"{side}_{finger}_tip_{axis}_m"]) for axis in "xyz"]
+                    worst = max(worst, (Vector((place.x, place.z, -place.y)) - Vector(wanted)).length)
+                    judge_tips.seen += 1
+    say(f"{name}: fingertips, metres", worst, 2e-5)
+
+
+judge_tips.seen = 0
+
+
+def judge_even(take, limit):
+    """The frames of a file at 30 a second, against the sequence of meshes."""
+    model = import_glb(take + "-even.glb")
+    scale = scale_in(path(take + "-even.glb"))
+    worst = 0.0
+    meshes = sorted(glob.glob(path(take + "-[0-9]*.ply")))
+    for number in range(0, len(meshes), 7):
+        wanted = read_ply(meshes[number]) * scale
+        places = in_gltf(model, go_to(number))
+        worst = max(worst, farthest(places, wanted) / diagonal(wanted))
+    say(f"{take}-even.glb: vertices, parts of the diagonal", worst, limit)
+
+
+def judge_replayed():
+    model = import_glb("type1.glb")
+    scale = scale_in(path("type1.glb"))
+    rows = read_csv("type1.csv")
+    worst, seen = 0.0, 0
+    for file in glob.glob(path("replayed-*.ply")):
+        time_s = float(os.path.basename(file)[len("replayed-"):-len(".ply")])
+        wanted = read_ply(file) * scale
+        places = in_gltf(model, go_to((time_s - float(rows[0]["time_s"])) * FPS))
+        worst = max(worst, farthest(places, wanted) / diagonal(wanted))
+        seen += 1
+    assert seen > 2
+    say(f"type1.glb against {seen} shapes of nendo replay, parts of the diagonal", worst, NEAR)
+    judge_tips("type1.glb", rows, 0, 31)
+
+
+def judge_cache(take, kind):
+    begin()
+    bpy.ops.import_scene.obj(filepath=os.path.abspath(MODEL), split_mode="OFF", axis_forward="-Z", axis_up="Y")
+    model = next(o for o in bpy.data.objects if o.type == "MESH")
+    cache = model.modifiers.new("take", "MESH_CACHE")
+    cache.cache_format = kind
+    cache.filepath = path(f"{take}.{kind.lower()}")
+    cache.frame_start = 0
+    worst = 0.0
+    meshes = sorted(glob.glob(path(take + "-[0-9]*.ply")))
+    for number in range(0, len(meshes), 11):
+        wanted = read_ply(meshes[number])
+        worst = max(worst, farthest(vertices(model, go_to(number)), wanted) / diagonal(wanted))
+    say(f"{take}.{kind.lower()}: vertices, parts of the diagonal", worst, NEAR)
+
+
+def judge_bvh(take):
+    rows = read_csv(take + "-even.csv")
+    worst = 0.0
+    for side, suffix in (("left", "_L"), ("right", "_R")):
+        begin()
+        bpy.ops.import_anim.bvh(filepath=path(f"{take}-{side}.bvh"), axis_forward="-Z", axis_up="Y")
+        rig = next(o for o in bpy.data.objects if o.type == "ARMATURE")
+        for number in range(0, len(rows), 9):
+            go_to(number + 1)
+            for finger in ("thumb", "index", "little"):
+                place = rig.matrix_world @ rig.pose.bones[finger + "_distal" + suffix].tail
+                wanted = [100.0 * float(rows[number][f"{side}_{finger}_tip_{axis}_m"]) for axis in "xyz"]
+                worst = max(worst, (Vector((place.x, place.z, -place.y)) - Vector(wanted)).length)
+    say(f"{take}-left.bvh, {take}-right.bvh: fingertips, centimetres", worst, 2e-3)
+
+
+def draw(name):
+    import_glb(name)
+    go_to(40)
+    scene = bpy.context.scene
+    for place, energy in (((1.5, -2.0, 2.0), 90.0), ((-2.0, -1.0, 1.0), 40.0)):
+        light = bpy.data.objects.new("light", bpy.data.lights.new("light", "POINT"))
+        light.data.energy = energy
+        light.location = place
+        scene.collection.objects.link(light)
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    bounds = [o.matrix_world @ Vector(corner) for o in bpy.data.objects if o.type == "MESH" and o.data.name != "Icosphere"
+              for corner in o.bound_box]
+    middle = sum(bounds, Vector()) / len(bounds)
+    camera.location = middle + Vector((0.9, -1.6, 0.5))
+    camera.rotation_euler = (middle - camera.location).to_track_quat("-Z", "Y").to_euler()
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.render.engine = "BLENDER_WORKBENCH"
+    scene.display.shading.color_type = "MATERIAL"
+    scene.render.resolution_x, scene.render.resolution_y = 960, 720
+    scene.render.filepath = path(name.replace(".glb", ".png"))
+    bpy.ops.render.render(write_still=True)
+    print(f"nendo: picture: {scene.render.filepath}", flush=True)
+
+
+judge_replayed()
+judge_even("type1", NEAR)
+judge_even("linked", 1e-4 + NEAR)
+judge_even("type2", 1e-4 + NEAR)
+for take in ("type1", "type2"):
+    for kind in ("PC2", "MDD"):
+        judge_cache(take, kind)
+judge_bvh("type1")
+assert judge_tips.seen > 0
+draw("type1.glb")
+print(f"nendo: {complaints} complaints", flush=True)
+sys.exit(1 if complaints else 0)
