@@ -11,6 +11,7 @@ void add_calibration(Command& program);
 void add_deform(Command& program);
 void add_devices(Command& program);
 void add_doctor(Command& program);
+void add_edit(Command& program);
 void add_emulate(Command& program);
 void add_export(Command& program);
 void add_info(Command& program);

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/timeline/timeline_file.hpp>
+
 #include "cli.hpp"
 #include "commands.hpp"
 #include "export/gltf_export.hpp"
@@ -16,6 +18,7 @@
 #include "export/point_cache.hpp"
 #include "recorded_frames.hpp"
 #include "recorded_model.hpp"
+#include "timeline_frames.hpp"
 
 namespace nendo::app {
 namespace {
@@ -70,9 +73,8 @@ Result<std::string> check(const Options& options, const Choice& choice) {
   return format;
 }
 
-/// A recording that can be played again from its beginning.
+/// A recording, or a timeline, that can be played again from its beginning.
 struct Take {
-  deform::Mesh model;
   Skeletons skeletons;
   OpenFrames open;
 };
@@ -93,6 +95,20 @@ Result<Take> read_recorded(const Options& options) {
     take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.side, hand.size);
   take.open = [path = options.file, mesh = *std::move(model)] {
     auto frames = RecordedFrames::open(path, mesh);
+    if (!frames) return Result<std::unique_ptr<FrameSource>>(frames.error());
+    return Result<std::unique_ptr<FrameSource>>(*std::move(frames));
+  };
+  return take;
+}
+
+Result<Take> read_edited(const Options& options) {
+  const auto timeline = timeline::read_timeline(options.file);
+  if (!timeline) return timeline.error();
+  Take take;
+  for (const auto& hand : timeline->hands)
+    take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton());
+  take.open = [path = options.file, mesh = options.mesh] {
+    auto frames = TimelineFrames::open(path, mesh);
     if (!frames) return Result<std::unique_ptr<FrameSource>>(frames.error());
     return Result<std::unique_ptr<FrameSource>>(*std::move(frames));
   };
@@ -159,7 +175,8 @@ int export_command(const Options& options) {
   const Choice choice{options.from_s, options.to_s, options.rate_hz, &stop_requested()};
   const auto format = check(options, choice);
   if (!format) return report(format.error());
-  const auto take = read_recorded(options);
+  const auto take =
+      timeline::is_timeline(options.file) ? read_edited(options) : read_recorded(options);
   if (!take) return report(take.error());
   const auto done = export_take(*take, *format, options, choice);
   if (!done) return report(done.error());
@@ -176,7 +193,10 @@ void add_export(Command& program) {
   auto options = std::make_shared<Options>();
   Command command = program.add_command(
       "export", "Writes a recorded run as animation: glTF, point caches, meshes, BVH, CSV");
-  command.add_option("TAKE", options->file, "What `nendo run --record` recorded").required();
+  command
+      .add_option("TAKE", options->file,
+                  "What `nendo run --record` recorded, or a timeline of `nendo edit`")
+      .required();
   command
       .add_option("--out", options->out,
                   "Where to write: .glb (model and hands), .pc2 or .mdd (the model's vertices), "

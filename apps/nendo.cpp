@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
                        add_replay(program);
                        add_recording(program);
                        add_export(program);
+                       add_edit(program);
                        add_stress(program);
                        add_bench(program);
                        add_manual(program);

@@ -92,6 +92,8 @@ Result<void> check(CommandOptions& options) {
   if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
     return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
   }
+  if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
+    return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
   if (const auto fine = check_radius(run.radius); !fine) return fine;
   if (const auto fine = run.length.check(); !fine) return fine;
   if (const auto fine = check(run.calibration); !fine) return fine;
@@ -190,6 +192,9 @@ void add_run_options(Command& command, const std::shared_ptr<CommandOptions>& op
   add_filter_options(command, options->filter);
   add_publish_option(command, options->publish);
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
+  command.add_option("--undo-memory", run_options.undo_memory_mb,
+                     "Megabytes that undo and redo may take at most; without it, half of what the "
+                     "machine has. Then the oldest steps go");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
   command.add_option("--picture", run_options.picture,

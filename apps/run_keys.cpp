@@ -24,9 +24,10 @@ void tell(const std::string& what) {
 RunKeys::RunKeys(const RunOptions& options, const deform::Mesh& model, RunRecorder& recorder)
     : requests_(*options.loop.requests), model_(model), out_(options.out), recorder_(recorder) {
   if (!keys_.are_there()) return;
-  note("keys: g lets go, takes hold again; c keeps the shape so far; u undoes; s saves; " +
-       std::string(recorder_.keeps() ? "k keeps the recording of what was just done; " : "") +
-       "q ends");
+  note(
+      "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes; s saves; " +
+      std::string(recorder_.keeps() ? "k keeps the recording of what was just done; " : "") +
+      "q ends");
 }
 
 bool RunKeys::obey(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
@@ -36,6 +37,7 @@ bool RunKeys::obey(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
   if (*key == 'g') ask(held ? flow::Request::let_go : flow::Request::grab);
   if (*key == 'c' || *key == ' ') ask(flow::Request::commit);
   if (*key == 'u') ask(flow::Request::undo);
+  if (*key == 'r' || *key == 'U') ask(flow::Request::redo);
   if (*key == 's') save(loop);
   if (*key == 'k') recorder_.keep();
   if (*key != 'q') return true;

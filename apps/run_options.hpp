@@ -1,6 +1,7 @@
 #pragma once
 // What a run is asked for.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct RunOptions {
   double duration_s = 0.0; ///< 0: until a stop signal
   std::string radius;      ///< as deform::parse_supports_by_point; empty: of the model's size
   bool json = false;
+  std::optional<double> undo_memory_mb{}; ///< nothing: half of the machine's
   CalibrationOptions calibration;
   HandLength length;
   hand::FilterOptions filter; ///< of both hands

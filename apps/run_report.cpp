@@ -114,10 +114,15 @@ void print_holds(const RunOptions& options, const flow::LoopStats& stats) {
                 static_cast<unsigned long long>(stats.switch_uses[0] + stats.switch_uses[1]));
   }
   if (stats.commits + stats.grabs + stats.undos == 0) return;
-  std::printf("  %-14s %llu commits, %llu grabs, %llu undone\n", "shapes kept",
-              static_cast<unsigned long long>(stats.commits),
-              static_cast<unsigned long long>(stats.grabs),
-              static_cast<unsigned long long>(stats.undos));
+  std::printf(
+      "  %-14s %llu commits, %llu grabs, %llu undone, %llu redone\n", "shapes kept",
+      static_cast<unsigned long long>(stats.commits), static_cast<unsigned long long>(stats.grabs),
+      static_cast<unsigned long long>(stats.undos), static_cast<unsigned long long>(stats.redos));
+  if (stats.forgotten_steps > 0)
+    std::printf("  %-14s reached %llu steps back; the %llu before went for want of memory, "
+                "--undo-memory makes more room\n",
+                "undo", static_cast<unsigned long long>(stats.undo_steps),
+                static_cast<unsigned long long>(stats.forgotten_steps));
 }
 
 // What the filter was and how late it made the hands; its lag comes on top of end to end.
@@ -238,7 +243,10 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
                     {"switch", flow::name_of(options.loop.switch_action)},
                     {"grabs", stats.grabs},
                     {"commits", stats.commits},
-                    {"undos", stats.undos}};
+                    {"undos", stats.undos},
+                    {"redos", stats.redos},
+                    {"undo_steps", stats.undo_steps},
+                    {"forgotten_steps", stats.forgotten_steps}};
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
     const auto glove = hand.glove->stats();

@@ -21,11 +21,17 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// For some dozens of whole shapes, of which strokes mostly change parts.
+// What is there from the beginning, for some dozens of whole shapes, of which strokes mostly change
+// parts.
 std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
   constexpr std::size_t most = std::size_t{64} << 20;
   constexpr std::size_t a_vertex = 64 * 3 * sizeof(float);
   return std::min(most, a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
+}
+
+std::size_t most_undo_bytes(const RunOptions& options) noexcept {
+  return options.undo_memory_mb ? static_cast<std::size_t>(1e6 * *options.undo_memory_mb)
+                                : deform::half_of_memory();
 }
 
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
@@ -114,7 +120,10 @@ public:
         followers_(followers), lights_(options_.loop.switch_action, hands_) {
     options_.loop.requests = &requests_;
     options_.loop.wrists = &wrists_;
-    options_.loop.sculptor.deformer.undo_bytes = undo_bytes_for(model_);
+    const std::size_t most = most_undo_bytes(options_);
+    const std::size_t at_once = std::min(undo_bytes_for(model_), most);
+    options_.loop.sculptor.deformer.undo_bytes = at_once;
+    options_.loop.undo_most_bytes = most - at_once;
     options_.loop.sinks.assign(followers_.outlets.begin(), followers_.outlets.end());
   }
 
@@ -191,6 +200,7 @@ private:
     while (verdict == Verdict::go_on && !thread.ended && !stop_requested() &&
            !is_over(options_, thread.start)) {
       if (!keys.obey(patience, *placed_.loop)) return Verdict::end;
+      placed_.loop->refill_undo();
       const bool fresh = frames.update();
       if (fresh) {
         unreported = true;

@@ -21,7 +21,7 @@ struct RunOutcome {
   std::string result;
   std::vector<flow::Grant> grants;
   std::vector<RecordingOutcome> recordings; ///< one a loop
-  std::vector<PublishedTo> published{}; ///< whoever owns the outlets knows
+  std::vector<PublishedTo> published{};     ///< whoever owns the outlets knows
 };
 
 /// How many deadlines of the grid a run lasts; no end where the clock alone says when it is over.

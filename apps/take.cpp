@@ -12,8 +12,10 @@
 #include <nendo/driver/chunk_file.hpp>
 #include <nendo/recording/loop_replay.hpp>
 #include <nendo/recording/take_tools.hpp>
+#include <nendo/timeline/timeline_file.hpp>
 
 #include "recorded_model.hpp"
+#include "timeline_frames.hpp"
 
 namespace nendo::app {
 namespace {
@@ -108,6 +110,54 @@ Result<Take> read_recording(const std::filesystem::path& path) {
   return take;
 }
 
+// A timeline, which goes on from where it is for a later time and begins anew for an earlier one.
+class Played {
+public:
+  Played(std::filesystem::path path, std::unique_ptr<TimelineFrames> frames)
+      : path_(std::move(path)), frames_(std::move(frames)) {}
+
+  Result<viewer::Moment> at(double time_s) {
+    if (seen_ && time_s < frames_->time_s()) {
+      auto anew = TimelineFrames::open(path_);
+      if (!anew) return anew.error();
+      frames_ = *std::move(anew);
+      holds_ = {};
+      seen_ = false;
+    }
+    const double period_s = 1.0 / frames_->rate_hz();
+    while ((!seen_ || frames_->time_s() + period_s <= time_s) && frames_->next()) {
+      holds_.follow(frames_->frame());
+      seen_ = true;
+    }
+    const flow::Frame& frame = frames_->frame();
+    viewer::see_hands(frame, holds_, moment_);
+    frames_->layout().unpack(frame.shape, moment_.vertices);
+    moment_.radius_m = viewer::radii_on_stage(
+        frames_->player().timeline().sculptor.deformer.supports, frame.units_per_metre);
+    moment_.time_s = time_s;
+    return moment_;
+  }
+
+private:
+  std::filesystem::path path_;
+  std::unique_ptr<TimelineFrames> frames_;
+  viewer::HoldFollower holds_;
+  viewer::Moment moment_;
+  bool seen_ = false;
+};
+
+Result<Take> play_timeline(const std::filesystem::path& path) {
+  auto frames = TimelineFrames::open(path);
+  if (!frames) return frames.error();
+  Take take;
+  take.rest = (*frames)->model();
+  take.units_per_metre = (*frames)->player().timeline().units_per_metre;
+  take.duration_s = (*frames)->duration_s();
+  const auto played = std::make_shared<Played>(path, *std::move(frames));
+  take.moment_at = [played](double time_s) { return played->at(time_s); };
+  return take;
+}
+
 bool is_recording(const std::filesystem::path& path) {
   constexpr std::size_t magic_bytes = 8; // before the version
   std::array<char, magic_bytes> begin{};
@@ -120,6 +170,7 @@ bool is_recording(const std::filesystem::path& path) {
 } // namespace
 
 Result<Take> read_take(const std::filesystem::path& path) {
+  if (timeline::is_timeline(path)) return play_timeline(path);
   if (is_recording(path)) return read_recording(path);
   auto mesh = deform::read_mesh(path);
   if (!mesh) return mesh.error();

@@ -17,8 +17,9 @@ struct Take {
   std::function<Result<viewer::Moment>(double time_s)> moment_at;
 };
 
-/// Of a file, by what is in it: a mesh, or a recording, whose loop runs again without a clock.
-/// Errors: bad_input, as deform::read_mesh(), TakeReader::open() and recorded_model().
+/// Of a file, by what is in it: a mesh, a recording, whose loop runs again without a clock, or, by
+/// its name, a timeline. Errors: bad_input, as deform::read_mesh(), TakeReader::open(),
+/// recorded_model() and TimelineFrames::open().
 Result<Take> read_take(const std::filesystem::path& path);
 
 } // namespace nendo::app

@@ -1,54 +1,66 @@
 #pragma once
-// What a shape was before its last steps: of each step the blocks that it changed, in a ring of a
-// fixed size. The oldest steps make room for new ones.
+// What a shape was before its last steps, and after those that were undone: of each step the blocks
+// that it changed. Where memory ends, the oldest steps make room for new ones.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <nendo/deform/block_evaluator.hpp>
+#include <nendo/deform/undo_memory.hpp>
 
 namespace nendo::deform {
 
 class ShapeHistory {
 public:
-  /// Allocates about so many bytes, and for one more shape like this one; nothing afterwards. With
-  /// less than a block nothing is ever kept.
-  ShapeHistory(const BlockShape& first, std::size_t bytes);
+  /// Allocates about so many bytes, and for one more shape like this one; nothing afterwards, but
+  /// takes what comes from `more`, if any, which must outlive it. With less than a block and no
+  /// more nothing is ever kept.
+  ShapeHistory(const BlockShape& first, std::size_t bytes, UndoMemory* more);
+  ~ShapeHistory();
 
   /// From now on the shape has normals. Allocates for those, too; what was kept is forgotten.
   void carry(const BlockShape& now, const BlockShape& normals);
 
-  /// Ends a step: from what was kept last to this. No step if nothing changed. A step for which
-  /// there is no room at all is not kept, nor are those before it. normals: no blocks unless
-  /// carried.
+  /// Ends a step: from what was kept last to this. No step if nothing changed; otherwise undone
+  /// steps are forgotten. A step for which there is no room at all is not kept, nor are those
+  /// before it. normals: no blocks unless carried.
   void keep(const BlockShape& now, const BlockShape& normals) noexcept;
   /// Undoes the last step; shape and normals are what was kept last. False: there is none.
   bool undo(BoundedShape& shape, BlockShape& normals) noexcept;
+  /// Does again what was undone last, to what was kept last: what shape and normals have become
+  /// since is dropped. False: there is none, and nothing changes.
+  bool redo(BoundedShape& shape, BlockShape& normals) noexcept;
 
-  std::size_t steps() const noexcept { return static_cast<std::size_t>(last_step_ - first_step_); }
+  std::size_t steps() const noexcept { return steps_; }
+  std::size_t undone() const noexcept { return undone_; }
+  std::size_t forgotten() const noexcept { return forgotten_; } ///< for want of memory
 
 private:
-  static constexpr std::size_t most_steps = 256;
-
-  struct Saved {
-    VertexBlock content;
-    std::uint64_t stamp;
-    std::size_t block;
-  };
-  bool is_same(const BlockShape& now, const BlockShape& normals, std::size_t block) const noexcept;
-  void save(std::size_t block) noexcept;
+  bool is_kept() const noexcept { return kept_.block_count() > 0; }
+  std::size_t count_changed(const BlockShape& now, const BlockShape& kept) const noexcept;
+  void save_changed(const BlockShape& now, BlockShape& kept, bool of_normals, bool fits) noexcept;
+  void save(const BlockShape& kept, std::size_t block, bool of_normals) noexcept;
+  void exchange(SavedBlock& saved, BoundedShape& shape, BlockShape& normals) noexcept;
+  void own(std::size_t count);
+  void add_free(const SavedChain& chain) noexcept;
+  void forget_undone() noexcept;
   void drop_oldest() noexcept;
 
   BlockShape kept_, kept_normals_;
-  std::vector<Saved> saved_;         ///< a ring
-  std::vector<Saved> saved_normals_; ///< in the same places
-  std::uint64_t first_saved_ = 0;
-  std::uint64_t last_saved_ = 0;
-  std::array<std::uint64_t, most_steps> ends_{}; ///< of the steps' saved blocks; a ring
-  std::uint64_t first_step_ = 0;
-  std::uint64_t last_step_ = 0;
+  std::vector<std::unique_ptr<SavedBlock[]>> own_;
+  UndoMemory* more_;
+  SavedBlock* free_ = nullptr; ///< by `next`
+  std::size_t free_count_ = 0;
+  SavedBlock* oldest_ = nullptr; ///< of the steps, undone ones at the end
+  SavedBlock* newest_ = nullptr;
+  SavedBlock* present_ = nullptr; ///< the last that is not undone; nullptr: all are
+  std::size_t undone_blocks_ = 0;
+  std::size_t steps_ = 0;
+  std::size_t undone_ = 0;
+  std::size_t forgotten_ = 0;
+  std::uint64_t next_step_ = 0;
 };
 
 } // namespace nendo::deform

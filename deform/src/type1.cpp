@@ -21,7 +21,8 @@ Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
       evaluator_(layout_, field_.centres.cols(), options.evaluation),
       weights_(std::make_unique<CardinalWeights>(layout_, control_points, field_,
                                                  options.evaluation.weight_bytes)),
-      history_(std::make_unique<ShapeHistory>(rest_.shape, options.undo_bytes)) {
+      history_(
+          std::make_unique<ShapeHistory>(rest_.shape, options.undo_bytes, options.undo_memory)) {
   if (options.injective) {
     chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
     linked_ = rest_;
@@ -173,8 +174,26 @@ FieldStatus Type1Deformer::undo(const Points& tips) {
   return status;
 }
 
+FieldStatus Type1Deformer::redo(const Points& tips) {
+  assert(tips.cols() == starts_.cols());
+  if (redo_steps() == 0) return FieldStatus::ok;
+  const FieldStatus status = build(tips);
+  if (!is_solved(status)) return status;
+  history_->redo(rest_, rest_normals_);
+  take_hold();
+  return status;
+}
+
 std::size_t Type1Deformer::undo_steps() const noexcept {
   return history_->steps();
+}
+
+std::size_t Type1Deformer::redo_steps() const noexcept {
+  return history_->undone();
+}
+
+std::size_t Type1Deformer::forgotten_steps() const noexcept {
+  return history_->forgotten();
 }
 
 void Type1Deformer::carry_normals(const Points& rest) {

@@ -28,7 +28,8 @@ Type2Deformer::Type2Deformer(Points shape, Eigen::Index control_points, double p
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
       fields_(most_fields(options), field_),
       evaluator_(layout_, field_.centres.cols(), options.evaluation),
-      history_(std::make_unique<ShapeHistory>(shape_.shape, options.undo_bytes)) {
+      history_(
+          std::make_unique<ShapeHistory>(shape_.shape, options.undo_bytes, options.undo_memory)) {
   make_room(solver_, supports_, control_points);
   if (!options.injective) return;
   chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
@@ -67,8 +68,22 @@ FieldStatus Type2Deformer::undo(const Points& tips) {
   return begin(tips);
 }
 
+FieldStatus Type2Deformer::redo(const Points& tips) {
+  if (!history_->redo(shape_, normals_)) return FieldStatus::ok;
+  fields_.clear();
+  return begin(tips);
+}
+
 std::size_t Type2Deformer::undo_steps() const noexcept {
   return history_->steps();
+}
+
+std::size_t Type2Deformer::redo_steps() const noexcept {
+  return history_->undone();
+}
+
+std::size_t Type2Deformer::forgotten_steps() const noexcept {
+  return history_->forgotten();
 }
 
 /// A piece without a usable field leaves the shape alone; the curve goes on behind it.

@@ -1,5 +1,8 @@
 #include <nendo/flow/request.hpp>
 
+#include <atomic>
+#include <thread>
+
 #include <doctest/doctest.h>
 
 #include "support/flow_fixtures.hpp"
@@ -50,7 +53,7 @@ TEST_SUITE("request") {
     for (const Request request : requests)
       CHECK(request_named(name_of(request)) == request);
     CHECK_FALSE(request_named("").has_value());
-    CHECK_FALSE(request_named("redo").has_value());
+    CHECK_FALSE(request_named("undoing").has_value());
   }
 
   TEST_CASE("hands that let go leave the model alone until they take hold of it again") {
@@ -111,6 +114,153 @@ TEST_SUITE("request") {
       person.move(15, 25);
       CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() > 0.02);
     }
+  }
+
+  TEST_CASE("redo goes forth commit by commit, bit for bit, and a commit ends it") {
+    for (const Mode mode : modes) {
+      CAPTURE(name_of(mode));
+      Person person(mode);
+      const auto pull = [&](int to) {
+        person.ask(Request::grab, 0);
+        person.move(0, to);
+        person.ask(Request::let_go, to);
+        person.move(to, 0);
+        return person.shape();
+      };
+      std::vector<Points> shapes{person.test.model.vertices};
+      for (const int to : {5, 15, 10, 20})
+        shapes.push_back(pull(to));
+      const std::size_t last = shapes.size() - 1;
+      for (std::size_t back = 1; back <= last; ++back) {
+        for (std::size_t at = last; at-- > last - back;) {
+          person.ask(Request::undo, 0);
+          CHECK(person.shape() == shapes[at]);
+        }
+        for (std::size_t at = last - back; at++ < last;) {
+          const std::uint64_t steps = person.test.loop->frames().front().undos;
+          CHECK(person.ask(Request::redo, 0).undos == steps + 1);
+          CHECK(person.shape() == shapes[at]);
+        }
+      }
+      const std::uint64_t redos = person.test.loop->stats().redos;
+      CHECK(redos == 1 + 2 + 3 + 4);
+      person.ask(Request::redo, 0); // there is no more
+      person.ask(Request::undo, 0);
+      const Points other = pull(12);
+      person.ask(Request::redo, 0); // nor now
+      CHECK(person.shape() == other);
+      CHECK(person.test.loop->stats().redos == redos);
+    }
+  }
+
+  TEST_CASE("undos and redos that come together are done in their order") {
+    for (const Mode mode : modes) {
+      Person person(mode);
+      person.move(0, 15);
+      person.ask(Request::let_go, 15);
+      const Points shaped = person.shape();
+      for (const Request request : {Request::redo, Request::undo, Request::redo})
+        person.test.requests.try_push(request);
+      person.bend(15);
+      CHECK(person.shape() == shaped);
+      for (const Request request : {Request::redo, Request::undo})
+        person.test.requests.try_push(request);
+      person.bend(15);
+      CHECK(person.shape() == person.test.model.vertices);
+    }
+  }
+
+  TEST_CASE("what hands that hold the model have begun since an undo goes with a redo") {
+    for (const Mode mode : modes) {
+      Person person(mode);
+      person.move(0, 15);
+      person.ask(Request::commit, 15);
+      const Points shaped = person.shape();
+      person.ask(Request::undo, 15);
+      person.move(15, 25);
+      CHECK(person.shape() != shaped);
+      CHECK(person.ask(Request::redo, 25).held);
+      CHECK(person.shape() == shaped);
+    }
+  }
+
+  TEST_CASE("undo goes back as far as one likes where memory is refilled, without allocation in a "
+            "tick, and no farther than there is room where it is not") {
+    constexpr int commits = 400; // whole shapes, each more than the loop begins with
+    for (const Mode mode : modes) {
+      for (const bool refills : {true, false}) {
+        CAPTURE(name_of(mode));
+        CAPTURE(refills);
+        Person person(mode);
+        person.test.options.sculptor.deformer.undo_bytes = 100'000;
+        person.test.options.undo_most_bytes = refills ? std::size_t{1} << 30 : 0;
+        person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
+                                                        person.test.inputs, person.test.options);
+        std::vector<Points> shapes;
+        test::RestraintCounts counts;
+        const auto ask = [&](Request request, int bent) {
+          if (refills) person.test.loop->refill_undo();
+          const test::Restraint restraint;
+          person.test.requests.try_push(request);
+          person.bend(bent);
+          counts.allocations += restraint.counts().allocations;
+          counts.frees += restraint.counts().frees;
+          counts.locks += restraint.counts().locks;
+        };
+        for (int at = 0; at < commits; ++at) {
+          ask(Request::commit, at % 2 == 0 ? 12 : 0);
+          shapes.push_back(person.shape());
+        }
+        ask(Request::let_go, 0);
+        const auto& stats = person.test.loop->stats();
+        CHECK((stats.forgotten_steps > 0) != refills);
+        CHECK(stats.undo_steps + stats.forgotten_steps >= commits - 1);
+        if (refills) CHECK(stats.undo_steps >= commits - 1);
+        const std::uint64_t steps = stats.undo_steps;
+        const Points end = person.shape();
+        for (std::uint64_t at = 0; at < steps; ++at)
+          ask(Request::undo, 0);
+        if (refills) CHECK(person.shape() == person.test.model.vertices);
+        CHECK(stats.undo_steps == 0);
+        for (std::uint64_t at = 0; at < steps; ++at)
+          ask(Request::redo, 0);
+        CHECK(person.shape() == end);
+        CHECK(counts.allocations + counts.frees + counts.locks == 0);
+      }
+    }
+  }
+
+  TEST_CASE("memory comes from another thread while the loop commits and undoes") {
+    Person person(Mode::type1);
+    person.test.options.sculptor.deformer.undo_bytes = 0;
+    person.test.options.undo_most_bytes = std::size_t{1} << 30;
+    person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
+                                                    person.test.inputs, person.test.options);
+    std::atomic<bool> over{false};
+    std::thread refills([&] {
+      while (!over) {
+        person.test.loop->refill_undo();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    });
+    constexpr std::uint64_t commits = 60;
+    for (std::uint64_t at = 1; at < commits; ++at)
+      person.ask(Request::commit, at % 2 == 0 ? 12 : 0);
+    person.ask(Request::let_go, 12);
+    const auto& stats = person.test.loop->stats();
+    const std::uint64_t steps = stats.undo_steps;
+    CHECK(steps >= 3); // more, the more often the other thread had its turn
+    CHECK(steps + stats.forgotten_steps == commits);
+    const Points end = person.shape();
+    for (std::uint64_t at = 0; at < steps; ++at)
+      person.ask(Request::undo, 0);
+    CHECK(stats.undo_steps == 0);
+    if (steps == commits) CHECK(person.shape() == person.test.model.vertices);
+    for (std::uint64_t at = 0; at < steps; ++at)
+      person.ask(Request::redo, 0);
+    over = true;
+    refills.join();
+    CHECK(person.shape() == end);
   }
 
   TEST_CASE("a commit that nobody holds is none") {

@@ -55,7 +55,6 @@ Points through_fields(const std::vector<std::uint64_t>& record, const Points& fr
 /// Keeps a copy of the model by the updates alone, as FORMAT.md says.
 struct Follower {
   Points rest, shape;
-  std::vector<Points> earlier; ///< rest shapes that were committed over
   std::uint64_t commits = 0, undos = 0;
 
   void follow(const std::vector<std::uint64_t>& record, const Points& published) {
@@ -63,15 +62,9 @@ struct Follower {
     if (head.mode == 2) {
       shape = head.undos != undos ? published : through_fields(record, shape);
     } else {
-      for (; undos < head.undos && !earlier.empty(); ++undos) {
-        rest = earlier.back();
-        earlier.pop_back();
-      }
+      if (head.undos != undos) rest = published;
       shape = through_fields(record, rest);
-      if (head.commits != commits) {
-        earlier.push_back(rest);
-        rest = shape;
-      }
+      if (head.commits != commits) rest = shape;
     }
     commits = head.commits;
     undos = head.undos;
@@ -82,14 +75,14 @@ struct Follower {
 
 TEST_SUITE("updates") {
   TEST_CASE(
-      "the updates alone, with commits and undo, make the published shapes of the rest shape") {
+      "the updates, with commits, undo and redo, make the published shapes of the rest shape") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       LoopUnderTest test(mode, 10);
       SegmentPublisher publisher(segment_name("follow"), {});
       test::attach(test, {&publisher});
       REQUIRE(publisher.begin(test::outline_of(test)));
       const MappedSegment segment(segment_name("follow"));
-      Follower follower{segment.rest(), segment.rest(), {}};
+      Follower follower{segment.rest(), segment.rest()};
       Player player(test);
       double furthest = 0.0;
       for (std::uint64_t number = 1; number <= 300; ++number) {

@@ -63,6 +63,7 @@ TEST_SUITE("loop_replay") {
       CHECK(stats.grabs == wanted.grabs);
       CHECK(stats.commits == wanted.commits);
       CHECK(stats.undos == wanted.undos);
+      CHECK(stats.redos == wanted.redos);
       CHECK(stats.silences == wanted.silences);
       CHECK(wanted.commits + wanted.undos > 0);
     }
@@ -90,6 +91,43 @@ TEST_SUITE("loop_replay") {
       CHECK(live.test.vertices_of((*replay)->loop().frames().front()) == shapes[at++]);
     }
     CHECK(at == shapes.size());
+  }
+
+  TEST_CASE("undos and redos, far beyond the memory that a loop begins with, are replayed bit for "
+            "bit") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      RecordedLoop live(mode);
+      live.test.options.undo_most_bytes = std::size_t{1} << 30;
+      live.test.options.sculptor.deformer.undo_bytes = 100'000;
+      live.test.loop = std::make_unique<flow::DeformLoop>(live.test.model, live.test.placement,
+                                                          live.test.inputs, live.test.options);
+      live.setup = test::setup_of(live.test);
+      live.record();
+      std::uint64_t tick = 0;
+      const HostTime begin = HostClock::now();
+      const auto ask = [&](flow::Request request) {
+        live.test.loop->refill_undo();
+        live.test.requests.try_push(request);
+        live.test.bend(static_cast<int>(7 * tick % 25),
+                       begin + tick * std::chrono::milliseconds(11));
+        live.test.frame_after_tick(tick++);
+      };
+      for (int at = 0; at < 60; ++at)
+        ask(flow::Request::commit);
+      ask(flow::Request::let_go);
+      for (int at = 0; at < 55; ++at)
+        ask(flow::Request::undo);
+      for (int at = 0; at < 30; ++at)
+        ask(flow::Request::redo);
+      REQUIRE(live.end());
+      const auto replay = replayed(live.path, live.test.model);
+      CHECK(replay->is_exact());
+      CHECK(replay->loop().stats().redos == 30);
+      CHECK(replay->loop().stats().undo_steps == live.test.loop->stats().undo_steps);
+      const deform::Points shape = replay->loop().final_shape();
+      CHECK(shape == live.test.loop->final_shape());
+      CHECK(shape != live.test.model.vertices);
+    }
   }
 
   TEST_CASE("the loop at its own rate, on its own thread, is replayed as well") {

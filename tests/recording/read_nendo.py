@@ -66,6 +66,7 @@ def loop(b):
     o.update(zip(("kernel", "polynomial", "merge", "order", "storage", "weight_bytes", "undo_bytes", "injective",
                   "most_bound", "most_links", "least_gap"), b.take("BBdBBQQBdId")))
     o["simd"] = b.text()
+    o["undo_most_bytes"] = b.take("Q")
     return o
 
 

@@ -13,15 +13,21 @@ using deform::Points;
 
 namespace {
 
-Frame first_frame(const deform::BlockShape& shape, const deform::FieldSequence& fields,
-                  double units_per_metre) {
+Frame first_frame(const Sculptor& sculptor, double units_per_metre) {
   Frame frame;
   frame.units_per_metre = units_per_metre;
-  frame.shape = shape;
-  frame.fields = fields;
+  frame.shape = sculptor.rest();
+  frame.fields = sculptor.fields();
   for (auto& hand : frame.hands)
     hand.pose.joints.fill(Eigen::Isometry3d::Identity());
   return frame;
+}
+
+ShapingOptions shaping_options(const LoopOptions& options) {
+  ShapingOptions shaping{options.sculptor, options.undo_most_bytes};
+  if (options.requests != nullptr) shaping.most_requests = options.requests->capacity();
+  shaping.held = options.switch_action != SwitchAction::grab;
+  return shaping;
 }
 
 hand::CalibrationInForce calibration_of(const HandInput& input) noexcept {
@@ -39,9 +45,8 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        std::vector<HandInput> hands, const LoopOptions& options)
     : options_(options), units_per_metre_(placement.units_per_metre),
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
-      sculptor_(model.vertices, tips_.cols(), options.sculptor),
-      held_(options.switch_action != SwitchAction::grab), hold_wanted_(held_),
-      frames_(first_frame(sculptor_.rest(), sculptor_.fields(), placement.units_per_metre)) {
+      shaping_(model.vertices, tips_.cols(), shaping_options(options)),
+      frames_(first_frame(shaping_.sculptor(), placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
@@ -52,7 +57,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     hands_.back().follow(hands_.back().input.first);
   }
   compute_hands(frames_.back());
-  grab_status_ = sculptor_.grab(tips_);
+  grab_status_ = shaping_.begin(tips_);
 }
 
 void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
@@ -77,8 +82,8 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
       hand.follow(sample);
       if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
       ++stats_.switch_uses[hand.slot];
-      if (options_.switch_action == SwitchAction::toggle) hold_wanted_ = !hold_wanted_;
-      if (options_.switch_action == SwitchAction::commit) commit_due_ = true;
+      if (options_.switch_action == SwitchAction::toggle) shaping_.toggle_hold();
+      if (options_.switch_action == SwitchAction::commit) shaping_.commit_when_held();
     });
     ++number;
     hand.fresh = count > 0;
@@ -104,7 +109,8 @@ void DeformLoop::follow_switches() noexcept {
   if (options_.switch_action != SwitchAction::grab) return;
   const bool on = std::any_of(hands_.begin(), hands_.end(),
                               [](const Hand& hand) { return hand.wrist_switch.is_on(); });
-  if (on != switch_on_) hold_wanted_ = on; // in between, requests are heard
+  if (on != switch_on_) // in between, requests are heard
+    shaping_.ask(on ? Request::grab : Request::let_go);
   switch_on_ = on;
 }
 
@@ -112,10 +118,7 @@ void DeformLoop::take_requests() noexcept {
   if (options_.requests == nullptr) return;
   options_.requests->drain([this](Request request) noexcept {
     if (options_.tape != nullptr) options_.tape->request(request);
-    if (request == Request::grab) hold_wanted_ = true;
-    if (request == Request::let_go) hold_wanted_ = false;
-    if (request == Request::commit) commit_due_ = held_;
-    if (request == Request::undo) ++undos_due_;
+    shaping_.ask(request);
   });
 }
 
@@ -144,46 +147,6 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   }
 }
 
-deform::FieldStatus DeformLoop::shape(Frame& frame) noexcept {
-  for (; undos_due_ > 0; --undos_due_) {
-    if (is_solved(sculptor_.undo(tips_))) {
-      ++stats_.undos;
-    } else {
-      held_ = false; // taken hold of again as soon as that can be
-    }
-  }
-  if (!held_ && hold_wanted_) {
-    held_ = is_solved(sculptor_.grab(tips_));
-    if (held_) ++stats_.grabs;
-  }
-  if (!held_) {
-    frame.shape.follow(sculptor_.rest());
-    frame.fields.clear();
-    frame.chain = {};
-    return deform::FieldStatus::ok;
-  }
-  const bool commits = commit_due_ || !hold_wanted_; // letting go keeps what has been shaped
-  const deform::FieldStatus status =
-      commits ? sculptor_.finish(tips_, frame.shape) : sculptor_.update(tips_, frame.shape);
-  frame.fields.follow(sculptor_.fields());
-  record_chain(frame.chain);
-  // What cannot be committed now stays held, and is tried again at the next tick.
-  if (commits && is_solved(status) && is_solved(sculptor_.commit(tips_))) {
-    ++stats_.commits;
-    commit_due_ = false;
-    held_ = hold_wanted_;
-  }
-  return status;
-}
-
-void DeformLoop::record_chain(deform::ChainReport& chain) noexcept {
-  chain = sculptor_.report();
-  stats_.most_links = std::max(stats_.most_links, chain.links);
-  stats_.most_bound = std::max(stats_.most_bound, chain.whole_bound);
-  stats_.least_determinant = std::min(stats_.least_determinant, chain.least_determinant);
-  if (chain.held_pairs > 0) ++stats_.held_apart_ticks;
-}
-
 void DeformLoop::tick(const Pacer::Due& due) noexcept {
   const TickStages& runs = options_.stages;
   TickRecord record{.tick = due.number, .scheduled = due.scheduled, .woke = due.woke};
@@ -199,7 +162,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   Frame& frame = frames_.back();
   if (runs.hands) compute_hands(frame);
   record.posed_ns = now_ns();
-  if (runs.deform) frame.status = shape(frame);
+  if (runs.deform) frame.status = shaping_.shape(tips_, frame, stats_);
   record.solved_ns = now_ns();
   describe(record, frame);
   if (runs.publish) {
@@ -219,9 +182,6 @@ void DeformLoop::describe(const TickRecord& record, Frame& frame) noexcept {
   frame.tick = record.tick;
   frame.ticks = stats_.ticks;
   frame.missed = stats_.missed;
-  frame.commits = stats_.commits;
-  frame.undos = stats_.undos;
-  frame.held = held_;
   frame.scheduled = record.scheduled;
   frame.woke = record.woke;
   frame.since_last =
@@ -268,11 +228,7 @@ Placement DeformLoop::placement() const {
 }
 
 Points DeformLoop::final_shape() {
-  deform::BlockShape shape = sculptor_.rest();
-  if (held_) sculptor_.finish(tips_, shape);
-  Points vertices;
-  layout().unpack(shape, vertices);
-  return vertices;
+  return shaping_.final_shape(tips_);
 }
 
 } // namespace nendo::flow

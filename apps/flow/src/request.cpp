@@ -5,7 +5,8 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, requests.size()> names{"grab", "let go", "commit", "undo"};
+constexpr std::array<std::string_view, requests.size()> names{"grab", "let go", "commit", "undo",
+                                                              "redo"};
 
 } // namespace
 

@@ -65,8 +65,20 @@ FieldStatus Sculptor::undo(const Points& tips) noexcept {
   return std::visit([&](auto& deformer) { return deformer.undo(tips); }, deformer_);
 }
 
+FieldStatus Sculptor::redo(const Points& tips) noexcept {
+  return std::visit([&](auto& deformer) { return deformer.redo(tips); }, deformer_);
+}
+
 std::size_t Sculptor::undo_steps() const noexcept {
   return std::visit([](const auto& deformer) { return deformer.undo_steps(); }, deformer_);
+}
+
+std::size_t Sculptor::redo_steps() const noexcept {
+  return std::visit([](const auto& deformer) { return deformer.redo_steps(); }, deformer_);
+}
+
+std::size_t Sculptor::forgotten_steps() const noexcept {
+  return std::visit([](const auto& deformer) { return deformer.forgotten_steps(); }, deformer_);
 }
 
 const BlockShape& Sculptor::rest() const noexcept {

@@ -34,6 +34,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   flow::LoopOptions options = setup.loop->options;
   options.requests = &replay->requests_;
   options.wrists = &replay->wrists_;
+  options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
   replay->loop_ =
       std::make_unique<flow::DeformLoop>(model, setup.loop->placement, std::move(inputs), options);
   if (!is_solved(replay->loop_->grab_status()))
@@ -54,6 +55,7 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
   } else if (const auto* move = std::get_if<flow::WristMove>(&entry)) {
     exact_ = wrists_.try_push(*move) && exact_;
   } else if (const auto* tick = std::get_if<flow::TapedTick>(&entry)) {
+    loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);
     return true;
   } else {

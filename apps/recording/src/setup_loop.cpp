@@ -155,6 +155,7 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   writer.f64_le(options.sculptor.piece_length);
   put_deformer(writer, options.sculptor.deformer);
   writer.text(loop.simd);
+  writer.u64_le(options.undo_most_bytes);
 }
 
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
@@ -178,6 +179,7 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   options.sculptor.piece_length = judge.number(least_piece, largest);
   read_deformer(reader, judge, options.sculptor.deformer);
   read.simd = reader.text();
+  if (reader.remaining() > 0) options.undo_most_bytes = reader.u64_le(); // 1.0 had none at first
   if (loop || !judge.fine()) return false;
   loop = std::move(read);
   return true;

@@ -30,7 +30,8 @@ constexpr std::array key_table{
     Key{GLFW_KEY_L, "l", "let go; what is shaped stays"},
     Key{GLFW_KEY_C, "c", "commit: this shape becomes the rest shape"},
     Key{GLFW_KEY_U, "u", "undo the last commit"},
-    Key{GLFW_KEY_R, "r", "record from this shape on, and end that"},
+    Key{GLFW_KEY_R, "r", "redo what was undone"},
+    Key{GLFW_KEY_T, "t", "a take: record from this shape on, and end that"},
     Key{GLFW_KEY_H, "h", "hands' skin on and off"},
     Key{GLFW_KEY_B, "b", "bones on and off"},
     Key{GLFW_KEY_V, "v", "control vectors on and off"},
@@ -95,6 +96,7 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, 
   ask("Let go", Request::let_go);
   ask("Commit", Request::commit);
   ask("Undo", Request::undo);
+  ask("Redo", Request::redo);
   if (ImGui::Button("Reset")) wishes.reset = true;
   if (ImGui::Button(gauges.recording ? "End the recording" : "Record")) wishes.record = true;
 }
@@ -164,14 +166,15 @@ void LiveWindow::Panel::keys(SceneParts& parts, Wishes& wishes) {
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
                                      {GLFW_KEY_C, Request::commit},
-                                     {GLFW_KEY_U, Request::undo}})
+                                     {GLFW_KEY_U, Request::undo},
+                                     {GLFW_KEY_R, Request::redo}})
     if (pressed(key)) wishes.requests.push_back(request);
   for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts.hands},
                                   {GLFW_KEY_B, &parts.bones},
                                   {GLFW_KEY_V, &parts.vectors},
                                   {GLFW_KEY_D, &parts.radii}})
     if (pressed(key)) *part = !*part;
-  if (pressed(GLFW_KEY_R)) wishes.record = true;
+  if (pressed(GLFW_KEY_T)) wishes.record = true;
   if (pressed(GLFW_KEY_Q)) wishes.quit = true;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (!keys_shown) return;

@@ -51,8 +51,14 @@ public:
   /// The rest shape becomes what it was before the last commit, and `tips` the start points; what
   /// apply() made of it since is dropped. Without a commit that can be undone, as grab().
   FieldStatus undo(const Points& tips);
-  /// How many commits can be undone.
+  /// The rest shape becomes what it was before the last undo, if there was no commit since; for
+  /// the rest as undo(). Without such an undo nothing changes, and it is ok.
+  FieldStatus redo(const Points& tips);
+  /// How many commits can be undone, and how many undos redone.
   std::size_t undo_steps() const noexcept;
+  std::size_t redo_steps() const noexcept;
+  /// How many could be undone once, and went for want of memory.
+  std::size_t forgotten_steps() const noexcept;
 
   const BlockLayout& layout() const noexcept { return layout_; }
   const BlockShape& rest() const noexcept { return rest_.shape; }

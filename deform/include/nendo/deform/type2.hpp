@@ -50,8 +50,15 @@ public:
   /// The shape becomes what it was when the last stroke began that changed it, and a new one begins
   /// at `tips`. Without one that can be undone, as begin().
   FieldStatus undo(const Points& tips);
-  /// How many strokes can be undone, without the present one.
+  /// The shape becomes what it was before the last undo, if no stroke that changed it has ended
+  /// since; the present one is dropped, and a new one begins at `tips`. Without such an undo
+  /// nothing changes, and it is ok.
+  FieldStatus redo(const Points& tips);
+  /// How many strokes can be undone, without the present one, and how many undos redone.
   std::size_t undo_steps() const noexcept;
+  std::size_t redo_steps() const noexcept;
+  /// How many could be undone once, and went for want of memory.
+  std::size_t forgotten_steps() const noexcept;
 
   /// From now on the surface has normals, which turn with each piece (nendo/deform/normals.hpp).
   /// normals: 3 by #vertices, of the shape as it is now. Allocates; earlier strokes can no

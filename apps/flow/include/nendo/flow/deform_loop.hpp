@@ -12,8 +12,7 @@
 #include <nendo/flow/frame_sink.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
-#include <nendo/flow/request.hpp>
-#include <nendo/flow/sculptor.hpp>
+#include <nendo/flow/shaping.hpp>
 #include <nendo/flow/tape.hpp>
 #include <nendo/flow/tick_record.hpp>
 #include <nendo/flow/wrist_switch.hpp>
@@ -60,6 +59,7 @@ struct LoopOptions : PaceOptions {
   WristRing* wrists = nullptr;
   /// What is taken goes there, too. Must outlive it.
   Tape* tape = nullptr;
+  std::size_t undo_most_bytes = 0; ///< ShapingOptions::undo_most_bytes
   /// Each is shown every frame. Must outlive the loop.
   std::vector<FrameSink*> sinks;
   /// What the hands' rings ring: needed by OverrunPolicy::sample. Must outlive the loop.
@@ -97,8 +97,10 @@ public:
   const LoopStats& stats() const noexcept { return stats_; }
   /// Where the hands are; not while the loop runs.
   Placement placement() const;
+  /// Makes room for more undos (Shaping::refill_undo), as far as LoopOptions::undo_most_bytes.
+  bool refill_undo() { return shaping_.refill_undo(); }
   /// Makes points in the mesh's order of a frame's shape. Any thread.
-  const deform::BlockLayout& layout() const noexcept { return sculptor_.layout(); }
+  const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
   /// The shape as it stands when the loop has ended, nothing of a stroke left out. 3 by #vertices.
   deform::Points final_shape();
 
@@ -111,8 +113,6 @@ private:
   void compute_hands(Frame& frame) noexcept;
   void describe(const TickRecord& record, Frame& frame) noexcept;
   void record_latencies(const TickRecord& record) noexcept;
-  deform::FieldStatus shape(Frame& frame) noexcept;
-  void record_chain(deform::ChainReport& chain) noexcept;
 
   struct Hand {
     /// Makes `latest` and `angles` of the next sample.
@@ -137,14 +137,10 @@ private:
   double units_per_metre_;
   std::vector<Hand> hands_;
   deform::Points tips_; ///< 3 by 5 a hand, model units
-  Sculptor sculptor_;
+  Shaping shaping_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
-  bool held_;              ///< the fingertips shape the model
-  bool hold_wanted_;       ///< what is asked for; follows at the next tick that can
   bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
-  bool commit_due_ = false;
-  unsigned undos_due_ = 0;
-  HostTime last_woke_{}; ///< of the tick before; HostTime{} at first
+  HostTime last_woke_{};   ///< of the tick before; HostTime{} at first
   LoopStats stats_;
   FrameExchange frames_;
 };

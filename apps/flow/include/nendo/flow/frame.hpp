@@ -31,8 +31,9 @@ struct Frame {
   std::uint64_t missed = 0; ///< how many deadlines were skipped
   /// How often the shape became the rest shape; a commit of this frame's comes after its fields.
   std::uint64_t commits = 0;
-  /// How often it became an earlier one; an undo of this frame's comes before its fields, which
-  /// then do not lead here from the frame before: whoever follows fields takes the shape anew.
+  /// How often it became an earlier one, or that one's successor again (undo, redo); one of this
+  /// frame's comes before its fields, which then do not lead here from the frame before: whoever
+  /// follows fields takes the shape anew.
   std::uint64_t undos = 0;
   bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};

@@ -17,10 +17,11 @@ enum class Request : std::uint8_t {
   let_go, ///< and let go of it; what they have shaped stays
   commit, ///< the shape so far becomes the rest shape, and the hands hold it anew
   undo,   ///< back to the rest shape before the last commit: Sculptor::undo()
+  redo,   ///< forth again, if nothing was committed since: Sculptor::redo()
 };
 
-inline constexpr std::array requests{Request::grab, Request::let_go, Request::commit,
-                                     Request::undo};
+inline constexpr std::array requests{Request::grab, Request::let_go, Request::commit, Request::undo,
+                                     Request::redo};
 
 std::string_view name_of(Request request) noexcept;
 std::optional<Request> request_named(std::string_view name) noexcept;

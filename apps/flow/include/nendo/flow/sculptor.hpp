@@ -44,7 +44,13 @@ public:
   /// (Type1Deformer::undo, Type2Deformer::undo); the fingertips hold it at `tips`. Unless solved,
   /// nothing changes. No allocation.
   deform::FieldStatus undo(const deform::Points& tips) noexcept;
+  /// Forth to what the last undo came from, if nothing was committed since (Type1Deformer::redo,
+  /// Type2Deformer::redo). Where there is nothing to redo, nothing changes, and it is ok.
+  deform::FieldStatus redo(const deform::Points& tips) noexcept;
   std::size_t undo_steps() const noexcept;
+  std::size_t redo_steps() const noexcept;
+  /// How many could be undone once, and went for want of memory.
+  std::size_t forgotten_steps() const noexcept;
 
   /// The shape that nobody holds: the rest shape, or where the last stroke ended.
   const deform::BlockShape& rest() const noexcept;

@@ -1,0 +1,37 @@
+#pragma once
+// The commands of `nendo edit` that do not change a timeline: making, showing, playing. Each
+// prints, blocks and returns the exit code.
+
+#include <optional>
+#include <string>
+
+#include <nendo/timeline/timeline.hpp>
+
+namespace nendo::app {
+
+struct MakeOptions {
+  std::string take;
+  std::string mesh; ///< empty: the recorded one
+  std::string out;
+  std::string tolerance = "5mm"; ///< a count of an 8-bit glove moves a fingertip by about one
+  bool json = false;
+};
+int make_timeline(const MakeOptions& options);
+
+struct ShowOptions {
+  std::string file;
+  std::string finger; ///< whose tip's places are shown; empty: none's
+  bool json = false;
+};
+int show_timeline(const ShowOptions& options);
+
+struct PlayOptions {
+  std::string file;
+  std::string mesh; ///< empty: the timeline's
+  std::string out;  ///< empty: the shape is not written
+  std::optional<double> until_s;
+  bool json = false;
+};
+int play_timeline(const PlayOptions& options);
+
+} // namespace nendo::app

@@ -1,0 +1,74 @@
+#include "edit_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace nendo::app {
+namespace {
+
+constexpr std::array<std::string_view, hand::finger_count> fingers{"thumb", "index", "middle",
+                                                                   "ring", "little"};
+
+// Cuts a finite number off the front.
+bool cut_number(std::string_view& text, double& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || !std::isfinite(value)) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+} // namespace
+
+Result<Side> parse_hand(const std::string& text) {
+  if (text == "left") return Side::left;
+  if (text == "right") return Side::right;
+  return Error{Errc::usage, "--hand " + text + ": use left or right"};
+}
+
+Result<hand::Finger> parse_finger(const std::string& text) {
+  const auto* const found = std::find(fingers.begin(), fingers.end(), text);
+  if (found != fingers.end()) return static_cast<hand::Finger>(found - fingers.begin());
+  return Error{Errc::usage, "--finger " + text + ": use thumb, index, middle, ring or little"};
+}
+
+std::string_view name_of(hand::Finger finger) noexcept {
+  return fingers[static_cast<std::size_t>(finger)];
+}
+
+Result<Eigen::Vector3d> parse_place(const std::string& text) {
+  std::string_view rest = text;
+  Eigen::Vector3d place;
+  bool fine = true;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (axis > 0) {
+      fine = fine && rest.starts_with(',');
+      if (fine) rest.remove_prefix(1);
+    }
+    fine = fine && cut_number(rest, place[axis]);
+  }
+  if (fine && rest.empty()) return place;
+  return Error{Errc::usage, "--to " + text + ": use X,Y,Z in the model's units"};
+}
+
+Result<timeline::Tolerance> parse_tolerance(const std::string& text) {
+  std::string_view rest = text;
+  double value = 0.0;
+  timeline::Tolerance tolerance;
+  const bool fine = cut_number(rest, value) && value >= 0.0;
+  if (fine && rest == "mm") {
+    tolerance.tip_m = value / 1000.0;
+  } else if (fine && rest == "rad") {
+    tolerance.angle_rad = value;
+  } else if (fine && rest == "deg") {
+    tolerance.angle_rad = from_degrees(value);
+  } else {
+    return Error{Errc::usage, "--tolerance " + text +
+                                  ": use a length at the fingertips, like 1mm, or an angle at the "
+                                  "joints, like 0.02rad or 1deg"};
+  }
+  return tolerance;
+}
+
+} // namespace nendo::app

@@ -1,0 +1,21 @@
+#pragma once
+// What is said after `nendo edit ...`: hands, fingers, places, tolerances.
+
+#include <string>
+
+#include <nendo/base/result.hpp>
+#include <nendo/timeline/reduce.hpp>
+
+namespace nendo::app {
+
+// Errors: usage, naming the option and what it may be.
+
+Result<Side> parse_hand(const std::string& text);
+Result<hand::Finger> parse_finger(const std::string& text);
+std::string_view name_of(hand::Finger finger) noexcept;
+/// "1,-2.5,0" after --to.
+Result<Eigen::Vector3d> parse_place(const std::string& text);
+/// "1mm", "0.02rad" or "1deg".
+Result<timeline::Tolerance> parse_tolerance(const std::string& text);
+
+} // namespace nendo::app

@@ -1,0 +1,83 @@
+// nendo edit make: key poses of a recording.
+
+#include <cstdio>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/recording/take_reader.hpp>
+#include <nendo/timeline/from_take.hpp>
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "cli.hpp"
+#include "edit/edit_actions.hpp"
+#include "edit/edit_words.hpp"
+#include "recorded_model.hpp"
+
+namespace nendo::app {
+namespace {
+
+void print_json(const MakeOptions& options, const timeline::MadeTimeline& made) {
+  nlohmann::ordered_json line{{"event", "made"},
+                              {"result", options.out},
+                              {"duration_s", made.timeline.duration_s},
+                              {"events", made.timeline.events.size()},
+                              {"exact", made.exact}};
+  for (std::size_t at = 0; at < made.hands.size(); ++at) {
+    const auto& hand = made.timeline.hands[at];
+    const auto& reduction = made.hands[at];
+    line[std::string(name_of(hand.side))] = {{"frames", reduction.frames},
+                                             {"keys", hand.keys.size()},
+                                             {"most_angle_rad", reduction.worst.angle_rad},
+                                             {"most_tip_mm", 1e3 * reduction.worst.tip_m}};
+  }
+  std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << std::endl;
+}
+
+void print(const MakeOptions& options, const timeline::MadeTimeline& made) {
+  std::printf("%s: %.2f s, %zu events\n", options.out.c_str(), made.timeline.duration_s,
+              made.timeline.events.size());
+  for (std::size_t at = 0; at < made.hands.size(); ++at) {
+    const auto& hand = made.timeline.hands[at];
+    const auto& reduction = made.hands[at];
+    std::printf("  %-6s %zu keys of %zu frames; off by at most %.3f mm at a fingertip, %.4f rad at "
+                "a joint\n",
+                std::string(name_of(hand.side)).c_str(), hand.keys.size(), reduction.frames,
+                1e3 * reduction.worst.tip_m, reduction.worst.angle_rad);
+  }
+  std::fflush(stdout);
+}
+
+} // namespace
+
+int make_timeline(const MakeOptions& options) {
+  const auto tolerance = parse_tolerance(options.tolerance);
+  if (!tolerance) return report(tolerance.error());
+  if (!timeline::is_timeline(options.out))
+    return report({Errc::usage, "--out " + options.out + ": end the name in .timeline.toml"});
+  const auto reader = recording::TakeReader::open(options.take);
+  if (!reader) return report(reader.error());
+  if (!reader->setup().loop)
+    return report({Errc::bad_input, options.take + ": gloves were recorded, but no loop that "
+                                                   "shapes a model"});
+  const auto model = recorded_model(*reader->setup().loop, options.mesh);
+  if (!model) return report(model.error());
+  auto made = timeline::timeline_of_take(options.take, *model, *tolerance);
+  if (!made) return report(made.error());
+  if (!options.mesh.empty()) {
+    made->timeline.mesh = std::filesystem::absolute(options.mesh).string();
+    made->timeline.mesh_sum = recording::sum_of(model->vertices);
+  }
+  if (const auto written = timeline::write_timeline(options.out, made->timeline); !written)
+    return report(written.error());
+  if (!made->exact)
+    note(options.take + ": something is missing in it, so the shape may be another");
+  if (options.json)
+    print_json(options, *made);
+  else
+    print(options, *made);
+  return 0;
+}
+
+} // namespace nendo::app

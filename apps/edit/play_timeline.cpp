@@ -1,0 +1,59 @@
+// nendo edit play: the shape that a timeline makes.
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli.hpp"
+#include "edit/edit_actions.hpp"
+#include "timeline_frames.hpp"
+
+namespace nendo::app {
+
+int play_timeline(const PlayOptions& options) {
+  const auto extension = std::filesystem::path(options.out).extension();
+  if (!options.out.empty() && extension != ".obj" && extension != ".ply")
+    return report({Errc::usage, "--out " + options.out + ": end the name in .obj or .ply"});
+  auto frames = TimelineFrames::open(options.file, options.mesh);
+  if (!frames) return report(frames.error());
+  const double until_s = options.until_s.value_or((*frames)->duration_s());
+  if (!(until_s >= 0.0 && until_s <= (*frames)->duration_s()))
+    return report({Errc::usage, "--until: the timeline lasts from 0 to " +
+                                    std::to_string((*frames)->duration_s()) + " s"});
+  install_stop_signals();
+  const HostTime start = HostClock::now();
+  const double period_s = 1.0 / (*frames)->rate_hz();
+  while ((*frames)->next() && !stop_requested() && (*frames)->time_s() + period_s <= until_s) {
+  }
+  deform::Mesh shape = (*frames)->model();
+  shape.vertices = (*frames)->player().final_shape();
+  if (!options.out.empty())
+    if (const auto written = deform::write_mesh(options.out, shape); !written)
+      return report(written.error());
+  const auto& stats = (*frames)->player().stats();
+  const auto sum = recording::sum_of(shape.vertices);
+  const double elapsed_s = to_seconds(HostClock::now() - start);
+  if (options.json) {
+    const nlohmann::ordered_json line{
+        {"event", "played"},        {"frames", stats.ticks},  {"time_s", (*frames)->time_s()},
+        {"elapsed_s", elapsed_s},   {"failed", stats.failed}, {"grabs", stats.grabs},
+        {"commits", stats.commits}, {"undos", stats.undos},   {"redos", stats.redos},
+        {"vertices", sum.vertices}, {"crc32c", sum.crc},      {"result", options.out}};
+    std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << std::endl;
+    return 0;
+  }
+  std::printf("played %llu frames to %.3f s in %.2f s; %llu commits, %llu undone, %llu redone\n",
+              static_cast<unsigned long long>(stats.ticks), (*frames)->time_s(), elapsed_s,
+              static_cast<unsigned long long>(stats.commits),
+              static_cast<unsigned long long>(stats.undos),
+              static_cast<unsigned long long>(stats.redos));
+  std::fflush(stdout);
+  return 0;
+}
+
+} // namespace nendo::app

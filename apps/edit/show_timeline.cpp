@@ -1,0 +1,122 @@
+// nendo edit show: the keys of a timeline, as a table or as JSON.
+
+#include <cstdio>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "cli.hpp"
+#include "edit/edit_actions.hpp"
+#include "edit/edit_words.hpp"
+#include "printable.hpp"
+
+namespace nendo::app {
+namespace {
+
+using timeline::HandTrack;
+using timeline::Key;
+using timeline::Timeline;
+
+Eigen::Matrix<double, 3, 5> tips_of(const Timeline& timeline, const HandTrack& hand,
+                                    const Key& key) {
+  return timeline.units_per_metre *
+         hand.skeleton().pose(key.angles, key.wrist_pose()).fingertip_positions();
+}
+
+nlohmann::ordered_json place_json(const Eigen::Vector3d& place) {
+  return {place.x(), place.y(), place.z()};
+}
+
+nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand, const Key& key) {
+  nlohmann::ordered_json line{{"time_s", key.time_s}, {"wrist_m", place_json(key.wrist_m)}};
+  const auto& turn = key.wrist_turn;
+  line["wrist_turn"] = {turn.w(), turn.x(), turn.y(), turn.z()};
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    line["angles_rad"][std::string(hand::angle_names[at])] = key.angles[hand::angle_at(at)];
+  const auto tips = tips_of(timeline, hand, key);
+  for (std::size_t at = 0; at < hand::finger_count; ++at)
+    line["tips"][std::string(name_of(static_cast<hand::Finger>(at)))] =
+        place_json(tips.col(static_cast<Eigen::Index>(at)));
+  return line;
+}
+
+void print_json(const ShowOptions& options, const Timeline& timeline) {
+  nlohmann::ordered_json all{
+      {"file", options.file},        {"take", timeline.take},
+      {"mesh", timeline.mesh},       {"mode", flow::name_of(timeline.sculptor.mode)},
+      {"rate_hz", timeline.rate_hz}, {"duration_s", timeline.duration_s},
+      {"held", timeline.held}};
+  all["events"] = nlohmann::ordered_json::array();
+  for (const auto& event : timeline.events)
+    all["events"].push_back({{"time_s", event.time_s}, {"request", name_of(event.request)}});
+  for (const HandTrack& hand : timeline.hands) {
+    auto keys = nlohmann::ordered_json::array();
+    for (const Key& key : hand.keys)
+      keys.push_back(key_json(timeline, hand, key));
+    all["hands"][std::string(name_of(hand.side))] = std::move(keys);
+  }
+  std::cout << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << std::endl;
+}
+
+// How far a finger is bent, degrees.
+double bend_deg(const hand::JointAngles& angles, hand::Finger finger) {
+  if (finger == hand::Finger::thumb)
+    return to_degrees(angles.thumb_mcp_flexion_rad + angles.thumb_ip_flexion_rad);
+  return to_degrees(angles[finger].mcp_flexion_rad + angles[finger].pip_flexion_rad +
+                    angles[finger].dip_flexion_rad);
+}
+
+void print_hand(const Timeline& timeline, const HandTrack& hand,
+                std::optional<hand::Finger> shown) {
+  std::printf("%s hand: how far the fingers are bent, degrees%s\n",
+              std::string(name_of(hand.side)).c_str(),
+              shown ? "; a tip's place in the model's units" : "");
+  std::printf("%6s %9s", "key", "time s");
+  for (std::size_t at = 0; at < hand::finger_count; ++at)
+    std::printf(" %6s", std::string(name_of(static_cast<hand::Finger>(at))).c_str());
+  std::printf(shown ? "   %s tip\n" : "\n", shown ? std::string(name_of(*shown)).c_str() : "");
+  for (std::size_t number = 0; number < hand.keys.size(); ++number) {
+    const Key& key = hand.keys[number];
+    std::printf("%6zu %9.3f", number, key.time_s);
+    for (std::size_t at = 0; at < hand::finger_count; ++at)
+      std::printf(" %6.0f", bend_deg(key.angles, static_cast<hand::Finger>(at)));
+    if (shown) {
+      const Eigen::Vector3d tip =
+          tips_of(timeline, hand, key).col(static_cast<Eigen::Index>(*shown));
+      std::printf("   %.6g,%.6g,%.6g", tip.x(), tip.y(), tip.z());
+    }
+    std::printf("\n");
+  }
+}
+
+} // namespace
+
+int show_timeline(const ShowOptions& options) {
+  std::optional<hand::Finger> finger;
+  if (!options.finger.empty()) {
+    const auto parsed = parse_finger(options.finger);
+    if (!parsed) return report(parsed.error());
+    finger = *parsed;
+  }
+  const auto timeline = timeline::read_timeline(options.file);
+  if (!timeline) return report(timeline.error());
+  if (options.json) {
+    print_json(options, *timeline);
+    return 0;
+  }
+  std::printf("%s: %.3f s at %g Hz, %s, of %s over %s\n", printable(options.file).c_str(),
+              timeline->duration_s, timeline->rate_hz,
+              std::string(flow::name_of(timeline->sculptor.mode)).c_str(),
+              printable(timeline->take).c_str(), printable(timeline->mesh).c_str());
+  for (const HandTrack& hand : timeline->hands)
+    print_hand(*timeline, hand, finger);
+  for (const auto& event : timeline->events)
+    std::printf("at %9.3f s: %s\n", event.time_s, std::string(name_of(event.request)).c_str());
+  std::fflush(stdout);
+  return 0;
+}
+
+} // namespace nendo::app

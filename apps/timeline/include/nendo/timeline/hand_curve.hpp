@@ -1,0 +1,37 @@
+#pragma once
+// A hand between its keys.
+
+#include <array>
+#include <vector>
+
+#include <nendo/timeline/timeline.hpp>
+
+namespace nendo::timeline {
+
+/// Joint angles and the wrist's place follow piecewise cubics of continuous slope that stay between
+/// the keys' values (Fritsch and Carlson 1980; their slopes are the harmonic means of Fritsch and
+/// Butland 1984), so that no joint leaves its limits and what rests between two keys does rest. The
+/// wrist turns at an even speed from key to key.
+class HandCurve {
+public:
+  /// Keys as a HandTrack has them; copied.
+  explicit HandCurve(std::vector<Key> keys);
+
+  /// At a key's time, that key bit for bit; before the first and after the last, those. Any thread.
+  Key at(double time_s) const noexcept;
+  const std::vector<Key>& keys() const noexcept { return keys_; }
+
+private:
+  static constexpr std::size_t channel_count = hand::angle_count + 3;
+  using Channels = std::array<double, channel_count>;
+
+  static double& channel(Key& key, std::size_t at) noexcept;
+  static double channel(const Key& key, std::size_t at) noexcept;
+  double secant(std::size_t interval, std::size_t at) const noexcept;
+  double slope(std::size_t key, std::size_t at) const noexcept;
+
+  std::vector<Key> keys_;
+  std::vector<Channels> slopes_; ///< a second, at the keys
+};
+
+} // namespace nendo::timeline

@@ -1,0 +1,71 @@
+#pragma once
+// A take as key poses: for each hand its joint angles and its wrist's place at some times, what was
+// asked of the model in between, and everything else that the shape is made of.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <nendo/flow/shaping.hpp>
+#include <nendo/hand/skeleton.hpp>
+#include <nendo/recording/setup.hpp>
+
+namespace nendo::timeline {
+
+struct Key {
+  double time_s = 0.0;
+  hand::JointAngles angles;
+  Eigen::Vector3d wrist_m = Eigen::Vector3d::Zero(); ///< on the stage: where the forearm ends
+  Eigen::Quaterniond wrist_turn = Eigen::Quaterniond::Identity(); ///< nearly of unit length
+
+  Eigen::Isometry3d wrist_pose() const noexcept;
+};
+
+/// Whether every number of both has the same bits.
+bool same_bits(const Key& one, const Key& other) noexcept;
+
+struct HandTrack {
+  Side side = Side::right;
+  hand::HandSize size;
+  std::vector<Key> keys; ///< at least one; times rise
+
+  hand::HandSkeleton skeleton() const { return hand::HandSkeleton(side, size); }
+};
+
+struct Event {
+  double time_s = 0.0;
+  flow::Request request = flow::Request::grab;
+};
+
+/// Times begin at 0, where the hands take hold of the model as it is in its file.
+struct Timeline {
+  std::string take;             ///< the recording's file name, for people; may be empty
+  std::string mesh;             ///< the model's file
+  recording::ShapeSum mesh_sum; ///< by which it is known again
+  double units_per_metre = 1.0; ///< from the stage to the model
+  double rate_hz = 90.0;        ///< of the frames that are made of it
+  double duration_s = 0.0;      ///< of the last frame
+  bool held = true;             ///< the hands hold the model at first
+  flow::SculptorOptions sculptor;
+  std::vector<HandTrack>
+      hands;                 ///< one or two, of different sides; own supports count by their order
+  std::vector<Event> events; ///< times do not fall
+
+  HandTrack* track(Side side) noexcept;
+  const HandTrack* track(Side side) const noexcept;
+  std::size_t key_count() const noexcept;
+};
+
+inline constexpr std::size_t most_keys = 1'000'000; ///< of a hand
+inline constexpr std::size_t most_events = 1'000'000;
+inline constexpr double longest_s = 1e6;
+inline constexpr double farthest_m = 1e3;
+
+/// What is wrong with it, without the file's name and in one line; empty if it can be played.
+/// Counts, order of times, ranges of all numbers.
+std::string complaint_about(const Timeline& timeline);
+std::string complaint_about(const Key& key);
+
+} // namespace nendo::timeline

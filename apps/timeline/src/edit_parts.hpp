@@ -1,0 +1,18 @@
+#pragma once
+// What several edits need.
+
+#include <string>
+
+#include <nendo/base/result.hpp>
+#include <nendo/timeline/timeline.hpp>
+
+namespace nendo::timeline {
+
+/// Error: usage, if there is no such hand, or no such key of it.
+Result<HandTrack*> track_of(Timeline& timeline, Side side);
+Result<HandTrack*> track_with_key(Timeline& timeline, Side side, std::size_t key);
+
+/// "left hand, key 3".
+std::string name_of_key(Side side, std::size_t key);
+
+} // namespace nendo::timeline

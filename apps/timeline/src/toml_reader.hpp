@@ -1,0 +1,129 @@
+#pragma once
+// Tables of a TOML file, with complaints that name the line. toml++ stays behind this header, which
+// one source file includes.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include <toml++/toml.h>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::timeline {
+
+inline std::string one_line(std::string_view text) {
+  std::string line(text.substr(0, 160));
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return line;
+}
+
+/// Takes tables apart and keeps the first complaint; after it, values are blank.
+class TomlReader {
+public:
+  explicit TomlReader(std::string_view name) : name_(name) {}
+
+  const std::optional<Error>& error() const noexcept { return error_; }
+  void complain(const toml::node& where, const std::string& what) {
+    complain(where.source().begin.line, what);
+  }
+  void complain(std::size_t line, const std::string& what) {
+    if (!error_)
+      error_ = Error{Errc::bad_input, name_ + ":" + std::to_string(line) + ": " + one_line(what)};
+  }
+
+  void allow_only(const toml::table& table, std::initializer_list<std::string_view> keys) {
+    for (const auto& [key, node] : table)
+      if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
+        complain(node, "unknown key '" + std::string(key.str()) + "'; leave it out");
+  }
+  /// Null, with a complaint, if it is missing.
+  const toml::node* find(const toml::table& table, std::string_view key) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) complain(table, "has no " + std::string(key) + "; add it");
+    return node;
+  }
+  const toml::table* table(const toml::table& table, std::string_view key) {
+    const toml::node* node = find(table, key);
+    return node == nullptr ? nullptr : as_table(*node, key);
+  }
+  const toml::table* as_table(const toml::node& node, std::string_view what) {
+    if (!node.is_table()) complain(node, std::string(what) + " must be a table");
+    return node.as_table();
+  }
+  const toml::array* array(const toml::table& table, std::string_view key) {
+    const toml::node* node = find(table, key);
+    if (node == nullptr) return nullptr;
+    if (!node->is_array()) complain(*node, std::string(key) + " must be a list in brackets");
+    return node->as_array();
+  }
+  std::string text(const toml::table& table, std::string_view key) {
+    const toml::node* node = find(table, key);
+    if (node == nullptr) return {};
+    const auto value = node->value_exact<std::string>();
+    if (!value) complain(*node, std::string(key) + " must be a text in quotes");
+    return value.value_or("");
+  }
+  bool truth(const toml::table& table, std::string_view key) {
+    const toml::node* node = find(table, key);
+    if (node == nullptr) return false;
+    const auto value = node->value_exact<bool>();
+    if (!value) complain(*node, std::string(key) + " must be true or false");
+    return value.value_or(false);
+  }
+  double number(const toml::node& node, std::string_view what) {
+    const auto value = node.value<double>();
+    if (node.is_number() && value && std::isfinite(*value)) return *value;
+    complain(node, std::string(what) + " must be a finite number");
+    return 0.0;
+  }
+  double number(const toml::table& table, std::string_view key) {
+    const toml::node* node = find(table, key);
+    return node == nullptr ? 0.0 : number(*node, key);
+  }
+  /// From 0 to `most`.
+  std::uint64_t count(const toml::table& table, std::string_view key, std::uint64_t most) {
+    const toml::node* node = find(table, key);
+    if (node == nullptr) return 0;
+    const auto value = node->value_exact<std::int64_t>();
+    if (value && *value >= 0 && static_cast<std::uint64_t>(*value) <= most)
+      return static_cast<std::uint64_t>(*value);
+    complain(*node,
+             std::string(key) + " must be a whole number within 0 and " + std::to_string(most));
+    return 0;
+  }
+  /// Fills `out` from a list of as many numbers.
+  template <std::size_t Size>
+  std::array<double, Size> numbers(const toml::node& node, std::string_view what) {
+    std::array<double, Size> values{};
+    const toml::array* list = node.as_array();
+    if (list == nullptr || list->size() != Size) {
+      complain(node, std::string(what) + " must be a list of " + std::to_string(Size) + " numbers");
+      return values;
+    }
+    for (std::size_t at = 0; at < Size; ++at)
+      values[at] = number((*list)[at], what);
+    return values;
+  }
+  /// What `find` makes of the text; the first of a kind, with a complaint, if nothing.
+  template <class Named>
+  auto named(const toml::table& table, std::string_view key, const Named& find_named) {
+    const std::string name = text(table, key);
+    const auto found = find_named(name);
+    if (!found) complain(table, std::string(key) + ": there is no '" + name + "'");
+    return found.value_or(std::decay_t<decltype(*found)>{});
+  }
+
+private:
+  std::string name_;
+  std::optional<Error> error_;
+};
+
+} // namespace nendo::timeline

@@ -1,0 +1,29 @@
+#include "timeline_frames.hpp"
+
+#include <utility>
+
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "recorded_model.hpp"
+
+namespace nendo::app {
+
+Result<deform::Mesh> timeline_model(const timeline::Timeline& timeline, const std::string& mesh) {
+  recording::LoopSetup of_take;
+  of_take.mesh = timeline.mesh;
+  of_take.mesh_sum = timeline.mesh_sum;
+  return recorded_model(of_take, mesh);
+}
+
+Result<std::unique_ptr<TimelineFrames>> TimelineFrames::open(const std::filesystem::path& path,
+                                                             const std::string& mesh) {
+  auto timeline = timeline::read_timeline(path);
+  if (!timeline) return timeline.error();
+  auto model = timeline_model(*timeline, mesh);
+  if (!model) return model.error();
+  auto player = timeline::Player::make(*std::move(timeline), *model);
+  if (!player) return Error{player.error().code, path.string() + ": " + player.error().message};
+  return std::unique_ptr<TimelineFrames>(new TimelineFrames(*std::move(model), *std::move(player)));
+}
+
+} // namespace nendo::app

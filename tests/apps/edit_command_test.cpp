@@ -1,0 +1,145 @@
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "support/program.hpp"
+
+using namespace nendo;
+using nendo::test::contents;
+using nendo::test::is_one_line_about;
+using nendo::test::lines_of;
+using nendo::test::TemporaryFolder;
+using nlohmann::json;
+
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+/// A folder with a short recorded run in it, and a timeline of that.
+struct EditedRun {
+  TemporaryFolder folder;
+  std::string take = path("take.nendo");
+  std::string shape = path("clay.obj");
+  std::string timeline = path("take.timeline.toml");
+  json made;
+
+  explicit EditedRun(const std::string& mode, const std::string& tolerance) {
+    const auto run =
+        test::nendo({"run", "--left", "sim", "--right", "sim:grasp", "--duration", "1", "--rate",
+                     "20", "--mode", mode, "--out", shape, "--record", take});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    made = json::parse(fine({"make", take, "--out", timeline, "--tolerance", tolerance, "--json"}));
+  }
+  std::string path(const std::string& name) const { return (folder.path() / name).string(); }
+
+  static test::Finished edit(Arguments arguments) {
+    arguments.insert(arguments.begin(), "edit");
+    return test::nendo(arguments);
+  }
+  /// What it printed; it must end well.
+  static std::string fine(const Arguments& arguments) {
+    const auto done = edit(arguments);
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    return done.out;
+  }
+  json shown(const std::string& file) const { return json::parse(fine({"show", file, "--json"})); }
+};
+
+double farthest(const std::string& one, const std::string& other) {
+  const auto mesh = deform::read_mesh(one);
+  const auto other_mesh = deform::read_mesh(other);
+  REQUIRE(mesh);
+  REQUIRE(other_mesh);
+  return (mesh->vertices - other_mesh->vertices).colwise().norm().maxCoeff();
+}
+
+} // namespace
+
+TEST_SUITE("edit_command") {
+  TEST_CASE("a recorded run is made into keys that play to its shape") {
+    for (const std::string mode : {"type1", "type2"}) {
+      CAPTURE(mode);
+      const EditedRun run(mode, "0mm");
+      CHECK(run.made["exact"] == true);
+      CHECK(run.made["left"]["most_tip_mm"] == 0.0);
+      const std::string played = run.path("played.obj");
+      const json told = json::parse(run.fine({"play", run.timeline, "--out", played, "--json"}));
+      CHECK(told["frames"].get<int>() >= run.made["left"]["frames"].get<int>());
+      CHECK(told["failed"] == 0);
+      // A stroke of type 2 is sampled at deadlines, too, that the live loop missed.
+      if (mode == "type1" || told["frames"] == run.made["left"]["frames"])
+        CHECK(farthest(played, run.shape) < 1e-4);
+    }
+  }
+
+  TEST_CASE(
+      "keys are shown, moved, copied, deleted and brought to a place, and the file with them") {
+    const EditedRun run("type1", "2mm");
+    const json before = run.shown(run.timeline);
+    const auto& keys = before["hands"]["right"];
+    REQUIRE(keys.size() >= 3);
+    CHECK(run.made["right"]["most_tip_mm"].get<double>() <= 2.0);
+    CHECK(keys[0]["angles_rad"].size() == 23);
+    CHECK(lines_of(run.fine({"show", run.timeline, "--finger", "index"})).size() >=
+          3 + keys.size());
+    const std::string other = run.path("other.timeline.toml");
+    const double to_s = keys[1]["time_s"].get<double>() + 0.001;
+    const std::string at = std::to_string(to_s);
+    run.fine({"copy", run.timeline, "--hand", "right", "--key", "1", "--to", at, "--out", other});
+    CHECK(run.shown(run.timeline) == before); // it went elsewhere
+    CHECK(run.shown(other)["hands"]["right"].size() == keys.size() + 1);
+    run.fine({"delete", other, "--hand", "right", "--key", "1"});
+    run.fine({"move", other, "--hand", "right", "--key", "1", "--to", keys[1]["time_s"].dump()});
+    CHECK(run.shown(other)["hands"] == before["hands"]);
+    const auto tip = keys[2]["tips"]["index"];
+    const std::string place = tip[0].dump() + "," + tip[1].dump() + "," + tip[2].dump();
+    run.fine({"set-tip", other, "--hand", "right", "--key", "1", "--finger", "index", "--to", place,
+              "--within", "500"});
+    const json set = run.shown(other)["hands"]["right"][1];
+    CHECK(set["tips"]["thumb"] == keys[1]["tips"]["thumb"]);
+    CHECK(set["tips"]["index"] != keys[1]["tips"]["index"]);
+    run.fine({"retime", other, "--scale", "2"});
+    CHECK(run.shown(other)["duration_s"] == 2.0 * before["duration_s"].get<double>());
+    run.fine({"blend", other, "--with", run.timeline, "--factor", "1"});
+    run.fine({"add", other, "--hand", "left", "--at", "0.0123"});
+    run.fine({"blend", other, "--hand", "left", "--key", "1", "--factor", "0.5"});
+    run.fine({"mirror", other});
+    CHECK(run.shown(other)["hands"]["right"].size() > before["hands"]["left"].size());
+    const std::string picture = run.path("other.png");
+    const auto drawn =
+        test::nendo({"picture", other, "--time", "1", "--size", "96x96", "--out", picture});
+    CAPTURE(drawn.err);
+    CHECK(drawn.exit_code == 0);
+    CHECK(contents(picture).substr(1, 3) == "PNG");
+  }
+
+  TEST_CASE("what cannot be is one line that names the file, and the file stays") {
+    const EditedRun run("type1", "2mm");
+    const std::string before = contents(run.timeline);
+    const auto refuses = [&](const Arguments& arguments, const std::string& about) {
+      const auto done = EditedRun::edit(arguments);
+      CAPTURE(done.err);
+      CHECK(done.exit_code != 0);
+      CHECK(is_one_line_about(done.err, about));
+      CHECK(contents(run.timeline) == before);
+    };
+    const std::string& file = run.timeline;
+    refuses({"move", file, "--hand", "left", "--key", "999", "--to", "0.5"}, "take.timeline.toml");
+    refuses({"move", file, "--hand", "upper", "--key", "0", "--to", "0.5"}, "upper");
+    refuses({"delete", file, "--hand", "left", "--key", "0", "--out", "x.toml"}, "x.toml");
+    refuses({"retime", file, "--scale", "-1"}, "take.timeline.toml");
+    refuses({"set-tip", file, "--hand", "left", "--key", "0", "--finger", "index", "--to", "1,2"},
+            "1,2");
+    refuses({"set-tip", file, "--hand", "left", "--key", "0", "--finger", "index", "--to",
+             "100,100,100"},
+            "out of reach");
+    refuses({"blend", file}, "--with");
+    refuses({"make", run.take, "--out", run.path("a.timeline.toml"), "--tolerance", "1"}, "1mm");
+    refuses({"play", run.take}, "take.nendo");
+    refuses({"play", file, "--until", "99"}, "--until");
+    refuses({"show", run.path("none.timeline.toml")}, "none.timeline.toml");
+  }
+}

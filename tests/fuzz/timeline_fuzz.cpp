@@ -1,0 +1,53 @@
+// Whatever the text is, parse_timeline gives an error or a timeline that can be written, reads back
+// to the same text, and plays to finite shapes.
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include <nendo/timeline/player.hpp>
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "support/test_meshes.hpp"
+
+namespace {
+
+void require(bool law) {
+  if (!law) std::abort();
+}
+
+void play(nendo::timeline::Timeline timeline) {
+  constexpr int most_frames = 12;
+  static const nendo::deform::Mesh model = nendo::test::sphere(6, 8, 1.0);
+  auto& deformer = timeline.sculptor.deformer; // time is not what is looked for here
+  if (deformer.injective)
+    deformer.injective->most_links = std::min(deformer.injective->most_links, 8);
+  const auto player = nendo::timeline::Player::make(std::move(timeline), model);
+  if (!player) return;
+  for (int frame = 0; frame < most_frames && (*player)->next(); ++frame) {
+  }
+  require((*player)->final_shape().allFinite());
+}
+
+} // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace nendo::timeline;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  auto timeline = parse_timeline(text, "fuzz");
+  if (!timeline) {
+    const auto& message = timeline.error().message;
+    require(message.starts_with("fuzz:") && message.find('\n') == std::string::npos);
+    return 0;
+  }
+  const auto written = timeline_text(*timeline);
+  require(static_cast<bool>(written));
+  const auto back = parse_timeline(*written, "back");
+  require(static_cast<bool>(back));
+  const auto again = timeline_text(*back);
+  require(again && *again == *written);
+  play(*std::move(timeline));
+  return 0;
+}

@@ -1,0 +1,83 @@
+#pragma once
+// Timelines for tests: random ones, and a wave of a hand.
+
+#include <cmath>
+#include <random>
+
+#include <nendo/timeline/timeline.hpp>
+
+#include "support/random_poses.hpp"
+
+namespace nendo::test {
+
+inline timeline::Key random_key(double time_s, std::mt19937& random) {
+  timeline::Key key;
+  key.time_s = time_s;
+  key.angles = random_angles(random);
+  const Eigen::Isometry3d place = random_place(random);
+  key.wrist_m = place.translation();
+  key.wrist_turn = Eigen::Quaterniond(place.linear());
+  return key;
+}
+
+inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys = 6) {
+  std::uniform_real_distribution<double> step(0.01, 0.8);
+  timeline::Timeline made;
+  made.take = "take \"of\" M\xC3\xBCller\\.nendo";
+  made.mesh = "/tmp/ball\n.obj";
+  made.mesh_sum = {random(), static_cast<std::uint32_t>(random())};
+  made.units_per_metre = step(random);
+  made.rate_hz = 60.0;
+  made.held = random() % 2 == 0;
+  made.sculptor.mode = random() % 2 == 0 ? flow::Mode::type1 : flow::Mode::type2;
+  made.sculptor.piece_length = step(random);
+  auto& deformer = made.sculptor.deformer;
+  deformer.supports.shared = {{step(random), 1.0}, {step(random), 0.25}};
+  deformer.supports.own = {{3, {step(random), 2.0}}};
+  deformer.csrbf.kernel = deform::Wendland::c4;
+  deformer.csrbf.storage = deform::Storage::dense;
+  if (random() % 2 == 0) deformer.injective.emplace();
+  for (const Side side : {Side::left, Side::right}) {
+    made.hands.push_back({side, {0.18 + 0.01 * step(random), 0.08}, {}});
+    double time_s = 0.0;
+    for (std::size_t at = 0; at < keys; ++at, time_s += step(random))
+      made.hands.back().keys.push_back(random_key(time_s, random));
+    made.duration_s = std::max(made.duration_s, made.hands.back().keys.back().time_s);
+  }
+  for (const flow::Request request : flow::requests)
+    made.events.push_back({0.1 * static_cast<double>(made.events.size()), request});
+  return made;
+}
+
+inline bool same_bits(const timeline::Timeline& one, const timeline::Timeline& other) {
+  bool same = one.hands.size() == other.hands.size() && one.events.size() == other.events.size() &&
+              one.duration_s == other.duration_s;
+  for (std::size_t at = 0; same && at < one.hands.size(); ++at) {
+    const auto& keys = one.hands[at].keys;
+    same = one.hands[at].side == other.hands[at].side && keys.size() == other.hands[at].keys.size();
+    for (std::size_t key = 0; same && key < keys.size(); ++key)
+      same = timeline::same_bits(keys[key], other.hands[at].keys[key]);
+  }
+  for (std::size_t at = 0; same && at < one.events.size(); ++at)
+    same = one.events[at].time_s == other.events[at].time_s &&
+           one.events[at].request == other.events[at].request;
+  return same;
+}
+
+/// A pose a frame, at 90 Hz: every joint moves at a pace of its own, and rests now and then.
+inline std::vector<timeline::Key> waving(std::size_t frames) {
+  std::vector<timeline::Key> keys(frames);
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    timeline::Key& key = keys[frame];
+    key.time_s = static_cast<double>(frame) / 90.0;
+    for (std::size_t at = 0; at < hand::angle_count; ++at) {
+      const double phase = key.time_s * (1.0 + 0.15 * static_cast<double>(at % 7));
+      key.angles[hand::angle_at(at)] = 0.3 + 0.3 * std::max(0.0, std::sin(phase));
+    }
+    key.wrist_m = {0.1 * std::sin(key.time_s), 0.3, 0.0};
+    key.wrist_turn = Eigen::AngleAxisd(0.2 * std::cos(key.time_s), Eigen::Vector3d::UnitY());
+  }
+  return keys;
+}
+
+} // namespace nendo::test

@@ -1,0 +1,198 @@
+#include <nendo/timeline/player.hpp>
+
+#include <doctest/doctest.h>
+
+#include <nendo/recording/loop_replay.hpp>
+#include <nendo/timeline/edit.hpp>
+#include <nendo/timeline/from_take.hpp>
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "support/takes.hpp"
+
+using namespace nendo;
+using namespace nendo::timeline;
+using deform::Points;
+using flow::Mode;
+
+namespace {
+
+double farthest(const Points& one, const Points& other) {
+  return (one - other).colwise().norm().maxCoeff();
+}
+
+std::unique_ptr<Player> playing(const Timeline& timeline, const deform::Mesh& model) {
+  auto player = Player::make(timeline, model);
+  CAPTURE((player ? std::string() : player.error().message));
+  REQUIRE(player);
+  return *std::move(player);
+}
+
+/// A recorded run, with or without what people ask for.
+struct Taken {
+  test::RecordedLoop live;
+  explicit Taken(Mode mode, bool injective = false,
+                 flow::SwitchAction action = flow::SwitchAction::none)
+      : live(mode, hand::FilterKind::off, false, injective, action) {
+    live.record();
+  }
+  /// Hands that close slowly, and open.
+  void bend(std::uint64_t ticks) {
+    const HostTime begin = HostClock::now();
+    for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+      const double phase = 6.28 * static_cast<double>(tick) / 200.0;
+      live.test.bend(static_cast<int>(12.0 - 12.0 * std::cos(phase)),
+                     begin + tick * std::chrono::milliseconds(11));
+      live.test.frame_after_tick(tick);
+    }
+  }
+  MadeTimeline made(const Tolerance& tolerance) {
+    REQUIRE(live.end());
+    auto timeline = timeline_of_take(live.path, live.test.model, tolerance);
+    CAPTURE((timeline ? std::string() : timeline.error().message));
+    REQUIRE(timeline);
+    return *std::move(timeline);
+  }
+};
+
+constexpr Tolerance none{0.0, 0.0};
+
+} // namespace
+
+TEST_SUITE("player") {
+  TEST_CASE("with every frame a key it makes the take's every shape, in all modes, also where "
+            "commits are undone and redone") {
+    struct Way {
+      Mode mode;
+      bool injective;
+      flow::SwitchAction action;
+    };
+    using flow::SwitchAction;
+    for (const Way& way :
+         {Way{Mode::type1, false, SwitchAction::none}, Way{Mode::type2, false, SwitchAction::none},
+          Way{Mode::type1, true, SwitchAction::toggle}, Way{Mode::type2, true, SwitchAction::grab},
+          Way{Mode::type1, false, SwitchAction::commit}}) {
+      CAPTURE(name_of(way.mode));
+      CAPTURE(name_of(way.action));
+      Taken taken(way.mode, way.injective, way.action);
+      test::play(taken.live, 400);
+      const MadeTimeline made = taken.made(none);
+      CHECK(made.exact);
+      CHECK(made.timeline.events.size() > 5);
+      const auto player = playing(made.timeline, taken.live.test.model);
+      auto reader = recording::TakeReader::open(taken.live.path);
+      REQUIRE(reader);
+      auto replay = recording::LoopReplay::make(reader->setup(), taken.live.test.model);
+      REQUIRE(replay);
+      REQUIRE(player->next()); // where the hands took hold
+      CHECK(player->time_s() == 0.0);
+      Points wanted;
+      Points shape;
+      double worst = 0.0;
+      std::uint64_t frames = 0;
+      while (const auto entry = reader->next()) {
+        if (!(*replay)->feed(*entry)) continue;
+        REQUIRE(player->next());
+        ++frames;
+        (*replay)->loop().frames().update();
+        const flow::Frame& frame = (*replay)->loop().frames().front();
+        CHECK(player->frame().held == frame.held);
+        player->layout().unpack(frame.shape, wanted);
+        player->layout().unpack(player->frame().shape, shape);
+        worst = std::max(worst, farthest(shape, wanted));
+      }
+      CHECK(frames == 400);
+      CHECK_FALSE(player->next());
+      CHECK(worst < test::float_gap);
+      const auto& stats = (*replay)->loop().stats();
+      CHECK(player->stats().undos == stats.undos);
+      CHECK(player->stats().redos == stats.redos);
+      CHECK(farthest(player->final_shape(), (*replay)->loop().final_shape()) < test::float_gap);
+      CHECK(player->last_time_s() == doctest::Approx(made.timeline.duration_s));
+    }
+  }
+
+  TEST_CASE("with few keys the shape is as near as they are") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      CAPTURE(name_of(mode));
+      Taken taken(mode);
+      taken.bend(350);
+      constexpr double tip_m = 3e-3; // a count of the gloves moves a tip by about a millimetre
+      const MadeTimeline made = taken.made({.tip_m = tip_m});
+      for (std::size_t hand = 0; hand < 2; ++hand) {
+        CHECK(made.hands[hand].worst.tip_m <= tip_m);
+        CHECK(made.hands[hand].frames == 351);
+        CHECK(made.timeline.hands[hand].keys.size() < 60);
+      }
+      const auto player = playing(made.timeline, taken.live.test.model);
+      while (player->next()) {
+      }
+      const double off = farthest(player->final_shape(), taken.live.test.loop->final_shape());
+      // Fields of fingertips so far apart are hardly larger than what moves them.
+      CHECK(off < 4.0 * tip_m * taken.live.test.placement.units_per_metre);
+      CHECK(farthest(player->final_shape(), taken.live.test.model.vertices) > 0.02);
+    }
+  }
+
+  TEST_CASE("a timeline that was written and read makes the same shapes, bit for bit") {
+    Taken taken(Mode::type2);
+    test::play(taken.live, 100);
+    const MadeTimeline made = taken.made({.tip_m = 1e-3});
+    const auto text = timeline_text(made.timeline);
+    REQUIRE(text);
+    const auto back = parse_timeline(*text, "back");
+    REQUIRE(back);
+    const auto one = playing(made.timeline, taken.live.test.model);
+    const auto other = playing(*back, taken.live.test.model);
+    while (one->next())
+      REQUIRE(other->next());
+    CHECK_FALSE(other->next());
+    CHECK(one->final_shape() == other->final_shape());
+  }
+
+  TEST_CASE("mirrored hands make the mirrored shape of a mirrored model") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      Taken taken(mode);
+      taken.bend(120);
+      MadeTimeline made = taken.made({.tip_m = 1e-3});
+      const deform::Mesh& model = taken.live.test.model;
+      deform::Mesh mirrored = model;
+      mirrored.vertices.row(0) = -model.vertices.row(0);
+      const auto one = playing(made.timeline, model);
+      REQUIRE(mirror(made.timeline, 0.0));
+      const auto other = playing(made.timeline, mirrored);
+      while (one->next())
+        REQUIRE(other->next());
+      Points shape = other->final_shape();
+      shape.row(0) = -shape.row(0).eval();
+      CHECK(farthest(shape, one->final_shape()) < 10 * test::float_gap);
+    }
+  }
+
+  TEST_CASE("what cannot be played is refused, and hostile numbers give finite shapes") {
+    Taken taken(Mode::type1);
+    taken.bend(20);
+    const Timeline fine = taken.made(none).timeline;
+    const deform::Mesh& model = taken.live.test.model;
+    Timeline bad = fine;
+    bad.hands.clear();
+    CHECK_FALSE(Player::make(bad, model));
+    bad = fine;
+    bad.rate_hz = 0.0;
+    CHECK_FALSE(Player::make(bad, model));
+    bad = fine;
+    for (auto& hand : bad.hands)
+      for (Key& key : hand.keys) {
+        key.wrist_m = Eigen::Vector3d(farthest_m, -farthest_m, 0.0);
+        key.wrist_turn = {0.0, 0.0, 0.0, 1.0};
+      }
+    bad.hands[0].keys.back().wrist_m.setConstant(-farthest_m);
+    bad.units_per_metre = 1e90;
+    if (const auto player = Player::make(bad, model)) {
+      while ((*player)->next()) {
+      }
+      CHECK((*player)->final_shape().allFinite());
+    }
+    test::write_bytes(taken.live.folder.path() / "no.nendo", "nothing");
+    CHECK_FALSE(timeline_of_take(taken.live.folder.path() / "no.nendo", model, none));
+  }
+}
