@@ -39,7 +39,7 @@ TEST_SUITE("wrist_move") {
       const WristMove move = WristMove::to(Side::left, pose);
       CHECK(move.is_usable());
       CHECK(move.side == Side::left);
-      CHECK((move.T_stage_wrist().matrix() - pose.matrix()).norm() < 1e-12);
+      CHECK((move.pose().matrix() - pose.matrix()).norm() < 1e-12);
     }
   }
 

@@ -30,7 +30,7 @@ Camera looking_at(const flow::Frame& frame) {
 }
 
 Vector3d place_of(const flow::WristMove& move) {
-  return move.T_stage_wrist().translation();
+  return move.pose().translation();
 }
 
 } // namespace
@@ -91,7 +91,7 @@ TEST_SUITE("hand_mover") {
     mover.turn(camera, 100.0, 0.0);
     CHECK((place_of(mover.move()) - pushed).norm() < 1e-12);
     const Eigen::AngleAxisd turn(
-        Eigen::Matrix3d(mover.move().T_stage_wrist().linear() * wrist.linear().transpose()));
+        Eigen::Matrix3d(mover.move().pose().linear() * wrist.linear().transpose()));
     CHECK(turn.angle() == doctest::Approx(from_degrees(35.0)));
     CHECK(std::abs(turn.axis().dot(camera.axes().row(1).transpose())) == doctest::Approx(1.0));
   }

@@ -128,7 +128,7 @@ void DeformLoop::take_wrists() noexcept {
     if (!move.is_usable()) return;
     if (options_.tape != nullptr) options_.tape->wrist(move);
     for (Hand& hand : hands_)
-      if (hand.slot == Placement::index_of(move.side)) hand.T_stage_wrist = move.T_stage_wrist();
+      if (hand.slot == Placement::index_of(move.side)) hand.T_stage_wrist = move.pose();
   });
 }
 

@@ -26,7 +26,7 @@ bool WristMove::is_usable() const noexcept {
   return near && length >= least_length && length <= most_length;
 }
 
-Eigen::Isometry3d WristMove::T_stage_wrist() const noexcept {
+Eigen::Isometry3d WristMove::pose() const noexcept {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = Eigen::Vector3d::Map(position_m.data());
   pose.linear() = Eigen::Quaterniond(turn_xyzw.data()).normalized().toRotationMatrix();

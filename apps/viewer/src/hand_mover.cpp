@@ -43,20 +43,18 @@ void HandMover::take(const Camera& camera, const flow::Frame& frame, const Vecto
       if (!(distance < nearest)) continue;
       nearest = distance;
       slot_ = slot;
-      T_stage_wrist_ = hand.T_stage_wrist;
+      wrist_ = hand.T_stage_wrist;
     }
   }
 }
 
 void HandMover::go_by(const Vector3d& way_m) noexcept {
-  T_stage_wrist_.translation() =
-      (T_stage_wrist_.translation() + way_m).cwiseMax(-most_m).cwiseMin(most_m);
+  wrist_.translation() = (wrist_.translation() + way_m).cwiseMax(-most_m).cwiseMin(most_m);
 }
 
 void HandMover::shift(const Camera& camera, double dx, double dy, double height) noexcept {
   const Eigen::Matrix3d rows = camera.axes();
-  const double depth_m =
-      std::max(0.0, rows.row(2).dot(camera.eye() - T_stage_wrist_.translation()));
+  const double depth_m = std::max(0.0, rows.row(2).dot(camera.eye() - wrist_.translation()));
   const double metres = 2.0 * camera.tangent() * depth_m / std::max(1.0, height);
   go_by(metres * (dx * rows.row(0) - dy * rows.row(1)).transpose());
 }
@@ -65,9 +63,8 @@ void HandMover::turn(const Camera& camera, double dx, double dy) noexcept {
   const Eigen::Matrix3d rows = camera.axes();
   const Eigen::AngleAxisd about_up(from_degrees(degrees_a_pixel * dx), rows.row(1).transpose());
   const Eigen::AngleAxisd about_level(from_degrees(degrees_a_pixel * dy), rows.row(0).transpose());
-  const Eigen::Quaterniond turned =
-      about_level * about_up * Eigen::Quaterniond(T_stage_wrist_.linear());
-  T_stage_wrist_.linear() = turned.normalized().toRotationMatrix();
+  const Eigen::Quaterniond turned = about_level * about_up * Eigen::Quaterniond(wrist_.linear());
+  wrist_.linear() = turned.normalized().toRotationMatrix();
 }
 
 void HandMover::push(const Camera& camera, double steps) noexcept {
@@ -77,7 +74,7 @@ void HandMover::push(const Camera& camera, double steps) noexcept {
 
 flow::WristMove HandMover::move() const noexcept {
   const Side side = slot_ == flow::Placement::index_of(Side::left) ? Side::left : Side::right;
-  return flow::WristMove::to(side, T_stage_wrist_);
+  return flow::WristMove::to(side, wrist_);
 }
 
 } // namespace nendo::viewer

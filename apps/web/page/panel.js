@@ -4,6 +4,7 @@ const KEYS = [
   ['l', 'let go; what is shaped stays', 'let go'],
   ['c', 'commit: this shape becomes the rest shape', 'commit'],
   ['u', 'undo the last commit', 'undo'],
+  ['r', 'redo what was undone', 'redo'],
   ['h', 'hands on and off', null, 'skin'],
   ['b', 'bones on and off', null, 'bones'],
   ['v', 'control vectors on and off', null, 'vectors'],

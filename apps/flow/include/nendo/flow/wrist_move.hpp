@@ -23,8 +23,8 @@ struct WristMove {
   /// Within farthest_m of the stage's middle, with a quaternion that has a length. What is not is
   /// refused by the loop.
   bool is_usable() const noexcept;
-  /// Of one that is usable.
-  Eigen::Isometry3d T_stage_wrist() const noexcept;
+  /// T_stage_wrist, of one that is usable.
+  Eigen::Isometry3d pose() const noexcept;
 };
 
 /// One thread moves, the loop takes at the beginning of a tick what has come.

@@ -36,8 +36,8 @@ public:
 private:
   void go_by(const Eigen::Vector3d& way_m) noexcept;
 
-  std::optional<std::size_t> slot_; ///< flow::Placement::index_of(side)
-  Eigen::Isometry3d T_stage_wrist_ = Eigen::Isometry3d::Identity();
+  std::optional<std::size_t> slot_;                         ///< flow::Placement::index_of(side)
+  Eigen::Isometry3d wrist_ = Eigen::Isometry3d::Identity(); ///< T_stage_wrist
 };
 
 } // namespace nendo::viewer
