@@ -14,6 +14,7 @@
 #include "calibration_names.hpp"
 #include "cli.hpp"
 #include "commands.hpp"
+#include "json_line.hpp"
 #include "printable.hpp"
 
 namespace nendo::app {
@@ -22,12 +23,6 @@ namespace {
 using hand::StoredCalibration;
 using hand::WearerCalibration;
 using nlohmann::ordered_json;
-
-constexpr auto replace_bytes = ordered_json::error_handler_t::replace; // a path need not be UTF-8
-
-void print_line(const ordered_json& line) {
-  std::cout << line.dump(-1, ' ', false, replace_bytes) << '\n';
-}
 
 ordered_json summary_json(const StoredCalibration& file) {
   const WearerCalibration& wearer = file.wearer;

@@ -33,8 +33,12 @@ void install_stop_signals() noexcept {
   action.sa_handler = on_stop_signal;
   action.sa_flags = static_cast<int>(SA_RESETHAND); // the second signal finds the default action
   sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction inherited {};
+    sigaction(signal, nullptr, &inherited);
+    if (signal == SIGHUP && inherited.sa_handler == SIG_IGN) continue; // nohup
     sigaction(signal, &action, nullptr);
+  }
 }
 
 std::filesystem::path shipped_model(std::string_view file_name) {

@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "injective_deform.hpp"
 #include "kernel_options.hpp"
+#include "output_place.hpp"
 
 namespace nendo::app {
 namespace {
@@ -88,6 +89,8 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
 Result<void> deform_file(const Options& options) {
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
+  if (const auto fine = check_place("--out", options.out, {".obj", ".ply"}); !fine)
+    return fine.error();
   auto mesh = read_mesh(options.mesh);
   if (!mesh) return mesh.error();
   const auto vectors = read_control_vectors(options.vectors);

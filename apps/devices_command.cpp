@@ -16,6 +16,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "json_line.hpp"
 
 namespace nendo::app {
 namespace {
@@ -59,10 +60,6 @@ ordered_json json_of(const GloveCandidate& candidate) {
   line["holders"] = std::move(holders);
   line["holders_complete"] = candidate.holders_complete;
   return line;
-}
-
-void print_line(const ordered_json& line) {
-  std::cout << line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << std::endl;
 }
 
 void print_text(const GloveCandidate& candidate) {

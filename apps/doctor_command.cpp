@@ -10,6 +10,7 @@
 #include "cli.hpp"
 #include "commands.hpp"
 #include "doctor.hpp"
+#include "json_line.hpp"
 
 namespace nendo::app {
 namespace {
@@ -27,7 +28,7 @@ void print_json(const Finding& finding) {
                                     {"subject", finding.subject},
                                     {"what", finding.what},
                                     {"remedy", finding.remedy}};
-  std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  print_line(line);
 }
 
 void print_text(const Finding& finding) {

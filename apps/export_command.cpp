@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -16,6 +15,8 @@
 #include "export/mesh_sequence.hpp"
 #include "export/motion_csv.hpp"
 #include "export/point_cache.hpp"
+#include "json_line.hpp"
+#include "output_place.hpp"
 #include "recorded_frames.hpp"
 #include "recorded_model.hpp"
 #include "timeline_frames.hpp"
@@ -38,16 +39,24 @@ struct Options {
 
 constexpr double animators_rate_hz = 30.0; // where the file does not tell its rate
 
-std::string format_of(const Options& options) {
-  if (!options.format.empty()) return options.format;
-  const std::string extension = std::filesystem::path(options.out).extension().string();
-  for (const char* format : {"glb", "pc2", "mdd", "obj", "ply", "bvh", "csv"})
-    if (extension == "." + std::string(format)) return format;
-  return {};
-}
-
 bool is_sequence(const std::string& format) {
   return format == "obj" || format == "ply";
+}
+
+/// Whether files can go where --out says, and of which format they are.
+Result<std::string> format_of(const Options& options) {
+  if (options.format.empty()) {
+    if (const auto fine = check_place("--out", options.out,
+                                      {".glb", ".pc2", ".mdd", ".obj", ".ply", ".bvh", ".csv"});
+        !fine)
+      return fine.error();
+    return std::filesystem::path(options.out).extension().string().substr(1);
+  }
+  const std::string ending = "." + options.format;
+  const auto fine = is_sequence(options.format) ? check_place("--out", options.out, {ending})
+                                                : check_place("--out", options.out);
+  if (!fine) return fine.error();
+  return options.format;
 }
 
 Result<std::string> check(const Options& options, const Choice& choice) {
@@ -55,21 +64,12 @@ Result<std::string> check(const Options& options, const Choice& choice) {
   if (!(options.tolerance > 0.0 && options.tolerance <= 0.1))
     return Error{Errc::usage, "--tolerance: use a part of the model's diagonal, above 0 and up to "
                               "0.1"};
-  const std::string format = format_of(options);
-  if (format.empty()) {
-    return Error{Errc::usage, "--out " + options.out +
-                                  ": end the name in .glb, .pc2, .mdd, .bvh, .csv, or %04d.obj or "
-                                  "%04d.ply; or give --format"};
-  }
-  if (!is_sequence(format)) return format;
-  if (std::filesystem::path(options.out).extension() != "." + format)
-    return Error{Errc::usage, "--out " + options.out + ": end the name in ." + format};
-  if (!NumberedName::parse(options.out)) {
+  const auto format = format_of(options);
+  if (format && is_sequence(*format) && !NumberedName::parse(options.out))
     return Error{Errc::usage, "--out " + options.out +
                                   ": is a file a frame, so give the number a place, as in "
                                   "take-%04d." +
-                                  format};
-  }
+                                  *format};
   return format;
 }
 
@@ -83,12 +83,7 @@ Result<Take> read_recorded(const Options& options) {
   const auto reader = recording::TakeReader::open(options.file);
   if (!reader) return reader.error();
   const recording::Setup& setup = reader->setup();
-  if (!setup.loop) {
-    return Error{Errc::bad_input, options.file + ": gloves were recorded, but no loop that shapes "
-                                                 "a model; shape one with `nendo run --right "
-                                                 "replay:FILE`"};
-  }
-  auto model = recorded_model(*setup.loop, options.mesh);
+  auto model = recorded_model(options.file, setup, options.mesh);
   if (!model) return model.error();
   Take take;
   for (const auto& hand : setup.hands)
@@ -151,8 +146,7 @@ void print_json(const std::string& format, const Exported& done) {
                       {"keys", done.morphs->keys},
                       {"greatest_error", done.morphs->greatest_error}};
   }
-  std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-            << std::endl;
+  print_line(line);
 }
 
 void print(const Exported& done) {

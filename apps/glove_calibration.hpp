@@ -34,6 +34,7 @@ struct KnownHands {
   std::optional<CountScale> adapt; ///< ranges are to be learned of a glove with such counts
 
   const KnownHand& of(Side wanted) const noexcept { return wanted == side ? own : swapped; }
+  const KnownHand& not_of(Side side_now) const noexcept { return side_now == side ? swapped : own; }
   hand::CalibrationInForce in_force() const noexcept {
     if (adapt) return hand::CalibrationInForce(*adapt);
     return {side, own.calibration, swapped.calibration};

@@ -16,6 +16,7 @@
 #include "angle_sources_json.hpp"
 #include "cli.hpp"
 #include "commands.hpp"
+#include "json_line.hpp"
 #include "printable.hpp"
 
 namespace nendo::app {
@@ -52,7 +53,7 @@ void print_json(const driver::GloveInfo& info) {
         {"resistance", can.resistance}}},
       {"facts", std::move(facts)}};
   // A device's text need not be UTF-8.
-  std::cout << line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  print_line(line);
 }
 
 // "a, b, c" in lines of at most `width` characters.

@@ -11,11 +11,11 @@
 namespace nendo::app {
 namespace {
 
-// Both hands that the machine has, or simulated ones. A glove that is there but cannot be used is
-// an error.
+// Both hands that the machine has, or simulated ones. A glove that is there but may not be used is
+// an error; one that does not answer is told of, and the other hand goes on alone.
 Result<std::vector<OpenHand>> open_any(Bell* bell) {
   std::vector<OpenHand> hands;
-  std::string why;
+  std::vector<std::string> why;
   for (const Side side : {Side::left, Side::right}) {
     auto hand = open_hand("auto:" + std::string(name_of(side)), side, bell);
     if (hand) {
@@ -23,15 +23,16 @@ Result<std::vector<OpenHand>> open_any(Bell* bell) {
     } else if (hand.error().code != Errc::no_device) {
       return hand.error();
     } else {
-      why = hand.error().message;
+      why.push_back(hand.error().message);
     }
   }
-  if (!hands.empty()) return hands;
   const auto candidates = driver::find_gloves();
-  if (std::any_of(candidates.begin(), candidates.end(),
-                  [](const auto& c) { return c.identified; })) {
-    note(why); // one is plugged in, but does not answer
-  }
+  const auto plugged_in = std::count_if(candidates.begin(), candidates.end(),
+                                        [](const auto& c) { return c.identified; });
+  if (static_cast<std::size_t>(plugged_in) > hands.size())
+    for (const auto& reason : why)
+      note(reason);
+  if (!hands.empty()) return hands;
   note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
        "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {

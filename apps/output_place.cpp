@@ -22,8 +22,8 @@ Result<void> check_place(std::string_view option, const std::string& path,
   if (path.empty()) return {};
   const std::filesystem::path file(path);
   const std::string given = std::string(option) + " " + path;
-  if (endings.size() > 0 &&
-      std::find(endings.begin(), endings.end(), file.extension().string()) == endings.end())
+  const auto ends_in = [&](std::string_view ending) { return path.ends_with(ending); };
+  if (endings.size() > 0 && std::none_of(endings.begin(), endings.end(), ends_in))
     return Error{Errc::usage, given + ": end the name in " + either(endings)};
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
@@ -33,6 +33,22 @@ Result<void> check_place(std::string_view option, const std::string& path,
   return Error{Errc::failed,
                given + ": " + folder.string() +
                    " is not a folder that you may write to; make it or choose another"};
+}
+
+Result<void>
+check_distinct(std::initializer_list<std::pair<std::string_view, std::string_view>> outputs) {
+  const auto place = [](std::string_view path) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(path, ignored);
+  };
+  for (auto one = outputs.begin(); one != outputs.end(); ++one)
+    for (auto other = outputs.begin(); other != one; ++other)
+      if (!one->second.empty() && !other->second.empty() &&
+          place(one->second) == place(other->second))
+        return Error{Errc::usage, std::string(other->first) + " and " + std::string(one->first) +
+                                      ": both name " + std::string(one->second) +
+                                      "; give each a file of its own"};
+  return {};
 }
 
 std::string numbered(const std::string& path, int number) {

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nendo/base/result.hpp>
 
@@ -15,6 +16,10 @@ namespace nendo::app {
 /// or not yours).
 Result<void> check_place(std::string_view option, const std::string& path,
                          std::initializer_list<std::string_view> endings = {});
+
+/// Whether all outputs that are wanted, by their options, are different files. Error: usage.
+Result<void>
+check_distinct(std::initializer_list<std::pair<std::string_view, std::string_view>> outputs);
 
 /// "a/shape-2.obj" of "a/shape.obj" and 2.
 std::string numbered(const std::string& path, int number);

@@ -20,11 +20,14 @@ std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
   std::vector<flow::HandInput> inputs;
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
-    const hand::HandSkeleton skeleton(hand.side, options.length.size(hand.known.own.size));
-    inputs.push_back({hand.ring.get(), skeleton, hand.known.own.calibration, hand.first});
+    // The glove may be another one by now than when the hand was opened.
+    const KnownHand& now = hand.known.of(hand.first.side);
+    const KnownHand& swapped = hand.known.not_of(hand.first.side);
+    const hand::HandSkeleton skeleton(hand.side, options.length.size(now.size));
+    inputs.push_back({hand.ring.get(), skeleton, now.calibration, hand.first});
     inputs.back().filter = options.filter;
-    inputs.back().swapped = hand.known.swapped.calibration;
-    inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(hand.known.swapped.size));
+    inputs.back().swapped = swapped.calibration;
+    inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(swapped.size));
     inputs.back().adapt = hand.known.adapt;
   }
   return inputs;

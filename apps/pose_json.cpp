@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "angle_sources_json.hpp"
+#include "json_line.hpp"
 
 namespace nendo::app {
 
@@ -27,7 +28,7 @@ std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
                     {"hand", name_of(side)},
                     {"joints", std::move(joints)}};
   if (sensors) line["angles"] = angle_sources_json(*sensors);
-  return line.dump();
+  return json_text(line);
 }
 
 } // namespace nendo::app

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <thread>
 
@@ -12,6 +11,7 @@
 #include "commands.hpp"
 #include "durations.hpp"
 #include "hand_length.hpp"
+#include "json_line.hpp"
 #include "run_recording.hpp"
 
 namespace nendo::app {
@@ -123,13 +123,11 @@ int record(Options& options) {
   if (!recorded) return static_cast<int>(recorded.error().code); // it was told at once
   const double elapsed_s = to_seconds(HostClock::now() - start);
   if (options.json) {
-    std::cout << nlohmann::ordered_json{{"event", "recorded"},
-                                        {"elapsed_s", elapsed_s},
-                                        {"samples", recorded->samples},
-                                        {"lost", recorded->lost},
-                                        {"bytes", recorded->bytes}}
-                     .dump()
-              << std::endl;
+    print_line(nlohmann::ordered_json{{"event", "recorded"},
+                                      {"elapsed_s", elapsed_s},
+                                      {"samples", recorded->samples},
+                                      {"lost", recorded->lost},
+                                      {"bytes", recorded->bytes}});
   } else {
     std::printf("recorded %llu samples in %.1f s, %llu lost; %llu bytes in %s\n",
                 static_cast<unsigned long long>(recorded->samples), elapsed_s,

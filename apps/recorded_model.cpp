@@ -1,6 +1,7 @@
 #include "recorded_model.hpp"
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/recording/loop_replay.hpp>
 
 #include "cli.hpp"
 #include "printable.hpp"
@@ -22,6 +23,13 @@ Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std:
   }
   note(named + ": another model than was recorded; its shape will be another, too");
   return model;
+}
+
+Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,
+                                    const std::string& named) {
+  if (!setup.loop)
+    return Error{Errc::bad_input, file + ": " + std::string(recording::without_loop)};
+  return recorded_model(*setup.loop, named);
 }
 
 } // namespace nendo::app

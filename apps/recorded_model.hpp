@@ -12,5 +12,8 @@ namespace nendo::app {
 /// bad_input, if the recorded file is no longer what it was.
 Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop,
                                     const std::string& named = {});
+/// Of the recording in `file`. Error: bad_input also if no loop was recorded.
+Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,
+                                    const std::string& named = {});
 
 } // namespace nendo::app

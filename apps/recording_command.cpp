@@ -5,6 +5,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "output_place.hpp"
 #include "recorded_model.hpp"
 #include "recording_report.hpp"
 
@@ -56,6 +57,7 @@ void print_made(const Options& options, std::uint64_t count, const char* what,
 }
 
 int repair(const Options& options) {
+  if (const auto fine = check_place("--out", options.out); !fine) return report(fine.error());
   const auto made = recording::repair_take(options.file, options.out);
   if (!made) return report(made.error());
   print_made(options, made->chunks, "whole chunks", made->bytes);
@@ -71,6 +73,7 @@ int cut(const Options& options) {
   if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= most_s))
     return report(
         {Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"});
+  if (const auto fine = check_place("--out", options.out); !fine) return report(fine.error());
   const auto time = [](double seconds) {
     return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
   };
@@ -85,12 +88,10 @@ int shapes(const Options& options) {
   constexpr double most_hz = 10'000.0;
   if (!(options.rate_hz > 0.0 && options.rate_hz <= most_hz))
     return report({Errc::usage, "--rate: use more than 0 and at most 10000 shapes a second"});
+  if (const auto fine = check_place("--out", options.out); !fine) return report(fine.error());
   const auto reader = recording::TakeReader::open(options.file);
   if (!reader) return report(reader.error());
-  if (!reader->setup().loop)
-    return report({Errc::bad_input, options.file + ": gloves were recorded, but no loop, whose "
-                                                   "shapes there would be"});
-  const auto model = recorded_model(*reader->setup().loop, options.mesh);
+  const auto model = recorded_model(options.file, reader->setup(), options.mesh);
   if (!model) return report(model.error());
   const auto made = recording::add_shapes(options.file, options.out, *model, options.rate_hz);
   if (!made) return report(made.error());

@@ -2,12 +2,12 @@
 
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 
 #include <nlohmann/json.hpp>
 
 #include <nendo/hand/calibration_file.hpp>
 
+#include "json_line.hpp"
 #include "printable.hpp"
 
 namespace nendo::app {
@@ -116,7 +116,7 @@ void print_take_json(const std::string& file, const TakeSummary& summary) {
                           {"missing_entries", summary.missing},
                           {"ended", summary.ending.has_value()},
                           {"whole", summary.is_whole()}};
-  std::cout << line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << std::endl;
+  print_line(line);
 }
 
 void print_damages(const TakeSummary& summary) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <iostream>
 #include <memory>
 #include <thread>
 
@@ -15,6 +13,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "json_line.hpp"
 #include "output_place.hpp"
 #include "printable.hpp"
 #include "recorded_model.hpp"
@@ -139,8 +138,7 @@ void print(const Options& options, const Replayed& done) {
     if (done.the_same) line["same_shape"] = *done.the_same;
     line["shapes"] = done.shapes;
     line["farthest_from_shapes"] = done.farthest;
-    std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << std::endl;
+    print_line(line);
     return;
   }
   std::printf("replayed %llu ticks in %.2f s; ", static_cast<unsigned long long>(done.ticks),
@@ -163,12 +161,7 @@ int replay(const Options& options) {
   if (const auto fine = check(options); !fine) return report(fine.error());
   const auto reader = recording::TakeReader::open(options.file);
   if (!reader) return report(reader.error());
-  if (!reader->setup().loop)
-    return report({Errc::bad_input, options.file +
-                                        ": gloves were recorded, but no loop that shapes "
-                                        "a model; shape one with `nendo run --right "
-                                        "replay:FILE`"});
-  auto model = recorded_model(*reader->setup().loop, options.mesh);
+  auto model = recorded_model(options.file, reader->setup(), options.mesh);
   if (!model) return report(model.error());
   const std::string simd(deform::simd_names().front());
   if (reader->setup().loop->simd != simd) {

@@ -62,7 +62,11 @@ Result<void> check_outputs(const CommandOptions& options) {
   if (auto fine = check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
   if (auto fine = check_place("--picture", run.picture, {".png"}); !fine) return fine;
   if (auto fine = check_place("--record", run.recording.file); !fine) return fine;
-  return check_place("--screenshot", view.screenshot, {".png"});
+  if (auto fine = check_place("--screenshot", view.screenshot, {".png"}); !fine) return fine;
+  return check_distinct({{"--out", run.out},
+                         {"--picture", run.picture},
+                         {"--record", run.recording.file},
+                         {"--screenshot", view.screenshot}});
 }
 
 Result<void> check(CommandOptions& options) {
@@ -194,7 +198,7 @@ void add_run_options(Command& command, const std::shared_ptr<CommandOptions>& op
   command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
   command.add_option("--undo-memory", run_options.undo_memory_mb,
                      "Megabytes that undo and redo may take at most; without it, half of what the "
-                     "machine has. Then the oldest steps go");
+                     "program may use. Then the oldest steps go");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
   command.add_option("--picture", run_options.picture,

@@ -23,7 +23,7 @@ struct RunOptions {
   double duration_s = 0.0; ///< 0: until a stop signal
   std::string radius;      ///< as deform::parse_supports_by_point; empty: of the model's size
   bool json = false;
-  std::optional<double> undo_memory_mb{}; ///< nothing: half of the machine's
+  std::optional<double> undo_memory_mb{}; ///< nothing: half of what there is
   CalibrationOptions calibration;
   HandLength length;
   hand::FilterOptions filter; ///< of both hands

@@ -67,45 +67,36 @@ flow::Tape* RunRecorder::tape_for(const RecordingOptions& options) {
   return tape_.get();
 }
 
-std::string RunRecorder::next_name(const RecordingOptions& options) {
+std::string RunRecorder::next_name(const RecordingOptions& options, bool with_model) {
   const std::string first = options.file.empty() ? options.kept_stem + ".nendo" : options.file;
   std::error_code ignored;
   std::string name = first;
   while (std::filesystem::exists(name, ignored) ||
-         std::filesystem::exists(model_beside(name), ignored))
+         (with_model && std::filesystem::exists(model_beside(name), ignored)))
     name = next_free_name(first, number_);
   return name;
-}
-
-// Whoever replays the loop needs the model that it began with.
-Result<std::string> RunRecorder::model_file(const RunOptions& options, const deform::Mesh& model,
-                                            const std::string& take) {
-  const auto sum = recording::sum_of(model.vertices);
-  if (!loaded_) loaded_ = sum;
-  std::filesystem::path file = options.mesh;
-  if (sum != *loaded_) {
-    file = model_beside(take);
-    if (const auto written = deform::write_mesh(file, model); !written) return written.error();
-  }
-  std::error_code ignored;
-  return std::filesystem::absolute(file, ignored).string();
 }
 
 Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& placed,
                                 const std::vector<OpenHand>& hands, const deform::Mesh& model) {
   if (!tape_) return {};
   const auto& asked = options.recording;
-  const std::string name = next_name(asked);
+  const auto sum = recording::sum_of(model.vertices);
+  const bool with_model = sum != loaded_;
+  const std::string name = next_name(asked, with_model);
   outcomes_.push_back({asked.on ? name : "", std::nullopt});
   recording::Setup setup = begin_setup(hands, options.calibration.user);
   for (std::size_t at = 0; at < hands.size(); ++at) {
-    setup.hands.push_back(recording::hand_setup(placed.inputs[at],
-                                                options.length.size(hands[at].known.own.size),
-                                                options.length.size(hands[at].known.swapped.size)));
+    const Side side = hands[at].first.side; // of the glove at hand now
+    setup.hands.push_back(
+        recording::hand_setup(placed.inputs[at], options.length.size(hands[at].known.of(side).size),
+                              options.length.size(hands[at].known.not_of(side).size)));
   }
-  const auto mesh = model_file(options, model, name);
-  if (!mesh) return mesh.error();
-  setup.loop = recording::LoopSetup{*mesh, recording::sum_of(model.vertices), placed.placement,
+  // Whoever replays the loop needs the model that it began with.
+  const std::filesystem::path mesh = with_model ? model_beside(name) : options.mesh;
+  if (with_model)
+    if (const auto written = deform::write_mesh(mesh, model); !written) return written.error();
+  setup.loop = recording::LoopSetup{std::filesystem::absolute(mesh).string(), sum, placed.placement,
                                     placed.options, std::string(deform::simd_names().front())};
   recording::RecorderOptions wanted;
   if (asked.on) wanted.file = name;

@@ -45,6 +45,9 @@ recording::Setup begin_setup(const std::vector<OpenHand>& hands, const std::stri
 /// began with beside it unless that is the one that was loaded.
 class RunRecorder {
 public:
+  /// `loaded`: the model as it is in the run's file.
+  explicit RunRecorder(const deform::Mesh& loaded) : loaded_(recording::sum_of(loaded.vertices)) {}
+
   /// What the next loop is to record on; null: nothing is wanted of it.
   flow::Tape* tape_for(const RecordingOptions& options);
   /// Before the loop runs. Error: failed, if the files cannot be made; nothing is recorded then.
@@ -60,14 +63,12 @@ public:
   const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }
 
 private:
-  std::string next_name(const RecordingOptions& options);
-  Result<std::string> model_file(const RunOptions& options, const deform::Mesh& model,
-                                 const std::string& take);
+  std::string next_name(const RecordingOptions& options, bool with_model);
 
   std::unique_ptr<flow::Tape> tape_;
   std::unique_ptr<recording::Recorder> recorder_;
-  std::optional<recording::ShapeSum> loaded_; ///< of the model in the file that was named
-  int number_ = 1;                            ///< of the latest recording's name
+  recording::ShapeSum loaded_;
+  int number_ = 1; ///< of the latest recording's name
   std::vector<RecordingOutcome> outcomes_;
   bool keeps_ = false;
 };

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include <nendo/base/usable_memory.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli.hpp"
@@ -25,13 +26,14 @@ using std::chrono::milliseconds;
 // parts.
 std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
   constexpr std::size_t most = std::size_t{64} << 20;
-  constexpr std::size_t a_vertex = 64 * 3 * sizeof(float);
-  return std::min(most, a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
+  constexpr std::size_t shapes_of_a_vertex = 64 * 3 * sizeof(float);
+  return std::min(most,
+                  shapes_of_a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
 }
 
 std::size_t most_undo_bytes(const RunOptions& options) noexcept {
   return options.undo_memory_mb ? static_cast<std::size_t>(1e6 * *options.undo_memory_mb)
-                                : deform::half_of_memory();
+                                : usable_memory() / 2;
 }
 
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
@@ -40,8 +42,10 @@ Result<void> keep(const std::string& out, const deform::Mesh& shape) {
   const auto written = deform::write_mesh(out, shape);
   if (written) return {};
   const std::filesystem::path wanted(out);
-  const auto elsewhere = std::filesystem::temp_directory_path() / wanted.filename();
-  std::error_code ignored;
+  std::error_code ignored, no_folder;
+  auto folder = std::filesystem::temp_directory_path(no_folder);
+  if (no_folder) folder = "/tmp"; // TMPDIR may name a place that is not there
+  const auto elsewhere = folder / wanted.filename();
   if (std::filesystem::exists(elsewhere, ignored) || !deform::write_mesh(elsewhere, shape))
     return written.error();
   return Error{Errc::failed,
@@ -117,7 +121,7 @@ public:
   Session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
           const Followers& followers)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
-        followers_(followers), lights_(options_.loop.switch_action, hands_) {
+        followers_(followers), recorder_(model_), lights_(options_.loop.switch_action, hands_) {
     options_.loop.requests = &requests_;
     options_.loop.wrists = &wrists_;
     const std::size_t most = most_undo_bytes(options_);

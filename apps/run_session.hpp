@@ -60,7 +60,8 @@ struct Followers {
 /// Runs until the duration is over, a stop signal comes, or a key (run_keys.hpp) or the onlooker,
 /// if any, says so, then writes the shape; says on standard error which rights were refused. A loop
 /// that is made anew goes on from the shape and the poses as they are, with the hands where they
-/// were; the outcome is then the last one's, with every recording. Blocks.
+/// were (what --adapt has learned begins anew); the outcome is then the last one's, with every
+/// recording. Blocks.
 Result<RunOutcome> run_session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
                                const Followers& followers);
 

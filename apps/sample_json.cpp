@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "angle_sources_json.hpp"
+#include "json_line.hpp"
 
 namespace nendo::app {
 namespace {
@@ -41,7 +42,7 @@ std::string sample_json(const GloveSample& sample, const hand::Calibration* cali
   if (sample.has_device_time) line["device_time_s"] = to_seconds(sample.device_time);
   if (calibration != nullptr) line["angle_rad"] = std::move(angles);
   if (calibration != nullptr && tell_sources) line["angles"] = angle_sources_json(sample.present);
-  return line.dump();
+  return json_text(line);
 }
 
 } // namespace nendo::app

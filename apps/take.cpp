@@ -95,11 +95,7 @@ private:
 Result<Take> read_recording(const std::filesystem::path& path) {
   const auto summary = recording::summarise(path);
   if (!summary) return summary.error();
-  if (!summary->setup.loop) {
-    return Error{Errc::bad_input, path.string() + ": gloves were recorded, but no loop that shapes "
-                                                  "a model, so there is nothing to draw"};
-  }
-  auto model = recorded_model(*summary->setup.loop);
+  auto model = recorded_model(path.string(), summary->setup);
   if (!model) return model.error();
   Take take;
   take.rest = *model;

@@ -1,7 +1,6 @@
 // nendo edit make: key poses of a recording.
 
 #include <cstdio>
-#include <iostream>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,8 @@
 #include "cli.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
+#include "json_line.hpp"
+#include "output_place.hpp"
 #include "recorded_model.hpp"
 
 namespace nendo::app {
@@ -31,8 +32,7 @@ void print_json(const MakeOptions& options, const timeline::MadeTimeline& made) 
                                              {"most_angle_rad", reduction.worst.angle_rad},
                                              {"most_tip_mm", 1e3 * reduction.worst.tip_m}};
   }
-  std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-            << std::endl;
+  print_line(line);
 }
 
 void print(const MakeOptions& options, const timeline::MadeTimeline& made) {
@@ -54,14 +54,11 @@ void print(const MakeOptions& options, const timeline::MadeTimeline& made) {
 int make_timeline(const MakeOptions& options) {
   const auto tolerance = parse_tolerance(options.tolerance);
   if (!tolerance) return report(tolerance.error());
-  if (!timeline::is_timeline(options.out))
-    return report({Errc::usage, "--out " + options.out + ": end the name in .timeline.toml"});
+  if (const auto fine = check_place("--out", options.out, {timeline::file_ending}); !fine)
+    return report(fine.error());
   const auto reader = recording::TakeReader::open(options.take);
   if (!reader) return report(reader.error());
-  if (!reader->setup().loop)
-    return report({Errc::bad_input, options.take + ": gloves were recorded, but no loop that "
-                                                   "shapes a model"});
-  const auto model = recorded_model(*reader->setup().loop, options.mesh);
+  const auto model = recorded_model(options.take, reader->setup(), options.mesh);
   if (!model) return report(model.error());
   auto made = timeline::timeline_of_take(options.take, *model, *tolerance);
   if (!made) return report(made.error());

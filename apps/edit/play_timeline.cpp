@@ -1,8 +1,6 @@
 // nendo edit play: the shape that a timeline makes.
 
 #include <cstdio>
-#include <filesystem>
-#include <iostream>
 
 #include <nlohmann/json.hpp>
 
@@ -10,14 +8,15 @@
 
 #include "cli.hpp"
 #include "edit/edit_actions.hpp"
+#include "json_line.hpp"
+#include "output_place.hpp"
 #include "timeline_frames.hpp"
 
 namespace nendo::app {
 
 int play_timeline(const PlayOptions& options) {
-  const auto extension = std::filesystem::path(options.out).extension();
-  if (!options.out.empty() && extension != ".obj" && extension != ".ply")
-    return report({Errc::usage, "--out " + options.out + ": end the name in .obj or .ply"});
+  if (const auto fine = check_place("--out", options.out, {".obj", ".ply"}); !fine)
+    return report(fine.error());
   auto frames = TimelineFrames::open(options.file, options.mesh);
   if (!frames) return report(frames.error());
   const double until_s = options.until_s.value_or((*frames)->duration_s());
@@ -43,8 +42,7 @@ int play_timeline(const PlayOptions& options) {
         {"elapsed_s", elapsed_s},   {"failed", stats.failed}, {"grabs", stats.grabs},
         {"commits", stats.commits}, {"undos", stats.undos},   {"redos", stats.redos},
         {"vertices", sum.vertices}, {"crc32c", sum.crc},      {"result", options.out}};
-    std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << std::endl;
+    print_line(line);
     return 0;
   }
   std::printf("played %llu frames to %.3f s in %.2f s; %llu commits, %llu undone, %llu redone\n",

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include <nendo/base/file_replacement.hpp>
+#include "export/one_file.hpp"
 
 namespace nendo::app {
 namespace {
@@ -73,41 +73,34 @@ void put_hand(const flow::HandFrame& hand, std::string& row) {
     put_number(metres, 7, row);
 }
 
+// Begins with a comma.
+std::string row_for(const flow::Frame& frame, double time_s, const std::array<bool, 2>& present) {
+  std::string row;
+  put_number(time_s, 6, row);
+  for (const std::uint64_t count :
+       {frame.tick, std::uint64_t{frame.held}, frame.commits, frame.undos})
+    put_count(count, row);
+  row.append(",").append(word_for(frame.status));
+  for (std::size_t slot = 0; slot < present.size(); ++slot)
+    if (present[slot]) put_hand(frame.hands[slot], row);
+  return row;
+}
+
 } // namespace
 
 Result<Exported> export_motion_csv(ChosenFrames& frames, const std::filesystem::path& path) {
-  auto file = FileReplacement::begin(path);
-  if (!file) return file.error();
-  Exported done{{path.string()}, 0, frames.first_s(), frames.first_s(), 0, {}};
   std::array<bool, 2> present{};
-  std::string text;
-  for (;;) {
-    const auto more = frames.next();
-    if (!more) return more.error();
-    if (!*more) break;
+  return export_to_one_file(frames, path, [&](FileReplacement& file) {
     const flow::Frame& frame = frames.frame();
+    std::string text;
     if (frames.made() == 1) {
       text = head_for(frame);
       for (std::size_t slot = 0; slot < present.size(); ++slot)
         present[slot] = frame.hands[slot].present;
     }
-    std::string row;
-    put_number(frames.time_s(), 6, row);
-    for (const std::uint64_t count :
-         {frame.tick, std::uint64_t{frame.held}, frame.commits, frame.undos})
-      put_count(count, row);
-    row.append(",").append(word_for(frame.status));
-    for (std::size_t slot = 0; slot < present.size(); ++slot)
-      if (present[slot]) put_hand(frame.hands[slot], row);
-    text.append(row, 1).append("\n"); // without the first comma
-    if (const auto written = file->write(text); !written) return written.error();
-    text.clear();
-    done.last_s = frames.time_s();
-  }
-  if (const auto finished = file->finish(); !finished) return finished.error();
-  done.frames = frames.made();
-  done.bytes = file->size();
-  return done;
+    text.append(row_for(frame, frames.time_s(), present), 1); // without the first comma
+    return file.write(text.append("\n"));
+  });
 }
 
 } // namespace nendo::app

@@ -1,7 +1,6 @@
 // nendo stress: how punctual the loop is on this machine, and why not.
 
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -13,6 +12,7 @@
 
 #include "cli.hpp"
 #include "commands.hpp"
+#include "json_line.hpp"
 #include "live_view.hpp"
 #include "output_place.hpp"
 #include "stress/report.hpp"
@@ -88,7 +88,7 @@ int run(const StressArguments& arguments) {
   if (!outcome) return report(outcome.error());
   const ordered_json results = stress_json(*options, **outcome);
   if (arguments.json) {
-    std::cout << results.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << std::endl;
+    print_line(results);
   } else {
     print_stress(**outcome, results, *earlier);
   }

@@ -41,15 +41,19 @@ Type2Deformer::Type2Deformer(Type2Deformer&&) noexcept = default;
 Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
 
 FieldStatus Type2Deformer::begin(const Points& tips) {
-  assert(tips.cols() == current_.cols());
   history_->keep(shape_.shape, normals_);
-  begun_ = all_usable(tips);
-  if (!begun_) return FieldStatus::not_finite;
+  return take_hold(tips);
+}
+
+FieldStatus Type2Deformer::take_hold(const Points& tips) {
+  assert(tips.cols() == current_.cols());
+  begun_ = false;
+  if (!all_usable(tips)) return FieldStatus::not_finite;
+  const FieldStatus status = chain_ ? chain_->grab(tips) : FieldStatus::ok;
+  if (!is_solved(status)) return status;
   current_ = tips;
   curve_.begin(tips);
-  if (!chain_) return FieldStatus::ok;
-  const FieldStatus status = chain_->grab(tips);
-  begun_ = is_solved(status);
+  begun_ = true;
   return status;
 }
 
@@ -62,16 +66,21 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
 }
 
 FieldStatus Type2Deformer::undo(const Points& tips) {
+  const FieldStatus status = take_hold(tips);
+  if (!is_solved(status)) return status;
   history_->keep(shape_.shape, normals_);
   history_->undo(shape_, normals_);
   fields_.clear();
-  return begin(tips);
+  return status;
 }
 
 FieldStatus Type2Deformer::redo(const Points& tips) {
-  if (!history_->redo(shape_, normals_)) return FieldStatus::ok;
+  if (redo_steps() == 0) return FieldStatus::ok;
+  const FieldStatus status = take_hold(tips);
+  if (!is_solved(status)) return status;
+  history_->redo(shape_, normals_);
   fields_.clear();
-  return begin(tips);
+  return status;
 }
 
 std::size_t Type2Deformer::undo_steps() const noexcept {

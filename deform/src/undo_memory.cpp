@@ -4,8 +4,6 @@
 #include <new>
 #include <utility>
 
-#include <unistd.h>
-
 #include "saved_block.hpp"
 
 namespace nendo::deform {
@@ -55,13 +53,6 @@ bool UndoMemory::refill() {
 SavedChain UndoMemory::take() noexcept {
   SavedChain chain;
   return given_.try_pop(chain) ? chain : SavedChain{};
-}
-
-std::size_t half_of_memory() noexcept {
-  const long pages = ::sysconf(_SC_PHYS_PAGES);
-  const long page_bytes = ::sysconf(_SC_PAGESIZE);
-  if (pages <= 0 || page_bytes <= 0) return std::size_t{1} << 30;
-  return static_cast<std::size_t>(pages) / 2 * static_cast<std::size_t>(page_bytes);
 }
 
 } // namespace nendo::deform

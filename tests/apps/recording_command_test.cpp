@@ -234,6 +234,12 @@ TEST_SUITE("recording_command") {
              {{"recording", "check", run.path("none")}, 5, "none"},
              {{"recording", "repair", text, "--out", run.path("x")}, 5, "nothing"},
              {{"recording", "cut", run.take, "--from", "90", "--out", run.path("y")}, 5, "info"},
+             {{"recording", "repair", run.take, "--out", "/nowhere/x"}, 1, "--out /nowhere/x"},
+             {{"recording", "cut", run.take, "--out", "/nowhere/x"}, 1, "--out /nowhere/x"},
+             {{"recording", "shapes", run.take, "--out", "/nowhere/x"}, 1, "--out /nowhere/x"},
+             {{"edit", "make", run.take, "--out", "/nowhere/x.timeline.toml"}, 1, "--out /nowhere"},
+             {{"edit", "make", run.take, "--out", "x.toml"}, 2, ".timeline.toml"},
+             {{"deform", moved, "--vectors", text, "--out", "/nowhere/x.obj"}, 1, "--out /nowhere"},
              {{"record", "sim", "--out", run.take}, 1, "--out"},
              {{"monitor", "replay:" + text}, 5, "no recording"}}) {
       const auto done = test::nendo(refused.arguments);

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <thread>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -128,6 +129,46 @@ TEST_SUITE("run") {
       }
     const auto both = nendo::test::nendo({"run", "--injective", "--no-injective"});
     CHECK(both.exit_code == 2);
+  }
+
+  TEST_CASE("a hang-up ends a run early, and does not under nohup") {
+    const TemporaryFolder folder;
+    for (const bool ignored : {false, true}) {
+      const auto before = std::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL);
+      nendo::test::Program run({"run", "--right", "sim", "--duration", "3", "--json", "--out",
+                                (folder.path() / "shape.ply").string()});
+      std::signal(SIGHUP, before);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+      run.signal(SIGHUP);
+      const auto done = run.wait();
+      CHECK(done.exit_code == 0);
+      const double elapsed_s = summary_of(done)["elapsed_s"];
+      CHECK((elapsed_s > 2.9) == ignored);
+    }
+  }
+
+  TEST_CASE("outputs that are one file are refused before anything is opened") {
+    const TemporaryFolder folder;
+    const std::string one = (folder.path() / "a.obj").string();
+    const std::string same = (folder.path() / "." / "a.obj").string();
+    const auto done = nendo::test::nendo(
+        {"run", "--right", "sim", "--duration", "1", "--out", one, "--record", same});
+    CHECK(done.exit_code == 2);
+    CHECK(is_one_line_about(done.err, "--record"));
+    CHECK(std::filesystem::is_empty(folder.path()));
+  }
+
+  TEST_CASE("names that are no UTF-8 do not end the program, and its JSON stays JSON") {
+    const TemporaryFolder folder;
+    const std::string out = (folder.path() / "sh\xff"
+                                             "ape.ply")
+                                .string();
+    const auto done = nendo::test::nendo(
+        {"run", "--right", "sim:wave", "--duration", "0.3", "--json", "--out", out});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    CHECK(summary_of(done)["result"].get<std::string>().ends_with("sh\xef\xbf\xbd"
+                                                                  "ape.ply"));
+    CHECK(std::filesystem::exists(out));
   }
 
   TEST_CASE("a filter is named in the summary with its latency, and none is none") {

@@ -125,6 +125,7 @@ TEST_SUITE("run_session") {
     REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
     const auto taken = folder.path() / "take-2.nendo"; // somebody else's
     std::ofstream(taken) << "kept";
+    std::ofstream(folder.path() / "take.model.obj") << "of a take that is gone";
     Bell bell;
     auto hands = open_hands(options, mesh, bell);
     REQUIRE(hands);
@@ -142,6 +143,30 @@ TEST_SUITE("run_session") {
       const auto replayed = replay(outcome->recordings[at].file);
       CHECK(replayed.begun == renewer.begun[loops[at]]);
       if (loops[at] < renewer.left.size()) CHECK(replayed.left == renewer.left[loops[at]]);
+    }
+  }
+
+  TEST_CASE("a take that begins at a shape which was pulled about replays from there") {
+    const test::TemporaryFolder folder;
+    const auto mesh = test::sphere(24, 48, 1.0);
+    RunOptions options;
+    options.left = options.right = "sim:sculpt";
+    options.mesh = (folder.path() / "ball.obj").string();
+    REQUIRE(deform::write_mesh(options.mesh, mesh));
+    options.out = (folder.path() / "out.ply").string();
+    REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
+    Bell bell;
+    auto hands = open_hands(options, mesh, bell);
+    REQUIRE(hands);
+    Renewer renewer;
+    renewer.unrecorded = 0; // and the first, for nothing asked for it
+    const auto outcome = run_session(options, *hands, mesh, {[](const auto&, double) {}, &renewer});
+    REQUIRE(outcome);
+    REQUIRE(outcome->recordings.size() == 3);
+    for (std::size_t at = 0; at < 3; ++at) {
+      const auto replayed = replay(outcome->recordings[at].file);
+      CHECK(replayed.begun == renewer.begun[at + 1]);
+      CHECK(replayed.begun != mesh.vertices);
     }
   }
 }

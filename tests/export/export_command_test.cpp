@@ -87,6 +87,7 @@ TEST_SUITE("export_command") {
     for (const Row& row :
          std::initializer_list<Row>{{{"--out", "a.glb"}, 5, "a.nendo"},
                                     {{"--out", "a.fbx"}, 2, "--out a.fbx"},
+                                    {{"--out", "/nowhere/a.glb"}, 1, "/nowhere"},
                                     {{"--out", "a.obj"}, 2, "%04d"},
                                     {{"--out", "a-%d.ply", "--format", "obj"}, 2, ".obj"},
                                     {{"--out", "a.glb", "--rate", "0"}, 2, "--rate"},

@@ -49,16 +49,15 @@ void Shaping::ask(Request request) noexcept {
 }
 
 void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
-  for (const Request request : steps_due_) {
-    const bool undoes = request == Request::undo;
+  auto due = steps_due_.begin();
+  for (; due != steps_due_.end(); ++due) {
+    const bool undoes = *due == Request::undo;
     if (!undoes && sculptor_.redo_steps() == 0) continue;
-    if (is_solved(undoes ? sculptor_.undo(tips) : sculptor_.redo(tips))) {
-      ++(undoes ? stats.undos : stats.redos);
-    } else {
-      held_ = false; // taken hold of again as soon as that can be
-    }
+    // What cannot be done now has changed nothing, and is tried again at the next tick.
+    if (!is_solved(undoes ? sculptor_.undo(tips) : sculptor_.redo(tips))) break;
+    ++(undoes ? stats.undos : stats.redos);
   }
-  steps_due_.clear();
+  steps_due_.erase(steps_due_.begin(), due);
 }
 
 FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats) noexcept {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/base/usable_memory.hpp>
+
 namespace nendo::recording {
 namespace {
 
@@ -21,9 +23,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
                                                      const deform::Mesh& model) {
   if (!setup.loop || setup.hands.empty() ||
       !points_exist(setup.loop->options.sculptor.deformer.supports, setup.hands.size())) {
-    return Error{Errc::bad_input,
-                 "gloves were recorded, but no loop that shapes a model; shape one "
-                 "with `nendo run --right replay:FILE`"};
+    return Error{Errc::bad_input, std::string(without_loop)};
   }
   std::unique_ptr<LoopReplay> replay(new LoopReplay);
   std::vector<flow::HandInput> inputs;
@@ -34,7 +34,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   flow::LoopOptions options = setup.loop->options;
   options.requests = &replay->requests_;
   options.wrists = &replay->wrists_;
-  options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
+  options.undo_most_bytes = std::min(options.undo_most_bytes, usable_memory() / 2);
   replay->loop_ =
       std::make_unique<flow::DeformLoop>(model, setup.loop->placement, std::move(inputs), options);
   if (!is_solved(replay->loop_->grab_status()))

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/base/usable_memory.hpp>
+
 namespace nendo::timeline {
 namespace {
 
@@ -10,7 +12,7 @@ namespace {
 constexpr double a_hair = 1e-6; // of a frame
 
 flow::ShapingOptions shaping_options(const Timeline& timeline) {
-  flow::ShapingOptions options{timeline.sculptor, deform::half_of_memory()};
+  flow::ShapingOptions options{timeline.sculptor, usable_memory() / 2};
   options.sculptor.deformer.undo_bytes = 0;
   options.most_requests = timeline.events.size() + 1;
   options.held = timeline.held;

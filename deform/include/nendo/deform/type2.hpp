@@ -80,6 +80,7 @@ private:
   /// Takes the samples' next tips to the curve.
   using Lead = void (FingertipCurve::*)(const Points&);
 
+  FieldStatus take_hold(const Points& tips);
   StrokeResult follow(const Points& tips, Lead lead);
   FieldStatus apply_piece();
   FieldStatus apply_links();

@@ -52,7 +52,4 @@ private:
   std::atomic<std::size_t> free_{0};
 };
 
-/// Half of what the machine has, in bytes: so much may be kept for undo where nobody says how much.
-std::size_t half_of_memory() noexcept;
-
 } // namespace nendo::deform

@@ -3,11 +3,17 @@
 // the same shape, bit for bit, on the same build and the same kind of processor.
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <nendo/recording/take_reader.hpp>
 
 namespace nendo::recording {
+
+/// What is wrong with a recording of which no shape can be made, behind its file's name.
+inline constexpr std::string_view without_loop =
+    "gloves were recorded, but no loop that shapes a model; shape one with `nendo run --right "
+    "replay:FILE`";
 
 class LoopReplay {
 public:

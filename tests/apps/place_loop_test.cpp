@@ -1,0 +1,40 @@
+#include "place_loop.hpp"
+
+#include <doctest/doctest.h>
+
+#include "open_hands.hpp"
+#include "support/test_meshes.hpp"
+
+using namespace nendo;
+using namespace nendo::app;
+
+TEST_SUITE("place_loop") {
+  TEST_CASE("a loop has the calibration and the size of the glove that is there now") {
+    const auto mesh = test::sphere(12, 24, 1.0);
+    RunOptions options;
+    options.right = "sim";
+    Bell bell;
+    auto hands = open_hands(options, mesh, bell);
+    REQUIRE(hands);
+    OpenHand& hand = hands->front();
+    constexpr Sensor sensor = Sensor::thumb_mcp;
+    hand.known.own.calibration[sensor].gain_rad_per_count = 0.01;
+    hand.known.own.size.length_m = 0.17;
+    hand.known.swapped.calibration[sensor].gain_rad_per_count = 0.02;
+    hand.known.swapped.size.length_m = 0.20;
+    for (const Side side : {Side::right, Side::left, Side::right}) {
+      hand.first.side = side; // a glove of that side was plugged into the box
+      const auto placed = place_loop(options, *hands, mesh);
+      REQUIRE(placed);
+      const flow::HandInput& input = placed->setup.inputs.front();
+      const bool swapped = side == Side::left;
+      CHECK(input.calibration[sensor].gain_rad_per_count == (swapped ? 0.02 : 0.01));
+      CHECK(input.swapped[sensor].gain_rad_per_count == (swapped ? 0.01 : 0.02));
+      const hand::HandSkeleton known(Side::right, {swapped ? 0.20 : 0.17});
+      const auto tips = [](const hand::HandSkeleton& skeleton) {
+        return skeleton.pose({}, Eigen::Isometry3d::Identity()).fingertip_positions();
+      };
+      CHECK(tips(input.skeleton) == tips(known));
+    }
+  }
+}
