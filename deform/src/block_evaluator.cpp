@@ -15,6 +15,9 @@ namespace {
 /// So many blocks at a time are one thread's: enough to be worth the asking.
 constexpr std::size_t blocks_a_piece = 16;
 
+/// A shape larger than this is not expected to stay in the caches (350 000 vertices).
+constexpr std::size_t cached_bytes = std::size_t{4} << 20;
+
 double extent_of(const std::vector<BlockBounds>& bounds) noexcept {
   float extent = 0.0F;
   for (const auto& box : bounds)
@@ -73,16 +76,19 @@ bool BlockEvaluator::fits(const BoundedShape& shape) const noexcept {
 
 namespace {
 
-/// Of all blocks, without anything to write.
-BlockPass pass_over(const BoundedShape& from, BlockEvaluator::Parts& parts) noexcept {
+/// Over all blocks; `to` may be null.
+BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
+                    BlockEvaluator::Parts& parts) noexcept {
+  const std::size_t blocks = from.shape.block_count();
   return {.from = from.shape.data(),
-          .to = nullptr,
+          .to = to,
           .bounds = from.bounds.data(),
           .new_bounds = nullptr,
           .reached = parts.reached.data(),
           .begin = 0,
-          .end = from.shape.block_count(),
-          .scratch = parts.lists[0].scratch()};
+          .end = blocks,
+          .scratch = parts.lists[0].scratch(),
+          .large = blocks * sizeof(VertexBlock) > cached_bytes};
 }
 
 /// In pieces; normals may be null; `after` is told of each block whether the field reaches it.
@@ -114,8 +120,7 @@ bool BlockEvaluator::displace(const BoundedShape& from, BlockShape& to) noexcept
     return false;
   }
   const std::uint64_t stamp = BlockShape::new_stamp();
-  BlockPass pass = pass_over(from, *parts_);
-  pass.to = to.data();
+  const BlockPass pass = pass_over(from, to.data(), *parts_);
   run(pass, nullptr, *parts_, [&](std::size_t block, bool reached) {
     reached ? to.set_stamp(block, stamp) : to.follow(from.shape, block);
   });
@@ -133,8 +138,7 @@ bool BlockEvaluator::displace(BoundedShape& shape, BlockShape* normals) noexcept
   shape.extent += parts_->field.bound(shape.extent);
   const std::uint64_t stamp = BlockShape::new_stamp();
   const std::uint64_t normals_stamp = BlockShape::new_stamp();
-  BlockPass pass = pass_over(shape, *parts_);
-  pass.to = shape.shape.data();
+  BlockPass pass = pass_over(shape, shape.shape.data(), *parts_);
   pass.new_bounds = shape.bounds.data();
   const NormalPass turning =
       normals != nullptr ? NormalPass{normals->data(), normals->data()} : NormalPass{};
@@ -152,13 +156,13 @@ void BlockEvaluator::turn(const BoundedShape& at, const BlockShape& normals,
   if (to.block_count() != normals.block_count()) to = normals;
   const std::uint64_t stamp = BlockShape::new_stamp();
   const NormalPass turning{normals.data(), to.data()};
-  run(pass_over(at, *parts_), &turning, *parts_, [&](std::size_t block, bool reached) {
+  run(pass_over(at, nullptr, *parts_), &turning, *parts_, [&](std::size_t block, bool reached) {
     reached ? to.set_stamp(block, stamp) : to.follow(normals, block);
   });
 }
 
 std::size_t BlockEvaluator::count_pairs(const BoundedShape& shape) noexcept {
-  return deform::count_pairs(parts_->field.view(), pass_over(shape, *parts_));
+  return deform::count_pairs(parts_->field.view(), pass_over(shape, nullptr, *parts_));
 }
 
 } // namespace nendo::deform

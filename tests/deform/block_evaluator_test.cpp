@@ -209,6 +209,35 @@ TEST_SUITE("block_evaluator") {
     }
   }
 
+  TEST_CASE("a shape too large for the caches goes elsewhere by the same bits as in its place") {
+    const Points mesh = nendo::app::table1_plane(650); // 424 000 vertices
+    const BlockLayout layout(mesh);
+    BoundedShape shape(layout.pack());
+    for (const auto name : simd_names()) {
+      REQUIRE(use_simd(name));
+      CAPTURE(name);
+      for (const double coefficient : {0.5, 3000.0}) { // by sums in float, and in double
+        BlockEvaluator evaluator(layout, 10, {.threads = 2});
+        CsrbfField field = random_field(10, 8.0, 65);
+        field.centres.array() += 20.0;
+        field.coefficients *= coefficient;
+        REQUIRE(evaluator.set_field(field));
+        BlockShape elsewhere = shape.shape;
+        REQUIRE(evaluator.displace(shape, elsewhere));
+        REQUIRE(evaluator.displace(shape));
+        std::size_t same = 0;
+        for (std::size_t block = 0; block < elsewhere.block_count(); ++block)
+          same += elsewhere[block].x == shape.shape[block].x &&
+                          elsewhere[block].y == shape.shape[block].y &&
+                          elsewhere[block].z == shape.shape[block].z
+                      ? 1U
+                      : 0U;
+        CHECK(same == elsewhere.block_count());
+      }
+    }
+    use_simd("");
+  }
+
   TEST_CASE("fields that are not finite or too large are refused, and nothing moves") {
     const Points mesh = nendo::test::sphere(10, 12, 5.0).vertices;
     const BlockLayout layout(mesh);

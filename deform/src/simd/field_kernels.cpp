@@ -65,7 +65,7 @@ HWY_INLINE void add_entries(D d, const FieldEntry<hn::TFromD<D>>* entries,
 template <Wendland kernel, class Real>
 HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* entries,
                                const std::uint32_t* list, std::size_t size, const VertexBlock& from,
-                               VertexBlock& to) {
+                               VertexBlock& to, bool streams) {
   const hn::ScalableTag<Real> d;
   using V = hn::Vec<decltype(d)>;
   for (std::size_t lane = 0; lane < block_size; lane += abreast * hn::Lanes(d)) {
@@ -81,7 +81,8 @@ HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* e
     add_entries<kernel>(d, entries, list, size, places, sums);
     for (std::size_t n = 0; n < abreast; ++n) {
       const std::size_t at = lane + n * hn::Lanes(d);
-      store_vectors(d, sum_of(places[n], sums[n]), to, at);
+      const Vectors3<V> moved = sum_of(places[n], sums[n]);
+      streams ? stream_vectors(d, moved, to, at) : store_vectors(d, moved, to, at);
     }
   }
 }
@@ -91,22 +92,23 @@ struct Displacement {
   const FieldView& field;
   const FieldEntry<Real>* entries;
   const BlockPass& pass;
+  bool streams;
 
   HWY_INLINE void on_block(std::size_t block, const std::uint32_t* list, std::size_t size) {
     const bool reached = size > 0 || field.polynomial != nullptr;
     pass.reached[block] = reached ? 1 : 0;
     if (!reached) return;
-    displace_block<kernel>(field, entries, list, size, pass.from[block], pass.to[block]);
-    if (pass.new_bounds == nullptr) return;
-    pass.new_bounds[block] = vector_bounds(hn::ScalableTag<float>(), pass.to[block]);
+    displace_block<kernel>(field, entries, list, size, pass.from[block], pass.to[block], streams);
   }
 };
 
 template <Wendland kernel, class Real>
 void displace_blocks(const FieldView& field, const FieldEntry<Real>* entries,
                      const BlockPass& pass) {
-  Displacement<kernel, Real> work{field, entries, pass};
+  const bool streams = pass.large && pass.to != pass.from;
+  Displacement<kernel, Real> work{field, entries, pass, streams};
   for_each_block(field.centres, pass, work);
+  if (streams) hwy::FlushStream();
 }
 
 template <Wendland kernel>

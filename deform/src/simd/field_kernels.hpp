@@ -107,6 +107,9 @@ struct BlockPass {
   std::uint8_t* reached;
   std::size_t begin, end;
   ListScratch scratch;
+  /// The shape does not stay in the caches: blocks are fetched before their turn, and written past
+  /// the caches where `to` is another shape.
+  bool large = false;
 };
 
 void displace_pass(const FieldView& field, const BlockPass& pass) noexcept;

@@ -54,6 +54,23 @@ HWY_INLINE void store_vectors(D d, const Vectors3<V>& values, VertexBlock& to, s
   store_from(d, values.y, to.y.data() + lane);
   store_from(d, values.z, to.z.data() + lane);
 }
+
+/// The same past the caches: others may read it after hwy::FlushStream().
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void stream_vectors(D, const Vectors3<V>& values, VertexBlock& to, std::size_t lane) {
+  const hn::Rebind<float, D> df;
+  const auto stream = [df, lane](V coordinates, std::array<float, block_size>& all) HWY_ATTR {
+    if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
+      hn::Stream(coordinates, df, all.data() + lane);
+    } else {
+      hn::Stream(hn::DemoteTo(df, coordinates), df, all.data() + lane);
+    }
+  };
+  stream(values.x, to.x);
+  stream(values.y, to.y);
+  stream(values.z, to.z);
+}
+
 template <class V>
 HWY_INLINE Vectors3<V> sum_of(const Vectors3<V>& a, const Vectors3<V>& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
@@ -127,32 +144,52 @@ HWY_INLINE V slope(D d, V t, V o) {
   return hn::Mul(hn::Mul(o5, o2), hn::MulAdd(linear, o, hn::Set(d, Real(24))));
 }
 
-/// The least lane of each of three vectors, and a zero, to four aligned places.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void store_least_lanes(D d, V x, V y, V z, float* to) {
 #if HWY_TARGET == HWY_SCALAR
-  to[0] = hn::GetLane(x);
-  to[1] = hn::GetLane(y);
-  to[2] = hn::GetLane(z);
-  to[3] = hn::GetLane(hn::Zero(d));
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store_least_lanes(D, const V (&low)[3], const V (&high)[3], float* to) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    to[axis] = hn::GetLane(low[axis]);
+    to[axis + 4] = hn::GetLane(high[axis]);
+  }
+  to[3] = to[7] = 0.0F;
+}
 #else
+/// In each four lanes: the least of those of three vectors, and a zero.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V least_in_fours(D d, const V (&three)[3]) {
   const hn::Repartition<double, D> pairs;
   const auto least_pairs = [d](V a, V b) { // a b a b in each four lanes
     return hn::Min(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b));
   };
-  const auto xy = hn::BitCast(pairs, least_pairs(x, y));
-  const auto z0 = hn::BitCast(pairs, least_pairs(z, hn::Zero(d)));
-  const V least = hn::Min(hn::BitCast(d, hn::InterleaveLower(pairs, xy, z0)),
-                          hn::BitCast(d, hn::InterleaveUpper(pairs, xy, z0)));
-  alignas(64) float fours[hn::MaxLanes(D())];
-  hn::Store(least, d, fours);
-  const hn::CappedTag<float, 4> four;
-  auto all = hn::Load(four, fours);
-  for (std::size_t lane = 4; lane < hn::Lanes(d); lane += 4)
-    all = hn::Min(all, hn::Load(four, fours + lane));
-  hn::Store(all, four, to);
-#endif
+  const auto xy = hn::BitCast(pairs, least_pairs(three[0], three[1]));
+  const auto z0 = hn::BitCast(pairs, least_pairs(three[2], hn::Zero(d)));
+  return hn::Min(hn::BitCast(d, hn::InterleaveLower(pairs, xy, z0)),
+                 hn::BitCast(d, hn::InterleaveUpper(pairs, xy, z0)));
 }
+
+/// The least lane of each of three vectors, and a zero, to four aligned places; then of the others.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store_least_lanes(D d, const V (&low)[3], const V (&high)[3], float* to) {
+  const V lows = least_in_fours(d, low);
+  const V highs = least_in_fours(d, high);
+  const hn::CappedTag<float, 4> four;
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    hn::Store(lows, four, to);
+    hn::Store(highs, four, to + 4);
+  } else {
+    const V both =
+        hn::Min(hn::ConcatLowerLower(d, highs, lows), hn::ConcatUpperUpper(d, highs, lows));
+    const hn::CappedTag<float, 8> eight;
+    if constexpr (hn::MaxLanes(D()) == 8) {
+      hn::Store(both, eight, to);
+    } else { // lows, lows, highs, highs
+      const V least = hn::Min(both, hn::SwapAdjacentBlocks(both));
+      hn::Store(hn::LowerHalf(four, hn::LowerHalf(eight, least)), four, to);
+      hn::Store(hn::LowerHalf(four, hn::UpperHalf(eight, least)), four, to + 4);
+    }
+  }
+}
+#endif
 
 /// The bounds of a block that has just been written.
 template <class D, class V = hn::Vec<D>>
@@ -169,10 +206,10 @@ HWY_INLINE BlockBounds vector_bounds(D d, const VertexBlock& block) {
       high[axis] = hn::Max(high[axis], more);
     }
   }
+  for (V& highest : high)
+    highest = hn::Neg(highest);
   BlockBounds bounds;
-  store_least_lanes(d, low[0], low[1], low[2], bounds.sides.data());
-  store_least_lanes(d, hn::Neg(high[0]), hn::Neg(high[1]), hn::Neg(high[2]),
-                    bounds.sides.data() + 4);
+  store_least_lanes(d, low, high, bounds.sides.data());
   return bounds;
 }
 

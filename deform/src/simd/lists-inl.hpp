@@ -11,9 +11,11 @@
 #include <bit>
 #include <cstdint>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "simd/field_kernels.hpp"
+#include "simd/kernels-inl.hpp"
 
 #ifndef NENDO_SIMD_SET_LANES
 #define NENDO_SIMD_SET_LANES
@@ -161,6 +163,7 @@ struct ListedBlocks {
   CentreArrays near{}, nearest{};
   std::size_t near_end = 0;
   std::size_t begin = 0, end = 0;
+  std::size_t fetched = 0;
   std::size_t sizes[group_size]{};
 
   HWY_INLINE const std::uint32_t* list(std::size_t block) const {
@@ -193,6 +196,28 @@ static HWY_NOINLINE void list_next(ListedBlocks& blocks) {
     blocks.sizes[block - blocks.begin] = list_reaching(blocks.nearest, pass.bounds[block], list);
 }
 
+/// Of written blocks, all together: each would have to wait for its vertices.
+static HWY_NOINLINE void measure_bounds(const BlockPass& pass, std::size_t begin, std::size_t end) {
+  for (std::size_t block = begin; block < end; ++block)
+    if (pass.reached[block] > 0)
+      pass.new_bounds[block] = vector_bounds(ListVectors(), pass.to[block]);
+}
+
+constexpr std::size_t fetched_ahead = 2;
+
+/// Asks for the vertices of listed blocks that something reaches, up to and with `last`. How long
+/// lists are cannot be foretold, so that processors do not get so far ahead by themselves.
+static HWY_NOINLINE void fetch_until(ListedBlocks& blocks, std::size_t last) {
+  if (blocks.fetched < blocks.begin) blocks.fetched = blocks.begin;
+  for (; blocks.fetched < blocks.end && blocks.fetched <= last; ++blocks.fetched) {
+    if (blocks.sizes[blocks.fetched - blocks.begin] == 0) continue;
+    const VertexBlock& vertices = blocks.pass.from[blocks.fetched];
+    for (const auto* coordinates : {&vertices.x, &vertices.y, &vertices.z})
+      for (std::size_t at = 0; at < block_size; at += 64 / sizeof(float))
+        hwy::Prefetch(coordinates->data() + at);
+  }
+}
+
 /// Calls work.on_block(block, list, size) for the blocks of a pass, with the centres that reach
 /// each.
 template <class Work>
@@ -200,8 +225,11 @@ HWY_INLINE void for_each_block(const CentreArrays& centres, const BlockPass& pas
   ListedBlocks blocks{centres, pass};
   for (blocks.end = pass.begin; blocks.end < pass.end;) {
     list_next(blocks);
-    for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+    for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
+      if (pass.large) fetch_until(blocks, block + fetched_ahead);
       work.on_block(block, blocks.list(block), blocks.sizes[block - blocks.begin]);
+    }
+    if (pass.new_bounds != nullptr) measure_bounds(pass, blocks.begin, blocks.end);
   }
 }
 

@@ -30,39 +30,46 @@ struct Turning {
     pass.reached[block] = reached ? 1 : 0;
     if (!reached) return;
     const hn::ScalableTag<Real> d;
-    for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    using V = hn::Vec<decltype(d)>;
+    // All roots of the first centre together: they take longer than processors look ahead.
+    alignas(64) Real distances[block_size];
+    for (std::size_t lane = 0; size > 0 && lane < block_size; lane += hn::Lanes(d)) {
       const auto place = load_vectors(d, pass.from[block], lane);
-      const auto normal = load_vectors(d, normals.from[block], lane);
-      Vectors3<hn::Vec<decltype(d)>> sum{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-      if (moves && field.polynomial != nullptr) sum = polynomial_at(d, *field.polynomial, place);
-      const auto image = image_of(d, list, size, place, normal, sum);
-      if (moves) store_vectors(d, sum_of(place, sum), pass.to[block], lane);
-      store_vectors(d, normalised(d, image, normal), normals.to[block], lane);
+      hn::Store(distance_to(d, entries[list[0]], place), d, distances + lane);
     }
-    if (!moves || pass.new_bounds == nullptr) return;
-    pass.new_bounds[block] = vector_bounds(hn::ScalableTag<float>(), pass.to[block]);
+    VertexBlock images;
+    for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+      TurningVector<V> at{load_vectors(d, pass.from[block], lane),
+                          load_vectors(d, normals.from[block], lane),
+                          size > 0 ? hn::Load(d, distances + lane) : hn::Zero(d),
+                          {hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
+      if (moves && field.polynomial != nullptr)
+        at.sum = polynomial_at(d, *field.polynomial, at.place);
+      store_vectors(d, image_of(d, list, size, at), images, lane);
+      if (moves) store_vectors(d, sum_of(at.place, at.sum), pass.to[block], lane);
+    }
+    normalise(images, normals.from[block], normals.to[block]);
   }
 
   template <class D, class V = hn::Vec<D>>
   HWY_INLINE Vectors3<V> image_of(D d, const std::uint32_t* list, std::size_t size,
-                                  const Vectors3<V>& place, const Vectors3<V>& normal,
-                                  Vectors3<V>& sum) {
+                                  TurningVector<V>& at) {
     const bool moves = pass.to != nullptr;
     // Neighbours' normals are much alike: nearly all vectors have such a coordinate. For the usual
     // kernel alone, because each way takes its time to compile.
     if constexpr (kernel == Wendland::c2 && sizeof(Real) == sizeof(float)) {
-      const V squared = hn::Max(dot(normal, normal), hn::Set(d, Real(1e-30)));
-      if (has_tangents(d, normal.z, squared))
-        return add_tangents<kernel, 2>(d, moves, field, entries, list, size, place, normal, sum);
-      if (has_tangents(d, normal.y, squared))
-        return add_tangents<kernel, 1>(d, moves, field, entries, list, size, place, normal, sum);
-      if (has_tangents(d, normal.x, squared))
-        return add_tangents<kernel, 0>(d, moves, field, entries, list, size, place, normal, sum);
+      const V squared = dot(at.normal, at.normal);
+      if (has_tangents(d, at.normal.z, squared))
+        return add_tangents<kernel, 2>(d, moves, field, entries, list, size, at);
+      if (has_tangents(d, at.normal.y, squared))
+        return add_tangents<kernel, 1>(d, moves, field, entries, list, size, at);
+      if (has_tangents(d, at.normal.x, squared))
+        return add_tangents<kernel, 0>(d, moves, field, entries, list, size, at);
     }
     Gradients<V> columns{polynomial_along(d, field, 0), polynomial_along(d, field, 1),
                          polynomial_along(d, field, 2)};
-    add_turning<kernel>(d, moves, entries, list, size, place, sum, columns);
-    return by_cofactors(columns, normal);
+    add_turning<kernel>(d, moves, entries, list, size, at, columns);
+    return by_cofactors(columns, at.normal);
   }
 };
 

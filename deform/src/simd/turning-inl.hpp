@@ -71,20 +71,43 @@ HWY_INLINE Pull<V> pull_at(D d, const FieldEntry<hn::TFromD<D>>& entry, const Ve
           slope<kernel>(d, distance, o)};
 }
 
+/// Calls add(entry, distance) for the listed centres; `distance` is the first one's. One centre's
+/// root is taken while the one before it is added.
+template <class D, class Add, class V = hn::Vec<D>>
+HWY_INLINE void for_each_centre(D d, const FieldEntry<hn::TFromD<D>>* entries,
+                                const std::uint32_t* list, std::size_t count,
+                                const Vectors3<V>& place, V distance, const Add& add) {
+  if (count == 0) return;
+  for (std::size_t at = 1; at < count; ++at) {
+    const V next = distance_to(d, entries[list[at]], place);
+    add(entries[list[at - 1]], distance);
+    distance = next;
+  }
+  add(entries[list[count - 1]], distance);
+}
+
+/// A vector of vertices on its way through the centres.
+template <class V>
+struct TurningVector {
+  Vectors3<V> place, normal;
+  V distance;      ///< to the first centre
+  Vectors3<V> sum; ///< of displacements
+};
+
 /// Adds the listed centres to the displacement, if that is wanted, and to the gradients.
 template <Wendland kernel, class D, class V = hn::Vec<D>>
 HWY_INLINE void add_turning(D d, bool moves, const FieldEntry<hn::TFromD<D>>* entries,
-                            const std::uint32_t* list, std::size_t count, const Vectors3<V>& place,
-                            Vectors3<V>& sum, Gradients<V>& gradients) {
-  for (std::size_t at = 0; at < count; ++at) {
-    const auto& entry = entries[list[at]];
-    const Pull<V> pull = pull_at<kernel>(d, entry, place, distance_to(d, entry, place));
-    if (moves) add_scaled(d, entry.coefficient, pull.weight, sum);
+                            const std::uint32_t* list, std::size_t count, TurningVector<V>& at,
+                            Gradients<V>& gradients) {
+  const auto add = [&](const FieldEntry<hn::TFromD<D>>& entry, V distance) HWY_ATTR {
+    const Pull<V> pull = pull_at<kernel>(d, entry, at.place, distance);
+    if (moves) add_scaled(d, entry.coefficient, pull.weight, at.sum);
     const auto& [x, y, z] = pull.offset;
     add_scaled(d, entry.steep, hn::Mul(pull.slope, x), gradients.along_x);
     add_scaled(d, entry.steep, hn::Mul(pull.slope, y), gradients.along_y);
     add_scaled(d, entry.steep, hn::Mul(pull.slope, z), gradients.along_z);
-  }
+  };
+  for_each_centre(d, entries, list, count, at.place, at.distance, add);
 }
 
 template <class V>
@@ -110,18 +133,45 @@ HWY_INLINE Vectors3<V> by_cofactors(const Gradients<V>& columns, const Vectors3<
   return {row(x.x, y.x, z.x), row(x.y, y.y, z.y), row(x.z, y.z, z.z)};
 }
 
-/// An image of a normal, of unit length; the normal itself where that has none.
+/// x86 estimates to eleven bits and more, which a step of Newton's takes to nearly all of
+/// float's.
+constexpr bool has_estimates = HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR;
+
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Vectors3<V> normalised(D d, const Vectors3<V>& image, const Vectors3<V>& normal) {
-  using Real = hn::TFromD<D>;
-  const V squared = dot(image, image);
-  // False for NaN, too.
-  const auto usable =
-      hn::And(hn::Ge(squared, hn::Set(d, Real(1e-30))), hn::Le(squared, hn::Set(d, Real(1e38))));
-  const V scale = hn::Div(hn::Set(d, Real(1)), hn::Sqrt(squared));
-  return {hn::IfThenElse(usable, hn::Mul(image.x, scale), normal.x),
-          hn::IfThenElse(usable, hn::Mul(image.y, scale), normal.y),
-          hn::IfThenElse(usable, hn::Mul(image.z, scale), normal.z)};
+HWY_INLINE V inverse_of(D d, V x) {
+  const V one = hn::Set(d, 1.0F);
+  if constexpr (!has_estimates) return hn::Div(one, x);
+  const V y = hn::ApproximateReciprocal(x);
+  return hn::MulAdd(y, hn::NegMulAdd(x, y, one), y);
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V inverse_root_of(D d, V x) {
+  if constexpr (!has_estimates) return hn::Div(hn::Set(d, 1.0F), hn::Sqrt(x));
+  const V y = hn::ApproximateReciprocalSqrt(x);
+  const V half = hn::Mul(hn::Mul(x, hn::Set(d, 0.5F)), y);
+  return hn::Mul(y, hn::NegMulAdd(half, y, hn::Set(d, 1.5F)));
+}
+
+/// Images of normals, to unit length; a normal itself where its image has none. A pass of its own
+/// over the block: its steps wait for each other, but not for those of the next vector.
+static HWY_NOINLINE void normalise(const VertexBlock& images, const VertexBlock& normals,
+                                   VertexBlock& to) {
+  const hn::ScalableTag<float> d;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto image = load_vectors(d, images, lane);
+    const auto normal = load_vectors(d, normals, lane);
+    const auto squared = dot(image, image);
+    // False for NaN, too.
+    const auto usable =
+        hn::And(hn::Ge(squared, hn::Set(d, 1e-30F)), hn::Le(squared, hn::Set(d, 1e38F)));
+    const auto scale = inverse_root_of(d, squared);
+    const Vectors3<hn::Vec<decltype(d)>> unit{
+        hn::IfThenElse(usable, hn::Mul(image.x, scale), normal.x),
+        hn::IfThenElse(usable, hn::Mul(image.y, scale), normal.y),
+        hn::IfThenElse(usable, hn::Mul(image.z, scale), normal.z)};
+    store_vectors(d, unit, to, lane);
+  }
 }
 
 /// Two tangents, e_u - a e_w and e_v - b e_w, whose cross product is the normal divided by its
@@ -139,51 +189,49 @@ struct Tangents {
   HWY_INLINE static V third(const Vectors3<V>& vector) { return axis(vector, w); }
 };
 
-/// Whether coordinate w is large enough in all normals of a vector for that.
+/// Whether coordinate w is large enough in all normals of a vector for that; not if one is zero.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE bool has_tangents(D d, V w, V squared) {
-  using Real = hn::TFromD<D>;
-  return hn::AllTrue(d, hn::Ge(hn::Mul(hn::Mul(w, w), hn::Set(d, Real(12))), squared));
+  return hn::AllTrue(d, hn::Gt(hn::Mul(hn::Mul(w, w), hn::Set(d, 12.0F)), squared));
 }
 
-/// As add_turning() and by_cofactors(): gives the normal's image.
+/// Without centres: the image of e_axis - share e_w.
+template <int w, class D, class V = hn::Vec<D>>
+HWY_INLINE Vectors3<V> tangent_along(D d, const FieldView& field, int axis, V share) {
+  if (field.polynomial == nullptr) {
+    const auto at = [&](int row) HWY_ATTR {
+      return row == w ? hn::Neg(share) : hn::Set(d, row == axis ? 1.0F : 0.0F);
+    };
+    return {at(0), at(1), at(2)};
+  }
+  const Vectors3<V> by_axis = polynomial_along(d, field, static_cast<std::size_t>(axis));
+  const Vectors3<V> by_w = polynomial_along(d, field, w);
+  return {hn::NegMulAdd(share, by_w.x, by_axis.x), hn::NegMulAdd(share, by_w.y, by_axis.y),
+          hn::NegMulAdd(share, by_w.z, by_axis.z)};
+}
+
+/// As add_turning() and by_cofactors(), in float: gives the normal's image.
 template <Wendland kernel, int w, class D, class V = hn::Vec<D>>
-HWY_INLINE Vectors3<V>
-add_tangents(D d, bool moves, const FieldView& field, const FieldEntry<hn::TFromD<D>>* entries,
-             const std::uint32_t* list, std::size_t count, const Vectors3<V>& place,
-             const Vectors3<V>& normal, Vectors3<V>& sum) {
+HWY_INLINE Vectors3<V> add_tangents(D d, bool moves, const FieldView& field,
+                                    const FieldEntry<float>* entries, const std::uint32_t* list,
+                                    std::size_t count, TurningVector<V>& at) {
   using T = Tangents<w, V>;
-  const V inverse = hn::Div(hn::Set(d, hn::TFromD<D>(1)), T::third(normal));
-  const T tangents{hn::Mul(T::first(normal), inverse), hn::Mul(T::second(normal), inverse)};
-  const Vectors3<V> along_w = polynomial_along(d, field, w);
-  const auto without_centres = [&](std::size_t axis, V share) HWY_ATTR {
-    const Vectors3<V> along = polynomial_along(d, field, axis % 3);
-    return Vectors3<V>{hn::NegMulAdd(share, along_w.x, along.x),
-                       hn::NegMulAdd(share, along_w.y, along.y),
-                       hn::NegMulAdd(share, along_w.z, along.z)};
-  };
-  Vectors3<V> first = without_centres(w + 1, tangents.a);
-  Vectors3<V> second = without_centres(w + 2, tangents.b);
-  const auto add = [&](const FieldEntry<hn::TFromD<D>>& entry, V distance) HWY_ATTR {
-    const Pull<V> pull = pull_at<kernel>(d, entry, place, distance);
-    if (moves) add_scaled(d, entry.coefficient, pull.weight, sum);
+  const V length = T::third(at.normal);
+  const V inverse = inverse_of(d, length);
+  const T tangents{hn::Mul(T::first(at.normal), inverse), hn::Mul(T::second(at.normal), inverse)};
+  Vectors3<V> first = tangent_along<w>(d, field, (w + 1) % 3, tangents.a);
+  Vectors3<V> second = tangent_along<w>(d, field, (w + 2) % 3, tangents.b);
+  const auto add = [&](const FieldEntry<float>& entry, V distance) HWY_ATTR {
+    const Pull<V> pull = pull_at<kernel>(d, entry, at.place, distance);
+    if (moves) add_scaled(d, entry.coefficient, pull.weight, at.sum);
     const V third = T::third(pull.offset);
     const V along_first = hn::NegMulAdd(tangents.a, third, T::first(pull.offset));
     const V along_second = hn::NegMulAdd(tangents.b, third, T::second(pull.offset));
     add_scaled(d, entry.steep, hn::Mul(pull.slope, along_first), first);
     add_scaled(d, entry.steep, hn::Mul(pull.slope, along_second), second);
   };
-  if (count > 0) { // one centre's root while the one before it is added
-    V distance = distance_to(d, entries[list[0]], place);
-    for (std::size_t at = 1; at < count; ++at) {
-      const V next = distance_to(d, entries[list[at]], place);
-      add(entries[list[at - 1]], distance);
-      distance = next;
-    }
-    add(entries[list[count - 1]], distance);
-  }
+  for_each_centre(d, entries, list, count, at.place, at.distance, add);
   const Vectors3<V> image = cross(first, second);
-  const V length = T::third(normal);
   return {hn::Mul(image.x, length), hn::Mul(image.y, length), hn::Mul(image.z, length)};
 }
 
