@@ -15,10 +15,8 @@ struct ViewOptions {
   std::uint32_t frames = 0; ///< pictures after which the run ends; 0: as the person likes
 };
 
-/// Opens the window, on the main thread, which is where the onlooker must be used. `model` is what
-/// a reset goes back to. Errors: failed (no screen, no OpenGL, or built without), with what to do
-/// without it.
-Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions& options, const RunOptions& run,
-                                                 const deform::Mesh& model);
+/// Opens the window, on the main thread, which is where the onlooker must be used. Errors: failed
+/// (no screen, no OpenGL, or built without), with what to do without it.
+Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions& options, const RunOptions& run);
 
 } // namespace nendo::app

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
+#include <nendo/flow/wrist_move.hpp>
 
 #include "place_loop.hpp"
 
@@ -18,9 +20,13 @@ public:
   /// begins. All live until the loop has ended.
   virtual Result<void> begin(const PlacedLoop& placed, const deform::Mesh& model,
                              const std::vector<OpenHand>& hands) = 0;
-  /// What it asks of the loop next, if anything. Called over and over from the main thread; never
-  /// blocks.
+  /// What it asks of the loop next, if anything. This and what follows is called over and over from
+  /// the main thread, and never blocks.
   virtual std::optional<flow::Request> next_request() { return std::nullopt; }
+  /// Where it moves a hand next, if it does.
+  virtual std::optional<flow::WristMove> next_wrist() { return std::nullopt; }
+  /// What it wants that only a new loop can give, since the last call.
+  virtual flow::LoopChange next_change() { return {}; }
 };
 
 } // namespace nendo::app

@@ -114,7 +114,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
     return Error{Errc::failed, "the hands cannot take hold of the model: " +
                                    std::string(deform::describe(loop->grab_status()))};
   }
-  return PlacedLoop{std::move(loop), largest_radius, std::move(setup)};
+  return PlacedLoop{std::move(loop), largest_radius, std::move(setup), options.recording.on};
 }
 
 } // namespace nendo::app

@@ -22,6 +22,7 @@ struct PlacedLoop {
   std::unique_ptr<flow::DeformLoop> loop;
   double radius = 0.0; ///< the largest
   PlacedSetup setup;
+  bool recorded = false; ///< to a file, as long as it runs
 };
 
 /// As options.loop says, with the supports that options.radius says. Without a placement the hands

@@ -122,7 +122,7 @@ int run(CommandOptions& options) {
   wanted.grants = process.grants();
   std::unique_ptr<Onlooker> window;
   if (options.view.window) {
-    auto opened = open_live_view(options.view, wanted, *model);
+    auto opened = open_live_view(options.view, wanted);
     if (!opened) return report(opened.error());
     window = *std::move(opened);
   }

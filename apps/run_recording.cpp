@@ -93,7 +93,7 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
                               options.length.size(hands[at].known.not_of(side).size)));
   }
   // Whoever replays the loop needs the model that it began with.
-  const std::filesystem::path mesh = with_model ? model_beside(name) : options.mesh;
+  const auto mesh = with_model ? model_beside(name) : std::filesystem::path(options.mesh);
   if (with_model)
     if (const auto written = deform::write_mesh(mesh, model); !written) return written.error();
   setup.loop = recording::LoopSetup{std::filesystem::absolute(mesh).string(), sum, placed.placement,

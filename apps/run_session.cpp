@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <future>
 #include <iterator>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include <nendo/base/usable_memory.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli.hpp"
-#include "glove_light.hpp"
+#include "hold_lights.hpp"
+#include "loop_change.hpp"
+#include "loop_thread.hpp"
 #include "run_keys.hpp"
 #include "run_picture.hpp"
 
@@ -21,6 +21,9 @@ namespace nendo::app {
 namespace {
 
 using std::chrono::milliseconds;
+
+// What a loop lasts at least, before it is made anew.
+constexpr milliseconds least_loop(250);
 
 // What is there from the beginning, for some dozens of whole shapes, of which strokes mostly change
 // parts.
@@ -52,56 +55,6 @@ Result<void> keep(const std::string& out, const deform::Mesh& shape) {
                written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
 }
 
-// The lights of the gloves whose switches do something: lit while the hands hold the model. Given
-// from here, because Glove::give takes a lock, which is nothing for the loop.
-class HoldLights {
-public:
-  HoldLights(flow::SwitchAction action, const std::vector<OpenHand>& hands) {
-    if (action == flow::SwitchAction::none) return;
-    for (const auto& hand : hands)
-      lights_.push_back(std::make_unique<GloveLight>(*hand.glove));
-  }
-  void show(bool held) noexcept {
-    for (const auto& light : lights_)
-      light->show(held);
-  }
-  void put_out() noexcept {
-    for (const auto& light : lights_)
-      light->put_out();
-  }
-
-private:
-  std::vector<std::unique_ptr<GloveLight>> lights_;
-};
-
-// The thread on which a loop runs.
-class LoopThread {
-public:
-  LoopThread(flow::DeformLoop& loop, const RunOptions& options)
-      : start(HostClock::now()), thread_([this, &loop, &options] {
-          prepared_.set_value(flow::make_thread_realtime(options.realtime));
-          loop.run(over_, ticks_for(options));
-          ended = true;
-        }) {}
-  ~LoopThread() { stop(); }
-  LoopThread(const LoopThread&) = delete;
-  LoopThread& operator=(const LoopThread&) = delete;
-
-  std::vector<flow::Grant> grants() { return prepared_.get_future().get(); }
-  void stop() {
-    over_ = true;
-    if (thread_.joinable()) thread_.join();
-  }
-
-  const HostTime start;
-  std::atomic<bool> ended{false};
-
-private:
-  std::atomic<bool> over_{false};
-  std::promise<std::vector<flow::Grant>> prepared_;
-  std::thread thread_;
-};
-
 // No loop drains the rings now: each hand's newest sample is where the next loop begins.
 void take_newest(std::vector<OpenHand>& hands) {
   for (auto& hand : hands) {
@@ -121,7 +74,8 @@ public:
   Session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
           const Followers& followers)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
-        followers_(followers), recorder_(model_), lights_(options_.loop.switch_action, hands_) {
+        loaded_(model_.vertices), followers_(followers), recorder_(model_),
+        lights_(options_.loop.switch_action, hands_) {
     options_.loop.requests = &requests_;
     options_.loop.wrists = &wrists_;
     const std::size_t most = most_undo_bytes(options_);
@@ -135,7 +89,7 @@ public:
     if (const auto begun = begin_loop({}); !begun) return begun.error();
     RunPicture picture(options_.picture, model_, placed_.setup.options);
     RunKeys keys(options_, model_, recorder_);
-    while (run_loop(picture, keys) == Verdict::renew) {
+    while (run_loop(picture, keys)) {
       if (const auto renewed = renew(); !renewed) return after_keeping(renewed.error());
     }
     lights_.put_out();
@@ -149,8 +103,6 @@ public:
   }
 
 private:
-  using Verdict = Onlooker::Verdict;
-
   Result<void> begin_loop(const std::optional<flow::Placement>& placement) {
     options_.loop.tape = recorder_.tape_for(options_.recording);
     auto placed = place_loop(options_, hands_, model_, placement);
@@ -163,27 +115,40 @@ private:
     return {};
   }
 
-  // The ring has one pushing thread, which is this one.
+  // The rings have one pushing thread, which is this one. Full: the loop stands still, and asking
+  // again is as good.
   void pass_on_requests() {
-    for (Outlet* outlet : followers_.outlets)
+    for (Outlet* outlet : followers_.outlets) {
       while (const auto request = outlet->next_request())
-        requests_.try_push(*request); // full: the loop stands still, and asking again is as good
+        requests_.try_push(*request);
+      while (const auto move = outlet->next_wrist())
+        wrists_.try_push(*move);
+    }
   }
 
-  // Until the loop has ended; model_ is then as it left it.
-  Verdict run_loop(RunPicture& picture, RunKeys& keys) {
+  // Whether somebody has wanted a change for which it is time.
+  bool is_change_due(HostTime loop_began) {
+    for (Outlet* outlet : followers_.outlets)
+      wanted_.add(outlet->next_change());
+    if (followers_.onlooker != nullptr) wanted_.add(followers_.onlooker->next_change());
+    if (!differs(wanted_, placed_, options_)) wanted_ = {};
+    return wanted_.asks_anything() && HostClock::now() - loop_began >= least_loop;
+  }
+
+  // Until the loop has ended; model_ is then as it left it. True: another one is wanted.
+  bool run_loop(RunPicture& picture, RunKeys& keys) {
     flow::DeformLoop& loop = *placed_.loop;
     if (followers_.onlooker != nullptr)
       followers_.onlooker->begin(placed_, model_, hands_, options_);
     LoopThread thread(loop, options_);
     tell_refusals(thread.grants());
-    const Verdict verdict = watch(thread, picture, keys);
+    const bool is_another_wanted = watch(thread, picture, keys);
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
     model_.vertices = loop.final_shape();
     recorder_.end(model_);
     if (loop.frames().update()) picture.see(loop.frames().front());
-    return verdict;
+    return is_another_wanted;
   }
 
   // Each loop's thread asks for the same rights; they are told of once.
@@ -195,15 +160,13 @@ private:
       note(line);
   }
 
-  Verdict watch(const LoopThread& thread, RunPicture& picture, RunKeys& keys) {
+  bool watch(const LoopThread& thread, RunPicture& picture, RunKeys& keys) {
     auto& frames = placed_.loop->frames();
     const milliseconds patience(followers_.onlooker == nullptr ? 20 : 0);
     HostTime next_report = thread.start;
     bool unreported = false;
-    auto verdict = Verdict::go_on;
-    while (verdict == Verdict::go_on && !thread.ended && !stop_requested() &&
-           !is_over(options_, thread.start)) {
-      if (!keys.obey(patience, *placed_.loop)) return Verdict::end;
+    while (!thread.ended && !stop_requested() && !is_over(options_, thread.start)) {
+      if (!keys.obey(patience, *placed_.loop)) return false;
       placed_.loop->refill_undo();
       const bool fresh = frames.update();
       if (fresh) {
@@ -212,14 +175,17 @@ private:
         picture.see(frames.front());
       }
       pass_on_requests();
-      if (followers_.onlooker != nullptr) verdict = followers_.onlooker->look(*placed_.loop, fresh);
+      if (followers_.onlooker != nullptr &&
+          followers_.onlooker->look(*placed_.loop, fresh) == Onlooker::Verdict::end)
+        return false;
+      if (is_change_due(thread.start)) return true;
       if (HostClock::now() < next_report) continue;
       if (unreported)
         followers_.progress(frames.front(), to_seconds(HostClock::now() - thread.start));
       unreported = false;
       next_report += milliseconds(250);
     }
-    return verdict;
+    return false;
   }
 
   // What has been shaped is not lost with what cannot go on.
@@ -231,15 +197,28 @@ private:
   Result<void> renew() {
     if (options_.duration_s > 0.0)
       options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
-    followers_.onlooker->change(options_, model_);
+    const flow::Placement placement = placed_.loop->placement();
+    const flow::LoopChange change = std::exchange(wanted_, {});
+    apply({}, placed_, options_);
+    const RunOptions options = options_;
+    const deform::Points shape = model_.vertices;
+    apply(change, placed_, options_);
+    if (change.reset) model_.vertices = loaded_;
     take_newest(hands_);
-    return begin_loop(placed_.loop->placement());
+    const auto begun = begin_loop(placement);
+    if (begun) return {};
+    note(begun.error().message + "; the run goes on as it was");
+    options_ = options;
+    model_.vertices = shape;
+    return begin_loop(placement);
   }
 
   RunOptions options_;
   std::vector<OpenHand>& hands_;
   deform::Mesh model_;
+  const deform::Points loaded_; ///< what a reset goes back to
   const Followers& followers_;
+  flow::LoopChange wanted_; ///< of the next loop, so far
   flow::RequestRing requests_{64};
   flow::WristRing wrists_{64};
   RunRecorder recorder_;

@@ -35,7 +35,7 @@ using Progress = std::function<void(const flow::Frame& frame, double elapsed_s)>
 /// Who looks on from the main thread while a loop runs, and may have it made anew.
 class Onlooker {
 public:
-  enum class Verdict { go_on, end, renew };
+  enum class Verdict { go_on, end };
 
   virtual ~Onlooker() = default;
   /// Before each loop's first tick. `model` is what it shapes; all live until the next call but
@@ -45,9 +45,8 @@ public:
   /// Called over and over, and by its return sets the pace: within 30 ms. fresh: frames().front()
   /// is another one than at the call before.
   virtual Verdict look(flow::DeformLoop& loop, bool fresh) = 0;
-  /// After `renew`, the loop has ended and left `model`: what is to be different. The next loop is
-  /// recorded if `options.recording` says so, to a file of its own.
-  virtual void change(RunOptions& options, deform::Mesh& model) = 0;
+  /// As Outlet::next_change().
+  virtual flow::LoopChange next_change() { return {}; }
 };
 
 /// Who follows a run. All must outlive it.
@@ -59,8 +58,10 @@ struct Followers {
 
 /// Runs until the duration is over, a stop signal comes, or a key (run_keys.hpp) or the onlooker,
 /// if any, says so, then writes the shape; says on standard error which rights were refused. A loop
-/// that is made anew goes on from the shape and the poses as they are, with the hands where they
-/// were (what --adapt has learned begins anew); the outcome is then the last one's, with every
+/// that is made anew, because a follower wants a change, goes on from the shape and the poses as
+/// they are (but what --adapt has learned begins anew), with the hands where they were, and is recorded to a file of its own if that is asked
+/// for; a few times a second at most, whoever asks how often. A change with which no loop can begin
+/// is told of on standard error, and not made. The outcome is the last loop's, with every
 /// recording. Blocks.
 Result<RunOutcome> run_session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
                                const Followers& followers);

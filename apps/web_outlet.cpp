@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include <nendo/viewer/moment.hpp>
 #include <nendo/web/model_message.hpp>
 
 #include "cli.hpp"
+#include "loop_change.hpp"
 
 namespace nendo::app {
 namespace {
@@ -30,11 +30,10 @@ Result<void> WebOutlet::begin(const PlacedLoop& placed, const deform::Mesh& mode
   tap_ = std::make_shared<web::FrameTap>(layout, options.sculptor.mode,
                                          placed.loop->frames().front().fields.room(),
                                          static_cast<std::size_t>(supports.functions(points)));
-  const double units_per_metre = placed.setup.placement.units_per_metre;
   server_->present(
-      tap_, web::model_message(layout, model,
-                               {name, options.sculptor.mode, options.rate_hz, units_per_metre,
-                                viewer::radii_on_stage(supports, units_per_metre)}));
+      tap_, web::model_message(layout, model, placed.setup.inputs,
+                               {name, options.rate_hz, placed.setup.placement.units_per_metre,
+                                settings_of(placed), placed.recorded}));
   return {};
 }
 

@@ -20,6 +20,8 @@ public:
   void show(const flow::Frame& frame) noexcept override { tap_->show(frame); }
   /// Also tells the server how the gloves do.
   std::optional<flow::Request> next_request() override;
+  std::optional<flow::WristMove> next_wrist() override { return server_->next_wrist(); }
+  flow::LoopChange next_change() override { return server_->next_change(); }
 
   const web::Server& server() const noexcept { return *server_; }
   std::string name; ///< of the model, for people

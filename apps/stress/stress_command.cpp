@@ -79,7 +79,7 @@ int run(const StressArguments& arguments) {
   install_stop_signals();
   std::unique_ptr<Onlooker> window;
   if (arguments.view) {
-    auto opened = open_live_view({}, options->run, *model);
+    auto opened = open_live_view({}, options->run);
     if (!opened) return report(opened.error());
     window = *std::move(opened);
   }

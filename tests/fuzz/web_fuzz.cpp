@@ -1,12 +1,14 @@
-// The first byte chooses what the rest is: a request's head, or what a client sends over its
-// WebSocket, in chunks.
+// The first byte chooses what the rest is: a request's head, what a client sends over its
+// WebSocket, in chunks, or the words in it.
 
 #include "admission.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
+#include "client_words.hpp"
 #include "socket_frames.hpp"
 
 using namespace nendo::web;
@@ -54,14 +56,33 @@ void check_frames(std::string_view bytes, std::size_t chunk) {
   require(told <= bytes.size());
 }
 
+// Whatever is understood is something that a loop may be asked for.
+void check_words(std::string_view text) {
+  const auto wish = parse_words(text);
+  if (!wish) return;
+  require(text.front() != ' ' && text.back() != ' ');
+  if (const auto* move = std::get_if<nendo::flow::WristMove>(&*wish)) {
+    const Eigen::Isometry3d pose = move->pose();
+    require(move->is_usable() && pose.matrix().allFinite());
+    require(std::abs(pose.linear().determinant() - 1.0) < 1e-9);
+  }
+  const auto* change = std::get_if<nendo::flow::LoopChange>(&*wish);
+  require(change == nullptr || change->asks_anything());
+  if (change == nullptr || !change->settings) return;
+  for (const double radius_m : change->settings->radius_m)
+    require(radius_m >= least_radius_m && radius_m <= most_radius_m);
+}
+
 } // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
-  if (*data % 2 == 0)
+  if (*data % 4 == 0)
     check_head(rest);
+  else if (*data % 4 == 2)
+    check_words(rest);
   else
     check_frames(rest, 1 + *data % 11);
   return 0;

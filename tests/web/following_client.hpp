@@ -2,6 +2,7 @@
 // A client of the WebSocket, written from PROTOCOL.md: follows a shape by the steps that it is
 // sent, in float, as a graphics card does.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -29,9 +30,18 @@ public:
       axis = in.take<double>();
     units_per_metre = in.take<double>();
     diagonal = in.take<double>();
-    in.at += 20;
+    for (double& radius : radius_m)
+      radius = in.take<double>();
     mode = in.take<std::uint16_t>();
     loop = in.take<std::uint16_t>();
+    kernel = in.take<std::uint8_t>();
+    const auto flags = in.take<std::uint8_t>();
+    in.at += 2;
+    recorded = (flags & 4U) != 0;
+    for (unsigned slot = 0; slot < 2; ++slot)
+      if ((flags >> slot & 1U) != 0)
+        for (Skeleton& skeleton : bones_[slot])
+          take_bones(in, skeleton);
     rest = in.take_all<float>(3 * vertices);
     order = in.take_all<std::uint32_t>(vertices);
     corners = in.take_all<std::uint32_t>(3 * triangles);
@@ -50,8 +60,8 @@ public:
 
   /// In the mesh's order and units.
   deform::Points vertices() const {
-    std::vector<float> shape = base;
-    for (const Field& field : pending)
+    std::vector<float> shape = base_;
+    for (const Field& field : pending_)
       apply(field, shape);
     deform::Points points(3, static_cast<Eigen::Index>(order.size()));
     for (std::size_t at = 0; at < order.size(); ++at)
@@ -66,7 +76,9 @@ public:
   bool good = false;
   double rate_hz = 0.0, unit = 1.0, units_per_metre = 1.0, diagonal = 0.0;
   std::array<double, 3> origin{};
-  unsigned mode = 0, loop = 0;
+  std::array<double, 5> radius_m{};
+  unsigned mode = 0, loop = 0, kernel = 0;
+  bool recorded = false;
   std::vector<float> rest;
   std::vector<std::uint32_t> order, corners;
   std::string name;
@@ -78,8 +90,11 @@ public:
   std::uint32_t commits = 0, undos = 0, lost = 0, skipped = 0;
   std::array<std::array<Eigen::Vector3d, 26>, 2> joints{};
   std::array<std::array<Eigen::Quaterniond, 26>, 2> turns{};
-  std::array<bool, 2> present{};
+  std::array<Eigen::Quaterniond, 2> forearms{};
+  std::array<bool, 2> present{}, other_bones{};
+  std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
+  std::uint64_t implied_centres = 0; ///< that were left out
 
 private:
   struct Bytes {
@@ -100,9 +115,14 @@ private:
       return values;
     }
   };
+  struct Bone {
+    Eigen::Vector3d place;
+    Eigen::Quaterniond turn;
+  };
+  using Skeleton = std::array<Bone, 26>;
   struct Function {
-    std::array<float, 3> centre, coefficient;
-    float inverse_radius;
+    std::array<float, 3> centre{}, coefficient{};
+    float inverse_radius = 0;
   };
   struct Field {
     unsigned kernel = 0;
@@ -116,12 +136,21 @@ private:
     if (in.take<std::uint16_t>() != loop) good = false;
     const auto vertices = in.take<std::uint32_t>();
     number = in.take<std::uint64_t>();
-    base = in.take_all<float>(3 * vertices);
-    pending.clear();
+    base_ = in.take_all<float>(3 * vertices);
+    pending_.clear();
+  }
+
+  static void take_bones(Bytes& in, Skeleton& skeleton) {
+    for (Bone& bone : skeleton) {
+      const auto numbers = in.take_all<float>(7);
+      bone.place = Eigen::Vector3f(numbers.data()).cast<double>();
+      bone.turn = Eigen::Quaternionf(numbers.data() + 3).cast<double>();
+    }
   }
 
   void take_update(Bytes& in) {
     ++updates;
+    update_bytes = in.bytes.size();
     held = in.take<std::uint8_t>() != 0;
     const auto hands = in.take<std::uint8_t>();
     in.at += 1;
@@ -137,6 +166,7 @@ private:
     in.at = 88;
     for (unsigned slot = 0; slot < 2; ++slot) {
       present[slot] = (hands >> slot & 1U) != 0;
+      other_bones[slot] = (hands >> slot & 16U) != 0;
       if (present[slot]) take_hand(in, slot);
     }
     for (std::uint32_t step = 0; step < steps; ++step)
@@ -144,23 +174,34 @@ private:
     if (steps > 0 && number > 0) number = newest;
   }
 
+  static Eigen::Quaterniond take_turn(Bytes& in) {
+    const std::array<unsigned, 3> words{in.take<std::uint16_t>(), in.take<std::uint16_t>(),
+                                        in.take<std::uint16_t>()};
+    const unsigned largest = words[0] >> 15U | words[1] >> 15U << 1U;
+    Eigen::Vector4d parts = Eigen::Vector4d::Zero();
+    unsigned next = 0;
+    for (unsigned part = 0; part < 4; ++part)
+      if (part != largest)
+        parts[part] = ((words[next++] & 0x7FFFU) / 32767.0 * 2.0 - 1.0) / std::sqrt(2.0);
+    parts[largest] = std::sqrt(std::max(0.0, 1.0 - parts.squaredNorm()));
+    return {parts[3], parts[0], parts[1], parts[2]};
+  }
+
   void take_hand(Bytes& in, unsigned slot) {
-    Eigen::Vector3d wrist;
-    for (double& axis : wrist)
+    const Skeleton& skeleton = bones_[slot][other_bones[slot] ? 1 : 0];
+    auto& places = joints[slot];
+    auto& turned = turns[slot];
+    for (double& axis : places[1])
       axis = static_cast<double>(in.take<float>());
-    for (std::size_t joint = 0; joint < 26; ++joint) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis)
-        joints[slot][joint][axis] = wrist[axis] + 1e-5 * in.take<std::int16_t>();
-      const std::array<unsigned, 3> words{in.take<std::uint16_t>(), in.take<std::uint16_t>(),
-                                          in.take<std::uint16_t>()};
-      const unsigned largest = words[0] >> 15U | words[1] >> 15U << 1U;
-      Eigen::Vector4d parts = Eigen::Vector4d::Zero();
-      unsigned next = 0;
-      for (unsigned part = 0; part < 4; ++part)
-        if (part != largest)
-          parts[part] = ((words[next++] & 0x7FFFU) / 32767.0 * 2.0 - 1.0) / std::sqrt(2.0);
-      parts[largest] = std::sqrt(std::max(0.0, 1.0 - parts.squaredNorm()));
-      turns[slot][joint] = Eigen::Quaterniond(parts[3], parts[0], parts[1], parts[2]);
+    forearms[slot] = take_turn(in);
+    turned[1] = take_turn(in);
+    for (std::size_t at = 0; at < 26; ++at) { // the palm hangs on the wrist, too
+      if (at == 1) continue;
+      const bool on_wrist = at == 0 || at == 2 || at % 5 == 1;
+      const bool fixed = at == 0 || at == 6 || at == 11 || at % 5 == 0;
+      const std::size_t parent = on_wrist ? 1 : at - 1;
+      places[at] = places[parent] + turned[parent] * skeleton[at].place;
+      turned[at] = fixed ? turned[parent] * skeleton[at].turn : take_turn(in);
     }
   }
 
@@ -168,32 +209,49 @@ private:
     const bool bakes = in.take<std::uint8_t>() == 1;
     in.at += 1;
     std::vector<Field> fields(in.take<std::uint16_t>());
-    for (Field& field : fields)
-      take_field(in, field);
+    for (std::size_t at = 0; at < fields.size(); ++at)
+      take_field(in, fields[at], at > 0 ? &fields[at - 1] : nullptr);
     if (number == 0) return; // without a shape there is nothing to apply it to
-    pending.clear();
+    pending_.clear();
     if (!bakes) {
-      pending = fields;
+      pending_ = fields;
       return;
     }
     for (const Field& field : fields)
-      apply(field, base);
+      apply(field, base_);
   }
 
-  static void take_field(Bytes& in, Field& field) {
+  void take_field(Bytes& in, Field& field, const Field* before) {
     field.kernel = in.take<std::uint8_t>();
     const auto flags = in.take<std::uint8_t>();
     field.functions.resize(in.take<std::uint16_t>());
+    const bool follows = (flags & 4U) != 0;
+    if (follows && (before == nullptr || before->functions.size() != field.functions.size())) {
+      good = false;
+      return;
+    }
     const float shared = (flags & 2U) != 0 ? in.take<float>() : 0.0F;
     if ((flags & 1U) != 0)
-      for (float& number : field.polynomial)
-        number = in.take<float>();
-    for (Function& function : field.functions) {
-      for (float& axis : function.centre)
-        axis = in.take<float>();
+      for (float& part : field.polynomial)
+        part = in.take<float>();
+    for (std::size_t at = 0; at < field.functions.size(); ++at) {
+      Function& function = field.functions[at];
+      if (follows) {
+        const auto& place = before->functions[at].centre;
+        std::vector<float> taken(place.begin(), place.end());
+        apply(*before, taken);
+        std::copy(taken.begin(), taken.end(), function.centre.begin());
+      } else {
+        for (float& axis : function.centre)
+          axis = in.take<float>();
+      }
       for (float& axis : function.coefficient)
         axis = in.take<float>();
-      function.inverse_radius = (flags & 2U) != 0 ? shared : in.take<float>();
+      if (follows)
+        function.inverse_radius = before->functions[at].inverse_radius;
+      else
+        function.inverse_radius = (flags & 2U) != 0 ? shared : in.take<float>();
+      implied_centres += follows ? 1 : 0;
     }
   }
 
@@ -228,8 +286,9 @@ private:
     }
   }
 
-  std::vector<float> base;
-  std::vector<Field> pending;
+  std::array<std::array<Skeleton, 2>, 2> bones_{}; ///< of the left, the right hand: first, other
+  std::vector<float> base_;
+  std::vector<Field> pending_;
 };
 
 } // namespace nendo::test

@@ -1,5 +1,9 @@
 // `nendo run --web`, from outside.
 
+#include <filesystem>
+#include <functional>
+#include <optional>
+
 #include <doctest/doctest.h>
 
 #include <nendo/deform/mesh_file.hpp>
@@ -40,6 +44,49 @@ std::vector<std::byte> bytes_of(const std::string& text) {
   return {bytes.begin(), bytes.end()};
 }
 
+/// As the page comes: the model, as soon as there is one, and a WebSocket for its frames.
+struct Looker {
+  Address address;
+  std::optional<FollowingClient> follower;
+  std::optional<WebClient> client;
+
+  void come() {
+    test::Answer model;
+    while (model.status != 200 && model.status != 403) {
+      WebClient asks(address.port, address.token);
+      model = asks.get(asks.with_token("/model"));
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    REQUIRE(model.status == 200);
+    follower.emplace(bytes_of(model.body));
+    REQUIRE(follower->good);
+    client.emplace(address.port, address.token);
+    REQUIRE(client->open_socket() == 101);
+  }
+  void follow_until(const std::function<bool()>& is_so) {
+    while (!is_so()) {
+      const auto frame = client->next();
+      REQUIRE(frame);
+      if (frame->opcode == 2) REQUIRE(follower->take(frame->payload));
+    }
+  }
+  /// Says so; the loop is made anew, and this comes again.
+  void change(const std::string& words) {
+    follow_until([&] { return follower->follows() && follower->updates > 30; });
+    REQUIRE(client->say(words));
+    unsigned code = 0;
+    while (code == 0) {
+      const auto frame = client->next();
+      REQUIRE(frame);
+      code = frame->opcode == 8 ? frame->close_code() : 0;
+    }
+    CHECK(code == 1012);
+    const unsigned before = follower->loop;
+    come();
+    CHECK(follower->loop == before + 1);
+  }
+};
+
 } // namespace
 
 TEST_SUITE("run_web") {
@@ -55,18 +102,11 @@ TEST_SUITE("run_web") {
       REQUIRE(address.token.size() == 32);
       CHECK(WebClient(address.port, "").get("/").status == 200);
       CHECK(WebClient(address.port, "").get("/model").status == 403);
-      test::Answer model;
-      while (model.status != 200 && model.status != 403) { // until the loop has begun
-        WebClient asks(address.port, address.token);
-        model = asks.get(asks.with_token("/model"));
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      }
-      REQUIRE(model.status == 200);
-      FollowingClient follower(bytes_of(model.body));
-      REQUIRE(follower.good);
+      Looker looker{address, {}, {}};
+      looker.come();
+      FollowingClient& follower = *looker.follower;
+      WebClient& client = *looker.client;
       CHECK(follower.name == "moai.obj");
-      WebClient client(address.port, address.token);
-      REQUIRE(client.open_socket() == 101);
       bool asked = false;
       while (!asked || follower.held) {
         const auto frame = client.next();
@@ -88,6 +128,38 @@ TEST_SUITE("run_web") {
       REQUIRE(rest);
       CHECK((rest->vertices - shape).cwiseAbs().maxCoeff() > 1e-3); // something was shaped
     }
+  }
+
+  TEST_CASE("a browser's client has the loop made anew: settings, reset, recordings; and moves a "
+            "hand") {
+    const test::TemporaryFolder folder;
+    const auto out = folder.path() / "clay.ply";
+    test::Program program({"run", "--left", "sim:sculpt?seed=7", "--right", "sim:sculpt?seed=7",
+                           "--web", "0", "--out", out.string()});
+    Looker looker{address_of(program), {}, {}};
+    looker.come();
+    const auto rest = looker.follower->rest;
+    const auto radii = looker.follower->radius_m;
+    CHECK(radii[0] == doctest::Approx(0.16)); // a fifth of the model's longest side, on the stage
+    looker.change("settings type2 c4 0.1 0.1 0.1 0.1 0.05");
+    CHECK(looker.follower->mode == 2);
+    CHECK(looker.follower->kernel == 2);
+    CHECK(looker.follower->radius_m[4] == doctest::Approx(0.05));
+    CHECK(looker.follower->rest != rest); // it goes on from what was shaped
+    looker.change("record");
+    CHECK(looker.follower->recorded);
+    CHECK(std::filesystem::exists(folder.path() / "clay.nendo"));
+    looker.change("reset");
+    CHECK(looker.follower->rest == rest); // and this loop is recorded, too
+    looker.change("end recording");
+    CHECK_FALSE(looker.follower->recorded);
+    CHECK(std::filesystem::exists(folder.path() / "clay-2.nendo"));
+    CHECK(looker.client->say("wrist left -0.5 0.25 0.125 0 0 0 1"));
+    const Eigen::Vector3d there(-0.5, 0.25, 0.125);
+    looker.follow_until([&] { return (looker.follower->joints[0][1] - there).norm() < 1e-6; });
+    CHECK(looker.follower->forearms[0].angularDistance(Eigen::Quaterniond::Identity()) < 2e-4);
+    program.signal(SIGTERM);
+    CHECK(program.wait().exit_code == 0);
   }
 
   TEST_CASE("an address that is none, or not this machine's, is one line before anything begins") {

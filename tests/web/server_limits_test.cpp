@@ -53,6 +53,32 @@ TEST_SUITE("server_limits") {
     CHECK(served.server->counters().dropped >= 2);
   }
 
+  TEST_CASE("who talks without end is sent away, and who is slower for long is heard") {
+    ServerLimits limits;
+    limits.words_at_once = 20.0;
+    limits.words_a_second = 50.0;
+    Served served(flow::Mode::type1, limits);
+    served.begin();
+    WebClient steady(*served.server);
+    REQUIRE(steady.open_socket() == 101);
+    for (int n = 0; n < 60; ++n) { // more than at once, and 25 a second
+      CHECK(steady.say("wrist left 0 0 0 0 0 0 1"));
+      std::this_thread::sleep_for(milliseconds(40));
+    }
+    WebClient flood(*served.server);
+    REQUIRE(flood.open_socket() == 101);
+    for (int n = 0; n < 500; ++n)
+      flood.say("wrist left 0 0 0 0 0 0 1");
+    unsigned code = 0;
+    while (const auto frame = flood.next())
+      if (frame->opcode == 8) code = frame->close_code();
+    CHECK(code == 1008);
+    CHECK(steady.say("let go"));
+    FollowingClient follower(served.tapped.model);
+    follower.loop = 1;
+    CHECK(follow_until(steady, follower, [&] { return follower.updates > 0 && !follower.held; }));
+  }
+
   TEST_CASE("there are so many places, and a client that has one keeps it") {
     ServerLimits limits;
     limits.connections = 6;

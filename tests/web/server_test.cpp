@@ -106,6 +106,35 @@ TEST_SUITE("server") {
     CHECK(client.is_ended());
   }
 
+  TEST_CASE("what only a new loop can give, and hands that are moved, come out of the server") {
+    const auto server = open_server();
+    const TappedLoop tapped(flow::Mode::type1);
+    server->present(tapped.tap, tapped.model);
+    WebClient client(*server);
+    REQUIRE(wait_for([&] { return client.open_socket() == 101; }));
+    client.say("settings type2 c6 0.1 0.1 0.1 0.1 0.2");
+    client.say("record");
+    client.say("wrist left 1 2 3 0 0 0 1");
+    client.say("wrist right 0 0 0 0 0 0 1");
+    client.say("wrist left 1 2 4 0 0 0 1"); // the last counts
+    client.say("reset");
+    flow::LoopChange change;
+    std::array<std::optional<flow::WristMove>, 2> moves;
+    CHECK(wait_for([&] {
+      change.add(server->next_change());
+      while (const auto move = server->next_wrist())
+        moves[flow::Placement::index_of(move->side)] = move;
+      return change.reset && moves[0] && moves[0]->position_m[2] == 4.0;
+    }));
+    REQUIRE(change.settings);
+    CHECK(change.settings->kernel == deform::Wendland::c6);
+    CHECK(change.settings->radius_m[4] == 0.2);
+    CHECK(change.record == true);
+    CHECK(moves[1]);
+    CHECK_FALSE(server->next_change().asks_anything());
+    CHECK_FALSE(server->next_wrist());
+  }
+
   TEST_CASE("over the network, too, a follower has the shape that the loop ends with") {
     for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
       CAPTURE(name_of(mode));
@@ -159,5 +188,6 @@ TEST_SUITE("server") {
     CHECK(second.good);
     CHECK(second.loop == 2);
     CHECK(second.mode == 2);
+    CHECK(second.kernel == 1);
   }
 }

@@ -17,18 +17,24 @@ struct TappedLoop {
 
   explicit TappedLoop(flow::Mode mode,
                       std::optional<deform::InjectiveOptions> injective = std::nullopt,
-                      const deform::Supports& supports = deform::one_radius(0.5))
+                      const deform::Supports& supports = deform::one_radius(0.5),
+                      std::optional<double> swapped_length_m = std::nullopt)
       : test(mode, 12, 1000.0, flow::SwitchAction::none, true, hand::FilterKind::off, std::nullopt,
              nullptr, injective) {
     test.options.sculptor.deformer.supports = supports;
+    if (swapped_length_m)
+      for (auto& hand : test.inputs)
+        hand.swapped_skeleton.emplace(hand.skeleton.side(),
+                                      hand::HandSize{*swapped_length_m, 0.07});
     const deform::BlockLayout layout(test.model.vertices);
     make_loop(); // to ask it how many fields a frame may have
     tap = std::make_shared<web::FrameTap>(layout, mode, test.loop->frames().front().fields.room(),
                                           static_cast<std::size_t>(supports.functions(10)));
     test.options.sinks = {tap.get()};
     make_loop();
-    model = web::model_message(test.loop->layout(), test.model,
-                               {"ball", mode, 1000.0, test.placement.units_per_metre, {}});
+    model = web::model_message(
+        test.loop->layout(), test.model, test.inputs,
+        {"ball", 1000.0, test.placement.units_per_metre, {mode, deform::Wendland::c2, {}}, false});
   }
 
   /// Both hands bend by so many counts, and the loop ticks.

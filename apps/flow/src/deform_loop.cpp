@@ -137,7 +137,9 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   for (const auto& hand : hands_) {
     HandFrame& shown = frame.hands[hand.slot];
     shown.angles = hand.angles;
-    shown.pose = hand.skeleton().pose(hand.angles, hand.T_stage_wrist);
+    const hand::HandSkeleton& skeleton = hand.skeleton();
+    shown.pose = skeleton.pose(hand.angles, hand.T_stage_wrist);
+    shown.swapped = &skeleton != &hand.input.skeleton;
     shown.T_stage_wrist = hand.T_stage_wrist;
     shown.present = true;
     shown.silent = hand.silent;

@@ -42,7 +42,7 @@ class Camera {
     this.changed()
   }
   pan(dx, dy) {
-    const metres = 2 * Math.tan(FIELD_OF_VIEW / 2) * this.distance / this.canvas.clientHeight
+    const metres = this.pictureHeight(this.distance) / this.canvas.clientHeight
     const [right, up] = this.axes()
     this.target = add(this.target, add(times(right, -dx * metres), times(up, dy * metres)))
     this.changed()
@@ -62,6 +62,11 @@ class Camera {
     const [sa, ca] = [Math.sin(this.azimuth), Math.cos(this.azimuth)]
     const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)]
     return [[ca, 0, -sa], [-sa * se, ce, -ca * se], [sa * ce, se, ca * ce]]
+  }
+  // What of the world there is in the picture from top to bottom, so far from the eye.
+  pictureHeight(depth) {
+    const narrow = Math.min(1, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight))
+    return 2 * Math.tan(FIELD_OF_VIEW / 2) * depth / narrow
   }
   eye() { return add(this.target, times(this.axes()[2], this.distance)) }
   // Column by column, as WebGL takes it. shift: of the middle, as a share of the width.

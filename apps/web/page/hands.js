@@ -1,6 +1,4 @@
 // The hands as capsules: flesh, bones, control vectors. Joints are OpenXR's, by number.
-const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
-const TIPS = [5, 10, 15, 20, 25]
 // Base, end, and the flesh about them in metres: a hand's of average size.
 const FLESH = [
   [2, 3, 0.0150, 0.0125], [6, 7, 0.0135, 0.0110], [11, 12, 0.0140, 0.0110], [16, 17, 0.0140, 0.0105], [21, 22, 0.0135, 0.0100],
@@ -13,18 +11,6 @@ const FLESH = [
   [22, 23, 0.0088, 0.0075], [23, 24, 0.0075, 0.0067], [24, 25, 0.0067, 0.0055],
 ]
 const FOREARM = 0.05
-
-const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s]
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-const size = a => Math.hypot(...a)
-
-function turned([x, y, z, w], v) {
-  const twice = times(cross([x, y, z], v), 2)
-  return add(add(v, times(twice, w)), cross([x, y, z], twice))
-}
 
 // Eight numbers a capsule: from and its radius, to and its radius.
 class Capsules {
@@ -67,7 +53,9 @@ function arrow(from, to, width, capsules) {
 
 // Where the fingertips took hold: frames do not say, but when a hold begins.
 class Holds {
-  constructor() { this.starts = [null, null] }
+  constructor() { this.begin() }
+  // Of another loop.
+  begin() { Object.assign(this, { starts: [null, null], before: null }) }
   follow(update) {
     const before = this.before
     const anew = update.held &&

@@ -1,7 +1,8 @@
 // Comes, looks, and comes again when the connection is lost.
 const token = location.hash.slice(1)
 const holds = new Holds()
-let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = ''
+let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = '', notice = ''
+const SERVICE_RESTART = 1012
 const counts = { updates: 0, updateBytes: 0, shapes: 0, bakes: 0, draws: 0 }
 
 const panel = new Panel(ask, (part, yes) => {
@@ -15,6 +16,8 @@ try {
   panel.say(trouble)
 }
 const camera = new Camera(element('scene'), () => { dirty = true })
+const mover = new HandMover(element('scene'), camera, () => scene && scene.shape && latest &&
+  { hands: latest.hands, origin: scene.origin, pixelOf: place => scene.pixelOf(place) })
 
 function ask(request) {
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(request)
@@ -40,7 +43,9 @@ async function connect() {
   } catch (error) {
     return again('No answer from nendo; has the run ended?')
   }
-  panel.setModel(model)
+  notice = panel.setModel(model) ? '' : 'These are not the settings that you asked for. If nobody else has changed them, nendo could not ' +
+    'shape with yours, and says why in its terminal.'
+  holds.begin()
   if (scene) {
     const first = !scene.shape
     scene.setModel(model)
@@ -52,25 +57,29 @@ async function connect() {
 }
 
 function open(model) {
+  let stale = false // the shape is another loop's than the model
   socket = new WebSocket(`ws://${location.host}/ws?token=${token}`)
   socket.binaryType = 'arraybuffer'
   socket.onopen = () => {
     panel.connected(true)
-    panel.say(trouble)
+    panel.say(notice || trouble)
     patience = 500
   }
   socket.onmessage = ({ data }) => {
-    if (new DataView(data).getUint8(0) === 1) takeShape(readShape(data), model)
-    else takeUpdate(readUpdate(data))
+    if (stale) return
+    if (new DataView(data).getUint8(0) === 1) stale = !takeShape(readShape(data), model)
+    else takeUpdate(readUpdate(data, model))
+    if (stale) socket.close()
     dirty = true
   }
-  socket.onclose = () => again('The connection is lost.')
+  // A loop that was made anew waits with its model already.
+  socket.onclose = ({ code }) => stale || code === SERVICE_RESTART ? connect() : again('The connection is lost.')
 }
 
 function takeShape(shape, model) {
   counts.shapes += 1
-  if (shape.loop !== model.loop) socket.close() // of another loop: its model is another one, too
-  else if (scene) scene.shape.takeShape(shape)
+  if (shape.loop === model.loop && scene) scene.shape.takeShape(shape)
+  return shape.loop === model.loop
 }
 
 function takeUpdate(update) {
@@ -89,6 +98,8 @@ function takeUpdate(update) {
 
 function picture() {
   requestAnimationFrame(picture)
+  const move = mover.next()
+  if (move) ask(move)
   if (!dirty) return
   dirty = false
   if (scene) scene.draw(camera, latest, holds)
@@ -108,7 +119,9 @@ window.nendo = {
   ask, counts,
   vertices: () => Array.from(scene.shape.vertices()),
   state: () => latest && { number: Number(latest.number), held: latest.held, commits: latest.commits, undos: latest.undos,
-    ticks: latest.ticks, open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },
+    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.model.recorded, settings: panel.model.settings,
+    wrists: latest.hands.map(hand => hand && { place: hand.joints[1].place, turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
+    open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },
 }
 connect()
 picture()

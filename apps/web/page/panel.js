@@ -1,16 +1,17 @@
 // The panel: buttons, keys, figures.
 const KEYS = [
-  ['g', 'grab: the hands take hold', 'grab'],
-  ['l', 'let go; what is shaped stays', 'let go'],
-  ['c', 'commit: this shape becomes the rest shape', 'commit'],
-  ['u', 'undo the last commit', 'undo'],
-  ['r', 'redo what was undone', 'redo'],
-  ['h', 'hands on and off', null, 'skin'],
-  ['b', 'bones on and off', null, 'bones'],
-  ['v', 'control vectors on and off', null, 'vectors'],
-  ['d', 'radii on and off', null, 'radii'],
-  ['f', 'facets in place of smooth shading', null, 'facets'],
-  ['?', 'this list'],
+  ['g', 'grab: the hands take hold', panel => panel.ask('grab')],
+  ['l', 'let go; what is shaped stays', panel => panel.ask('let go')],
+  ['c', 'commit: this shape becomes the rest shape', panel => panel.ask('commit')],
+  ['u', 'undo the last commit', panel => panel.ask('undo')],
+  ['r', 'redo what was undone', panel => panel.ask('redo')],
+  ['t', 'a take: record from this shape on, and end that', panel => panel.record()],
+  ['h', 'hands on and off', panel => panel.toggle('skin')],
+  ['b', 'bones on and off', panel => panel.toggle('bones')],
+  ['v', 'control vectors on and off', panel => panel.toggle('vectors')],
+  ['d', 'radii on and off', panel => panel.toggle('radii')],
+  ['f', 'facets in place of smooth shading', panel => panel.toggle('facets')],
+  ['?', 'this list', panel => panel.help()],
 ]
 const element = id => document.getElementById(id)
 
@@ -20,8 +21,16 @@ class Panel {
     this.late = new Chart(element('chart-late'), 'late', 'ms')
     this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
-    this.buttons = [...document.querySelectorAll('[data-request]')]
-    for (const button of this.buttons) button.addEventListener('click', () => ask(button.dataset.request))
+    this.shaping = new Shaping(ask)
+    const requests = [...document.querySelectorAll('[data-request]')]
+    for (const button of requests) button.addEventListener('click', () => ask(button.dataset.request))
+    this.buttons = [...requests, element('reset'), element('record')]
+    element('record').addEventListener('click', () => this.record())
+    element('reset').addEventListener('click', () => element('reset-dialog').showModal())
+    element('reset-dialog').addEventListener('close', ({ target }) => {
+      if (target.returnValue === 'reset') ask('reset')
+      target.returnValue = ''
+    })
     for (const part of ['skin', 'bones', 'vectors', 'radii', 'facets'])
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
@@ -36,12 +45,13 @@ class Panel {
 
   press(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return
+    if (event.target.matches('select') || element('reset-dialog').open) return // which have keys of their own
     const key = KEYS.find(([name]) => name === event.key)
-    if (!key) return
-    const [name, , request, part] = key
-    if (name === '?') this.help()
-    if (request) this.ask(request)
-    if (part) element('show-' + part).click()
+    if (key) key[2](this)
+  }
+  toggle(part) { element('show-' + part).click() }
+  record() {
+    if (this.model) this.ask(this.model.recorded ? 'end recording' : 'record')
   }
   help() {
     const dialog = element('help')
@@ -55,11 +65,15 @@ class Panel {
   }
   connected(yes) {
     for (const button of this.buttons) button.disabled = !yes
+    this.shaping.connected(yes)
   }
   setModel(model) {
     this.model = model
     element('model').textContent = model.name
     document.title = `${model.name} - Nendo`
+    element('record').textContent = model.recorded ? 'End the recording' : 'Record'
+    element('record').classList.toggle('on', model.recorded)
+    return this.shaping.setModel(model)
   }
 
   add(update) {
@@ -81,7 +95,7 @@ class Panel {
     if (!update || !model) return
     element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
     const lost = update.lost + update.skipped
-    element('timing').textContent = `${model.rate} Hz wanted, type ${model.mode}\n${update.ticks} ticks, ${update.missed} missed` +
+    element('timing').textContent = `${model.rate} Hz wanted, type ${model.settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
       `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.commits} commits, ${update.undos} undone`
     for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
     update.hands.forEach((hand, slot) => this.drawGlove(hand, slot))

@@ -66,21 +66,33 @@ class Scene {
     gl.bindVertexArray(null)
   }
 
-  // The model stands on the ground about the middle, as large as on the stage.
   setModel(model) {
     if (this.shape) this.shape.dispose()
     this.shape = new Shape(this.gl, model)
+    this.scale = model.unit / model.unitsPerMetre
+    if (!this.origin) this.findPlace(model) // a loop that is made anew does not move the picture
+    this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
+    this.radii = model.settings.radii
+  }
+  // The model stands on the ground about the middle, as large as on the stage.
+  findPlace(model) {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
     model.places.forEach((number, at) => {
       low[at % 3] = Math.min(low[at % 3], number)
       high[at % 3] = Math.max(high[at % 3], number)
     })
-    this.scale = model.unit / model.unitsPerMetre
     const metres = (number, axis) => number * this.scale + model.origin[axis] / model.unitsPerMetre
     this.origin = [metres((low[0] + high[0]) / 2, 0), metres(low[1], 1), metres((low[2] + high[2]) / 2, 2)]
-    this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
     this.height = (high[1] - low[1]) * this.scale
-    this.radii = model.radii
+  }
+
+  // Of the canvas, from its top left: where a place on the stage is drawn; null: behind the eye.
+  pixelOf(place) {
+    if (!this.view) return null
+    const [x, y, z] = minus(place, this.origin), m = this.view.clip_of_world
+    const row = at => m[at] * x + m[4 + at] * y + m[8 + at] * z + m[12 + at]
+    const w = row(3), { clientWidth, clientHeight } = this.canvas
+    return w > 0 ? [(1 + row(0) / w) / 2 * clientWidth, (1 - row(1) / w) / 2 * clientHeight] : null
   }
 
   capsules(capsules, material) {

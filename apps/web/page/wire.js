@@ -1,25 +1,51 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
+const MODEL_HEAD = 128, BONE_BYTES = 28, UPDATE_HEAD = 88
+const KERNELS = ['c0', 'c2', 'c4', 'c6']
+// Of each joint, whose place hangs on it; the wrist's on none.
+const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
+const TIPS = [5, 10, 15, 20, 25]
+// Their turns follow from their parents': palm, index and middle finger's metacarpals, tips.
+const FIXED = [0, 6, 11, ...TIPS]
 
 function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
-  if (buffer.byteLength < 104 || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
+  if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
   if (view.getUint32(8, true) !== 1) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
-  const places = 104, order = places + 12 * vertices, corners = order + 4 * vertices, name = corners + 12 * triangles
+  const flags = view.getUint8(125), bones = [null, null]
+  let places = MODEL_HEAD
+  for (const slot of [0, 1]) {
+    if (!(flags & 1 << slot)) continue
+    bones[slot] = [readBones(view, places), readBones(view, places + JOINTS * BONE_BYTES)]
+    places += 2 * JOINTS * BONE_BYTES
+  }
+  const order = places + 12 * vertices, corners = order + 4 * vertices, name = corners + 12 * triangles
   return {
     vertices, triangles,
     rate: view.getFloat64(24, true), unit: view.getFloat64(32, true),
     origin: [40, 48, 56].map(at => view.getFloat64(at, true)),
     unitsPerMetre: view.getFloat64(64, true), diagonal: view.getFloat64(72, true),
-    radii: [80, 84, 88, 92, 96].map(at => view.getFloat32(at, true)),
-    mode: view.getUint16(100, true), loop: view.getUint16(102, true),
+    settings: {
+      mode: view.getUint16(120, true), kernel: KERNELS[view.getUint8(124)],
+      radii: [80, 88, 96, 104, 112].map(at => view.getFloat64(at, true)),
+    },
+    loop: view.getUint16(122, true), recorded: (flags & 4) !== 0, bones,
     places: new Float32Array(buffer, places, 3 * vertices),
     order: new Uint32Array(buffer, order, vertices),
     corners: new Uint32Array(buffer, corners, 3 * triangles),
     name: text(name, view.getUint32(20, true)),
   }
+}
+
+// Of a hand, by joint: place and turn in its parent's axes.
+function readBones(view, at) {
+  const numbers = from => Array.from({ length: 7 }, (_, n) => view.getFloat32(from + 4 * n, true))
+  return Array.from({ length: JOINTS }, (_, joint) => {
+    const seven = numbers(at + BONE_BYTES * joint)
+    return { place: seven.slice(0, 3), turn: seven.slice(3) }
+  })
 }
 
 function readShape(buffer) {
@@ -46,33 +72,62 @@ function readTurn(view, at) {
   return turn
 }
 
-function readHand(view, at) {
-  const wrist = [0, 4, 8].map(axis => view.getFloat32(at + axis, true))
-  const joints = []
-  for (let joint = 0, from = at + 12; joint < JOINTS; ++joint, from += 12)
-    joints.push({
-      place: [0, 1, 2].map(axis => wrist[axis] + 1e-5 * view.getInt16(from + 2 * axis, true)),
-      turn: readTurn(view, from + 6),
-    })
-  return { joints }
+function readHand(view, at, bones) {
+  const wrist = { place: [0, 4, 8].map(axis => view.getFloat32(at + axis, true)), turn: readTurn(view, at + 18) }
+  const hand = { forearm: readTurn(view, at + 12), joints: [], bytes: 24 }
+  hand.joints[1] = wrist
+  for (let joint = 0; joint < JOINTS; ++joint) {
+    if (joint === 1) continue
+    const parent = hand.joints[PARENTS[joint]], bone = bones[joint], fixed = FIXED.includes(joint)
+    hand.joints[joint] = {
+      place: add(parent.place, turned(parent.turn, bone.place)),
+      turn: fixed ? product(parent.turn, bone.turn) : readTurn(view, at + hand.bytes),
+    }
+    if (!fixed) hand.bytes += 6
+  }
+  return hand
 }
 
-// A step's fields as the shader takes them, four numbers a texel.
-function readField(view, at, texels) {
-  const kernel = view.getUint8(at), flags = view.getUint8(at + 1), functions = view.getUint16(at + 2, true)
+const WENDLAND = [
+  (t, u) => u ** 2,
+  (t, u) => u ** 4 * (4 * t + 1),
+  (t, u) => u ** 6 * (35 * t * t + 18 * t + 3) / 3,
+  (t, u) => u ** 8 * (32 * t ** 3 + 25 * t * t + 8 * t + 1),
+]
+// Where a field takes a place.
+function taken(field, place) {
+  const one = [1, ...place]
+  const sum = [0, 1, 2].map(row => one.reduce((all, x, at) => all + x * (field.polynomial[4 * row + at] || 0), place[row]))
+  for (const { centre, inverse, coefficient } of field.functions) {
+    const t = size(minus(place, centre)) * inverse
+    if (t < 1) coefficient.forEach((a, axis) => { sum[axis] += a * WENDLAND[field.kernel](t, 1 - t) })
+  }
+  return sum
+}
+
+// before: the step's field before this one. Where a flag says so, its functions go on from there.
+function readField(view, at, before) {
+  const flags = view.getUint8(at + 1), follows = (flags & 4) !== 0
   let from = at + 4
   const take = () => (from += 4, view.getFloat32(from - 4, true))
   const shared = flags & 2 ? take() : 0
-  texels.push(functions, kernel, flags & 1, 0)
-  for (let number = 0; flags & 1 && number < 12; ++number) texels.push(take())
-  for (let number = 0; number < functions; ++number) {
-    const c = [take(), take(), take()], a = [take(), take(), take()]
-    texels.push(...c, flags & 2 ? shared : take(), ...a, 0)
+  const field = { kernel: view.getUint8(at), polynomial: flags & 1 ? Array.from({ length: 12 }, take) : [], functions: [] }
+  for (let left = view.getUint16(at + 2, true), number = 0; number < left; ++number) {
+    const same = follows && before.functions[number]
+    const centre = same ? taken(before, same.centre) : [take(), take(), take()]
+    const coefficient = [take(), take(), take()]
+    field.functions.push({ centre, coefficient, inverse: same ? same.inverse : flags & 2 ? shared : take() })
   }
-  return from
+  return { ...field, end: from }
 }
 
-function readUpdate(buffer) {
+// As the shader takes it, four numbers a texel.
+function texelsOf({ kernel, polynomial, functions }) {
+  const head = [functions.length, kernel, polynomial.length > 0 ? 1 : 0, 0]
+  return [...head, ...polynomial, ...functions.flatMap(({ centre, inverse, coefficient }) => [...centre, inverse, ...coefficient, 0])]
+}
+
+function readUpdate(buffer, model) {
   const view = new DataView(buffer)
   const u32 = at => view.getUint32(at, true), u64 = at => Number(view.getBigUint64(at, true))
   const bits = view.getUint8(2)
@@ -82,20 +137,24 @@ function readUpdate(buffer) {
     late: view.getFloat32(48, true), mostLate: view.getFloat32(52, true), sinceLast: view.getFloat32(56, true),
     lost: u32(60), skipped: u32(64), links: u32(68), bytes: buffer.byteLength, hands: [null, null], steps: [],
   }
-  let at = 88
+  let at = UPDATE_HEAD
   for (let slot = 0; slot < 2; ++slot) {
     if (!(bits & 1 << slot)) continue
-    const hand = readHand(view, at)
+    const hand = readHand(view, at, model.bones[slot][bits & 16 << slot ? 1 : 0])
     hand.silent = (bits & 4 << slot) !== 0
     hand.samples = u32(72 + 4 * slot)
     hand.badRecords = u32(80 + 4 * slot)
     update.hands[slot] = hand
-    at += 12 + 12 * JOINTS
+    at += hand.bytes
   }
   for (let step = u32(4); step > 0; --step) {
     const bakes = view.getUint8(at) === 1, count = view.getUint16(at + 2, true), texels = []
     at += 4
-    for (let field = 0; field < count; ++field) at = readField(view, at, texels)
+    for (let left = count, field = null; left > 0; --left) {
+      field = readField(view, at, field)
+      texels.push(...texelsOf(field))
+      at = field.end
+    }
     update.steps.push({ bakes, count, texels })
   }
   return update

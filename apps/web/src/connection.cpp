@@ -25,7 +25,7 @@ SharedBytes shared_bytes(std::string_view text) {
 
 Connection::Connection(Descriptor socket, HostTime now, const ServerLimits& limits)
     : socket_(std::move(socket)), limits_(limits), since_(now), moved_(now), empty_(now),
-      heard_(now), asked_(now) {}
+      heard_(now), asked_(now), words_left_(limits.words_at_once), spoke_(now) {}
 
 short Connection::events() const noexcept {
   return static_cast<short>(POLLIN | (waiting_.empty() ? 0 : POLLOUT));
@@ -125,6 +125,13 @@ void Connection::close(CloseCode code, HostTime now) {
   queue(shared_bytes(close_frame(code)), false, now);
   closes_ = true;
   flush(now);
+}
+
+bool Connection::may_speak(HostTime now) noexcept {
+  const double earned = limits_.words_a_second * to_seconds(now - spoke_);
+  words_left_ = std::min(limits_.words_at_once, words_left_ + earned) - 1.0;
+  spoke_ = now;
+  return words_left_ >= 0.0;
 }
 
 bool Connection::is_overdue(HostTime now) const noexcept {

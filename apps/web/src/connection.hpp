@@ -51,6 +51,8 @@ public:
   /// Says so, and ends.
   void close(CloseCode code, HostTime now);
 
+  /// Whether it may say something; counts that it has. False: it talks without end.
+  bool may_speak(HostTime now) noexcept;
   /// Whether an update may be queued: not while it catches up.
   bool has_room() const noexcept { return !catching_up_; }
   bool is_overdue(HostTime now) const noexcept;
@@ -81,6 +83,8 @@ private:
   HostTime moved_;         ///< when it last took a byte, or nothing waited
   HostTime empty_;         ///< when nothing waited last
   HostTime heard_, asked_; ///< of a WebSocket: its last bytes, the last ping
+  double words_left_;      ///< that it may say at once
+  HostTime spoke_;         ///< when it said something last
 };
 
 } // namespace nendo::web

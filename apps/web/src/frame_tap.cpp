@@ -91,7 +91,7 @@ void FrameTap::push(const flow::Frame& frame, bool undone, bool committed) noexc
   out.put(head);
   out.put(update);
   for (const flow::HandFrame& hand : frame.hands)
-    if (hand.present) write_hand(hand.pose, out);
+    if (hand.present) write_hand(hand, out);
   head.told_bytes = static_cast<std::uint32_t>(out.used() - sizeof head);
   write_step(bakes ? StepKind::bake : StepKind::draw, frame.fields, origin_, unit_, out);
   head.bytes = static_cast<std::uint32_t>(out.used());

@@ -1,7 +1,7 @@
 #include <nendo/web/model_message.hpp>
 
-#include <cstring>
-#include <span>
+#include <algorithm>
+#include <array>
 
 #include "wire.hpp"
 
@@ -23,28 +23,62 @@ std::vector<std::uint32_t> corners_of(const deform::BlockLayout& layout, const d
   return corners;
 }
 
-} // namespace
+using Hands = std::array<const flow::HandInput*, 2>; ///< by flow::Placement::index_of(side)
 
-std::vector<std::byte> model_message(const deform::BlockLayout& layout, const deform::Mesh& mesh,
-                                     const ModelFacts& facts) {
-  const auto corners = corners_of(layout, mesh);
+void write_bones(const hand::HandSkeleton& skeleton, WireWriter& out) {
+  const hand::HandPose rest = skeleton.pose({}, Eigen::Isometry3d::Identity());
+  for (std::size_t joint = 0; joint < hand::joint_count; ++joint) {
+    const auto parent = hand::parent_of(static_cast<hand::Joint>(joint));
+    Eigen::Isometry3d T_parent_joint = rest.joints[joint];
+    if (parent) T_parent_joint = rest[*parent].inverse() * T_parent_joint;
+    const Eigen::Vector3f place = T_parent_joint.translation().cast<float>();
+    const Eigen::Quaternionf turn(T_parent_joint.linear().cast<float>());
+    for (const float number :
+         {place.x(), place.y(), place.z(), turn.x(), turn.y(), turn.z(), turn.w()})
+      out.put(number);
+  }
+}
+
+ModelHead head_of(const deform::BlockLayout& layout, const Hands& hands, const ModelFacts& facts) {
   ModelHead head;
   head.vertices = static_cast<std::uint32_t>(layout.vertex_count());
-  head.triangles = static_cast<std::uint32_t>(corners.size() / 3);
   head.name_bytes = static_cast<std::uint32_t>(facts.name.size());
   head.rate_hz = facts.rate_hz;
   head.unit = layout.unit();
   head.units_per_metre = facts.units_per_metre;
   head.diagonal = layout.diagonal();
-  head.mode = facts.mode == flow::Mode::type1 ? 1 : 2;
+  head.mode = facts.settings.mode == flow::Mode::type1 ? 1 : 2;
+  head.kernel = static_cast<std::uint8_t>(facts.settings.kernel);
+  head.flags =
+      static_cast<std::uint8_t>((hands[0] != nullptr ? 1U : 0U) | (hands[1] != nullptr ? 2U : 0U) |
+                                (facts.recorded ? 4U : 0U));
   for (std::size_t axis = 0; axis < 3; ++axis)
     head.origin[axis] = layout.origin()[static_cast<Eigen::Index>(axis)];
-  for (std::size_t finger = 0; finger < facts.radius_m.size(); ++finger)
-    head.radius_m[finger] = static_cast<float>(facts.radius_m[finger]);
-  std::vector<std::byte> message(sizeof head + 16 * layout.vertex_count() + 4 * corners.size() +
+  std::copy(facts.settings.radius_m.begin(), facts.settings.radius_m.end(), head.radius_m);
+  return head;
+}
+
+} // namespace
+
+std::vector<std::byte> model_message(const deform::BlockLayout& layout, const deform::Mesh& mesh,
+                                     std::span<const flow::HandInput> hands,
+                                     const ModelFacts& facts) {
+  const auto corners = corners_of(layout, mesh);
+  Hands by_side{};
+  for (const flow::HandInput& hand : hands)
+    by_side[flow::Placement::index_of(hand.skeleton.side())] = &hand;
+  ModelHead head = head_of(layout, by_side, facts);
+  head.triangles = static_cast<std::uint32_t>(corners.size() / 3);
+  std::vector<std::byte> message(sizeof head + hands.size() * bones_bytes +
+                                 16 * layout.vertex_count() + 4 * corners.size() +
                                  facts.name.size());
   WireWriter out(message);
   out.put(head);
+  for (const flow::HandInput* hand : by_side) {
+    if (hand == nullptr) continue;
+    write_bones(hand->skeleton, out);
+    write_bones(hand->swapped_skeleton.value_or(hand->skeleton), out);
+  }
   const deform::BlockShape shape = layout.pack();
   for (std::size_t at = 0; at < layout.vertex_count(); ++at) {
     const deform::VertexBlock& block = shape[at / deform::block_size];

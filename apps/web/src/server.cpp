@@ -48,6 +48,18 @@ std::optional<flow::Request> Server::next_request() noexcept {
   return request;
 }
 
+std::optional<flow::WristMove> Server::next_wrist() noexcept {
+  for (auto& wrist : work_->wrists)
+    if (wrist.update()) return wrist.front();
+  return std::nullopt;
+}
+
+flow::LoopChange Server::next_change() noexcept {
+  flow::LoopChange all;
+  work_->changes.drain([&](const flow::LoopChange& change) noexcept { all.add(change); });
+  return all;
+}
+
 void Server::tell_bad_records(std::array<std::uint32_t, 2> counts) noexcept {
   work_->bad_records = counts[0] | std::uint64_t{counts[1]} << 32U;
 }

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include <nendo/base/latest_value.hpp>
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/web/server.hpp>
 
@@ -28,7 +29,13 @@ public:
 
   const Endpoint endpoint;
   const std::string token;
-  SpscRing<flow::Request> requests{64};      ///< from this thread
+  // From this thread.
+  SpscRing<flow::Request> requests{64};
+  SpscRing<flow::LoopChange> changes{64};
+  /// By flow::Placement::index_of(side). Only the newest counts: who moves a hand all the time
+  /// fills nothing up.
+  std::array<LatestValue<flow::WristMove>, 2> wrists{LatestValue(flow::WristMove{}),
+                                                     LatestValue(flow::WristMove{})};
   std::atomic<std::uint64_t> bad_records{0}; ///< two numbers of 32 bits
   struct Counts {
     std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
@@ -54,6 +61,7 @@ private:
   void read_head(Connection& connection, HostTime now);
   void open_socket(Connection& connection, const HttpRequest& request, HostTime now);
   void read_socket(Connection& connection, HostTime now);
+  void obey(Connection& connection, const std::string& text, HostTime now);
   void refuse(Connection& connection, int status, std::string_view why, HostTime now);
   void send_frames(HostTime now);
   void send_frames(Connection& client, const std::optional<FrameTap::Shape>& shape,

@@ -8,7 +8,8 @@
 namespace nendo::web {
 namespace {
 
-constexpr double place_unit_m = 1e-5;
+// Of the unit, by which a centre may be off that is left out: less than what floats lose anyway.
+constexpr double centre_gap = 1e-7;
 
 float microseconds(HostClock::duration time) noexcept {
   return static_cast<float>(1e6 * to_seconds(time));
@@ -57,26 +58,53 @@ void write_polynomial(const deform::CsrbfField& field, const Eigen::Vector3d& or
   }
 }
 
-void write_field(const deform::CsrbfField& field, const Eigen::Vector3d& origin, double unit,
-                 WireWriter& out) noexcept {
-  const bool one_radius = has_one_radius(field);
+bool is_nothing(const deform::CsrbfField& field, Eigen::Index function) noexcept {
+  return field.coefficients.col(function).isZero(0.0);
+}
+
+// Whether the functions of `field` are those of `before`, each where that field takes its centre:
+// so it is in a chain of links, whose centres are held by the hands, unless two of them pinch.
+bool goes_on(const deform::CsrbfField& field, const deform::CsrbfField& before,
+             double unit) noexcept {
+  if (field.radii.size() != before.radii.size() || field.radii != before.radii) return false;
+  for (Eigen::Index at = 0; at < field.centres.cols(); ++at) {
+    if (is_nothing(field, at) != is_nothing(before, at)) return false;
+    const Eigen::Vector3d centre = before.centres.col(at);
+    const Eigen::Vector3d taken = centre + before.displacement_at(centre);
+    const double gap = (field.centres.col(at) - taken).cwiseAbs().maxCoeff();
+    if (!(gap <= centre_gap * unit)) return false;
+  }
+  return true;
+}
+
+// before: the step's field before this one, if there is any.
+void write_field(const deform::CsrbfField& field, const deform::CsrbfField* before,
+                 const Eigen::Vector3d& origin, double unit, WireWriter& out) noexcept {
+  const bool follows = before != nullptr && goes_on(field, *before, unit);
+  const bool one_radius = !follows && has_one_radius(field);
   const bool polynomial = !field.polynomial.isZero(0.0);
   std::uint16_t functions = 0;
   for (Eigen::Index at = 0; at < field.centres.cols(); ++at)
-    if (!field.coefficients.col(at).isZero(0.0)) ++functions;
+    if (!is_nothing(field, at)) ++functions;
   out.put(static_cast<std::uint8_t>(field.kernel));
-  out.put(static_cast<std::uint8_t>((polynomial ? 1U : 0U) | (one_radius ? 2U : 0U)));
+  out.put(static_cast<std::uint8_t>((polynomial ? 1U : 0U) | (one_radius ? 2U : 0U) |
+                                    (follows ? 4U : 0U)));
   out.put(functions);
   if (one_radius) out.put(as_float(unit / field.radii[0]));
   if (polynomial) write_polynomial(field, origin, unit, out);
   for (Eigen::Index at = 0; at < field.centres.cols(); ++at) {
-    if (field.coefficients.col(at).isZero(0.0)) continue;
-    for (Eigen::Index axis = 0; axis < 3; ++axis)
+    if (is_nothing(field, at)) continue;
+    for (Eigen::Index axis = 0; !follows && axis < 3; ++axis)
       out.put(as_float((field.centres(axis, at) - origin[axis]) / unit));
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       out.put(as_float(field.coefficients(axis, at) / unit));
-    if (!one_radius) out.put(as_float(unit / field.radii[at]));
+    if (!follows && !one_radius) out.put(as_float(unit / field.radii[at]));
   }
+}
+
+void write_turn(const Eigen::Isometry3d& pose, WireWriter& out) noexcept {
+  for (const std::uint16_t word : packed(pose.linear()))
+    out.put(word);
 }
 
 } // namespace
@@ -96,25 +124,20 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   for (unsigned slot = 0; slot < 2; ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];
     head.samples[slot] = static_cast<std::uint32_t>(hand.samples);
-    const unsigned bits = (hand.present ? 1U : 0U) | (hand.silent ? 4U : 0U);
+    const unsigned bits =
+        (hand.present ? 1U : 0U) | (hand.silent ? 4U : 0U) | (hand.swapped ? 16U : 0U);
     head.hands = static_cast<std::uint8_t>(head.hands | bits << slot);
   }
   return head;
 }
 
-void write_hand(const hand::HandPose& pose, WireWriter& out) noexcept {
-  const Eigen::Vector3d wrist = pose[hand::Joint::wrist].translation();
+void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept {
+  const Eigen::Vector3d wrist = hand.pose[hand::Joint::wrist].translation();
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     out.put(as_float(wrist[axis]));
-  for (const Eigen::Isometry3d& joint : pose.joints) {
-    const Eigen::Vector3d steps = (joint.translation() - wrist) / place_unit_m;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const double step = std::isfinite(steps[axis]) ? std::round(steps[axis]) : 0.0;
-      out.put(static_cast<std::int16_t>(std::clamp(step, -32767.0, 32767.0)));
-    }
-    for (const std::uint16_t word : packed(joint.linear()))
-      out.put(word);
-  }
+  write_turn(hand.T_stage_wrist, out);
+  for (std::size_t joint = 0; joint < hand::joint_count; ++joint)
+    if (turns_by_itself(static_cast<hand::Joint>(joint))) write_turn(hand.pose.joints[joint], out);
 }
 
 void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,
@@ -123,8 +146,8 @@ void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen:
   out.put(static_cast<std::uint8_t>(kind));
   out.put(std::uint8_t{0});
   out.put(static_cast<std::uint16_t>(all.size()));
-  for (const deform::CsrbfField& field : all)
-    write_field(field, origin, unit, out);
+  for (std::size_t at = 0; at < all.size(); ++at)
+    write_field(all[at], at > 0 ? &all[at - 1] : nullptr, origin, unit, out);
 }
 
 } // namespace nendo::web

@@ -22,7 +22,7 @@ enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
   std::uint8_t held = 0;
-  std::uint8_t hands = 0; ///< bits 0, 1: left, right is there; bits 2, 3: it is silent
+  std::uint8_t hands = 0; ///< bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones
   std::uint8_t status = 0;
   std::uint32_t steps = 0;
   std::uint64_t number = 0;
@@ -63,14 +63,30 @@ struct ModelHead {
   double origin[3]{};
   double units_per_metre = 1.0;
   double diagonal = 0.0;
-  float radius_m[5]{};
+  double radius_m[5]{};
   std::uint16_t mode = 1;
   std::uint16_t loop = 0; ///< which of a run it is; the server counts them
+  std::uint8_t kernel = 0;
+  std::uint8_t flags = 0; ///< bits 0, 1: left, right hand's bones follow; bit 2: it is recorded
+  std::uint16_t spare = 0;
 };
-static_assert(sizeof(ModelHead) == 104);
+static_assert(sizeof(ModelHead) == 128);
 
-inline constexpr std::size_t joint_bytes = 12;
-inline constexpr std::size_t hand_bytes = 12 + hand::joint_count * joint_bytes;
+/// Whether a joint's turn is told in each frame. The others are fixed to their parents.
+constexpr bool turns_by_itself(hand::Joint joint) noexcept {
+  using hand::Joint;
+  for (const Joint fixed :
+       {Joint::palm, Joint::index_metacarpal, Joint::middle_metacarpal, Joint::thumb_tip,
+        Joint::index_tip, Joint::middle_tip, Joint::ring_tip, Joint::little_tip})
+    if (joint == fixed) return false;
+  return true;
+}
+/// The forearm's turn, and those joints'.
+inline constexpr std::size_t told_turns = 1 + 18;
+inline constexpr std::size_t hand_bytes = 12 + told_turns * 6;
+/// A hand's bones: twice, for the glove that may come in place of the first one; of each joint
+/// place and turn in its parent's axes.
+inline constexpr std::size_t bones_bytes = 2 * hand::joint_count * 7 * 4;
 inline constexpr std::size_t step_head_bytes = 4;
 
 /// The most that a field of so many functions takes.
@@ -97,8 +113,9 @@ private:
 
 /// These may run in the tick.
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-void write_hand(const hand::HandPose& pose, WireWriter& out) noexcept;
-/// origin and unit: BlockLayout's. Functions without a coefficient are left out.
+void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
+/// origin and unit: BlockLayout's. Functions without a coefficient are left out, and centres that
+/// follow from the field before.
 void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,
                 double unit, WireWriter& out) noexcept;
 

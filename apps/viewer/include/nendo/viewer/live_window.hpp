@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <nendo/flow/frame.hpp>
+#include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
-#include <nendo/flow/sculptor.hpp>
 #include <nendo/viewer/gl_renderer.hpp>
 #include <nendo/viewer/hand_mover.hpp>
 
@@ -19,14 +19,7 @@ struct GLFWwindow;
 
 namespace nendo::viewer {
 
-/// What a loop cannot change while it runs: it is made anew, from the shape as it is.
-struct LoopSettings {
-  flow::Mode mode = flow::Mode::type1;
-  deform::Wendland kernel = deform::Wendland::c2;
-  std::array<double, 5> radius_m{}; ///< of each finger, on the stage, thumb to little finger
-
-  friend bool operator==(const LoopSettings&, const LoopSettings&) = default;
-};
+using flow::LoopSettings;
 
 /// What the panel tells beside the frame.
 struct Gauges {

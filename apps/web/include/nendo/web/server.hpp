@@ -12,7 +12,9 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
+#include <nendo/flow/wrist_move.hpp>
 #include <nendo/web/endpoint.hpp>
 #include <nendo/web/frame_tap.hpp>
 
@@ -30,6 +32,8 @@ struct ServerLimits {
   std::chrono::milliseconds lagging{30000};           ///< without having taken all of it
   std::chrono::milliseconds ping{10000};              ///< how often it is asked whether it is there
   std::chrono::milliseconds silent{30000};            ///< without any answer
+  double words_at_once = 512.0;  ///< messages that a client may send, if it has been quiet
+  double words_a_second = 128.0; ///< and in the long run; who says more is sent away
 };
 
 /// Since the server was opened.
@@ -65,8 +69,12 @@ public:
   /// Before a loop begins: what shows its frames, and its model (model_message()). Clients of the
   /// loop before are sent away, and come again. Any thread; does not wait for the network.
   void present(std::shared_ptr<FrameTap> tap, std::vector<std::byte> model);
-  /// What a client asked of the loop, in their order. One thread; wait-free.
+  /// What clients asked of the loop, in their order. This and what follows: one thread; wait-free.
   std::optional<flow::Request> next_request() noexcept;
+  /// Where a hand was moved to last, if that was since the last call; one hand after the other.
+  std::optional<flow::WristMove> next_wrist() noexcept;
+  /// What only a new loop can give, of all who asked since the last call.
+  flow::LoopChange next_change() noexcept;
   /// Of the gloves, for who looks. Any thread, wait-free.
   void tell_bad_records(std::array<std::uint32_t, 2> counts) noexcept;
   /// Any thread, wait-free; each for itself.

@@ -1,0 +1,118 @@
+#include "client_words.hpp"
+
+#include <array>
+#include <string>
+
+#include <doctest/doctest.h>
+
+using namespace nendo;
+using namespace nendo::web;
+
+namespace {
+
+template <class T>
+std::optional<T> parsed_as(std::string_view text) {
+  const auto wish = parse_words(text);
+  if (!wish || !std::holds_alternative<T>(*wish)) return std::nullopt;
+  return std::get<T>(*wish);
+}
+
+} // namespace
+
+TEST_SUITE("client_words") {
+  TEST_CASE("every request of the loop is one by its name") {
+    for (const auto request : flow::requests)
+      CHECK(parsed_as<flow::Request>(flow::name_of(request)) == request);
+  }
+
+  TEST_CASE("reset and recordings want a new loop, with nothing else of it changed") {
+    const auto reset = parsed_as<flow::LoopChange>("reset");
+    REQUIRE(reset);
+    CHECK((reset->reset && !reset->settings && !reset->record));
+    const auto begin = parsed_as<flow::LoopChange>("record");
+    REQUIRE(begin);
+    CHECK((!begin->reset && !begin->settings && begin->record == true));
+    const auto end = parsed_as<flow::LoopChange>("end recording");
+    REQUIRE(end);
+    CHECK((!end->reset && !end->settings && end->record == false));
+  }
+
+  TEST_CASE("settings are mode, kernel and five radii in metres") {
+    const auto change = parsed_as<flow::LoopChange>("settings type2 c4 0.1 0.125 0.08 1e-2 10");
+    REQUIRE(change);
+    REQUIRE(change->settings);
+    CHECK(change->settings->mode == flow::Mode::type2);
+    CHECK(change->settings->kernel == deform::Wendland::c4);
+    CHECK(change->settings->radius_m == std::array{0.1, 0.125, 0.08, 0.01, 10.0});
+    CHECK((!change->reset && !change->record));
+    for (const auto* kernel : {"c0", "c2", "c6"})
+      CHECK(parsed_as<flow::LoopChange>("settings type1 " + std::string(kernel) + " 1 1 1 1 1"));
+  }
+
+  TEST_CASE("a wrist's place and turn are taken as they are, but for the quaternion's length") {
+    const auto move = parsed_as<flow::WristMove>("wrist left 0.25 -1.5 100 0 0.6 0 0.8");
+    REQUIRE(move);
+    CHECK(move->side == Side::left);
+    CHECK(move->position_m == std::array{0.25, -1.5, 100.0});
+    CHECK(move->turn_xyzw[1] == doctest::Approx(0.6).epsilon(1e-15));
+    const auto rough = parsed_as<flow::WristMove>("wrist right 0 0 0 0 0 0 -0.995");
+    REQUIRE(rough);
+    CHECK(rough->side == Side::right);
+    CHECK(rough->turn_xyzw == std::array{0.0, 0.0, 0.0, -1.0});
+    CHECK(rough->is_usable());
+  }
+
+  TEST_CASE("whatever else is said is nothing: other words, spaces, numbers that are none or too "
+            "large, too many of them and too few") {
+    const std::array<std::string, 44> wrong{
+        "",
+        " ",
+        "Grab",
+        "grab ",
+        " grab",
+        "reset now",
+        "record ",
+        "end  recording",
+        "format the disk",
+        "settings",
+        "settings ",
+        "settings type3 c2 1 1 1 1 1",
+        "settings type1 c8 1 1 1 1 1",
+        "settings type1 wendland-c2 1 1 1 1 1",
+        "settings type1 c2",
+        "settings type1 c2 1 1 1 1",
+        "settings type1 c2 1 1 1 1 1 1",
+        "settings type1 c2 1 1 1 1 1 ",
+        "settings type1 c2  1 1 1 1 1",
+        "settings  type1 c2 1 1 1 1 1",
+        "settings type1 c2 1 1 1 1 nan",
+        "settings type1 c2 1 1 1 1 inf",
+        "settings type1 c2 1 1 1 1 -1",
+        "settings type1 c2 1 1 1 1 0",
+        "settings type1 c2 1 1 1 1 0.0009",
+        "settings type1 c2 1 1 1 1 10.1",
+        "settings type1 c2 1 1 1 1 1e999",
+        "settings type1 c2 1 1 1 1 0x1",
+        "settings type1 c2 1 1 1 1 1,0",
+        "settings type1 c2 1 1 1 1 1m",
+        "settings type1 c2 1\t1 1 1 1",
+        std::string("settings type1 c2 1 1 1 1 1\0", 28),
+        "wrist",
+        "wrist left",
+        "wrist both 0 0 0 0 0 0 1",
+        "wrist Left 0 0 0 0 0 0 1",
+        "wrist left 0 0 0 0 0 0",
+        "wrist left 0 0 0 0 0 0 1 0",
+        "wrist left 0 0 0 0 0 0 0",
+        "wrist left 0 0 0 0 0 0 1.02",
+        "wrist left 100.1 0 0 0 0 0 1",
+        "wrist left 0 1e300 0 0 0 0 1",
+        "wrist left 0 0 0 1e300 0 0 1",
+        "wrist left 0 nan 0 0 0 0 1",
+    };
+    for (const std::string& text : wrong) {
+      CAPTURE(text);
+      CHECK_FALSE(parse_words(text));
+    }
+  }
+}
