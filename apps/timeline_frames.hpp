@@ -19,6 +19,10 @@ public:
   static Result<std::unique_ptr<TimelineFrames>> open(const std::filesystem::path& path,
                                                       const std::string& mesh = {});
 
+  /// Of a timeline that is no file. Errors: as timeline::Player::make().
+  static Result<std::unique_ptr<TimelineFrames>> make(timeline::Timeline timeline,
+                                                      deform::Mesh model);
+
   const deform::Mesh& model() const override { return model_; }
   const deform::BlockLayout& layout() const override { return player_->layout(); }
   double rate_hz() const override { return player_->timeline().rate_hz; }
@@ -40,5 +44,8 @@ private:
 /// As TimelineFrames::open().
 Result<deform::Mesh> timeline_model(const timeline::Timeline& timeline,
                                     const std::string& mesh = {});
+
+/// Where mirror() puts its plane if nobody says: the model's middle. On the stage.
+double middle_plane_m(const timeline::Timeline& timeline, const deform::Mesh& model);
 
 } // namespace nendo::app

@@ -1,11 +1,13 @@
 #pragma once
-// The commands of `nendo edit` that do not change a timeline: making, showing, playing. Each
-// prints, blocks and returns the exit code.
+// The commands of `nendo edit` that do not change a timeline: making, showing, playing, and the
+// window. Each prints, blocks and returns the exit code.
 
 #include <optional>
 #include <string>
 
 #include <nendo/timeline/timeline.hpp>
+
+#include "command.hpp"
 
 namespace nendo::app {
 
@@ -30,8 +32,12 @@ struct PlayOptions {
   std::string mesh; ///< empty: the timeline's
   std::string out;  ///< empty: the shape is not written
   std::optional<double> until_s;
+  double speed = 0.0; ///< times real time; 0: as fast as it can
   bool json = false;
 };
 int play_timeline(const PlayOptions& options);
+
+/// `nendo edit view`, the window.
+void add_timeline_view(Command& edit);
 
 } // namespace nendo::app

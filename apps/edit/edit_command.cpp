@@ -84,14 +84,10 @@ int blend(const Options& options) {
 
 int mirror(const Options& options) {
   return edit(options, [&](Timeline& timeline) -> Result<void> {
-    double plane = options.plane.value_or(0.0);
-    if (!options.plane) {
-      const auto model = timeline_model(timeline);
-      if (!model) return model.error();
-      const auto& vertices = model->vertices;
-      plane = vertices.row(0).minCoeff() / 2.0 + vertices.row(0).maxCoeff() / 2.0;
-    }
-    return timeline::mirror(timeline, plane / timeline.units_per_metre);
+    if (options.plane) return timeline::mirror(timeline, *options.plane / timeline.units_per_metre);
+    const auto model = timeline_model(timeline);
+    if (!model) return model.error();
+    return timeline::mirror(timeline, middle_plane_m(timeline, *model));
   });
 }
 
@@ -157,6 +153,8 @@ void add_reading(Command& edit, const std::shared_ptr<Options>& options) {
   playing.add_option("--mesh", options->play.mesh, "Another model than the timeline's");
   playing.add_option("--out", options->play.out, "Where to write the shape, .obj or .ply");
   playing.add_flag("--json", options->play.json, "A summary as JSON");
+  playing.add_option("--speed", options->play.speed,
+                     "Times real time; 0 or without it: as fast as it can");
   playing.on_chosen([options] { return play_timeline(options->play); });
 }
 
@@ -232,6 +230,7 @@ void add_edit(Command& program) {
   Command command = program.add_command("edit", "Key poses of a recorded run: make, change, play");
   command.require_command();
   add_reading(command, options);
+  add_timeline_view(command);
   add_key_edits(command, options);
   add_whole_edits(command, options);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 namespace nendo::app {
 namespace {
@@ -50,6 +51,12 @@ Result<Eigen::Vector3d> parse_place(const std::string& text) {
   }
   if (fine && rest.empty()) return place;
   return Error{Errc::usage, "--to " + text + ": use X,Y,Z in the model's units"};
+}
+
+std::string fixed(double number, int decimals) {
+  char digits[400]; // the largest double has 309 before the point
+  std::snprintf(digits, sizeof digits, "%.*f", decimals, number);
+  return digits;
 }
 
 Result<timeline::Tolerance> parse_tolerance(const std::string& text) {

@@ -15,6 +15,8 @@ Result<hand::Finger> parse_finger(const std::string& text);
 std::string_view name_of(hand::Finger finger) noexcept;
 /// "1,-2.5,0" after --to.
 Result<Eigen::Vector3d> parse_place(const std::string& text);
+/// With so many decimals.
+std::string fixed(double number, int decimals);
 /// "1mm", "0.02rad" or "1deg".
 Result<timeline::Tolerance> parse_tolerance(const std::string& text);
 

@@ -1,6 +1,9 @@
 // nendo edit play: the shape that a timeline makes.
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -14,9 +17,28 @@
 
 namespace nendo::app {
 
+namespace {
+
+constexpr double most_speed = 1000.0;
+
+// The moment at which so much was played; in short sleeps, so that a signal ends it soon.
+void wait_for(double time_s, double speed, HostTime start) {
+  if (speed == 0.0) return;
+  constexpr double nap_s = 0.05;
+  while (!stop_requested()) {
+    const double left_s = time_s / speed - to_seconds(HostClock::now() - start);
+    if (left_s <= 0.0) return;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left_s, nap_s)));
+  }
+}
+
+} // namespace
+
 int play_timeline(const PlayOptions& options) {
   if (const auto fine = check_place("--out", options.out, {".obj", ".ply"}); !fine)
     return report(fine.error());
+  if (!(options.speed >= 0.0 && options.speed <= most_speed))
+    return report({Errc::usage, "--speed: use 0 to 1000 times real time"});
   auto frames = TimelineFrames::open(options.file, options.mesh);
   if (!frames) return report(frames.error());
   const double until_s = options.until_s.value_or((*frames)->duration_s());
@@ -26,8 +48,8 @@ int play_timeline(const PlayOptions& options) {
   install_stop_signals();
   const HostTime start = HostClock::now();
   const double period_s = 1.0 / (*frames)->rate_hz();
-  while ((*frames)->next() && !stop_requested() && (*frames)->time_s() + period_s <= until_s) {
-  }
+  while ((*frames)->next() && !stop_requested() && (*frames)->time_s() + period_s <= until_s)
+    wait_for((*frames)->time_s() + period_s, options.speed, start);
   deform::Mesh shape = (*frames)->model();
   shape.vertices = (*frames)->player().final_shape();
   if (!options.out.empty())

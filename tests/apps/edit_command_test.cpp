@@ -1,9 +1,14 @@
+#include <cstdlib>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/viewer/image.hpp>
 
+#include "support/memory_screen.hpp"
 #include "support/program.hpp"
+#include "support/restraint.hpp"
 
 using namespace nendo;
 using nendo::test::contents;
@@ -117,6 +122,8 @@ TEST_SUITE("edit_command") {
   }
 
   TEST_CASE("what cannot be is one line that names the file, and the file stays") {
+    ::unsetenv("DISPLAY");
+    ::unsetenv("WAYLAND_DISPLAY");
     const EditedRun run("type1", "2mm");
     const std::string before = contents(run.timeline);
     const auto refuses = [&](const Arguments& arguments, const std::string& about) {
@@ -140,6 +147,51 @@ TEST_SUITE("edit_command") {
     refuses({"make", run.take, "--out", run.path("a.timeline.toml"), "--tolerance", "1"}, "1mm");
     refuses({"play", run.take}, "take.nendo");
     refuses({"play", file, "--until", "99"}, "--until");
+    refuses({"play", file, "--speed", "-1"}, "--speed");
     refuses({"show", run.path("none.timeline.toml")}, "none.timeline.toml");
+#ifdef NENDO_WINDOW
+    refuses({"view", run.path("none.timeline.toml")}, "none.timeline.toml");
+    refuses({"view", run.take}, "take.nendo: a timeline's name ends in .timeline.toml");
+    refuses({"view", file, "--out", "x.toml"}, "--out x.toml");
+    refuses({"view", file, "--at", "99"}, "--at");
+    refuses({"view", file, "--key", "1"}, "--hand");
+    refuses({"view", file, "--key", "999", "--hand", "left"}, "999");
+    refuses({"view", file, "--screenshot", "x.jpg"}, "--screenshot");
+#endif
+    refuses({"view", file}, "nendo picture"); // for want of a screen
   }
+
+  TEST_CASE("at a speed it takes as long as people see it") {
+    const EditedRun run("type1", "5mm");
+    const json slow =
+        json::parse(run.fine({"play", run.timeline, "--until", "0.8", "--speed", "2", "--json"}));
+    CHECK(slow["elapsed_s"].get<double>() > 0.35);
+    CHECK(slow["elapsed_s"].get<double>() < 30.0);
+    const json fast = json::parse(run.fine({"play", run.timeline, "--until", "0.8", "--json"}));
+    CHECK(fast["crc32c"] == slow["crc32c"]);
+    CHECK(fast["frames"] == slow["frames"]);
+  }
+
+#ifdef NENDO_WINDOW
+  TEST_CASE("the window shows the moment that is asked for, and leaves the file alone") {
+    const nendo::test::MemoryScreen screen;
+    // Mesa's own memory is not for our sanitizers, in a child either.
+    if (!screen.is_there() || !nendo::test::restraint_is_counted) return;
+    const EditedRun run("type1", "5mm");
+    const std::string before = contents(run.timeline);
+    const auto picture = [&](const std::string& name, const Arguments& more) {
+      Arguments arguments{"view", run.timeline, "--frames", "2", "--screenshot", run.path(name)};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      run.fine(arguments);
+      const auto image = viewer::read_png(run.path(name));
+      REQUIRE(image);
+      return *image;
+    };
+    const auto begin = picture("begin.png", {"--at", "0"});
+    CHECK(picture("again.png", {"--at", "0"}) == begin);
+    CHECK_FALSE(picture("later.png", {"--at", "0.9"}) == begin);
+    CHECK_FALSE(picture("key.png", {"--hand", "right", "--key", "0", "--at", "0"}) == begin);
+    CHECK(contents(run.timeline) == before);
+  }
+#endif
 }

@@ -80,4 +80,32 @@ inline std::vector<timeline::Key> waving(std::size_t frames) {
   return keys;
 }
 
+/// Two hands that wave at a model of about the size of a ball, and what is asked of it meanwhile.
+inline timeline::Timeline waved_timeline(const deform::Mesh& model, flow::Mode mode,
+                                         std::size_t frames = 90) {
+  timeline::Timeline made;
+  made.mesh_sum = recording::sum_of(model.vertices);
+  made.units_per_metre = 2.5;
+  made.duration_s = static_cast<double>(frames - 1) / made.rate_hz;
+  made.sculptor.mode = mode;
+  made.sculptor.piece_length = 0.02;
+  made.sculptor.deformer.supports = deform::one_radius(0.5);
+  made.sculptor.deformer.csrbf.merge_fraction = 0.05;
+  const auto wave = waving(frames);
+  for (const Side side : {Side::left, Side::right}) {
+    made.hands.push_back({side, {}, {}});
+    for (std::size_t frame = 0; frame < frames; frame += 8) {
+      timeline::Key key = wave[frame];
+      key.wrist_m.x() += side == Side::left ? -0.35 : 0.35;
+      made.hands.back().keys.push_back(key);
+    }
+  }
+  const std::array at_s{0.3, 0.4, 0.5, 0.62, 0.7};
+  const std::array asked{flow::Request::let_go, flow::Request::grab, flow::Request::commit,
+                         flow::Request::undo, flow::Request::redo};
+  for (std::size_t at = 0; at < asked.size(); ++at)
+    made.events.push_back({at_s[at], asked[at]});
+  return made;
+}
+
 } // namespace nendo::test

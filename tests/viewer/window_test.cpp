@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
 #include <nendo/viewer/live_window.hpp>
@@ -90,5 +91,40 @@ TEST_SUITE("window") {
     const Image shown = window.screenshot();
     CHECK(shown.size() == size);
     CHECK_FALSE(shown == Image(size, shown.at(0, 0)));
+  }
+
+  TEST_CASE("the mouse takes the hand that is seen under it, wherever the model's origin is") {
+    if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    test::LoopUnderTest test(flow::Mode::type1);
+    constexpr Size size{800, 600};
+    auto opened = LiveWindow::open("test", size);
+    REQUIRE(opened);
+    LiveWindow& window = **opened;
+    const SceneBuilder builder(test.model, test.placement.units_per_metre);
+    REQUIRE(builder.origin_m().norm() > 0.1);
+    window.begin(test.loop->layout(), builder, {});
+    const flow::Frame& frame = test.frame_after_tick(0);
+    window.show(frame, true, {});
+    PretendedInput input;
+    for (const auto& joint : frame.hands[1].pose.joints) { // the one that the panel covers least
+      const Eigen::Vector4d clip = window.camera().projection(1.0 * size.width / size.height) *
+                                   (joint.translation() - builder.origin_m()).homogeneous();
+      const Eigen::Vector2d pixel((1.0 + clip.x() / clip.w()) / 2 * size.width,
+                                  (1.0 - clip.y() / clip.w()) / 2 * size.height);
+      if (pixel.x() > input.pointer.x()) input.pointer = pixel;
+    }
+    window.pretend(input);
+    window.show(frame, false, {});
+    input.buttons[1] = true;
+    window.pretend(input);
+    window.show(frame, false, {});
+    input.pointer.y() -= 10.0;
+    window.pretend(input);
+    const auto moved = window.show(frame, false, {}).wrist;
+    REQUIRE(moved);
+    CHECK(moved->side == Side::right);
+    CHECK(moved->pose().translation().y() > frame.hands[1].T_stage_wrist.translation().y());
   }
 }

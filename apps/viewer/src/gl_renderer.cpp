@@ -203,9 +203,9 @@ void GlRenderer::draw_surface(const Surface& surface, bool model) {
   if (veil) glDisable(GL_BLEND);
 }
 
-void GlRenderer::draw(const Scene& beside, const Camera& camera, Size size, Look look) {
+void GlRenderer::draw(const Scene& beside, const Camera& camera, Size size, Look look, int below) {
   const bool shaded = look == Look::shaded;
-  glViewport(0, 0, size.width, size.height);
+  glViewport(0, below, size.width, size.height);
   glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
   if (shaded) glClearColor(0.90F, 0.91F, 0.92F, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -222,6 +222,7 @@ void GlRenderer::draw(const Scene& beside, const Camera& camera, Size size, Look
   set(program_, "fill", turned({0.85F, 0.25F, 0.50F}, camera.view.azimuth_deg));
   set(program_, "rim", turned({0.45F, 0.45F, -0.80F}, camera.view.azimuth_deg));
   set(program_, "height", static_cast<float>(size.height));
+  set(program_, "below", static_cast<float>(below));
   set(program_, "scale", scale_);
   set(program_, "offset", offset_);
   set(program_, "flat_white", shaded ? 0 : 1);

@@ -27,7 +27,7 @@ void main() {
 
 inline constexpr const char* fragment_shader = R"(#version 330
 uniform vec3 eye, colour, key, fill, rim;
-uniform float gloss, opacity, rim_opacity, grid, fade, height;
+uniform float gloss, opacity, rim_opacity, grid, fade, height, below;
 uniform bool flat_white, unlit;
 in vec3 place;
 in vec3 normal;
@@ -37,7 +37,7 @@ vec3 screen(vec3 linear) {
   return pow(max(soft, 0.0), vec3(1.0 / 2.2));
 }
 vec3 background() {
-  float t = smoothstep(0.0, 1.0, 1.0 - gl_FragCoord.y / height);
+  float t = smoothstep(0.0, 1.0, 1.0 - (gl_FragCoord.y - below) / height);
   return mix(vec3(0.86, 0.885, 0.91), vec3(0.70, 0.70, 0.695), t);
 }
 float line(float coordinate) {

@@ -1,15 +1,15 @@
 #include <nendo/viewer/hand_mover.hpp>
 
 #include <algorithm>
-#include <limits>
 
 #include <nendo/base/units.hpp>
+
+#include "pointing.hpp"
 
 namespace nendo::viewer {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Eigen::Vector4d;
 
 namespace {
 
@@ -17,31 +17,19 @@ namespace {
 constexpr double most_m = 2.0;
 constexpr double degrees_a_pixel = 0.35; // as the camera turns
 
-// Infinite for what is behind the camera.
-double pixels_between(const Eigen::Matrix4d& clip_of_world, const Vector3d& place,
-                      const Vector2d& pointer, Size size) noexcept {
-  const Vector4d clip = clip_of_world * place.homogeneous();
-  if (!(clip.w() > 0.0)) return std::numeric_limits<double>::infinity();
-  const Vector2d in_picture = clip.head<2>() / clip.w();
-  const Vector2d pixel((1.0 + in_picture.x()) / 2 * size.width,
-                       (1.0 - in_picture.y()) / 2 * size.height);
-  return (pixel - pointer).norm();
-}
-
 } // namespace
 
 void HandMover::take(const Camera& camera, const flow::Frame& frame, const Vector2d& pointer,
                      Size size) noexcept {
   slot_.reset();
-  const Eigen::Matrix4d clip = camera.projection(1.0 * size.width / size.height);
   double nearest = reach;
   for (std::size_t slot = 0; slot < frame.hands.size(); ++slot) {
     const auto& hand = frame.hands[slot];
     if (!hand.present) continue;
     for (const auto& joint : hand.pose.joints) {
-      const double distance = pixels_between(clip, joint.translation(), pointer, size);
-      if (!(distance < nearest)) continue;
-      nearest = distance;
+      const auto pixel = pixel_of(camera, joint.translation(), size);
+      if (!pixel || !((*pixel - pointer).norm() < nearest)) continue;
+      nearest = (*pixel - pointer).norm();
       slot_ = slot;
       wrist_ = hand.T_stage_wrist;
     }
@@ -53,10 +41,7 @@ void HandMover::go_by(const Vector3d& way_m) noexcept {
 }
 
 void HandMover::shift(const Camera& camera, double dx, double dy, double height) noexcept {
-  const Eigen::Matrix3d rows = camera.axes();
-  const double depth_m = std::max(0.0, rows.row(2).dot(camera.eye() - wrist_.translation()));
-  const double metres = 2.0 * camera.tangent() * depth_m / std::max(1.0, height);
-  go_by(metres * (dx * rows.row(0) - dy * rows.row(1)).transpose());
+  go_by(way_in_picture(camera, wrist_.translation(), dx, dy, height));
 }
 
 void HandMover::turn(const Camera& camera, double dx, double dy) noexcept {
@@ -68,8 +53,7 @@ void HandMover::turn(const Camera& camera, double dx, double dy) noexcept {
 }
 
 void HandMover::push(const Camera& camera, double steps) noexcept {
-  constexpr double step_m = 0.01;
-  go_by(-step_m * std::clamp(steps, -20.0, 20.0) * camera.axes().row(2).transpose());
+  go_by(way_by_wheel(camera, steps));
 }
 
 flow::WristMove HandMover::move() const noexcept {

@@ -5,12 +5,9 @@
 namespace nendo::viewer {
 
 void HoldFollower::follow(const flow::Frame& frame) noexcept {
-  const bool anew = frame.held && (!held_ || frame.commits != commits_ || frame.undos != undos_);
-  for (std::size_t slot = 0; anew && slot < starts_.size(); ++slot)
+  if (!watch_.follow(frame)) return;
+  for (std::size_t slot = 0; slot < starts_.size(); ++slot)
     starts_[slot] = frame.hands[slot].pose.fingertip_positions();
-  held_ = frame.held;
-  commits_ = frame.commits;
-  undos_ = frame.undos;
 }
 
 void see_hands(const flow::Frame& frame, const HoldFollower& holds, Moment& moment) {

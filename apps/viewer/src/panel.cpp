@@ -7,6 +7,8 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include "key_list.hpp"
+
 namespace nendo::viewer {
 
 using flow::Request;
@@ -20,24 +22,14 @@ constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2, deform:
 constexpr float least_radius_cm = 1.0F;
 constexpr float most_radius_cm = 40.0F;
 
-struct Key {
-  int key;
-  const char* shown;
-  const char* does;
-};
 constexpr std::array key_table{
-    Key{GLFW_KEY_G, "g", "grab: the hands take hold"},
-    Key{GLFW_KEY_L, "l", "let go; what is shaped stays"},
-    Key{GLFW_KEY_C, "c", "commit: this shape becomes the rest shape"},
-    Key{GLFW_KEY_U, "u", "undo the last commit"},
-    Key{GLFW_KEY_R, "r", "redo what was undone"},
-    Key{GLFW_KEY_T, "t", "a take: record from this shape on, and end that"},
-    Key{GLFW_KEY_H, "h", "hands' skin on and off"},
-    Key{GLFW_KEY_B, "b", "bones on and off"},
-    Key{GLFW_KEY_V, "v", "control vectors on and off"},
-    Key{GLFW_KEY_D, "d", "radii on and off"},
-    Key{GLFW_KEY_Q, "q", "quit; the shape is written"},
-    Key{GLFW_KEY_SLASH, "?", "this list"},
+    KeyLine{"g", "grab: the hands take hold"},
+    KeyLine{"l", "let go; what is shaped stays"},
+    KeyLine{"c", "commit: this shape becomes the rest shape"},
+    KeyLine{"u", "undo the last commit"},
+    KeyLine{"r", "redo what was undone"},
+    KeyLine{"t", "a take: record from this shape on, and end that"},
+    KeyLine{"q", "quit; the shape is written"},
 };
 
 // How far two joints that follow each other are turned, degrees.
@@ -160,7 +152,7 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
   }
 }
 
-void LiveWindow::Panel::keys(SceneParts& parts, Wishes& wishes) {
+void LiveWindow::Panel::keys(Wishes& wishes) {
   if (ImGui::GetIO().WantTextInput) return;
   const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
@@ -169,22 +161,14 @@ void LiveWindow::Panel::keys(SceneParts& parts, Wishes& wishes) {
                                      {GLFW_KEY_U, Request::undo},
                                      {GLFW_KEY_R, Request::redo}})
     if (pressed(key)) wishes.requests.push_back(request);
-  for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts.hands},
-                                  {GLFW_KEY_B, &parts.bones},
-                                  {GLFW_KEY_V, &parts.vectors},
-                                  {GLFW_KEY_D, &parts.radii}})
-    if (pressed(key)) *part = !*part;
   if (pressed(GLFW_KEY_T)) wishes.record = true;
   if (pressed(GLFW_KEY_Q)) wishes.quit = true;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
-  if (!keys_shown) return;
-  ImGui::Begin("Keys", &keys_shown, ImGuiWindowFlags_AlwaysAutoResize);
-  for (const Key& key : key_table)
-    ImGui::Text("%-3s %s", key.shown, key.does);
-  ImGui::TextUnformatted("mouse: drag turns, middle or shift drag shifts, wheel zooms;\n"
-                         "right drag on a hand moves it, with shift turns it, with the wheel\n"
-                         "pushes and pulls it");
-  ImGui::End();
+  if (keys_shown)
+    draw_key_list(key_table,
+                  "right drag on a hand moves it, with shift turns it, with the wheel\n"
+                  "pushes and pulls it",
+                  keys_shown);
 }
 
 void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes) {
@@ -198,7 +182,8 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Wish
   if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
     panel_->hands(frame, gauges);
   ImGui::End();
-  panel_->keys(parts_, wishes);
+  window_->follow_part_keys();
+  panel_->keys(wishes);
 }
 
 } // namespace nendo::viewer

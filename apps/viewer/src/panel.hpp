@@ -37,7 +37,7 @@ struct LiveWindow::Panel {
   void settings(Wishes& wishes);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
-  void keys(SceneParts& parts, Wishes& wishes);
+  void keys(Wishes& wishes);
 };
 
 } // namespace nendo::viewer

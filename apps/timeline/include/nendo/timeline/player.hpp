@@ -22,6 +22,7 @@ public:
   double time_s() const noexcept;                              ///< of it
   /// Of the frame that comes last.
   double last_time_s() const noexcept;
+  std::uint64_t frame_count() const noexcept { return frames_; } ///< in all
   const flow::LoopStats& stats() const noexcept { return stats_; }
   const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
   const Timeline& timeline() const noexcept { return timeline_; }

@@ -29,8 +29,10 @@ public:
   std::uint64_t blocks_sent() const noexcept { return blocks_sent_; }
 
   enum class Look { shaded, silhouette };
-  /// The model, and of `beside` everything but its model, into the bound frame buffer.
-  void draw(const Scene& beside, const Camera& camera, Size size, Look look = Look::shaded);
+  /// The model, and of `beside` everything but its model, into the bound frame buffer, `below`
+  /// pixels from its bottom; all of the buffer is cleared.
+  void draw(const Scene& beside, const Camera& camera, Size size, Look look = Look::shaded,
+            int below = 0);
 
 private:
   GlRenderer() = default;

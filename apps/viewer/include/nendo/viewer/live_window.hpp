@@ -3,7 +3,6 @@
 // ask it for something. It reads frames and never waits for the loop, nor the loop for it. All of
 // this on the main thread, as windows demand.
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,10 +11,8 @@
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
-#include <nendo/viewer/gl_renderer.hpp>
 #include <nendo/viewer/hand_mover.hpp>
-
-struct GLFWwindow;
+#include <nendo/viewer/scene_window.hpp>
 
 namespace nendo::viewer {
 
@@ -57,31 +54,25 @@ public:
   /// frame is another one than before.
   Wishes show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
-  Image screenshot() const; ///< of what was shown last
-  /// As viewer::silhouette(), of what was shown last, by OpenGL.
-  Image silhouette(Size size);
-  const Camera& camera() const noexcept { return camera_; }
-  const Scene& scene() const noexcept { return scene_; } ///< but for its model's places
-  std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
+  /// As SceneWindow's.
+  Image screenshot() const { return window_->screenshot(); }
+  Image silhouette(Size size) { return window_->silhouette(size); }
+  const Camera& camera() const noexcept { return window_->camera(); }
+  const Scene& scene() const noexcept { return window_->scene(); }
+  std::uint64_t blocks_sent() const noexcept { return window_->blocks_sent(); }
+  void pretend(const PretendedInput& input) { window_->pretend(input); }
 
 private:
   struct Panel;
-  LiveWindow() = default;
-  void follow_mouse(const flow::Frame& frame, Wishes& wishes);
+  explicit LiveWindow(std::unique_ptr<SceneWindow> window);
   bool move_hand(const flow::Frame& frame, Wishes& wishes);
   void draw_panel(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes);
 
-  GLFWwindow* window_ = nullptr;
-  std::unique_ptr<GlRenderer> renderer_;
+  std::unique_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;
-  std::optional<SceneBuilder> builder_;
   HoldFollower holds_;
   Moment moment_;
-  SceneParts parts_;
-  Scene scene_;
-  Camera camera_;
   HandMover hand_mover_;
-  bool framed_ = false;
 };
 
 } // namespace nendo::viewer

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <nendo/flow/frame.hpp>
+#include <nendo/flow/hold_watch.hpp>
 
 namespace nendo::viewer {
 
@@ -26,9 +26,8 @@ struct Moment {
   std::array<double, 5> radius_m{}; ///< of each fingertip's support, on the stage; 0: not shown
 };
 
-/// Where the fingertips took hold, which frames do not say: a hold begins where `held` becomes true
-/// or a commit or an undo is counted. Exact if it sees every frame; otherwise off by what the
-/// fingers moved between two that it saw.
+/// Where the fingertips took hold, by flow::HoldWatch. Exact if it sees every frame; otherwise off
+/// by what the fingers moved between two that it saw.
 class HoldFollower {
 public:
   void follow(const flow::Frame& frame) noexcept;
@@ -37,9 +36,7 @@ public:
 
 private:
   std::array<TipPlaces, 2> starts_{TipPlaces::Zero(), TipPlaces::Zero()};
-  std::uint64_t commits_ = 0;
-  std::uint64_t undos_ = 0;
-  bool held_ = false;
+  flow::HoldWatch watch_;
 };
 
 /// All of a frame but its vertices and its time, which are left as they are.

@@ -1,0 +1,240 @@
+#include "edit/edit_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "edit/edit_words.hpp"
+
+namespace nendo::app {
+
+using namespace timeline;
+using viewer::EditCommand;
+using viewer::StripKey;
+
+namespace {
+
+using Selection = std::optional<KeyRef>;
+
+std::string export_name(const std::string& out) {
+  return out.substr(0, out.size() - file_ending.size()) + ".glb";
+}
+
+} // namespace
+
+EditSession::EditSession(Timeline timeline, deform::Mesh model, std::string out)
+    : model_(std::move(model)), out_(std::move(out)), export_file_(export_name(out_)),
+      history_(std::move(timeline)), cache_(model_) {
+  follow_history();
+}
+
+void EditSession::tell(std::string message) {
+  view_.message = std::move(message);
+  view_.refused = false;
+}
+
+void EditSession::tell(const Result<void>& done, const std::string& message) {
+  tell(done ? message : done.error().message);
+  view_.refused = !done;
+}
+
+Selection EditSession::key_of(const std::optional<StripKey>& key) const {
+  const auto& hands = history_.timeline().hands;
+  if (!key || key->lane >= hands.size()) return std::nullopt;
+  return KeyRef{hands[key->lane].side, key->key};
+}
+
+void EditSession::obey(const viewer::EditWishes& wishes) {
+  if (wishes.select) go_to_key(key_of(*wishes.select));
+  if (wishes.seek_s) seek(*wishes.seek_s);
+  if (wishes.speed) head_.set_speed(*wishes.speed);
+  if (wishes.loops) head_.set_loops(*wishes.loops);
+  if (wishes.tried) std::visit([this](const auto& tried) { try_out(tried); }, *wishes.tried);
+  if (wishes.keep) history_.keep();
+  if (wishes.drop) {
+    history_.drop();
+    go_to_key(history_.selected());
+    tell("given up");
+  }
+  if (wishes.retiming) retime(*wishes.retiming);
+  for (const EditCommand command : wishes.commands)
+    obey(command);
+  follow_history();
+  // Who wanted to save before, and could not, stays.
+  const bool saves = std::find(wishes.commands.begin(), wishes.commands.end(), EditCommand::save) !=
+                     wishes.commands.end();
+  ended_ = ended_ || (wishes.quit && !(saves && history_.is_modified()));
+}
+
+void EditSession::obey(EditCommand command) {
+  const Timeline& timeline = history_.timeline();
+  const auto lane = history_.selected() ? std::optional(history_.selected()->side) : std::nullopt;
+  switch (command) {
+  case EditCommand::play:
+    return head_.toggle(head_limit_s());
+  case EditCommand::to_begin:
+    return seek(0.0);
+  case EditCommand::to_end:
+    return seek(head_limit_s());
+  case EditCommand::previous_key:
+    if (const auto key = key_before(timeline, head_.time_s(), lane)) go_to_key(key);
+    return;
+  case EditCommand::next_key:
+    if (const auto key = key_after(timeline, head_.time_s(), lane)) go_to_key(key);
+    return;
+  case EditCommand::previous_frame:
+    return step(-1.0);
+  case EditCommand::next_frame:
+    return step(1.0);
+  case EditCommand::add_key:
+    return add_keys();
+  case EditCommand::delete_key:
+    return delete_key();
+  case EditCommand::copy_key:
+    return copy_key();
+  case EditCommand::mirror:
+    return mirror();
+  case EditCommand::undo:
+    return go_back_or_forth(history_.undo(), "undone", "there is nothing to undo");
+  case EditCommand::redo:
+    return go_back_or_forth(history_.redo(), "redone", "there is nothing to redo");
+  case EditCommand::save:
+    return save();
+  case EditCommand::export_glb:
+    return begin_export();
+  }
+}
+
+/// The head goes with the selected key, if it was at it.
+void EditSession::go_back_or_forth(bool went, const char* done, const char* nothing) {
+  tell(went ? done : nothing);
+  if (went && view_.at_selected) go_to_key(history_.selected());
+}
+
+void EditSession::advance(double elapsed_s) {
+  head_.advance(elapsed_s, head_limit_s());
+  follow_export();
+}
+
+void EditSession::seek(double time_s) {
+  head_.pause();
+  head_.seek(time_s, head_limit_s());
+}
+
+void EditSession::select(const KeyRef& key) {
+  go_to_key(key);
+}
+
+void EditSession::go_to_key(const Selection& key) {
+  history_.select(key);
+  if (history_.selected()) seek(find_key(history_.timeline(), *history_.selected())->time_s);
+}
+
+void EditSession::step(double frames) {
+  constexpr double a_hair = 1e-6; // of a frame: one that the head is on counts as here
+  const double rate_hz = history_.timeline().rate_hz;
+  const double at = head_.time_s() * rate_hz;
+  const double here = frames < 0.0 ? std::ceil(at - a_hair) : std::floor(at + a_hair);
+  seek((here + frames) / rate_hz);
+}
+
+void EditSession::save() {
+  history_.keep();
+  const auto written = write_timeline(out_, history_.timeline());
+  if (written) history_.saved();
+  tell(written, "saved to " + out_);
+}
+
+void EditSession::begin_export() {
+  if (export_) return;
+  history_.keep();
+  export_ = std::make_unique<GlbExport>(history_.timeline(), model_, export_file_);
+  tell("exporting to " + export_file_);
+}
+
+void EditSession::follow_export() {
+  const auto result = export_ ? export_->result() : std::nullopt;
+  if (!result) return;
+  export_.reset();
+  if (*result)
+    tell(export_file_ + ": " + fixed(static_cast<double>((*result)->bytes) / 1e6, 1) + " MB");
+  else
+    tell(Result<void>((*result).error()), {});
+}
+
+/// What is made of the timeline, of the latest.
+void EditSession::follow_history() {
+  if (followed_ == history_.revision()) return;
+  followed_ = history_.revision();
+  const Timeline& timeline = history_.timeline();
+  cache_.follow(timeline);
+  curves_.clear();
+  view_.lanes.clear();
+  view_.marks.clear();
+  for (const HandTrack& hand : timeline.hands) {
+    curves_.emplace_back(hand.keys);
+    auto& lane = view_.lanes.emplace_back();
+    lane.side = hand.side;
+    for (const Key& key : hand.keys)
+      lane.keys_s.push_back(key.time_s);
+  }
+  for (const Event& event : timeline.events)
+    view_.marks.push_back({event.time_s, std::string(flow::name_of(event.request))});
+  view_.file = out_;
+  view_.export_file = export_file_;
+  view_.duration_s = timeline.duration_s;
+  view_.rate_hz = timeline.rate_hz;
+  moment_.radius_m =
+      viewer::radii_on_stage(timeline.sculptor.deformer.supports, timeline.units_per_metre);
+  head_.seek(head_.time_s(), timeline.duration_s);
+}
+
+const viewer::TimelineView& EditSession::view() {
+  const Timeline& timeline = history_.timeline();
+  view_.head_s = head_.time_s();
+  view_.playing = head_.is_playing();
+  view_.loops = head_.loops();
+  view_.speed = head_.speed();
+  view_.selected.reset();
+  view_.at_selected = false;
+  if (const auto& key = history_.selected()) {
+    const auto lane = static_cast<std::size_t>(timeline.track(key->side) - timeline.hands.data());
+    view_.selected = StripKey{lane, key->key};
+    view_.at_selected = find_key(timeline, *key)->time_s == view_.head_s && !view_.playing;
+  }
+  view_.modified = history_.is_modified();
+  view_.can_undo = history_.can_undo();
+  view_.can_redo = history_.can_redo();
+  view_.exporting = export_ != nullptr;
+  const auto progress = cache_.progress();
+  view_.computing = !progress.done;
+  view_.computed_s = progress.until_s;
+  view_.shape_is_old = !shape().fresh;
+  if (progress.error) tell(Result<void>(*progress.error), {});
+  return view_;
+}
+
+const viewer::Moment& EditSession::moment() {
+  const auto& hands = history_.timeline().hands;
+  const auto found = shape();
+  moment_.time_s = head_.time_s();
+  moment_.held = found.shape != nullptr && found.shape->held;
+  moment_.hands = {};
+  for (std::size_t at = 0; at < hands.size(); ++at) {
+    const hand::HandSkeleton skeleton = hands[at].skeleton();
+    const auto pose_at = [&](double time_s) {
+      const Key key = curves_[at].at(time_s);
+      return skeleton.pose(key.angles, key.wrist_pose());
+    };
+    viewer::SeenHand seen{pose_at(moment_.time_s), {}};
+    seen.starts =
+        (moment_.held ? pose_at(found.shape->held_since_s) : seen.pose).fingertip_positions();
+    moment_.hands[flow::Placement::index_of(hands[at].side)] = seen;
+  }
+  return moment_;
+}
+
+} // namespace nendo::app

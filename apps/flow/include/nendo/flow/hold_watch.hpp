@@ -1,0 +1,27 @@
+#pragma once
+// Where a hold begins, which frames do not say.
+
+#include <nendo/flow/frame.hpp>
+
+namespace nendo::flow {
+
+/// Follows a loop's frames, one after another: a hold begins where `held` becomes true or a commit
+/// or an undo is counted. Wait-free.
+class HoldWatch {
+public:
+  /// True: in this frame the fingertips took hold.
+  bool follow(const Frame& frame) noexcept {
+    const bool anew = frame.held && (!held_ || frame.commits != commits_ || frame.undos != undos_);
+    held_ = frame.held;
+    commits_ = frame.commits;
+    undos_ = frame.undos;
+    return anew;
+  }
+
+private:
+  std::uint64_t commits_ = 0;
+  std::uint64_t undos_ = 0;
+  bool held_ = false;
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,199 @@
+#include <nendo/viewer/scene_window.hpp>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include <GL/gl.h>
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+namespace nendo::viewer {
+namespace {
+
+Error without_window(const std::string& why, const std::string& instead) {
+  return {Errc::failed, "no window: " + why + "; " + instead};
+}
+
+std::string glfw_error() {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return words != nullptr ? words : "GLFW does not say why";
+}
+
+Image read_pixels(Size size) {
+  std::vector<Pixel> rows(static_cast<std::size_t>(size.width) *
+                          static_cast<std::size_t>(size.height));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadBuffer(GL_BACK);
+  glReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, rows.data());
+  Image image(size);
+  for (int y = 0; y < size.height; ++y) // OpenGL begins at the bottom
+    for (int x = 0; x < size.width; ++x)
+      image.at(x, y) = rows[static_cast<std::size_t>(size.height - 1 - y) *
+                                static_cast<std::size_t>(size.width) +
+                            static_cast<std::size_t>(x)];
+  return image;
+}
+
+Size pixels_of(GLFWwindow* window) {
+  Size size;
+  glfwGetFramebufferSize(window, &size.width, &size.height);
+  return {std::max(1, size.width), std::max(1, size.height)};
+}
+
+constexpr std::chrono::milliseconds least_period(8); // where no screen sets the pace
+
+} // namespace
+
+Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title, Size size,
+                                                       const std::string& instead) {
+  if (glfwInit() == GLFW_FALSE) return without_window(glfw_error(), instead);
+  std::unique_ptr<SceneWindow> window(new SceneWindow);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_SAMPLES, 4);
+  window->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  if (window->window_ == nullptr) { // perhaps only for want of samples
+    glfwWindowHint(GLFW_SAMPLES, 0);
+    window->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  }
+  if (window->window_ == nullptr)
+    return without_window("no OpenGL 3.3 here: " + glfw_error(), instead);
+  glfwMakeContextCurrent(window->window_);
+  glfwSwapInterval(1);
+  auto renderer = GlRenderer::make();
+  if (!renderer) return without_window(renderer.error().message, instead);
+  window->renderer_ = *std::move(renderer);
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
+  ImGui::GetStyle().Colors[ImGuiCol_TextDisabled] = {0.68F, 0.70F, 0.72F, 1.0F}; // to be read, too
+  ImGui_ImplGlfw_InitForOpenGL(window->window_, true);
+  ImGui_ImplOpenGL3_Init("#version 330");
+  return window;
+}
+
+SceneWindow::~SceneWindow() {
+  if (ImGui::GetCurrentContext() != nullptr) {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  renderer_.reset();
+  if (window_ != nullptr) glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void SceneWindow::set_model(const deform::BlockLayout& layout, const SceneBuilder& builder) {
+  builder_.emplace(builder);
+  renderer_->set_model(layout, builder);
+}
+
+void SceneWindow::begin_picture(const Moment& moment) {
+  begun_ = HostClock::now();
+  glfwPollEvents();
+  builder_->build_beside(moment, parts_, scene_);
+  if (!std::exchange(framed_, true)) choose_camera();
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  if (pretended_) put_pretended();
+  ImGui::NewFrame();
+}
+
+void SceneWindow::choose_camera() {
+  auto points = scene_.outline();
+  const Eigen::Vector3f half = (builder_->size_m() / 2).cast<float>();
+  for (const float x : {-half.x(), half.x()})
+    for (const float y : {0.0F, 2.0F * half.y()})
+      for (const float z : {-half.z(), half.z()})
+        points.emplace_back(x, y, z);
+  const Size size = scene_size();
+  camera_ = framing(points, {22.0, 10.0}, 1.0 * size.width / size.height, 0.1);
+}
+
+// As the window's back end tells ImGui of those that are there.
+void SceneWindow::put_pretended() const {
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = {static_cast<float>(pretended_->pointer.x()),
+                 static_cast<float>(pretended_->pointer.y())};
+  for (std::size_t button = 0; button < pretended_->buttons.size(); ++button)
+    io.MouseDown[button] = pretended_->buttons[button];
+  io.MouseWheel = static_cast<float>(pretended_->wheel);
+  io.KeyCtrl = pretended_->control;
+  io.KeyShift = pretended_->shift;
+  std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+  if (pretended_->key > 0) io.KeysDown[pretended_->key] = true;
+}
+
+void SceneWindow::move_camera() {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse) return;
+  const auto dx = static_cast<double>(io.MouseDelta.x);
+  const auto dy = static_cast<double>(io.MouseDelta.y);
+  const bool shifts = ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
+                      (ImGui::IsMouseDown(ImGuiMouseButton_Left) && io.KeyShift);
+  if (shifts) {
+    camera_.pan(dx, dy, scene_size().height);
+  } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    camera_.orbit(dx, dy);
+  }
+  if (io.MouseWheel != 0.0F) camera_.zoom(static_cast<double>(io.MouseWheel));
+}
+
+void SceneWindow::follow_part_keys() {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantTextInput || io.KeyCtrl) return;
+  for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts_.hands},
+                                  {GLFW_KEY_B, &parts_.bones},
+                                  {GLFW_KEY_V, &parts_.vectors},
+                                  {GLFW_KEY_D, &parts_.radii}})
+    if (ImGui::IsKeyPressed(key, false)) *part = !*part;
+}
+
+void SceneWindow::end_picture() {
+  ImGui::Render();
+  draw_all();
+  glfwSwapBuffers(window_);
+  std::this_thread::sleep_until(begun_ + least_period);
+}
+
+void SceneWindow::draw_all() const {
+  const Size all = pixels_of(window_);
+  const int below = std::clamp(below_, 0, all.height - 1);
+  renderer_->draw(scene_, camera_, {all.width, all.height - below}, GlRenderer::Look::shaded,
+                  below);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool SceneWindow::take_close_wish() noexcept {
+  const bool wanted = glfwWindowShouldClose(window_) != 0;
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  return wanted;
+}
+
+Size SceneWindow::scene_size() const noexcept {
+  const Size all = pixels_of(window_);
+  return {all.width, std::max(1, all.height - below_)};
+}
+
+Camera SceneWindow::stage_camera() const noexcept {
+  Camera camera = camera_;
+  if (builder_) camera.target += builder_->origin_m();
+  return camera;
+}
+
+Image SceneWindow::screenshot() const {
+  draw_all(); // anew, for what was shown may be gone
+  return read_pixels(pixels_of(window_));
+}
+
+Image SceneWindow::silhouette(Size size) {
+  renderer_->draw(scene_, camera_, size, GlRenderer::Look::silhouette);
+  return read_pixels(size);
+}
+
+} // namespace nendo::viewer

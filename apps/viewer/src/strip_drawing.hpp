@@ -1,0 +1,21 @@
+#pragma once
+// How the strip looks.
+
+#include <optional>
+
+#include <imgui.h>
+
+#include <nendo/viewer/timeline_view.hpp>
+
+namespace nendo::viewer {
+
+struct StripLook {
+  ImVec2 corner; ///< top left, in the window
+  ImVec2 size;
+  std::optional<StripKey> pointed_at;
+  std::optional<Retiming> shaded; ///< times that stand out
+};
+
+void draw_strip(const KeyStrip& strip, const TimelineView& view, const StripLook& look);
+
+} // namespace nendo::viewer

@@ -1,0 +1,34 @@
+#pragma once
+// The strip below the scene: play head, keys, marks, and the mouse on them.
+
+#include <optional>
+
+#include <nendo/viewer/timeline_view.hpp>
+
+namespace nendo::viewer {
+
+class StripWidget {
+public:
+  /// Of a strip with so many lanes, controls included; pixels.
+  static int height_for(std::size_t lanes) noexcept;
+  /// Over the window's whole width, at its bottom. shaded: times that are to stand out.
+  void draw(const TimelineView& view, const std::optional<Retiming>& shaded, EditWishes& wishes);
+
+private:
+  struct Taken {
+    StripKey key;
+    double pressed_x = 0.0;
+    bool moved = false;
+  };
+  void controls(const TimelineView& view, EditWishes& wishes) const;
+  void follow_mouse(const TimelineView& view, double x, double y, EditWishes& wishes);
+  void press(const TimelineView& view, double x, double y, EditWishes& wishes);
+  void drag(const TimelineView& view, double x, EditWishes& wishes);
+
+  KeyStrip strip_;
+  std::optional<Taken> taken_; ///< a key that the mouse holds
+  bool scrubs_ = false;
+  double head_s_ = 0.0; ///< at the last picture
+};
+
+} // namespace nendo::viewer

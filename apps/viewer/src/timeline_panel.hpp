@@ -1,0 +1,31 @@
+#pragma once
+// What stands in the timeline window's panel, its keys, and the question before leaving.
+
+#include <nendo/viewer/timeline_window.hpp>
+#include <nendo/viewer/tip_mover.hpp>
+
+#include "strip_widget.hpp"
+
+namespace nendo::viewer {
+
+struct TimelineWindow::Panel {
+  StripWidget strip;
+  TipMover tips;
+  Retiming retiming{0.0, 0.0, 2.0};
+  bool retiming_shown = false;
+  bool keys_shown = false;
+  float blend = 0.0F;
+  bool blends = false; ///< the mouse holds the slider
+
+  void draw(const TimelineView& view, EditWishes& wishes);
+  void keys(const TimelineView& view, EditWishes& wishes);
+  /// Whoever wants to leave does, or is asked first.
+  void leave(const TimelineView& view, bool wanted, EditWishes& wishes);
+
+private:
+  void file(const TimelineView& view, EditWishes& wishes) const;
+  void key(const TimelineView& view, EditWishes& wishes);
+  void whole(const TimelineView& view, EditWishes& wishes);
+};
+
+} // namespace nendo::viewer

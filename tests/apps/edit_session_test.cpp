@@ -1,0 +1,246 @@
+#include "edit/edit_session.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "support/program.hpp"
+#include "support/test_meshes.hpp"
+#include "support/timelines.hpp"
+
+using namespace nendo;
+using namespace nendo::app;
+using namespace nendo::timeline;
+using viewer::EditCommand;
+using viewer::EditWishes;
+using viewer::KeyDrag;
+using viewer::StripKey;
+using viewer::TipDrag;
+
+namespace {
+
+struct Edited {
+  test::TemporaryFolder folder;
+  std::string out = (folder.path() / "take.timeline.toml").string();
+  deform::Mesh model = test::sphere(12, 24, 1.0);
+  Timeline first = test::waved_timeline(model, flow::Mode::type1);
+  EditSession session{first, model, out};
+
+  void wish(EditCommand command) {
+    EditWishes wishes;
+    wishes.commands = {command};
+    session.obey(wishes);
+  }
+  void click(StripKey key) {
+    EditWishes wishes;
+    wishes.select.emplace(key);
+    session.obey(wishes);
+  }
+  template <class Tried>
+  void try_out(const Tried& tried, bool keep = false) {
+    EditWishes wishes;
+    wishes.tried = tried;
+    wishes.keep = keep;
+    session.obey(wishes);
+  }
+  const Timeline& now() const { return session.history().timeline(); }
+  const Key& key(std::size_t hand, std::size_t key) const { return now().hands[hand].keys[key]; }
+  Eigen::Vector3d tip(std::size_t hand, std::size_t at, hand::Finger finger) const {
+    const Key& of = key(hand, at);
+    return now()
+        .hands[hand]
+        .skeleton()
+        .pose(of.angles, of.wrist_pose())
+        .fingertip_positions()
+        .col(static_cast<Eigen::Index>(finger));
+  }
+};
+
+} // namespace
+
+TEST_SUITE("edit_session") {
+  TEST_CASE("what is shown at a frame's time are the player's hands, and where they took hold") {
+    Edited edited;
+    auto player = Player::make(edited.first, edited.model);
+    REQUIRE(player);
+    viewer::HoldFollower holds;
+    while (edited.session.view().computing)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    for (int frame = 0; (*player)->next(); ++frame) {
+      holds.follow((*player)->frame());
+      edited.session.seek((*player)->time_s());
+      CHECK_FALSE(edited.session.view().shape_is_old);
+      const viewer::Moment& moment = edited.session.moment();
+      CHECK(moment.held == (*player)->frame().held);
+      for (std::size_t slot = 0; slot < 2; ++slot) {
+        REQUIRE(moment.hands[slot]);
+        CHECK(moment.hands[slot]->pose.fingertip_positions() ==
+              (*player)->frame().hands[slot].pose.fingertip_positions());
+        if (moment.held) CHECK(moment.hands[slot]->starts == holds.starts(slot));
+      }
+    }
+  }
+
+  TEST_CASE("a key that is clicked has the head, and a drag of it is one step") {
+    Edited edited;
+    edited.wish(EditCommand::play);
+    edited.click({1, 3});
+    CHECK_FALSE(edited.session.view().playing);
+    CHECK(edited.session.view().head_s == edited.first.hands[1].keys[3].time_s);
+    CHECK(edited.session.view().at_selected);
+    const double to_s = edited.first.hands[1].keys[5].time_s + 0.01;
+    for (const double at_s : {0.35, 0.5, to_s})
+      edited.try_out(KeyDrag{{1, 3}, at_s, false}, at_s == to_s);
+    CHECK(edited.key(1, 5).time_s == to_s); // past two others
+    CHECK(edited.session.view().selected == StripKey{1, 5});
+    CHECK(edited.session.view().head_s == to_s);
+    CHECK(edited.session.view().modified);
+    edited.try_out(KeyDrag{{1, 5}, 0.1, true}, true);
+    CHECK(edited.now().hands[1].keys.size() == edited.first.hands[1].keys.size() + 1);
+    edited.wish(EditCommand::undo);
+    edited.wish(EditCommand::undo);
+    CHECK(test::same_bits(edited.now(), edited.first));
+    CHECK_FALSE(edited.session.view().modified);
+    edited.wish(EditCommand::undo);
+    CHECK(edited.session.view().message == "there is nothing to undo");
+    edited.try_out(KeyDrag{{0, 0}, edited.first.hands[0].keys[1].time_s, false});
+    CHECK(edited.session.view().refused);
+    EditWishes drop;
+    drop.drop = true;
+    edited.session.obey(drop);
+    CHECK(test::same_bits(edited.now(), edited.first));
+  }
+
+  TEST_CASE("a fingertip that is dragged comes to the place, or as near as it can, and says so") {
+    Edited edited;
+    edited.click({0, 4});
+    const auto index = hand::Finger::index;
+    // A place that it can reach: where it is in another pose of the same hand.
+    Key other = edited.key(0, 4);
+    other.angles[index].pip_flexion_rad += 0.2;
+    const Eigen::Vector3d target_m = edited.first.hands[0]
+                                         .skeleton()
+                                         .pose(other.angles, other.wrist_pose())
+                                         .fingertip_positions()
+                                         .col(1);
+    const Eigen::Vector3d begin_m = edited.tip(0, 4, index);
+    for (const double part : {0.3, 0.7, 1.0})
+      edited.try_out(TipDrag{index, begin_m + part * (target_m - begin_m)}, part == 1.0);
+    CHECK((edited.tip(0, 4, index) - target_m).norm() < 1e-4);
+    CHECK(edited.session.view().message.starts_with("index tip: 0.0"));
+    CHECK(edited.tip(0, 4, hand::Finger::thumb) ==
+          Eigen::Vector3d(edited.first.hands[0]
+                              .skeleton()
+                              .pose(edited.first.hands[0].keys[4].angles,
+                                    edited.first.hands[0].keys[4].wrist_pose())
+                              .fingertip_positions()
+                              .col(0)));
+    edited.wish(EditCommand::undo);
+    CHECK(test::same_bits(edited.now(), edited.first));
+    edited.try_out(TipDrag{index, begin_m + Eigen::Vector3d(0.0, 1.0, 0.0)}, true);
+    CHECK(edited.session.view().message.find("out of reach") != std::string::npos);
+    CHECK_FALSE(edited.session.view().refused);
+    CHECK((edited.tip(0, 4, index) - begin_m).norm() > 1e-3);
+  }
+
+  TEST_CASE("keys are added, copied and deleted at the head, and the hands mirrored") {
+    Edited edited;
+    const std::size_t keys = edited.first.hands[0].keys.size();
+    edited.session.seek(0.123);
+    edited.wish(EditCommand::delete_key);
+    CHECK(edited.session.view().refused); // nothing is selected
+    edited.wish(EditCommand::add_key);    // both hands
+    CHECK(edited.now().hands[0].keys.size() == keys + 1);
+    CHECK(edited.now().hands[1].keys.size() == keys + 1);
+    edited.wish(EditCommand::add_key); // there is one already
+    CHECK(edited.session.view().refused);
+    edited.wish(EditCommand::undo);
+    CHECK(test::same_bits(edited.now(), edited.first));
+    edited.click({0, 2});
+    edited.session.seek(0.5);
+    edited.wish(EditCommand::copy_key);
+    CHECK(edited.now().hands[0].keys.size() == keys + 1);
+    CHECK(edited.now().hands[1].keys.size() == keys);
+    CHECK(edited.session.view().at_selected);
+    edited.wish(EditCommand::mirror);
+    CHECK(edited.now().hands[0].side == Side::right);
+    CHECK(edited.session.view().selected->lane == 0);
+    edited.wish(EditCommand::delete_key);
+    CHECK(edited.now().hands[0].keys.size() == keys);
+    edited.wish(EditCommand::mirror);
+    for (std::size_t hand = 0; hand < 2; ++hand)
+      for (std::size_t key = 0; key < keys; ++key)
+        CHECK((edited.key(hand, key).wrist_m - edited.first.hands[hand].keys[key].wrist_m).norm() <
+              1e-12);
+  }
+
+  TEST_CASE("the head goes by keys and by frames, and plays on in time") {
+    Edited edited;
+    edited.wish(EditCommand::next_key);
+    CHECK(edited.session.view().head_s == edited.first.hands[0].keys[1].time_s);
+    edited.wish(EditCommand::next_key);
+    edited.wish(EditCommand::previous_key);
+    CHECK(edited.session.view().selected->key == 1);
+    edited.session.seek(0.5 / edited.first.rate_hz);
+    edited.wish(EditCommand::next_frame);
+    CHECK(edited.session.view().head_s == 1.0 / edited.first.rate_hz);
+    edited.wish(EditCommand::next_frame);
+    CHECK(edited.session.view().head_s == 2.0 / edited.first.rate_hz);
+    edited.wish(EditCommand::previous_frame);
+    edited.wish(EditCommand::previous_frame);
+    CHECK(edited.session.view().head_s == 0.0);
+    edited.wish(EditCommand::previous_frame);
+    CHECK(edited.session.view().head_s == 0.0);
+    edited.wish(EditCommand::play);
+    edited.session.advance(0.25);
+    CHECK(edited.session.view().head_s == 0.25);
+    edited.session.advance(100.0);
+    CHECK(edited.session.view().head_s == edited.first.duration_s);
+    CHECK_FALSE(edited.session.view().playing);
+  }
+
+  TEST_CASE("what is saved is what was edited, and who cannot save does not leave by it") {
+    Edited edited;
+    edited.click({0, 3});
+    edited.wish(EditCommand::delete_key);
+    edited.wish(EditCommand::save);
+    CHECK_FALSE(edited.session.view().modified);
+    const auto text = timeline_text(edited.now());
+    REQUIRE(text);
+    CHECK(test::contents(edited.out) == *text);
+    edited.wish(EditCommand::undo);
+    CHECK(edited.session.view().modified);
+
+    EditSession elsewhere(edited.first, edited.model,
+                          (edited.folder.path() / "none" / "a.timeline.toml").string());
+    EditWishes wishes;
+    wishes.commands = {EditCommand::mirror, EditCommand::save};
+    wishes.quit = true;
+    elsewhere.obey(wishes);
+    CHECK(elsewhere.view().refused);
+    CHECK_FALSE(elsewhere.has_ended());
+    wishes.commands.clear();
+    elsewhere.obey(wishes); // without saving
+    CHECK(elsewhere.has_ended());
+  }
+
+  TEST_CASE("the export is of the timeline as it is edited, and goes on beside") {
+    Edited edited;
+    edited.wish(EditCommand::mirror);
+    edited.wish(EditCommand::export_glb);
+    CHECK(edited.session.view().exporting);
+    while (edited.session.view().exporting) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      edited.session.advance(0.0);
+    }
+    const std::string file = (edited.folder.path() / "take.glb").string();
+    CHECK(test::contents(file).starts_with("glTF"));
+    CHECK(edited.session.view().message.starts_with(file));
+    CHECK(edited.session.view().modified); // that is not saving
+    edited.wish(EditCommand::export_glb);  // and is stopped by leaving
+  }
+}

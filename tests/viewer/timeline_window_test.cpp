@@ -1,0 +1,273 @@
+// The window of `nendo edit view`, with a mouse and a keyboard that the test pretends.
+
+#include <cmath>
+
+#include <GLFW/glfw3.h>
+#include <doctest/doctest.h>
+
+#include <nendo/viewer/timeline_window.hpp>
+
+#include "support/flow_fixtures.hpp"
+#include "support/memory_screen.hpp"
+#include "support/restraint.hpp"
+
+using namespace nendo;
+using namespace nendo::viewer;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr Size size{800, 600};
+constexpr double rate_hz = 50.0;
+
+/// A window over a ball and two hands, with keys on two lanes.
+struct Seat {
+  test::LoopUnderTest test{flow::Mode::type1, 12};
+  std::unique_ptr<TimelineWindow> window;
+  TimelineView view;
+  Moment moment;
+  PretendedInput input;
+  KeyStrip strip;
+
+  Seat() {
+    auto opened = TimelineWindow::open("test", size, "nothing else");
+    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
+    window = *std::move(opened);
+    window->set_model(test.loop->layout(),
+                      SceneBuilder(test.model, test.placement.units_per_metre));
+    const flow::Frame& frame = test.frame_after_tick(0);
+    window->follow(frame.shape);
+    see_hands(frame, {}, moment);
+    view.file = "take.timeline.toml";
+    view.duration_s = 4.0;
+    view.rate_hz = rate_hz;
+    view.lanes = {{Side::left, {0.0, 1.0, 4.0}}, {Side::right, {0.5, 2.0, 2.5, 3.5}}};
+    view.marks = {{0.8, "commit"}};
+    strip.fit(size.width - 12.0, view.duration_s);
+    show();
+  }
+  EditWishes show() { return window->show(view, moment); }
+  /// The strip stands 6 pixels from the window's edges, below 36 of controls.
+  Vector2d on_strip(double time_s, double y) const {
+    return {6.0 + strip.x_of(time_s), window->scene_window().scene_size().height + 6.0 + 36.0 + y};
+  }
+  Vector2d on_key(std::size_t lane, std::size_t key) const {
+    return on_strip(view.lanes[lane].keys_s[key], KeyStrip::middle_of(lane));
+  }
+  EditWishes move(const Vector2d& pointer, bool left) {
+    input.pointer = pointer;
+    input.buttons[0] = left;
+    window->pretend(input);
+    return show();
+  }
+  EditWishes press(const Vector2d& pointer) {
+    move(pointer, false);
+    return move(pointer, true);
+  }
+  EditWishes release() { return move(input.pointer, false); }
+  /// A key goes down and up.
+  EditWishes type(int key, bool control = false, bool shift = false) {
+    input.key = key;
+    input.control = control;
+    input.shift = shift;
+    window->pretend(input);
+    auto wishes = show();
+    input.key = 0;
+    input.control = input.shift = false;
+    window->pretend(input);
+    show();
+    return wishes;
+  }
+  Vector2d seen_at(const Vector3d& place_m) const {
+    const Camera camera = window->scene_window().stage_camera();
+    const Size scene = window->scene_window().scene_size();
+    const Eigen::Vector4d clip =
+        camera.projection(1.0 * scene.width / scene.height) * place_m.homogeneous();
+    return {(1.0 + clip.x() / clip.w()) / 2 * scene.width,
+            (1.0 - clip.y() / clip.w()) / 2 * scene.height};
+  }
+};
+
+/// A seat at a screen, where there can be one.
+struct Room {
+  test::MemoryScreen screen;
+  std::unique_ptr<Seat> seat;
+
+  Room() {
+    if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
+    if (!screen.is_there()) {
+      MESSAGE("no Xvfb here, so the window is not tested; tools/setup check installs it");
+      return;
+    }
+    seat = std::make_unique<Seat>();
+    const auto none = seat->move({400.0, 200.0}, false);
+    CHECK(none.commands.empty());
+    CHECK_FALSE((none.select || none.seek_s || none.tried || none.keep || none.quit));
+  }
+};
+
+const KeyDrag& key_drag(const EditWishes& wishes) {
+  REQUIRE(wishes.tried);
+  REQUIRE(std::holds_alternative<KeyDrag>(*wishes.tried));
+  return std::get<KeyDrag>(*wishes.tried);
+}
+
+} // namespace
+
+TEST_SUITE("timeline_window") {
+  TEST_CASE("a click selects a key, and a drag moves it to whole frames, or copies it") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    const auto pressed = seat.press(seat.on_key(1, 2));
+    REQUIRE(pressed.select);
+    CHECK(*pressed.select == StripKey{1, 2});
+    const auto still = seat.move(seat.input.pointer + Vector2d(1.0, 0.0), true);
+    CHECK_FALSE(still.tried); // a hand trembles
+    const Vector2d there = seat.on_strip(2.81, KeyStrip::middle_of(1));
+    const auto dragged = seat.move(there, true);
+    CHECK(key_drag(dragged).key == StripKey{1, 2});
+    CHECK(std::abs(key_drag(dragged).to_s - 2.81) <= 0.5 / rate_hz + 0.01);
+    const double frames = key_drag(dragged).to_s * rate_hz;
+    CHECK(frames == doctest::Approx(std::round(frames)));
+    CHECK_FALSE(key_drag(dragged).copy);
+    CHECK_FALSE(dragged.keep);
+    seat.input.control = true;
+    CHECK(key_drag(seat.move(there, true)).copy);
+    seat.input.control = false;
+    CHECK(key_drag(seat.move({1e5, there.y()}, true)).to_s == seat.view.duration_s);
+    const auto released = seat.release();
+    CHECK(released.keep);
+    CHECK_FALSE(released.tried);
+    CHECK_FALSE(seat.release().keep);
+  }
+
+  TEST_CASE("Esc gives a drag up, and without one selects nothing") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    seat.press(seat.on_key(0, 1));
+    seat.move(seat.on_strip(1.5, KeyStrip::middle_of(0)), true);
+    seat.input.key = GLFW_KEY_ESCAPE;
+    const auto given_up = seat.move(seat.input.pointer, true);
+    CHECK(given_up.drop);
+    CHECK_FALSE(given_up.select);
+    seat.input.key = 0;
+    CHECK_FALSE(seat.release().keep);
+    const auto nothing = seat.type(GLFW_KEY_ESCAPE);
+    REQUIRE(nothing.select);
+    CHECK_FALSE(*nothing.select);
+  }
+
+  TEST_CASE("elsewhere on the strip the play head follows the mouse, at a mark exactly") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    const auto pressed = seat.press(seat.on_strip(1.5, KeyStrip::middle_of(0)));
+    REQUIRE(pressed.seek_s);
+    CHECK(*pressed.seek_s == doctest::Approx(1.5).epsilon(0.01));
+    const auto dragged = seat.move(seat.on_strip(3.0, -100.0), true);
+    REQUIRE(dragged.seek_s);
+    CHECK(*dragged.seek_s == doctest::Approx(3.0).epsilon(0.01));
+    CHECK_FALSE(dragged.tried);
+    seat.release();
+    const auto at_mark =
+        seat.press(seat.on_strip(0.8, KeyStrip::middle_of(2)) + Vector2d(2.0, 0.0));
+    CHECK(at_mark.seek_s == 0.8);
+  }
+
+  TEST_CASE("the wheel zooms about the pointer") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    const Vector2d pointer = seat.on_strip(2.0, KeyStrip::middle_of(1));
+    seat.move(pointer, false);
+    seat.input.wheel = 3.0;
+    seat.move(pointer, false);
+    seat.input.wheel = 0.0;
+    seat.strip.zoom(pointer.x() - 6.0, 3.0);
+    CHECK(*seat.press(seat.on_key(1, 2)).select == StripKey{1, 2});
+  }
+
+  TEST_CASE("a fingertip of the selected key's hand follows the mouse; without one, the camera") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    const auto tips = seat.moment.hands[1]->pose.fingertip_positions();
+    Eigen::Index finger = 0; // one that the panel does not cover
+    while (finger < 4 && seat.seen_at(tips.col(finger)).x() < 330.0)
+      ++finger;
+    const Vector2d tip = seat.seen_at(tips.col(finger));
+    const Vector2d away(14.0, -9.0);
+    seat.press(tip); // nothing is selected
+    const double azimuth_deg = seat.window->scene_window().camera().view.azimuth_deg;
+    CHECK_FALSE(seat.move(tip + away, true).tried);
+    CHECK(seat.window->scene_window().camera().view.azimuth_deg != azimuth_deg);
+    seat.move(tip, true); // back
+    seat.release();
+    CHECK(seat.window->scene_window().camera().view.azimuth_deg == doctest::Approx(azimuth_deg));
+    seat.view.selected = StripKey{1, 1};
+    seat.view.at_selected = true;
+    seat.press(tip);
+    const auto dragged = seat.move(tip + away, true);
+    REQUIRE(dragged.tried);
+    const auto& drag = std::get<TipDrag>(*dragged.tried);
+    CHECK(drag.finger == static_cast<hand::Finger>(finger));
+    CHECK((seat.seen_at(drag.target_m) - tip - away).norm() < 0.5);
+    CHECK(seat.window->scene_window().camera().view.azimuth_deg == doctest::Approx(azimuth_deg));
+    CHECK(seat.release().keep);
+  }
+
+  TEST_CASE("keys on the keyboard ask for what the list says") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    using enum EditCommand;
+    const auto only = [](const EditWishes& wishes) {
+      REQUIRE(wishes.commands.size() == 1);
+      return wishes.commands.front();
+    };
+    CHECK(only(seat.type(GLFW_KEY_SPACE)) == play);
+    CHECK(only(seat.type(GLFW_KEY_LEFT)) == previous_frame);
+    CHECK(only(seat.type(GLFW_KEY_DOWN)) == next_key);
+    CHECK(only(seat.type(GLFW_KEY_A)) == add_key);
+    CHECK(only(seat.type(GLFW_KEY_DELETE)) == delete_key);
+    CHECK(only(seat.type(GLFW_KEY_Z, true)) == undo);
+    CHECK(only(seat.type(GLFW_KEY_Z, true, true)) == redo);
+    CHECK(only(seat.type(GLFW_KEY_Y, true)) == redo);
+    CHECK(only(seat.type(GLFW_KEY_S, true)) == save);
+    CHECK(seat.type(GLFW_KEY_L).loops == true);
+    CHECK(*seat.type(GLFW_KEY_EQUAL).speed > 1.0);
+  }
+
+  TEST_CASE("who quits with unsaved changes is asked first") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    seat.view.modified = true;
+    CHECK_FALSE(seat.type(GLFW_KEY_Q).quit);
+    CHECK(seat.type(GLFW_KEY_A).commands.empty()); // the question comes first
+    CHECK_FALSE(seat.type(GLFW_KEY_ESCAPE).quit);  // stay
+    seat.show();
+    CHECK(seat.type(GLFW_KEY_A).commands.size() == 1);
+    seat.view.modified = false;
+    CHECK(seat.type(GLFW_KEY_Q).quit);
+  }
+
+  TEST_CASE("the picture shows the selected key, and where the play head is") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    const Image before = seat.window->scene_window().screenshot();
+    CHECK(before.size() == size);
+    seat.view.selected = StripKey{0, 1};
+    seat.show();
+    const Image after = seat.window->scene_window().screenshot();
+    const Vector2d key = seat.on_key(0, 1);
+    const auto colour = [&](const Image& image) {
+      return image.at(static_cast<int>(key.x()), static_cast<int>(key.y()));
+    };
+    CHECK(colour(before) != colour(after));
+  }
+}
