@@ -117,4 +117,11 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   return PlacedLoop{std::move(loop), largest_radius, std::move(setup), options.recording.on};
 }
 
+FrameRoom room_of_frames(const PlacedLoop& placed) {
+  const auto points = 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
+  const auto& supports = placed.setup.options.sculptor.deformer.supports;
+  return {placed.loop->frames().front().fields.room(),
+          static_cast<std::size_t>(supports.functions(points))};
+}
+
 } // namespace nendo::app

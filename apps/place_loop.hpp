@@ -1,6 +1,7 @@
 #pragma once
 // A loop over the hands that are open, placed so that they hold the model between them.
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,13 @@ struct PlacedLoop {
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
                               const deform::Mesh& model,
                               const std::optional<flow::Placement>& placement = {});
+
+/// What a frame of that loop may hold, for whoever keeps room for it.
+struct FrameRoom {
+  std::size_t fields = 0;
+  std::size_t functions = 0; ///< of a field
+};
+FrameRoom room_of_frames(const PlacedLoop& placed);
 
 /// Whether a --radius is one, for hands at all. Error: usage.
 Result<void> check_radius(const std::string& text);

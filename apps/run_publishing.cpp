@@ -12,16 +12,15 @@ namespace {
 
 publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& model) {
   const auto& options = placed.setup.options;
-  const auto points = 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
+  const FrameRoom room = room_of_frames(placed);
   publish::LoopOutline outline;
   outline.model = &model;
   outline.layout = &placed.loop->layout();
   outline.mode = options.sculptor.mode;
   outline.rate_hz = options.rate_hz;
   outline.units_per_metre = placed.setup.placement.units_per_metre;
-  outline.most_fields = placed.loop->frames().front().fields.room();
-  outline.functions =
-      static_cast<std::size_t>(options.sculptor.deformer.supports.functions(points));
+  outline.most_fields = room.fields;
+  outline.functions = room.functions;
   return outline;
 }
 
@@ -54,7 +53,7 @@ private:
 class DatagramOutlet final : public PublishingOutlet {
 public:
   DatagramOutlet(std::string text, const publish::DatagramTarget& target)
-      : text_(std::move(text)), datagrams_(target) {}
+      : text_(std::move(text)), datagrams_(text_, target) {}
 
   Result<void> begin(const PlacedLoop& placed, const deform::Mesh& model,
                      const std::vector<OpenHand>&) override {
@@ -91,11 +90,18 @@ void add_publish_option(Command& command, std::vector<std::string>& targets) {
 Result<std::vector<std::unique_ptr<PublishingOutlet>>>
 publish_to(const std::vector<std::string>& targets) {
   std::vector<std::unique_ptr<PublishingOutlet>> outlets;
+  std::vector<publish::Target> places;
   for (const auto& text : targets) {
-    if (std::count(targets.begin(), targets.end(), text) > 1)
-      return Error{Errc::usage, "--publish " + text + ": give it once"};
     const auto target = publish::parse_target(text);
     if (!target) return Error{Errc::usage, "--publish " + target.error().message};
+    const auto same = std::find_if(places.begin(), places.end(), [&](const auto& place) {
+      return publish::is_same_place(place, *target);
+    });
+    if (same != places.end())
+      return Error{Errc::usage, "--publish " + text + ": is where --publish " +
+                                    targets[static_cast<std::size_t>(same - places.begin())] +
+                                    " leads; give it once"};
+    places.push_back(*target);
     if (const auto* segment = std::get_if<publish::SegmentTarget>(&*target)) {
       outlets.push_back(std::make_unique<SegmentOutlet>(text, *segment));
     } else if (const auto* datagrams = std::get_if<publish::DatagramTarget>(&*target)) {

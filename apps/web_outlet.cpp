@@ -25,11 +25,9 @@ Result<void> WebOutlet::begin(const PlacedLoop& placed, const deform::Mesh& mode
                                       std::to_string(web::most_vertices) +
                                       " at most; run it without --web, or thin it out"};
   hands_ = &hands;
-  const auto points = 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
-  const auto& supports = options.sculptor.deformer.supports;
-  tap_ = std::make_shared<web::FrameTap>(layout, options.sculptor.mode,
-                                         placed.loop->frames().front().fields.room(),
-                                         static_cast<std::size_t>(supports.functions(points)));
+  const FrameRoom room = room_of_frames(placed);
+  tap_ =
+      std::make_shared<web::FrameTap>(layout, options.sculptor.mode, room.fields, room.functions);
   server_->present(
       tap_, web::model_message(layout, model, placed.setup.inputs,
                                {name, options.rate_hz, placed.setup.placement.units_per_metre,

@@ -2,8 +2,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <nendo/base/file_replacement.hpp>
 
@@ -16,6 +19,14 @@ namespace {
 
 std::ptrdiff_t entries(const fs::path& folder) {
   return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+}
+
+/// What is there without its own name yet, or never got it.
+std::vector<fs::path> temporaries_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".tmp") found.push_back(entry.path());
+  return found;
 }
 
 } // namespace
@@ -95,5 +106,60 @@ TEST_SUITE("files") {
     CHECK(read() == "new, in two");
     CHECK(entries(folder.path()) == 1);
     CHECK_FALSE(FileReplacement::begin(folder.path()));
+  }
+
+  TEST_CASE("what a killed process of the same number left beside it is passed over, and stays") {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "file";
+    std::string begin;
+    unsigned long number = 0;
+    {
+      const auto begun = FileReplacement::begin(path);
+      REQUIRE(begun);
+      REQUIRE(temporaries_in(folder.path()).size() == 1);
+      begin = temporaries_in(folder.path()).front().stem().string(); // ".nendo.PID.COUNT"
+      const auto last_dot = begin.rfind('.');
+      number = std::stoul(begin.substr(last_dot + 1));
+      begin.resize(last_dot + 1);
+    }
+    const auto leave = [&](unsigned long next) {
+      const fs::path left = folder.path() / (begin + std::to_string(next) + ".tmp");
+      std::ofstream(left) << "left";
+      return left;
+    };
+    std::vector<fs::path> leftovers;
+    for (unsigned long next = number + 1; next <= number + 20; ++next)
+      leftovers.push_back(leave(next));
+    REQUIRE(replace_file(path, "new"));
+    CHECK(*read_file(path, 100, "test") == "new");
+    for (const auto& left : leftovers)
+      CHECK(*read_file(left, 100, "test") == "left");
+    CHECK(entries(folder.path()) == 21);
+    for (unsigned long next = number + 21; next <= number + 1000; ++next) // without end
+      leave(next);
+    const auto written = replace_file(path, "newer");
+    REQUIRE_FALSE(written);
+    CHECK(written.error().message.starts_with(path.string() + ": "));
+    CHECK(*read_file(path, 100, "test") == "new");
+  }
+
+  TEST_CASE("a file that is replaced keeps its mode, and a new one has what the umask leaves") {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "file";
+    const auto mode = [](const fs::path& of) { return fs::status(of).permissions(); };
+    const mode_t before = ::umask(027);
+    REQUIRE(replace_file(path, "secret"));
+    CHECK(mode(path) == fs::perms(0640));
+    for (const unsigned kept : {0600U, 0400U, 0666U, 0755U}) {
+      fs::permissions(path, fs::perms(kept));
+      auto begun = FileReplacement::begin(path);
+      REQUIRE(begun);
+      REQUIRE(temporaries_in(folder.path()).size() == 1);
+      CHECK(mode(temporaries_in(folder.path()).front()) == fs::perms(kept)); // before a byte is in
+      REQUIRE(begun->write(std::string_view("more")));
+      REQUIRE(begun->finish());
+      CHECK(mode(path) == fs::perms(kept));
+    }
+    ::umask(before);
   }
 }

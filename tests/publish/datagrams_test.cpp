@@ -105,7 +105,7 @@ TEST_SUITE("datagrams") {
                          hand::FilterKind::off, std::nullopt, nullptr,
                          deform::InjectiveOptions{.most_bound = 0.2});
       SegmentPublisher publisher(test::segment_name("both"), {});
-      DatagramPublisher sender(receiver.target());
+      DatagramPublisher sender("udp:port", receiver.target());
       test::attach(test, {&publisher, &sender});
       REQUIRE(publisher.begin(test::outline_of(test)));
       REQUIRE(sender.begin(test::outline_of(test)));
@@ -156,7 +156,7 @@ TEST_SUITE("datagrams") {
       target = gone.target();
     }
     LoopUnderTest test(flow::Mode::type2, 8);
-    DatagramPublisher sender(target);
+    DatagramPublisher sender("udp:192.0.2.1:9", target);
     test::attach(test, {&sender});
     for (int loop = 0; loop < 2; ++loop) {
       REQUIRE(sender.begin(test::outline_of(test)));
@@ -179,9 +179,11 @@ TEST_SUITE("datagrams") {
     target.address.v4.sin_port = htons(9000);
     target.address.v4.sin_addr.s_addr = INADDR_BROADCAST;
     LoopUnderTest test(flow::Mode::type1, 8);
-    DatagramPublisher sender(target);
+    DatagramPublisher sender("udp:255.255.255.255:9000", target);
     const auto begun = sender.begin(test::outline_of(test));
     REQUIRE_FALSE(begun);
-    CHECK(begun.error().message.find("udp") != std::string::npos);
+    const std::string& why = begun.error().message; // which, why, and what to do, in that order
+    CHECK(why.starts_with("--publish udp:255.255.255.255:9000: no way to that address: "));
+    CHECK(why.ends_with("; see ip route"));
   }
 }

@@ -1,5 +1,6 @@
 // nendo run --publish, and readers that were written from the document alone.
 
+#include <cstring>
 #include <map>
 
 #include <doctest/doctest.h>
@@ -73,6 +74,13 @@ double furthest(const std::vector<double>& one, const std::vector<double>& other
   return most;
 }
 
+std::uint64_t number_at(const std::string& bytes, std::size_t at) {
+  std::uint64_t number = 0;
+  REQUIRE(at + sizeof number <= bytes.size());
+  std::memcpy(&number, bytes.data() + at, sizeof number);
+  return number;
+}
+
 template <class Condition>
 bool comes_true(const Condition& condition) {
   for (int turn = 0; turn < 6000; ++turn) {
@@ -94,7 +102,11 @@ public:
     ::execl("/bin/sh", "sh", "-c", ("exec " + command).c_str(), nullptr);
     ::_exit(127);
   }
-  ~Reader() { wait_or_kill(true); }
+  ~Reader() {
+    if (id_ <= 0) return;
+    ::kill(id_, SIGKILL);
+    ::waitpid(id_, nullptr, 0);
+  }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
@@ -108,19 +120,15 @@ public:
     return comes_true([&] { return lines_of(contents(out_)).size() >= count; });
   }
   const std::filesystem::path& out() const { return out_; }
-  /// Its exit code.
-  int wait() { return wait_or_kill(false); }
-
-private:
-  int wait_or_kill(bool kill) {
-    if (id_ <= 0) return -1;
-    if (kill) ::kill(id_, SIGKILL);
+  /// Its exit code; -1 if it does not end within a minute.
+  int wait() {
     int status = -1;
-    ::waitpid(id_, &status, 0);
-    id_ = 0;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    const bool ended = id_ > 0 && comes_true([&] { return ::waitpid(id_, &status, WNOHANG) != 0; });
+    if (ended) id_ = 0;
+    return ended && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
+private:
   std::filesystem::path out_;
   pid_t id_;
 };
@@ -253,15 +261,34 @@ TEST_SUITE("publish_program") {
     CHECK_FALSE(std::filesystem::exists(segment_path(name)));
   }
 
-  TEST_CASE("what a killed run left is taken over by the next") {
+  TEST_CASE("a run that is killed ends its readers, and what it left is taken over by the next") {
     const TemporaryFolder folder;
     const std::string name = name_for("killed");
-    {
-      Program run(run_of(folder, "60", {"--publish", "shm:" + name}));
-      REQUIRE(appears(segment_path(name)));
-      run.signal(SIGKILL);
-      CHECK(run.wait().exit_code == 128 + SIGKILL);
+    Program run(run_of(folder, "0", {"--publish", "shm:" + name}));
+    REQUIRE(appears(segment_path(name)));
+    Reader shape(folder, "shape", "python3 " NENDO_READ_SHAPE " " + name + " --at-end");
+    REQUIRE(shape.attaches_to(name));
+    Reader hands(folder, "hands", NENDO_READ_HANDS " " + name);
+    REQUIRE(hands.says_lines(30));
+    run.signal(SIGKILL);
+    CHECK(run.wait().exit_code == 128 + SIGKILL);
+    CHECK(hands.wait() == 0);
+    CHECK(shape.wait() == 0);
+    CHECK(coordinates_in(contents(shape.out())).size() ==
+          coordinates_in(contents(NENDO_MODELS "/head.obj")).size());
+    // With the setup of a loop made anew, of which there is no tick yet, the same shape is none.
+    std::string anew = contents(segment_path(name));
+    const auto setup = number_at(anew, 48);
+    for (const std::uint64_t at : {setup, setup + 8}) { // stage, 2 g + 2, and generation g
+      const std::uint64_t next = number_at(anew, at) + (at == setup ? 2 : 1);
+      std::memcpy(anew.data() + at, &next, sizeof next);
     }
+    write_file(segment_path(name + "-anew"), anew);
+    Reader of_anew(folder, "of_anew", "python3 " NENDO_READ_SHAPE " " + name + "-anew");
+    CHECK(of_anew.wait() == 1);
+    CHECK(contents(of_anew.out()) == "the run ended without a whole shape\n");
+    std::filesystem::remove(segment_path(name + "-anew"));
+
     CHECK(std::filesystem::exists(segment_path(name)));
     const Finished next = nendo::test::nendo(run_of(folder, "0.5", {"--publish", "shm:" + name}));
     CHECK_MESSAGE(next.exit_code == 0, next.err);
@@ -275,9 +302,13 @@ TEST_SUITE("publish_program") {
       CHECK(done.exit_code == 2);
       CHECK(is_one_line_about(done.err, "--publish"));
     }
-    const Finished twice =
-        nendo::test::nendo(run_of(folder, "1", {"--publish", "shm:a", "--publish", "shm:a"}));
-    CHECK(twice.exit_code == 2);
+    for (const std::string other :
+         {"shm:run", "shm", "shm?group=0"}) { // one place, however it is written
+      const Finished twice =
+          nendo::test::nendo(run_of(folder, "1", {"--publish", "shm:run", "--publish", other}));
+      CHECK(twice.exit_code == 2);
+      CHECK(is_one_line_about(twice.err, "--publish " + other + ": "));
+    }
     CHECK_FALSE(std::filesystem::exists(folder.path() / "shape.obj"));
   }
 
@@ -287,6 +318,7 @@ TEST_SUITE("publish_program") {
         nendo::test::nendo(run_of(folder, "1", {"--publish", "udp:255.255.255.255:9000"}));
     CHECK(done.exit_code != 0);
     CHECK(done.exit_code != 2);
-    CHECK(is_one_line_about(done.err.substr(done.err.rfind("nendo: ")), "udp"));
+    CHECK(is_one_line_about(done.err.substr(done.err.rfind("nendo: ")),
+                            "udp:255.255.255.255:9000: no way to that address: "));
   }
 }

@@ -1,7 +1,11 @@
 #include <nendo/publish/shared_memory.hpp>
 
+#include <array>
+#include <chrono>
 #include <fstream>
 #include <iterator>
+#include <thread>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -9,6 +13,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <nendo/base/units.hpp>
 
 #include "support/temporary_folder.hpp"
 
@@ -141,6 +147,44 @@ TEST_SUITE("shared_memory") {
       CHECK(second.error().message.find("another run") != std::string::npos);
       CHECK(memory->words()[0].load(std::memory_order_relaxed) == 1);
     }
+  }
+
+  TEST_CASE("of runs that find a dead one's segment in the same moment, one gets its name") {
+    // Many names, one after another: wherever the system takes the processor from one run, the
+    // other one comes by.
+    constexpr std::size_t names = 200;
+    const auto name = [](std::size_t n) { return name_for("race" + std::to_string(n)); };
+    std::size_t wrong = 0;
+    for (const HostTime end = HostClock::now() + std::chrono::seconds(3); HostClock::now() < end;) {
+      std::array<std::vector<SharedMemory>, 2> runs;
+      std::array<std::vector<bool>, 2> won;
+      for (std::size_t n = 0; n < names; ++n) {
+        write_file(path_of(name(n)), NENDO_PUBLISH_MAGIC);
+        for (std::size_t run = 0; run < 2; ++run) {
+          auto memory = SharedMemory::create(name(n), 4096, {});
+          REQUIRE(memory);
+          memory->words()[0].store(run, std::memory_order_relaxed);
+          runs[run].push_back(*std::move(memory));
+        }
+      }
+      std::array<std::thread, 2> threads;
+      for (std::size_t run = 0; run < 2; ++run)
+        threads[run] = std::thread([&, run] {
+          for (auto& memory : runs[run])
+            won[run].push_back(bool{memory.announce()});
+        });
+      for (auto& thread : threads)
+        thread.join();
+      for (std::size_t n = 0; n < names; ++n) {
+        const char winner = won[0][n] ? '\0' : '\1';
+        if (won[0][n] == won[1][n] || !contents(path_of(name(n))).starts_with(winner)) ++wrong;
+      }
+      for (auto& run : runs)
+        run.clear();
+      CHECK_FALSE(std::filesystem::exists(path_of(name(0))));
+    }
+    CHECK(wrong == 0);
+    CHECK_FALSE(std::filesystem::exists("/dev/shm/.nendo-" + name(0) + ".lock"));
   }
 
   TEST_CASE("what is not Nendo's stays, and links are not followed") {

@@ -1,6 +1,8 @@
 #include <nendo/publish/target.hpp>
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
@@ -50,6 +52,25 @@ TEST_SUITE("target") {
       REQUIRE(target);
       CHECK(told(std::get<DatagramTarget>(*target)) == expected);
     }
+  }
+
+  TEST_CASE("places are the same however they are written, and whoever else may read there") {
+    const std::vector<std::vector<std::string>> places{
+        {"shm", "shm:", "shm:run", "shm:run?group=0"},
+        {"shm:Run"},
+        {"udp:9000", "udp:127.0.0.1:9000"},
+        {"udp:9001"},
+        {"udp:127.0.0.2:9000"},
+        {"udp:[::1]:9000", "udp:[0:0::1]:9000"},
+        {"udp:[::2]:9000"}};
+    for (std::size_t one = 0; one < places.size(); ++one)
+      for (std::size_t other = 0; other < places.size(); ++other)
+        for (const auto& first : places[one])
+          for (const auto& second : places[other]) {
+            CAPTURE(first);
+            CAPTURE(second);
+            CHECK(is_same_place(*parse_target(first), *parse_target(second)) == (one == other));
+          }
   }
 
   TEST_CASE("anything else is wrong usage, in one line that names it") {

@@ -51,7 +51,7 @@ TEST_SUITE("publishing_tick") {
     for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
       LoopUnderTest test(mode, 16);
       SegmentPublisher publisher(test::segment_name("tick"), {});
-      DatagramPublisher sender(port_9());
+      DatagramPublisher sender("udp:9", port_9());
       test::attach(test, {&publisher, &sender});
       REQUIRE(publisher.begin(test::outline_of(test)));
       REQUIRE(sender.begin(test::outline_of(test)));

@@ -1,6 +1,7 @@
 // What an update is for: a copy of the model that follows it becomes the published shape.
 
 #include <cmath>
+#include <random>
 
 #include "publish/publish_fixtures.hpp"
 
@@ -52,22 +53,43 @@ Points through_fields(const std::vector<std::uint64_t>& record, const Points& fr
   return shape;
 }
 
-/// Keeps a copy of the model by the updates alone, as FORMAT.md says.
+/// Keeps a copy of the model by the updates, as FORMAT.md says; where these do not do, by the
+/// published shape.
 struct Follower {
   Points rest, shape;
-  std::uint64_t commits = 0, undos = 0;
+  bool knows_rest = true;
+  std::uint64_t number = 0, commits = 0, undos = 0;
+  int followed = 0, taken = 0;
 
   void follow(const std::vector<std::uint64_t>& record, const Points& published) {
     const auto& head = test::head_of(record);
+    const bool missed = head.number != number + 1;
+    const bool committed = head.commits != commits;
+    const bool undid = head.undos != undos;
     if (head.mode == 2) {
-      shape = head.undos != undos ? published : through_fields(record, shape);
+      step(!missed && !undid, record, shape, published);
     } else {
-      if (head.undos != undos) rest = published;
-      shape = through_fields(record, rest);
-      if (head.commits != commits) rest = shape;
+      if (missed && (committed || undid)) knows_rest = false;
+      if (!missed && undid) {
+        rest = published;
+        knows_rest = true;
+      }
+      step(knows_rest, record, rest, published);
+      if (!missed && committed) {
+        rest = shape;
+        knows_rest = true;
+      }
     }
+    number = head.number;
     commits = head.commits;
     undos = head.undos;
+  }
+
+private:
+  void step(bool by_fields, const std::vector<std::uint64_t>& record, const Points& from,
+            const Points& published) {
+    shape = by_fields ? through_fields(record, from) : published;
+    ++(by_fields ? followed : taken);
   }
 };
 
@@ -95,6 +117,34 @@ TEST_SUITE("updates") {
       CHECK(furthest > 1e-2);
       CHECK(follower.undos > 2);
       CHECK(follower.commits > 2);
+    }
+  }
+
+  TEST_CASE("who misses records comes back to following the updates, and to the same shapes") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      LoopUnderTest test(mode, 10);
+      SegmentPublisher publisher(segment_name("miss"), {});
+      test::attach(test, {&publisher});
+      REQUIRE(publisher.begin(test::outline_of(test)));
+      const MappedSegment segment(segment_name("miss"));
+      Follower follower{segment.rest(), segment.rest()};
+      Player player(test);
+      std::mt19937 random(7);
+      int by_fields_again = 0;
+      for (std::uint64_t number = 1; number <= 600; ++number) {
+        player.next();
+        if (random() % 4 == 0) continue; // it was elsewhere
+        const int taken = follower.taken;
+        const bool missed = number != follower.number + 1;
+        const Points published = segment.shape(number);
+        follower.follow(segment.record(number), published);
+        REQUIRE((follower.shape - published).cwiseAbs().maxCoeff() < 1e-4);
+        if (missed && follower.taken == taken) ++by_fields_again;
+      }
+      CHECK(follower.taken > 20);
+      CHECK(follower.followed > 100);
+      if (mode == Mode::type1)
+        CHECK(by_fields_again > 20); // one that only missed ticks need not ask
     }
   }
 }

@@ -13,6 +13,28 @@ using nendo::test::wait_for;
 using nendo::test::WebClient;
 using std::chrono::milliseconds;
 
+namespace {
+
+constexpr int small_buffer = 4096; ///< at both ends: what waits in the system is soon full
+
+/// Limits of which a client meets none, but those that a test sets.
+ServerLimits generous() {
+  ServerLimits limits;
+  limits.system_buffer = small_buffer;
+  limits.most_waiting = std::size_t{1} << 30;
+  for (auto* limit : {&limits.head, &limits.stalled, &limits.lagging, &limits.silent})
+    *limit = std::chrono::hours(1);
+  return limits;
+}
+
+/// Of the loop that runs; this thread alone looks at its frames.
+const flow::Frame& newest_frame(Served& served) {
+  served.tapped.test.loop->frames().update();
+  return served.tapped.test.loop->frames().front();
+}
+
+} // namespace
+
 TEST_SUITE("server_limits") {
   TEST_CASE(
       "a client that does not read misses frames, and is given the whole shape when it does") {
@@ -77,6 +99,111 @@ TEST_SUITE("server_limits") {
     FollowingClient follower(served.tapped.model);
     follower.loop = 1;
     CHECK(follow_until(steady, follower, [&] { return follower.updates > 0 && !follower.held; }));
+  }
+
+  TEST_CASE(
+      "who takes nothing of what waits is dropped in its time, and so is who never has it all") {
+    ServerLimits no_byte = generous();
+    no_byte.stalled = milliseconds(200);
+    ServerLimits not_all = generous();
+    not_all.lagging = milliseconds(300);
+    for (const auto& way : {std::pair{no_byte, 0U}, {not_all, 1U}}) {
+      CAPTURE(way.second);
+      Served served(flow::Mode::type1, way.first);
+      served.begin();
+      WebClient client(*served.server, small_buffer);
+      REQUIRE(client.open_socket() == 101);
+      CHECK(wait_for([&] { return served.server->counters().updates > 0; }));
+      CHECK(wait_for([&] {
+        if (way.second > 0) client.take(way.second);
+        return served.server->counters().dropped == 1;
+      }));
+      CHECK(wait_for([&] { return served.server->counters().clients == 0; }));
+    }
+  }
+
+  TEST_CASE("who takes what it is sent, however late, is not silent") {
+    ServerLimits limits = generous();
+    limits.silent = milliseconds(1500);
+    Served served(flow::Mode::type1, limits);
+    served.begin();
+    WebClient client(*served.server, small_buffer); // answers no ping
+    REQUIRE(client.open_socket() == 101);
+    std::size_t taken = 0;
+    const auto behind = [&] {
+      const auto counters = served.server->counters();
+      return counters.update_bytes + counters.shape_bytes - taken;
+    };
+    for (const HostTime end = HostClock::now() + milliseconds(3500); HostClock::now() < end;) {
+      if (behind() > 16 * small_buffer) taken += client.take(1000);
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    CHECK(served.server->counters().dropped == 0);
+    CHECK(served.server->counters().clients == 1);
+    CHECK(wait_for([&] { return served.server->counters().dropped == 1; })); // it has stopped
+  }
+
+  TEST_CASE("an answer may take longer than a WebSocket may lag, if it moves") {
+    ServerLimits limits = generous();
+    limits.lagging = milliseconds(100);
+    limits.stalled = milliseconds(5000);
+    const auto server = nendo::test::open_server(limits);
+    const std::size_t page_bytes = WebClient(*server).get("/").body.size();
+    WebClient slow(*server, small_buffer);
+    slow.send("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    for (int n = 0; n < 8; ++n) {
+      std::this_thread::sleep_for(milliseconds(100)); // that it is overdue is seen every 250 ms
+      slow.take(1000);
+    }
+    REQUIRE(page_bytes > 8 * 1000 + 8 * small_buffer); // it is still on its way
+    CHECK(slow.answer().body.size() == page_bytes);
+    CHECK(server->counters().dropped == 0);
+  }
+
+  TEST_CASE(
+      "a client that stops reading while others undo has one shape waiting, not one for each") {
+    Served served(flow::Mode::type1, generous());
+    served.begin();
+    WebClient client(*served.server, small_buffer);
+    REQUIRE(client.open_socket() == 101);
+    FollowingClient follower(served.tapped.model);
+    follower.loop = 1;
+    REQUIRE(follow_until(client, follower, [&] { return follower.follows() && follower.held; }));
+    client.say("commit");
+    REQUIRE(follow_until(client, follower, [&] { return follower.commits == 1; }));
+    const auto counters = [&] { return served.server->counters(); };
+    const auto full = counters().update_bytes + 16 * small_buffer; // takes no more by then
+    REQUIRE(wait_for([&] { return counters().update_bytes > full; }));
+    const auto shapes = counters().shapes;
+    for (std::uint64_t turn = 1; turn <= 20; ++turn) {
+      client.say(turn % 2 == 1 ? "undo" : "redo");
+      REQUIRE(wait_for([&] { return newest_frame(served).undos >= turn; }));
+      const auto updates = counters().updates + 3;
+      REQUIRE(wait_for([&] { return counters().updates >= updates; }));
+    }
+    CHECK(counters().shapes > shapes); // they did want one
+    CHECK(counters().shapes <= shapes + 2);
+    const int taken = follower.shapes;
+    CHECK(follow_until(client, follower, [&] { return follower.shapes > taken; }));
+    CHECK(follow_until(client, follower,
+                       [&] { return follower.undos == 20 && follower.number == follower.newest; }));
+  }
+
+  TEST_CASE("when the last viewer has gone, the tick makes no records") {
+    Served served(flow::Mode::type1, generous());
+    served.begin();
+    {
+      WebClient client(*served.server);
+      REQUIRE(client.open_socket() == 101);
+      FollowingClient follower(served.tapped.model);
+      follower.loop = 1;
+      CHECK(follow_until(client, follower, [&] { return follower.updates > 3; }));
+    }
+    REQUIRE(wait_for([&] { return served.server->counters().clients == 0; }));
+    const auto lost = served.tapped.tap->lost();
+    const auto later = newest_frame(served).ticks + 3000; // more than find room in the ring
+    CHECK(wait_for([&] { return newest_frame(served).ticks > later; }));
+    CHECK(served.tapped.tap->lost() == lost);
   }
 
   TEST_CASE("there are so many places, and a client that has one keeps it") {

@@ -65,6 +65,38 @@ TEST_SUITE("server") {
     CHECK(server->counters().refused >= 9);
   }
 
+  TEST_CASE("who sends no more after its request is answered, and is not waited for") {
+    ServerLimits limits;
+    limits.head = std::chrono::hours(1);
+    const auto server = open_server(limits);
+    const std::string request = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+    const auto page = WebClient(*server).get("/");
+    for (const int receive_bytes : {0, 2048}) {
+      WebClient client(*server, receive_bytes);
+      client.send(request);
+      client.end_sending();
+      const auto answer = client.answer();
+      CHECK(answer.status == 200);
+      CHECK(answer.body.size() == page.body.size());
+      CHECK(client.is_ended());
+    }
+    WebClient half(*server);
+    half.send(request.substr(0, request.size() - 2));
+    half.end_sending();
+    CHECK(half.is_ended());
+    const TappedLoop tapped(flow::Mode::type1);
+    server->present(tapped.tap, tapped.model);
+    WebClient socket(*server); // a WebSocket needs both ways
+    socket.send("GET " + socket.with_token("/ws") +
+                " HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                "Origin: http://127.0.0.1\r\n\r\n");
+    socket.end_sending();
+    CHECK(socket.is_ended());
+    CHECK(server->counters().clients == 0);
+    CHECK(server->counters().dropped == 0);
+  }
+
   TEST_CASE("the second server at a port is told what is wrong") {
     const auto server = open_server();
     const auto second = Server::open(server->endpoint());

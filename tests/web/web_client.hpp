@@ -53,6 +53,8 @@ public:
          headers + "\r\n");
     return answer();
   }
+  /// Sends no more, and may still read.
+  void end_sending() { ::shutdown(socket_.get(), SHUT_WR); }
   Answer answer() {
     while (receive())
       ;
@@ -95,6 +97,14 @@ public:
       if (auto frame = take_frame()) return frame;
       if (!receive(wait_ms)) return std::nullopt;
     }
+  }
+  /// Takes so many bytes at most of what has come by now; how many.
+  std::size_t take(std::size_t most) {
+    std::string room(most, '\0');
+    const ssize_t got = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
+    if (got <= 0) return 0;
+    received_.append(room, 0, static_cast<std::size_t>(got));
+    return static_cast<std::size_t>(got);
   }
   /// Reads what is left, and says whether the other side has ended the connection.
   bool is_ended(int wait_ms = patience_ms) {

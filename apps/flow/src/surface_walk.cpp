@@ -6,27 +6,15 @@
 
 #include <Eigen/Geometry>
 
+#include <nendo/deform/triangles.hpp>
+
 namespace nendo::flow {
 namespace {
 
-using Eigen::Index;
 using Eigen::Vector3d;
 
 Vector3d mix(const std::array<Vector3d, 3>& of, const std::array<double, 3>& weights) noexcept {
   return weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
-}
-
-// Calls `visit` with the corners' vertices of every triangle.
-template <class Visit>
-void for_each_triangle(const deform::Mesh& model, Visit visit) {
-  for (std::size_t face = 0; face < model.face_count(); ++face) {
-    const std::uint32_t begin = model.face_starts[face];
-    for (std::uint32_t at = begin + 1; at + 1 < model.face_starts[face + 1]; ++at) {
-      visit(std::array<Index, 3>{static_cast<Index>(model.face_corners[begin]),
-                                 static_cast<Index>(model.face_corners[at]),
-                                 static_cast<Index>(model.face_corners[at + 1])});
-    }
-  }
 }
 
 } // namespace
@@ -67,7 +55,7 @@ std::array<double, 3> nearest_weights(const SurfaceTriangle& triangle,
 
 SurfacePatch::SurfacePatch(const deform::Mesh& model, const deform::Points& normals,
                            double units_per_metre, const Vector3d& centre_m, double margin_m) {
-  const auto triangle_of = [&](const std::array<Index, 3>& corners) {
+  const auto triangle_of = [&](const std::array<std::uint32_t, 3>& corners) {
     SurfaceTriangle triangle;
     for (std::size_t k = 0; k < 3; ++k) {
       triangle.corners[k] = model.vertices.col(corners[k]) / units_per_metre;
@@ -81,11 +69,11 @@ SurfacePatch::SurfacePatch(const deform::Mesh& model, const deform::Points& norm
     return Ball{centre, std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()})};
   };
   double nearest_m = std::numeric_limits<double>::infinity();
-  for_each_triangle(model, [&](const auto& corners) {
+  deform::for_each_triangle(model, [&](const auto& corners) {
     const Vector3d first = model.vertices.col(corners[0]) / units_per_metre;
     nearest_m = std::min(nearest_m, (first - centre_m).norm());
   });
-  for_each_triangle(model, [&](const auto& corners) {
+  deform::for_each_triangle(model, [&](const auto& corners) {
     const SurfaceTriangle triangle = triangle_of(corners);
     const Ball ball = ball_of(triangle);
     if ((ball.centre_m - centre_m).norm() - ball.radius_m > nearest_m + margin_m) return;

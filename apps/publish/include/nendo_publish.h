@@ -202,7 +202,8 @@ static inline int nendo_publish_read(const void* base, uint64_t number,
   return nendo_publish_still_holds((const uint64_t*)slot, number);
 }
 
-/* Copies the shape that belongs to record `number`: 3 * header.vertices floats. */
+/* Copies the shape that belongs to record `number`: 3 * header.vertices floats. Origin and unit are
+ * those of that record's generation; another setup may have come since. */
 static inline int nendo_publish_read_shape(const void* base, uint64_t number, float* vertices) {
   const struct nendo_publish_header* h = (const struct nendo_publish_header*)base;
   const char* slot =

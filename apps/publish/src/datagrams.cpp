@@ -27,19 +27,20 @@ static_assert(sizeof(nendo_publish_hand) <= most_payload);
 } // namespace
 
 Result<void> DatagramPublisher::open() {
-  const auto failure = [](const std::string& what) {
+  const auto failure = [&](const std::string& what, const std::string& remedy) {
     const int number = errno;
     return Error{number == EACCES || number == EPERM ? Errc::no_permission : Errc::failed,
-                 "--publish udp: " + what + ": " + std::generic_category().message(number)};
+                 "--publish " + name_ + ": " + what + ": " +
+                     std::generic_category().message(number) + "; " + remedy};
   };
   const int family = target_.address.any.sa_family;
   Descriptor socket(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   // A socket that is connected would hear of ports that nobody listens at, and count losses there.
   const Descriptor probe(::socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket.is_open() || !probe.is_open())
-    return failure("no socket; a service needs RestrictAddressFamilies=AF_INET AF_INET6");
+    return failure("no socket", "a service needs RestrictAddressFamilies=AF_INET AF_INET6");
   if (::connect(probe.get(), &target_.address.any, target_.length) != 0)
-    return failure("no way to that address; see ip route");
+    return failure("no way to that address", "see ip route");
   socket_ = std::move(socket);
   return {};
 }

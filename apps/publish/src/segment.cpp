@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include <nendo/deform/triangles.hpp>
 #include <nendo_publish.h>
 
 namespace nendo::publish {
@@ -18,21 +19,8 @@ constexpr std::uint64_t most_record_bytes = std::uint64_t{16} << 20;
 
 std::uint64_t triangles_of(const deform::Mesh& mesh) noexcept {
   std::uint64_t triangles = 0;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint64_t corners = mesh.face_starts[face + 1] - mesh.face_starts[face];
-    triangles += corners > 2 ? corners - 2 : 0;
-  }
+  deform::for_each_triangle(mesh, [&](const auto&) { ++triangles; });
   return triangles;
-}
-
-// As fans from each face's first corner.
-std::vector<std::uint32_t> corners_of_triangles(const deform::Mesh& mesh) {
-  std::vector<std::uint32_t> corners;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face)
-    for (std::uint32_t at = mesh.face_starts[face] + 2; at < mesh.face_starts[face + 1]; ++at)
-      for (const std::uint32_t corner : {mesh.face_starts[face], at - 1, at})
-        corners.push_back(mesh.face_corners[corner]);
-  return corners;
 }
 
 std::vector<float> floats_of(const deform::BlockShape& shape, const deform::BlockLayout& layout) {
@@ -162,7 +150,7 @@ void SegmentPublisher::write_setup(const LoopOutline& outline) {
   auto& stage = *reinterpret_cast<SequenceStage<>*>(place);
   stage.open(generation_);
   store_words(std::span(words).subspan(1), place + 1);
-  store_all(corners_of_triangles(*outline.model), all + plan_.triangles_offset / 8);
+  store_all(deform::corners_of_triangles(*outline.model), all + plan_.triangles_offset / 8);
   store_all(floats_of(layout.pack(), layout), all + plan_.rest_offset / 8);
   stage.close(generation_);
 }

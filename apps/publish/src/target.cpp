@@ -97,4 +97,13 @@ Result<Target> parse_target(std::string_view text) {
   return wrong(text, "use shm:NAME, udp:PORT or udp:ADDRESS:PORT");
 }
 
+bool is_same_place(const Target& one, const Target& other) noexcept {
+  if (one.index() != other.index()) return false;
+  if (const auto* segment = std::get_if<SegmentTarget>(&one))
+    return segment->name == std::get_if<SegmentTarget>(&other)->name;
+  const auto& [address, length] = *std::get_if<DatagramTarget>(&one);
+  const auto& there = *std::get_if<DatagramTarget>(&other);
+  return length == there.length && std::memcmp(&address, &there.address, length) == 0;
+}
+
 } // namespace nendo::publish

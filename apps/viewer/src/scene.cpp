@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nendo/deform/triangles.hpp>
+
 namespace nendo::viewer {
 
 using Eigen::Vector3d;
@@ -57,12 +59,7 @@ SceneBuilder::SceneBuilder(const deform::Mesh& rest, double units_per_metre)
     origin_m_ = (box.lowest / 2 + box.highest / 2) / units_per_metre_;
     origin_m_.y() = box.lowest.y() / units_per_metre_;
   }
-  for (std::size_t face = 0; face < rest.face_count(); ++face) {
-    const auto begin = rest.face_starts[face];
-    for (auto corner = begin + 1; corner + 1 < rest.face_starts[face + 1]; ++corner)
-      corners_.insert(corners_.end(), {rest.face_corners[begin], rest.face_corners[corner],
-                                       rest.face_corners[corner + 1]});
-  }
+  corners_ = deform::corners_of_triangles(rest);
 }
 
 void SceneBuilder::build(const Moment& moment, const SceneParts& parts, Scene& scene) const {

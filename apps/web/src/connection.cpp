@@ -28,7 +28,7 @@ Connection::Connection(Descriptor socket, HostTime now, const ServerLimits& limi
       heard_(now), asked_(now), words_left_(limits.words_at_once), spoke_(now) {}
 
 short Connection::events() const noexcept {
-  return static_cast<short>(POLLIN | (waiting_.empty() ? 0 : POLLOUT));
+  return static_cast<short>((heard_end_ ? 0 : POLLIN) | (waiting_.empty() ? 0 : POLLOUT));
 }
 
 bool Connection::receive(HostTime now) {
@@ -44,6 +44,11 @@ bool Connection::receive(HostTime now) {
       if (errno == EINTR) continue;
       if (errno == EAGAIN || errno == EWOULDBLOCK) return true;
     }
+    const bool may_wait = stage_ == Stage::head || stage_ == Stage::answer;
+    if (got == 0 && may_wait && !heard_end_) { // `nc -N` does so, and waits
+      heard_end_ = true;
+      return true;
+    }
     if (got <= 0) {
       stage_ = Stage::over;
       return false;
@@ -54,12 +59,25 @@ bool Connection::receive(HostTime now) {
   }
 }
 
+void Connection::await_rest() noexcept {
+  if (heard_end_) stage_ = Stage::over;
+}
+
 void Connection::queue(SharedBytes bytes, bool is_shape, HostTime now) {
   if (bytes->empty()) return;
   if (waiting_.empty()) moved_ = empty_ = now;
-  if (!is_shape) small_bytes_ += bytes->size();
+  if (is_shape)
+    ++waiting_shapes_;
+  else
+    small_bytes_ += bytes->size();
   waiting_.push_back({std::move(bytes), is_shape});
   if (small_bytes_ > limits_.most_waiting) catching_up_ = true;
+}
+
+// The answer to a ping may be far behind a large shape.
+void Connection::send_on(HostTime now) {
+  heard_ = now;
+  flush(now);
 }
 
 void Connection::flush(HostTime now) {
@@ -75,7 +93,10 @@ void Connection::flush(HostTime now) {
     moved_ = now;
     sent_of_first_ += static_cast<std::size_t>(sent);
     if (sent_of_first_ < bytes.size()) continue;
-    if (!waiting_.front().is_shape) small_bytes_ -= bytes.size();
+    if (waiting_.front().is_shape)
+      --waiting_shapes_;
+    else
+      small_bytes_ -= bytes.size();
     waiting_.pop_front();
     sent_of_first_ = 0;
   }
@@ -87,7 +108,7 @@ void Connection::flush(HostTime now) {
 // A socket that is closed with bytes unread is reset, which takes back what was sent last.
 void Connection::end_sending(HostTime now) {
   ::shutdown(fd(), SHUT_WR);
-  stage_ = Stage::linger;
+  stage_ = heard_end_ ? Stage::over : Stage::linger;
   since_ = now;
 }
 
@@ -101,6 +122,10 @@ void Connection::answer(std::string head, SharedBytes body, HostTime now) {
 }
 
 void Connection::upgrade(std::string head, HostTime now) {
+  if (heard_end_) { // could answer no ping, nor say goodbye
+    stage_ = Stage::over;
+    return;
+  }
   stage_ = Stage::socket;
   since_ = heard_ = asked_ = now;
   queue(shared_bytes(head), false, now);
@@ -138,8 +163,9 @@ bool Connection::is_overdue(HostTime now) const noexcept {
   if (stage_ == Stage::head) return now - since_ > limits_.head;
   if (stage_ == Stage::linger) return now - since_ > most_linger;
   const bool stalls = !waiting_.empty() && now - moved_ > limits_.stalled;
+  if (stage_ != Stage::socket) return stalls; // a large model may take as long as it moves
   const bool lags = !waiting_.empty() && now - empty_ > limits_.lagging;
-  return stalls || lags || (stage_ == Stage::socket && now - heard_ > limits_.silent);
+  return stalls || lags || now - heard_ > limits_.silent;
 }
 
 void Connection::keep_alive(HostTime now) {

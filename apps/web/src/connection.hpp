@@ -35,11 +35,14 @@ public:
   HostTime since() const noexcept { return since_; }
   /// What poll() is to wait for.
   short events() const noexcept;
-  /// Reads what is there into incoming(), as far as that has room. False: it has ended.
+  /// Reads what is there into incoming(), as far as that has room. False: it has ended. Who sends
+  /// no more may still be waiting for an answer.
   bool receive(HostTime now);
   std::string& incoming() noexcept { return incoming_; }
-  /// Sends what the system takes.
-  void flush(HostTime now);
+  /// The request is not complete: waits for the rest, if any can come.
+  void await_rest() noexcept;
+  /// The system has room again, because the other side took something: sends on.
+  void send_on(HostTime now);
 
   /// Queues an answer, after which the connection ends.
   void answer(std::string head, SharedBytes body, HostTime now);
@@ -55,6 +58,8 @@ public:
   bool may_speak(HostTime now) noexcept;
   /// Whether an update may be queued: not while it catches up.
   bool has_room() const noexcept { return !catching_up_; }
+  /// Whether a shape is still on its way: another one would only be older when it came.
+  bool has_shape_waiting() const noexcept { return waiting_shapes_ > 0; }
   bool is_overdue(HostTime now) const noexcept;
   /// Sends a ping if it is time.
   void keep_alive(HostTime now);
@@ -68,6 +73,8 @@ private:
     bool is_shape = false;
   };
   void queue(SharedBytes bytes, bool is_shape, HostTime now);
+  /// Sends what the system takes.
+  void flush(HostTime now);
   void end_sending(HostTime now);
 
   Descriptor socket_;
@@ -77,12 +84,14 @@ private:
   std::string incoming_;
   std::deque<Part> waiting_;
   std::size_t sent_of_first_ = 0;
-  std::size_t small_bytes_ = 0; ///< of what waits, without shapes
+  std::size_t small_bytes_ = 0;    ///< of what waits, without shapes
+  std::size_t waiting_shapes_ = 0; ///< parts of such
   bool catching_up_ = false;
+  bool heard_end_ = false; ///< it sends no more
   bool closes_ = false;    ///< ends when all is sent
   HostTime moved_;         ///< when it last took a byte, or nothing waited
   HostTime empty_;         ///< when nothing waited last
-  HostTime heard_, asked_; ///< of a WebSocket: its last bytes, the last ping
+  HostTime heard_, asked_; ///< of a WebSocket: its last sign of life, the last ping
   double words_left_;      ///< that it may say at once
   HostTime spoke_;         ///< when it said something last
 };

@@ -3,23 +3,21 @@
 #include <algorithm>
 #include <array>
 
+#include <nendo/deform/triangles.hpp>
+
 #include "wire.hpp"
 
 namespace nendo::web {
 namespace {
 
-// Faces, cut into fans, by the vertices' places in the blocks.
+// Of triangles, by the vertices' places in the blocks.
 std::vector<std::uint32_t> corners_of(const deform::BlockLayout& layout, const deform::Mesh& mesh) {
   std::vector<std::uint32_t> place_of(layout.vertex_count());
   for (std::size_t at = 0; at < place_of.size(); ++at)
     place_of[layout.order()[at]] = static_cast<std::uint32_t>(at);
   std::vector<std::uint32_t> corners;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const auto begin = mesh.face_starts[face];
-    for (auto corner = begin + 1; corner + 1 < mesh.face_starts[face + 1]; ++corner)
-      for (const auto at : {begin, corner, corner + 1})
-        corners.push_back(place_of[mesh.face_corners[at]]);
-  }
+  for (const std::uint32_t vertex : deform::corners_of_triangles(mesh))
+    corners.push_back(place_of[vertex]);
   return corners;
 }
 

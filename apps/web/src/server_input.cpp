@@ -11,7 +11,7 @@
 namespace nendo::web {
 
 void Server::Work::look_at(Connection& connection, short events, HostTime now) {
-  if ((events & POLLOUT) != 0) connection.flush(now);
+  if ((events & POLLOUT) != 0) connection.send_on(now);
   if ((events & (POLLIN | POLLHUP | POLLERR)) == 0 || !connection.receive(now)) return;
   if (connection.stage() == Connection::Stage::head) read_head(connection, now);
   if (connection.stage() == Connection::Stage::socket) read_socket(connection, now);
@@ -24,7 +24,10 @@ void Server::Work::refuse(Connection& connection, int status, std::string_view w
 
 void Server::Work::read_head(Connection& connection, HostTime now) {
   const HttpHead head = parse_head(connection.incoming());
-  if (head.status == 0) return;
+  if (head.status == 0) {
+    connection.await_rest();
+    return;
+  }
   if (head.status != 200) {
     refuse(connection, head.status, "that is no request for this server", now);
     return;

@@ -76,6 +76,7 @@ void Server::Work::run() {
     }
     drop_overdue(now);
     counts.clients = clients();
+    if (show_.tap) show_.tap->listen(counts.clients > 0);
   }
   end();
 }
@@ -84,6 +85,7 @@ void Server::Work::run() {
 void Server::Work::end() {
   const HostTime now = HostClock::now();
   send_frames(now);
+  if (show_.tap) show_.tap->listen(false);
   for (Connection& connection : connections_)
     if (connection.stage() == Connection::Stage::socket)
       connection.close(CloseCode::going_away, now);
@@ -138,15 +140,13 @@ void Server::Work::make_place() {
       std::find_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
         return connection.stage() != Connection::Stage::socket;
       });
-  if (oldest == connections_.end()) return; // more clients than connections are not let in
+  if (oldest == connections_.end()) return; // one more may ask, and is told that there is no place
   connections_.erase(oldest);
   ++counts.dropped;
 }
 
 void Server::Work::send_frames(HostTime now) {
   if (!show_.tap) return;
-  const bool wanted = clients() > 0;
-  show_.tap->listen(wanted);
   records_.clear();
   show_.tap->take(records_);
   auto shape = show_.tap->take_shape();
@@ -162,7 +162,8 @@ void Server::Work::send_frames(HostTime now) {
     if (client.stage() != Connection::Stage::socket) continue;
     send_frames(client, shape, bytes, now);
     client.keep_alive(now);
-    shape_wanted = shape_wanted || (client.feed.wants_shape() && client.has_room());
+    shape_wanted = shape_wanted ||
+                   (client.feed.wants_shape() && client.has_room() && !client.has_shape_waiting());
   }
   if (shape_wanted) show_.tap->ask_for_shape();
 }
@@ -174,7 +175,7 @@ void Server::Work::send_frames(Connection& client, const std::optional<FrameTap:
     counts.skipped += records_.size();
     return;
   }
-  if (shape && client.feed.wants_shape()) {
+  if (shape && client.feed.wants_shape() && !client.has_shape_waiting()) {
     client.send(Opcode::binary, bytes, true, now);
     client.feed.got_shape(shape->number);
     ++counts.shapes;

@@ -1,6 +1,6 @@
 #pragma once
 // Frames of a WebSocket (RFC 6455, section 5): a client's, as they come in, and the heads of the
-// server's. Pure, and without allocation but for a message in parts.
+// server's. Pure. A message's bytes are handed over in a string of their own.
 
 #include <cstddef>
 #include <cstdint>

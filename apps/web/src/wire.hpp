@@ -2,6 +2,7 @@
 // The bytes of PROTOCOL.md: written in the tick, into room that is there.
 
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -101,6 +102,7 @@ public:
 
   template <class T>
   void put(const T& value) noexcept {
+    assert(used_ + sizeof value <= room_.size());
     std::memcpy(room_.data() + used_, &value, sizeof value);
     used_ += sizeof value;
   }

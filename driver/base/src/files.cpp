@@ -27,7 +27,8 @@ std::string size_text(std::uint64_t bytes) {
                                         : std::to_string(bytes / mebibyte) + " MiB";
 }
 
-/// A name that no other process or thread uses. Not mkstemp: its 0600 would override the umask.
+/// A name that no other thread and no other process of this system uses; but one that was killed
+/// may have left it, or one of another container with the same number.
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> count{0};
   fs::path name = target.parent_path() / ".nendo";
@@ -35,6 +36,16 @@ fs::path temporary_beside(const fs::path& target) {
     name += "." + std::to_string(part);
   name += ".tmp";
   return name;
+}
+
+// Not mkstemp: its 0600 would override the umask.
+Descriptor new_temporary(const fs::path& target, fs::path& name) {
+  constexpr int most_leftovers = 100;
+  for (int turn = 0;; ++turn) {
+    name = temporary_beside(target);
+    Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.is_open() || errno != EEXIST || turn == most_leftovers) return file;
+  }
 }
 
 } // namespace
@@ -127,11 +138,12 @@ Result<FileReplacement> FileReplacement::begin(const fs::path& path) {
   const fs::file_status status = fs::status(begun.target_, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status))
     return Error{Errc::failed, path.string() + ": is not a regular file; name another"};
-  fs::path temporary = temporary_beside(begun.target_);
-  begun.file_ =
-      Descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  fs::path temporary;
+  begun.file_ = new_temporary(begun.target_, temporary);
   if (!begun.file_.is_open()) return begun.failure(errno);
   begun.temporary_ = std::move(temporary);
+  const auto mode = static_cast<mode_t>(status.permissions() & fs::perms::all);
+  if (fs::exists(status) && ::fchmod(begun.file_.get(), mode) != 0) return begun.failure(errno);
   return begun;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <nendo/base/descriptor.hpp>
@@ -29,7 +30,9 @@ struct DatagramCounts {
 
 class DatagramPublisher final : public flow::FrameSink {
 public:
-  explicit DatagramPublisher(const DatagramTarget& target) : target_(target) {}
+  /// name: the target as it was asked for, for errors.
+  DatagramPublisher(std::string name, const DatagramTarget& target)
+      : name_(std::move(name)), target_(target) {}
   ~DatagramPublisher() override { end(); }
 
   /// Before each loop's first tick, while no loop runs: opens the socket, once, and begins to send.
@@ -40,7 +43,7 @@ public:
   /// Sends what is left. No loop runs.
   void end();
 
-  /// While no loop runs.
+  /// After end().
   DatagramCounts counts() const noexcept { return counts_; }
 
 private:
@@ -52,6 +55,7 @@ private:
   void send_update() noexcept;
   void send(std::size_t payload_bytes) noexcept;
 
+  std::string name_;
   DatagramTarget target_;
   Descriptor socket_;
   // The loop's:

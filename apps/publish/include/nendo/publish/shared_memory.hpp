@@ -20,8 +20,8 @@ public:
   static Result<SharedMemory> create(const std::string& name, std::size_t bytes,
                                      const std::optional<unsigned>& group);
   /// Shows it as /dev/shm/nendo-`name`, with what is in it by now. What a run that crashed left
-  /// there is replaced, anything else is not. Errors: failed (another run's, no segment at all),
-  /// no_permission (another user's).
+  /// there is replaced, anything else is not; of several runs that want the name at once one gets
+  /// it. Errors: failed (another run's, no segment at all), no_permission (another user's).
   Result<void> announce();
   /// Takes the name away, if it still leads here; who has mapped the memory keeps it.
   ~SharedMemory();

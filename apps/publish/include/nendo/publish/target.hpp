@@ -36,4 +36,7 @@ using Target = std::variant<SegmentTarget, DatagramTarget>;
 /// usage, without the option's name.
 Result<Target> parse_target(std::string_view text);
 
+/// Whether they are one segment, or one address and port.
+bool is_same_place(const Target& one, const Target& other) noexcept;
+
 } // namespace nendo::publish

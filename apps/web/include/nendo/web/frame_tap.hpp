@@ -36,8 +36,8 @@ public:
   FrameTap(const deform::BlockLayout& layout, flow::Mode mode, std::size_t most_fields,
            std::size_t most_functions);
 
-  /// In the tick. Wait-free: at most one copy of the shape, if it was asked for or the hands
-  /// committed or undid.
+  /// In the tick. Wait-free: a copy of the shape's changed blocks if it was asked for, and in
+  /// Type-1 another one if the hands committed or undid.
   void show(const flow::Frame& frame) noexcept override;
 
   /// The rest is for one other thread.

@@ -12,7 +12,7 @@
 namespace nendo {
 
 /// replace_file(), piece by piece: until finish() everything is in the temporary file, which goes
-/// without it.
+/// without it. Its mode is that of the file in whose place it comes, from before the first byte.
 class FileReplacement {
 public:
   /// Error: failed (not a regular file, cannot be written).

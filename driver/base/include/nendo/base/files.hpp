@@ -28,8 +28,9 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t m
                               std::string_view kind);
 
 /// Writes a temporary file beside the file that `path` or its link leads to, syncs it and renames
-/// it, so that this is either the old file or the whole new one; the temporary never stays.
-/// Anything but a regular file is refused. Error: failed.
+/// it, so that this is either the old file or the whole new one, with the old one's mode. The
+/// temporary goes if that fails; only a process that is killed leaves it (`.nendo.*.tmp`). Anything
+/// but a regular file is refused. Error: failed.
 Result<void> replace_file(const std::filesystem::path& path, std::string_view contents);
 
 /// All of `bytes`, however many calls it takes; false, with errno, if the system refuses one. May
