@@ -7,7 +7,6 @@
 
 #include <nendo/viewer/live_window.hpp>
 
-#include "cli.hpp"
 #include "loop_change.hpp"
 
 namespace nendo::app {
@@ -52,12 +51,7 @@ public:
     for (const auto request : wishes_.requests)
       requests_->try_push(request); // full: the loop stands still, and asking again is as good
     if (wishes_.wrist) wrists_->try_push(*wishes_.wrist); // full: the next one says it again
-    if (options_.frames > 0 && shown_ >= options_.frames) {
-      if (!options_.screenshot.empty())
-        if (const auto done = write_png(options_.screenshot, window_->screenshot()); !done)
-          report(done.error());
-      return Verdict::end;
-    }
+    if (options_.frames > 0 && shown_ >= options_.frames) return Verdict::end;
     if (wishes_.quit) return Verdict::end;
     if (wishes_.settings || wishes_.reset || wishes_.record) changed_at_ = HostClock::now();
     return Verdict::go_on;
@@ -68,6 +62,15 @@ public:
     if (wishes_.record) change.record = !gauges_.recording;
     wishes_ = {};
     return change;
+  }
+
+  Result<void> end() override {
+    if (options_.screenshot.empty()) return {};
+    if (shown_ == 0)
+      return Error{Errc::failed,
+                   "--screenshot " + options_.screenshot +
+                       ": the run ended before its first picture; let it last longer"};
+    return write_png(options_.screenshot, window_->screenshot());
   }
 
 private:

@@ -57,8 +57,6 @@ Result<void> check_outputs(const CommandOptions& options) {
   const ViewOptions& view = options.view;
   if (!view.window && (view.frames > 0 || !view.screenshot.empty()))
     return Error{Errc::usage, "--frames and --screenshot are the window's; add --view"};
-  if (!view.screenshot.empty() && view.frames == 0)
-    return Error{Errc::usage, "--screenshot: say with --frames N after how many pictures"};
   if (auto fine = check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
   if (auto fine = check_place("--picture", run.picture, {".png"}); !fine) return fine;
   if (auto fine = check_place("--record", run.recording.file); !fine) return fine;

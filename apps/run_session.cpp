@@ -97,6 +97,8 @@ public:
       hand.glove->stop();
     if (const auto kept = keep(options_.out, model_); !kept) return kept.error();
     if (const auto drawn = picture.write(model_.vertices); !drawn) return drawn.error();
+    if (followers_.onlooker != nullptr)
+      if (const auto ended = followers_.onlooker->end(); !ended) return ended.error();
     return RunOutcome{placed_.loop->stats(), elapsed_s_,   model_.vertices.cols(),
                       placed_.radius,        options_.out, std::move(options_.grants),
                       recorder_.outcomes()};

@@ -12,7 +12,9 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/hand/joint_filter.hpp>
 
+#include "support/memory_screen.hpp"
 #include "support/program.hpp"
+#include "support/restraint.hpp"
 
 using namespace nendo;
 using nendo::test::EmulatedGlove;
@@ -156,6 +158,30 @@ TEST_SUITE("run") {
     CHECK(done.exit_code == 2);
     CHECK(is_one_line_about(done.err, "--record"));
     CHECK(std::filesystem::is_empty(folder.path()));
+  }
+
+  TEST_CASE(
+      "the window's last picture is there, whatever ended the run, or its absence is an error") {
+    const nendo::test::MemoryScreen screen;
+    // Mesa's own memory is not for our sanitizers, in a child either.
+    if (!screen.is_there() || !nendo::test::restraint_is_counted) return;
+    const TemporaryFolder folder;
+    const auto run = [&](const char* frames, const std::string& picture) {
+      return nendo::test::nendo({"view", "--right", "sim", "--duration", "2", "--frames", frames,
+                                 "--screenshot", picture, "--out",
+                                 (folder.path() / "shape.ply").string()});
+    };
+    for (const char* frames : {"2", "100000"}) {
+      const auto picture = folder.path() / (std::string(frames) + ".png");
+      CHECK(run(frames, picture.string()).exit_code == 0);
+      CHECK(std::filesystem::file_size(picture) > 1000);
+    }
+    const auto gone = folder.path() / "gone";
+    std::filesystem::create_directory(gone);
+    std::filesystem::create_symlink("/dev/full", gone / "full.png");
+    const auto failed = run("2", (gone / "full.png").string());
+    CHECK(failed.exit_code == 1);
+    CHECK(failed.err.find("full") != std::string::npos);
   }
 
   TEST_CASE("names that are no UTF-8 do not end the program, and its JSON stays JSON") {

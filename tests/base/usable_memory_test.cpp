@@ -1,14 +1,22 @@
 #include <nendo/base/usable_memory.hpp>
 
+#include <fstream>
 #include <limits>
 
 #include <doctest/doctest.h>
 
-#include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace nendo;
 namespace fs = std::filesystem;
+
+namespace {
+
+void write(const fs::path& path, const char* text) {
+  std::ofstream(path) << text;
+}
+
+} // namespace
 
 TEST_SUITE("usable_memory") {
   TEST_CASE("the least limit of a process' group and of those above it holds") {
@@ -17,12 +25,12 @@ TEST_SUITE("usable_memory") {
     const fs::path membership = folder.path() / "membership";
     fs::create_directories(root / "system.slice" / "nendo@bench.service");
     const auto limit = [&](const char* group, const char* text) {
-      test::write_file(root / group / "memory.max", text);
+      write(root / group / "memory.max", text);
       return group_memory_limit(membership, root);
     };
     constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
     CHECK(group_memory_limit(membership, root) == none);
-    test::write_file(membership, "12:cpu:/elsewhere\n0::/system.slice/nendo@bench.service\n");
+    write(membership, "12:cpu:/elsewhere\n0::/system.slice/nendo@bench.service\n");
     CHECK(group_memory_limit(membership, root) == none);
     CHECK(limit("system.slice/nendo@bench.service", "max\n") == none);
     CHECK(limit("system.slice/nendo@bench.service", "8000000\n") == 8'000'000);

@@ -93,11 +93,12 @@ void SceneWindow::set_model(const deform::BlockLayout& layout, const SceneBuilde
   renderer_->set_model(layout, builder);
 }
 
-void SceneWindow::begin_picture(const Moment& moment) {
+void SceneWindow::begin_picture(const Moment& moment, bool is_whole) {
   begun_ = HostClock::now();
   glfwPollEvents();
   builder_->build_beside(moment, parts_, scene_);
-  if (!std::exchange(framed_, true)) choose_camera();
+  if (!framed_) choose_camera();
+  framed_ = framed_ || is_whole;
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   if (pretended_) put_pretended();
