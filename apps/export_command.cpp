@@ -65,11 +65,8 @@ Result<std::string> check(const Options& options, const Choice& choice) {
     return Error{Errc::usage, "--tolerance: use a part of the model's diagonal, above 0 and up to "
                               "0.1"};
   const auto format = format_of(options);
-  if (format && is_sequence(*format) && !NumberedName::parse(options.out))
-    return Error{Errc::usage, "--out " + options.out +
-                                  ": is a file a frame, so give the number a place, as in "
-                                  "take-%04d." +
-                                  *format};
+  if (!format || !is_sequence(*format)) return format;
+  if (const auto name = NumberedName::parse(options.out); !name) return name.error();
   return format;
 }
 
@@ -135,10 +132,10 @@ Result<Exported> export_take(const Take& take, const std::string& format, const 
 }
 
 void print_json(const std::string& format, const Exported& done) {
-  nlohmann::ordered_json line{{"event", "exported"},       {"format", format},
-                              {"frames", done.frames},     {"first_s", done.first_s},
-                              {"last_s", done.last_s},     {"bytes", done.bytes},
-                              {"files", done.files.size()}};
+  nlohmann::ordered_json line{{"event", "exported"},        {"format", format},
+                              {"frames", done.frames},      {"first_s", done.first_s},
+                              {"last_s", done.last_s},      {"bytes", done.bytes},
+                              {"files", done.files.size()}, {"exact", done.exact}};
   line["result"] = done.files.empty() ? std::string() : done.files.front();
   if (done.morphs) {
     line["morphs"] = {{"by", done.morphs->by_control_vectors ? "control vectors" : "key shapes"},
@@ -174,6 +171,7 @@ int export_command(const Options& options) {
   if (!take) return report(take.error());
   const auto done = export_take(*take, *format, options, choice);
   if (!done) return report(done.error());
+  if (!done->exact) note_missing(options.file);
   if (options.json)
     print_json(*format, *done);
   else

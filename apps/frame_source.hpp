@@ -18,6 +18,8 @@ public:
   virtual bool next() = 0;
   virtual const flow::Frame& frame() const = 0; ///< the latest; not before next()
   virtual double time_s() const = 0;            ///< of the latest, since the take began
+  /// Nothing was missing so far, so that the frames are those that were.
+  virtual bool is_exact() const { return true; }
 };
 
 } // namespace nendo::app

@@ -25,12 +25,11 @@ public:
   bool next() override;
   const flow::Frame& frame() const override { return replay_->loop().frames().front(); }
   double time_s() const override { return time_s_; }
-
-  const recording::Setup& setup() const noexcept { return reader_.setup(); }
-  /// Nothing was missing so far.
-  bool is_exact() const noexcept {
+  bool is_exact() const override {
     return replay_->is_exact() && reader_.chunks().damage_count() == 0;
   }
+
+  const recording::Setup& setup() const noexcept { return reader_.setup(); }
 
 private:
   RecordedFrames(recording::TakeReader reader, deform::Mesh model)

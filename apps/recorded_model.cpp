@@ -32,4 +32,8 @@ Result<deform::Mesh> recorded_model(const std::string& file, const recording::Se
   return recorded_model(*setup.loop, named);
 }
 
+void note_missing(const std::string& file) {
+  note(file + ": something is missing in it, so the shape may be another");
+}
+
 } // namespace nendo::app

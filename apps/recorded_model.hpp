@@ -1,5 +1,5 @@
 #pragma once
-// The model over which a loop was recorded.
+// The model over which a loop was recorded, and whether what is made of both is as it was.
 
 #include <string>
 
@@ -15,5 +15,8 @@ Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop,
 /// Of the recording in `file`. Error: bad_input also if no loop was recorded.
 Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,
                                     const std::string& named = {});
+
+/// Says on standard error that something is missing in the recording.
+void note_missing(const std::string& file);
 
 } // namespace nendo::app

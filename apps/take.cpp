@@ -113,15 +113,14 @@ public:
       : path_(std::move(path)), frames_(std::move(frames)) {}
 
   Result<viewer::Moment> at(double time_s) {
-    if (seen_ && time_s < frames_->time_s()) {
+    if (seen_ && time_s < frames_->time_s() && time_s < moment_.time_s) {
       auto anew = TimelineFrames::open(path_);
       if (!anew) return anew.error();
       frames_ = *std::move(anew);
       holds_ = {};
       seen_ = false;
     }
-    const double period_s = 1.0 / frames_->rate_hz();
-    while ((!seen_ || frames_->time_s() + period_s <= time_s) && frames_->next()) {
+    while ((!seen_ || frames_->player().has_frame_by(time_s)) && frames_->next()) {
       holds_.follow(frames_->frame());
       seen_ = true;
     }

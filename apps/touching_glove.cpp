@@ -1,7 +1,5 @@
 #include "touching_glove.hpp"
 
-#include <array>
-#include <string_view>
 #include <utility>
 
 #include <nendo/driver/simulated_glove.hpp>
@@ -12,12 +10,10 @@ namespace nendo::app {
 namespace {
 
 void tell_idle_fingers(const std::string& spec, const flow::TouchingHand& hand) {
-  constexpr std::array<std::string_view, hand::finger_count> names{"thumb", "index", "middle",
-                                                                   "ring", "little"};
   std::string idle;
-  for (std::size_t at = 0; at < names.size(); ++at) {
-    if (hand.touches(static_cast<hand::Finger>(at))) continue;
-    idle.append(idle.empty() ? "" : ", ").append(names[at]);
+  for (std::size_t at = 0; at < hand::finger_count; ++at) {
+    const auto finger = static_cast<hand::Finger>(at);
+    if (!hand.touches(finger)) idle.append(idle.empty() ? "" : ", ").append(name_of(finger));
   }
   if (!idle.empty()) note(spec + ": keeps still what does not reach the model: " + idle);
 }

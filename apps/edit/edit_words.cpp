@@ -1,16 +1,11 @@
 #include "edit_words.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 
 namespace nendo::app {
 namespace {
-
-constexpr std::array<std::string_view, hand::finger_count> fingers{"thumb", "index", "middle",
-                                                                   "ring", "little"};
 
 // Cuts a finite number off the front.
 bool cut_number(std::string_view& text, double& value) {
@@ -29,13 +24,9 @@ Result<Side> parse_hand(const std::string& text) {
 }
 
 Result<hand::Finger> parse_finger(const std::string& text) {
-  const auto* const found = std::find(fingers.begin(), fingers.end(), text);
-  if (found != fingers.end()) return static_cast<hand::Finger>(found - fingers.begin());
+  for (std::size_t at = 0; at < hand::finger_count; ++at)
+    if (const auto finger = static_cast<hand::Finger>(at); name_of(finger) == text) return finger;
   return Error{Errc::usage, "--finger " + text + ": use thumb, index, middle, ring or little"};
-}
-
-std::string_view name_of(hand::Finger finger) noexcept {
-  return fingers[static_cast<std::size_t>(finger)];
 }
 
 Result<Eigen::Vector3d> parse_place(const std::string& text) {

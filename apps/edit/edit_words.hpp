@@ -12,7 +12,6 @@ namespace nendo::app {
 
 Result<Side> parse_hand(const std::string& text);
 Result<hand::Finger> parse_finger(const std::string& text);
-std::string_view name_of(hand::Finger finger) noexcept;
 /// "1,-2.5,0" after --to.
 Result<Eigen::Vector3d> parse_place(const std::string& text);
 /// With so many decimals.

@@ -68,8 +68,7 @@ int make_timeline(const MakeOptions& options) {
   }
   if (const auto written = timeline::write_timeline(options.out, made->timeline); !written)
     return report(written.error());
-  if (!made->exact)
-    note(options.take + ": something is missing in it, so the shape may be another");
+  if (!made->exact) note_missing(options.take);
   if (options.json)
     print_json(options, *made);
   else

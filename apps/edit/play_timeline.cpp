@@ -47,9 +47,13 @@ int play_timeline(const PlayOptions& options) {
                                     std::to_string((*frames)->duration_s()) + " s"});
   install_stop_signals();
   const HostTime start = HostClock::now();
-  const double period_s = 1.0 / (*frames)->rate_hz();
-  while ((*frames)->next() && !stop_requested() && (*frames)->time_s() + period_s <= until_s)
-    wait_for((*frames)->time_s() + period_s, options.speed, start);
+  const timeline::Player& player = (*frames)->player();
+  while (player.has_frame_by(until_s)) {
+    if (stop_requested())
+      return report({Errc::failed, options.file + ": stopped before the end; nothing was written"});
+    (*frames)->next();
+    wait_for((*frames)->time_s(), options.speed, start);
+  }
   deform::Mesh shape = (*frames)->model();
   shape.vertices = (*frames)->player().final_shape();
   if (!options.out.empty())

@@ -45,8 +45,6 @@ Result<ChosenFrames> ChosenFrames::make(FrameSource& source, const Choice& choic
   const double periods = std::max(0.0, (end_s - chosen.first_s_) * rate_hz + rounding);
   if (!(periods < static_cast<double>(most_export_frames))) return too_many();
   chosen.count_ = static_cast<std::uint64_t>(periods) + 1;
-  const double source_hz = source.rate_hz();
-  chosen.slack_s_ = 0.5 / (source_hz > rate_hz ? source_hz : rate_hz);
   return chosen;
 }
 
@@ -68,11 +66,20 @@ Result<bool> ChosenFrames::next() {
   return true;
 }
 
-/// The last that comes no later than half a period of the source after the moment: where frames are
-/// missing, the one before stays.
+/// Whether the source's frame is nearer to the moment than the one that is held. Where frames are
+/// missing the one before stays: none comes early by more than three quarters of a period, which no
+/// nearest one does between frames that are less than one and a half apart.
+bool ChosenFrames::is_nearer(double moment_s) const {
+  constexpr double most_early = 0.75;
+  const double early_s = source_->time_s() - moment_s;
+  if (early_s <= 0.0) return true;
+  return early_s <= most_early / source_->rate_hz() && early_s < moment_s - held_s_;
+}
+
 void ChosenFrames::hold_nearest(double moment_s) {
-  while (is_ahead_ && source_->time_s() <= moment_s + slack_s_) {
+  while (is_ahead_ && is_nearer(moment_s)) {
     held_ = source_->frame();
+    held_s_ = source_->time_s();
     is_ahead_ = source_->next();
   }
 }

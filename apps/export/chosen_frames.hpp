@@ -1,7 +1,7 @@
 #pragma once
 // The frames of a take that an export has: of a part of it, each of them or at an even rate. At a
 // rate the frame nearest to each moment is taken, so that every one is a shape that nendo made and
-// none is a mixture.
+// none is a mixture; where frames are missing, the one before stays.
 
 #include <atomic>
 #include <cstdint>
@@ -51,18 +51,19 @@ public:
 
 private:
   ChosenFrames(FrameSource& source, const Choice& choice) : source_(&source), choice_(choice) {}
+  bool is_nearer(double moment_s) const;
   void hold_nearest(double moment_s);
 
   FrameSource* source_;
   Choice choice_;
   bool even_ = false;     ///< at a rate
   bool is_ahead_ = false; ///< the source's frame has not been shown
-  double slack_s_ = 0.0;  ///< a frame that comes so much later is the nearest
   double first_s_ = 0.0;
   double time_s_ = 0.0;
   std::optional<std::uint64_t> count_;
   std::uint64_t made_ = 0;
   flow::Frame held_;
+  double held_s_ = 0.0; ///< its own time
 };
 
 } // namespace nendo::app

@@ -26,7 +26,8 @@ public:
   /// in several links, polynomials, Type-2), and nothing here is of use any more.
   bool add(const flow::Frame& frame, const deform::Points& vertices);
 
-  /// Of the frames so far; model units. Measured in the floats that a reader of targets has.
+  /// Of the frames so far; model units. Measured in the floats that a reader of targets has, and as
+  /// GltfModel puts them into the file, which rounds nothing off.
   double greatest_error() const noexcept { return greatest_error_; }
   /// A row for each control vector, a column a vertex; zero where no support reaches.
   const Eigen::MatrixXf& influences() const noexcept { return influences_; }

@@ -30,7 +30,8 @@ struct Exported {
   double first_s = 0.0; ///< since the take began
   double last_s = 0.0;
   std::uint64_t bytes = 0; ///< of all files
-  std::optional<MorphReport> morphs;
+  std::optional<MorphReport> morphs{};
+  bool exact = true; ///< nothing was missing in the take up to the last frame
 };
 
 /// Begins the same frames anew.

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
-#include <limits>
 #include <string>
 
 #include <nendo/base/byte_writer.hpp>
@@ -26,7 +25,6 @@ constexpr int target_indices = 34963;
 constexpr std::uint32_t magic = 0x46546C67; // "glTF"
 constexpr std::uint32_t json_chunk = 0x4E4F534A;
 constexpr std::uint32_t binary_chunk = 0x004E4942;
-constexpr std::uint64_t most_bytes = std::numeric_limits<std::uint32_t>::max();
 
 std::span<const std::byte> bytes_of(const Eigen::Matrix3Xf& vectors) {
   return std::as_bytes(std::span(vectors.data(), static_cast<std::size_t>(vectors.size())));
@@ -57,7 +55,7 @@ bool are_narrow(std::span<const std::uint32_t> indices) {
 
 } // namespace
 
-GlbFile::GlbFile(std::string_view generator) {
+GlbFile::GlbFile(std::string_view generator, std::uint64_t most_bytes) : most_bytes_(most_bytes) {
   json_["asset"] = {{"version", "2.0"}, {"generator", generator}};
 }
 
@@ -76,7 +74,7 @@ GlbFile::Index GlbFile::add_view(std::span<const std::byte> bytes, std::optional
   const std::size_t padded = (bytes.size() + 3) / 4 * 4;
   bytes_ += padded;
   // What cannot be written need not be kept.
-  if (bytes_ > most_bytes) return views_.size() - 1;
+  if (bytes_ > most_bytes_) return views_.size() - 1;
   auto& part = parts_.emplace_back(padded);
   std::memcpy(part.data(), bytes.data(), bytes.size());
   return views_.size() - 1;
@@ -188,7 +186,7 @@ Result<std::uint64_t> GlbFile::write(const std::filesystem::path& path) const {
   text.resize((text.size() + 3) / 4 * 4, ' ');
   constexpr std::uint64_t heads = 12 + 8 + 8;
   const std::uint64_t total = heads + text.size() + bytes_;
-  if (total > most_bytes) {
+  if (total > most_bytes_) {
     return Error{Errc::failed, path.string() + ": would be larger than 4 GiB, which a GLB file "
                                                "cannot be; export a part with --from and --to, or "
                                                "use a greater --tolerance or a lower --rate"};

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -24,7 +25,9 @@ public:
 
   enum class Use { vertices, indices, animation }; ///< of the numbers in a view
 
-  explicit GlbFile(std::string_view generator);
+  /// most_bytes: what its numbers and its whole can be; a GLB file counts them in 32 bits.
+  explicit GlbFile(std::string_view generator,
+                   std::uint64_t most_bytes = std::numeric_limits<std::uint32_t>::max());
 
   /// The document but for buffers, views and accessors.
   Json& operator[](std::string_view part) { return json_[std::string(part)]; }
@@ -47,7 +50,7 @@ public:
   Index add_matrices(std::span<const float> sixteens); ///< column by column
 
   /// A file of that name is replaced by the whole one. Blocks. Errors: failed (more than 4 GiB,
-  /// which no GLB file can be; cannot be written).
+  /// or whatever the limit is; cannot be written).
   Result<std::uint64_t> write(const std::filesystem::path& path) const;
 
 private:
@@ -55,6 +58,7 @@ private:
   Index add_accessor(Index view, int component, std::size_t count, const char* type);
   Json sparse(std::span<const std::uint32_t> places, std::span<const float> values);
 
+  std::uint64_t most_bytes_;
   Json json_;
   Json views_ = Json::array();
   Json accessors_ = Json::array();

@@ -32,6 +32,11 @@ Error not_finite(double time_s) {
                                "model down, or leave the hands out with --no-hands"};
 }
 
+Error too_many_keys(const std::filesystem::path& path) {
+  return {Errc::failed, path.string() + ": needs more key shapes than programs can read; use a "
+                                        "greater --tolerance, a lower --rate, or --from and --to"};
+}
+
 bool follow_hands(const flow::Frame& frame, Played& played) {
   for (const Side side : {Side::left, Side::right}) {
     const std::size_t slot = flow::Placement::index_of(side);
@@ -84,7 +89,7 @@ struct Document {
 };
 
 Result<Exported> finish(Document& document, const GltfModel& model, const Played& played,
-                        const MorphReport& report, double first_s,
+                        const MorphReport& report, const ChosenFrames& frames,
                         const std::filesystem::path& path) {
   GlbFile& file = document.file;
   Json roots = Json::array({GltfModel::node});
@@ -100,7 +105,9 @@ Result<Exported> finish(Document& document, const GltfModel& model, const Played
     file.add("animations", std::move(document.animation));
   const auto bytes = file.write(path);
   if (!bytes) return bytes.error();
-  return Exported{{path.string()}, played.times_s.size(), first_s, played.last_s, *bytes, report};
+  return Exported{
+      {path.string()}, played.times_s.size(),     frames.first_s(), played.last_s, *bytes,
+      report,          frames.source().is_exact()};
 }
 
 /// Nothing, if the take is not linear in control vectors.
@@ -125,7 +132,7 @@ Result<std::optional<Exported>> by_control_vectors(FrameSource& source, const Ch
   }
   const MorphReport report{true, model.target_count(), weights.empty() ? 0 : played->times_s.size(),
                            morphs.greatest_error() / source.layout().diagonal()};
-  auto done = finish(document, model, *played, report, frames->first_s(), path);
+  auto done = finish(document, model, *played, report, *frames, path);
   if (!done) return done.error();
   return std::optional<Exported>(*std::move(done));
 }
@@ -146,10 +153,11 @@ Result<Exported> by_key_shapes(FrameSource& source, const Choice& choice,
   const auto played = play(*frames, options.hands,
                            [&](const flow::Frame&, float time_s, const deform::Points& vertices) {
                              keys.add(time_s, (vertices - rest).cast<float>());
-                             return true;
+                             return model.key_weight_count() <= options.most_weights;
                            });
   if (!played) return played.error();
   keys.finish();
+  if (model.key_weight_count() > options.most_weights) return too_many_keys(path);
   if (model.target_count() > 0) {
     const auto times = document.file.add_scalars(key_times_s, true);
     document.animate(GltfModel::node, times, model.add_key_weights(document.file));
@@ -158,7 +166,7 @@ Result<Exported> by_key_shapes(FrameSource& source, const Choice& choice,
   const double rounding = (rest.cast<float>().cast<double>() - rest).colwise().norm().maxCoeff();
   const MorphReport report{false, model.target_count(), key_times_s.size(),
                            (keys.greatest_error() + rounding) / diagonal};
-  return finish(document, model, *played, report, frames->first_s(), path);
+  return finish(document, model, *played, report, *frames, path);
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 // - Normals are the rest shape's alone; Blender makes its own of the faces.
 // - Time 0 is the first frame's; weights and joints are interpolated linearly, as players do.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -22,12 +23,15 @@ struct GltfOptions {
   double tolerance = 1e-4; ///< of key shapes; a part of the model's diagonal
   bool hands = true;
   std::string generator = "Nendo";
+  /// Of key shapes: each key has a weight for every target, and who reads the file unpacks them to
+  /// 4 bytes each.
+  std::uint64_t most_weights = std::uint64_t{1} << 28;
 };
 
 /// Goes through the frames once, or a second time if they are not linear in control vectors after
 /// all. Keeps the file in memory until it is written. Blocks. Errors: as `open`,
 /// ChosenFrames::make(), ChosenFrames::next() and GlbFile::write(); bad_input (numbers that 32-bit
-/// floats cannot hold).
+/// floats cannot hold), failed (too many weights).
 Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path);
 

@@ -1,8 +1,13 @@
 #include "export/gltf_model.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
+
+#include <nendo/deform/triangles.hpp>
 
 namespace nendo::app {
 
@@ -26,16 +31,12 @@ Eigen::Matrix3Xf unit_normals(const deform::Mesh& mesh) {
   return normals;
 }
 
-std::vector<std::uint32_t> triangles_of(const deform::Mesh& mesh) {
-  std::vector<std::uint32_t> corners;
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::uint32_t begin = mesh.face_starts[face];
-    const std::uint32_t end = mesh.face_starts[face + 1];
-    for (std::uint32_t at = begin + 2; at < end; ++at)
-      corners.insert(corners.end(),
-                     {mesh.face_corners[begin], mesh.face_corners[at - 1], mesh.face_corners[at]});
-  }
-  return corners;
+/// At least as large as the vectors' coordinates, and a power of two, so that a target, a weight
+/// and their product lose nothing that the influence and the vector have not lost.
+float scale_for(float greatest_vector) {
+  int exponent = 0;
+  std::frexp(greatest_vector, &exponent);
+  return std::ldexp(1.0F, std::min(exponent, std::numeric_limits<float>::max_exponent - 1));
 }
 
 } // namespace
@@ -43,7 +44,7 @@ std::vector<std::uint32_t> triangles_of(const deform::Mesh& mesh) {
 GltfModel::GltfModel(const deform::Mesh& mesh, GlbFile& file) {
   primitive_["attributes"]["POSITION"] =
       file.add_vectors(mesh.vertices.cast<float>(), Use::vertices, true);
-  const auto triangles = triangles_of(mesh);
+  const auto triangles = deform::corners_of_triangles(mesh);
   if (triangles.empty()) {
     primitive_["mode"] = points_mode;
   } else {
@@ -62,7 +63,7 @@ std::vector<float> GltfModel::add_control_targets(const ControlMorphs& morphs, G
   const Eigen::MatrixXf& influences = morphs.influences();
   const std::vector<float> vectors = morphs.vectors();
   const auto width = static_cast<std::size_t>(3 * influences.rows());
-  const float greatest = morphs.greatest_vector();
+  const float scale = scale_for(morphs.greatest_vector());
   struct Used {
     std::size_t coordinate; ///< of a moment's vectors
     float sign;
@@ -77,7 +78,7 @@ std::vector<float> GltfModel::add_control_targets(const ControlMorphs& morphs, G
       if (!is_used || influence.isZero(0.0F)) continue;
       used.push_back({coordinate, sign});
       Eigen::Matrix3Xf way = Eigen::Matrix3Xf::Zero(3, influences.cols());
-      way.row(static_cast<Index>(coordinate % 3)) = sign * greatest * influence;
+      way.row(static_cast<Index>(coordinate % 3)) = sign * scale * influence;
       add_target(way,
                  "control " + std::to_string(coordinate / 3 + 1) + (sign > 0.0F ? " +" : " -") +
                      "xyz"[coordinate % 3],
@@ -86,7 +87,7 @@ std::vector<float> GltfModel::add_control_targets(const ControlMorphs& morphs, G
   std::vector<float> weights;
   for (std::size_t moment = 0; !used.empty() && moment < vectors.size(); moment += width)
     for (const auto& [coordinate, sign] : used)
-      weights.push_back(std::max(0.0F, sign * vectors[moment + coordinate] / greatest));
+      weights.push_back(std::max(0.0F, sign * vectors[moment + coordinate] / scale));
   return weights;
 }
 
@@ -103,11 +104,12 @@ void GltfModel::add_key_target(const Eigen::Matrix3Xf& way, GlbFile& file) {
 }
 
 GlbFile::Index GltfModel::add_key_weights(GlbFile& file) const {
+  assert(key_weight_count() <= std::numeric_limits<std::uint32_t>::max());
   std::vector<std::uint32_t> ones;
   for (std::size_t key = 0; key < key_targets_.size(); ++key)
     if (key_targets_[key])
       ones.push_back(static_cast<std::uint32_t>(key * target_count()) + *key_targets_[key]);
-  return file.add_ones(key_targets_.size() * target_count(), ones);
+  return file.add_ones(key_weight_count(), ones);
 }
 
 void GltfModel::add_to(GlbFile& file, double units_per_metre, const MorphReport& report) const {

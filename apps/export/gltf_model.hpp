@@ -29,7 +29,11 @@ public:
   /// The next key's shape, as displacements from the rest shape (3 by #vertices). One like the
   /// latest, or like the rest shape, needs no target of its own.
   void add_key_target(const Eigen::Matrix3Xf& way, GlbFile& file);
-  /// The weights of all keys: each is its own target alone.
+  /// Of all keys so far, each with one for every target.
+  std::uint64_t key_weight_count() const noexcept {
+    return std::uint64_t{key_targets_.size()} * target_count();
+  }
+  /// The weights of all keys: each is its own target alone. Fewer than 2^32.
   GlbFile::Index add_key_weights(GlbFile& file) const;
 
   std::size_t target_count() const noexcept { return targets_.size(); }

@@ -74,6 +74,7 @@ Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeleto
     done.bytes += hand.file.size();
   }
   done.frames = frames.made();
+  done.exact = frames.source().is_exact();
   return done;
 }
 

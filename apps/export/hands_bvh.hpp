@@ -14,7 +14,7 @@ namespace nendo::app {
 using Skeletons = std::array<std::optional<hand::HandSkeleton>, 2>;
 
 /// `frames` are at a rate. One hand goes to `path`, two to NAME-left.bvh and NAME-right.bvh;
-/// neither gets its name before both are whole. Blocks. Errors: as ChosenFrames::next(); failed
+/// neither gets its name before both are written. Blocks. Errors: as ChosenFrames::next(); failed
 /// (cannot be written), bad_input (no hand, a pose that is not finite).
 Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeletons,
                                   const std::filesystem::path& path);

@@ -7,7 +7,11 @@
 
 namespace nendo::app {
 
-std::optional<NumberedName> NumberedName::parse(const std::string& pattern) {
+Result<NumberedName> NumberedName::parse(const std::string& pattern) {
+  const Error refused{Errc::usage,
+                      "--out " + pattern +
+                          ": is a file a frame, so give the number a place, as in take-%04d" +
+                          std::filesystem::path(pattern).extension().string()};
   NumberedName name;
   bool found = false;
   for (std::size_t at = 0; at < pattern.size(); ++at) {
@@ -29,10 +33,11 @@ std::optional<NumberedName> NumberedName::parse(const std::string& pattern) {
       name.digits_ = static_cast<std::size_t>(rest[1] - '0');
       at += 3;
     } else {
-      return std::nullopt;
+      return refused;
     }
   }
-  return found ? std::optional(name) : std::nullopt;
+  if (!found) return refused;
+  return name;
 }
 
 std::string NumberedName::of(std::uint64_t number) const {
@@ -43,13 +48,9 @@ std::string NumberedName::of(std::uint64_t number) const {
 
 Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& pattern) {
   const auto name = NumberedName::parse(pattern);
-  if (!name) {
-    return Error{Errc::usage, "--out " + pattern +
-                                  ": is a file a frame, so give the number a place, as in "
-                                  "take-%04d.obj"};
-  }
+  if (!name) return name.error();
   deform::Mesh mesh = frames.source().model();
-  Exported done{{}, 0, frames.first_s(), frames.first_s(), 0, {}};
+  Exported done{{}, 0, frames.first_s(), frames.first_s()};
   const auto so_far = [&](const Error& error) {
     const std::string count = std::to_string(done.frames);
     return Error{error.code, done.frames == 0
@@ -59,7 +60,7 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
   for (;;) {
     const auto more = frames.next();
     if (!more) return so_far(more.error());
-    if (!*more) return done;
+    if (!*more) break;
     frames.vertices(mesh.vertices);
     const std::string file = name->of(frames.made());
     if (const auto written = deform::write_mesh(file, mesh); !written)
@@ -71,6 +72,8 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
     done.frames = frames.made();
     done.last_s = frames.time_s();
   }
+  done.exact = frames.source().is_exact();
+  return done;
 }
 
 } // namespace nendo::app

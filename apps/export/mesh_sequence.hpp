@@ -1,7 +1,6 @@
 #pragma once
 // A mesh file a frame, numbered from 1.
 
-#include <optional>
 #include <string>
 
 #include <nendo/deform/mesh.hpp>
@@ -15,8 +14,9 @@ namespace nendo::app {
 /// four digits (1 to 9); %% is a percent sign.
 class NumberedName {
 public:
-  /// Nothing: it has no such place, or more than one, or something else after a percent sign.
-  static std::optional<NumberedName> parse(const std::string& pattern);
+  /// Error: usage, of --out (it has no such place, or more than one, or something else after a
+  /// percent sign).
+  static Result<NumberedName> parse(const std::string& pattern);
   std::string of(std::uint64_t number) const;
 
 private:

@@ -10,8 +10,6 @@ namespace nendo::app {
 namespace {
 
 constexpr std::array<Side, 2> sides{Side::left, Side::right};
-constexpr std::array<const char*, hand::finger_count> finger_names{"thumb", "index", "middle",
-                                                                   "ring", "little"};
 
 std::string_view word_for(deform::FieldStatus status) {
   switch (status) {
@@ -56,9 +54,9 @@ std::string head_for(const flow::Frame& frame) {
     head += hand + "samples" + hand + "silent";
     for (const auto angle : hand::angle_names)
       head += hand + std::string(angle) + "_deg";
-    for (const char* finger : finger_names)
+    for (const hand::Joint tip : hand::fingertips)
       for (const char* axis : {"x", "y", "z"})
-        head += hand + finger + "_tip_" + axis + "_m";
+        head.append(hand).append(name_of(tip)).append("_").append(axis).append("_m");
   }
   return head + "\n";
 }

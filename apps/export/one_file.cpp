@@ -6,7 +6,7 @@ Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem:
                                     const PutFrame& put) {
   auto file = FileReplacement::begin(path);
   if (!file) return file.error();
-  Exported done{{path.string()}, 0, frames.first_s(), frames.first_s(), 0, {}};
+  Exported done{{path.string()}, 0, frames.first_s(), frames.first_s()};
   for (;;) {
     const auto more = frames.next();
     if (!more) return more.error();
@@ -17,6 +17,7 @@ Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem:
   if (const auto finished = file->finish(); !finished) return finished.error();
   done.frames = frames.made();
   done.bytes = file->size();
+  done.exact = frames.source().is_exact();
   return done;
 }
 

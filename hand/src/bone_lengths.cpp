@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <nendo/hand/joints.hpp>
+
 namespace nendo::hand {
 namespace {
 
@@ -19,8 +21,6 @@ Result<void> check_bone(std::string_view finger, std::string_view bone, double l
 } // namespace
 
 Result<void> BoneLengths::check() const {
-  static constexpr std::array<std::string_view, 4> finger_names{"index", "middle", "ring",
-                                                                "little"};
   static constexpr std::array<std::string_view, 4> bone_names{"metacarpal", "proximal",
                                                               "intermediate", "distal"};
   static constexpr std::array<std::string_view, 3> thumb_names{"metacarpal", "proximal", "distal"};
@@ -30,7 +30,8 @@ Result<void> BoneLengths::check() const {
   }
   for (std::size_t finger = 0; finger < fingers_m.size(); ++finger) {
     for (std::size_t bone = 0; bone < bone_names.size(); ++bone) {
-      auto checked = check_bone(finger_names[finger], bone_names[bone], fingers_m[finger][bone]);
+      const auto name = name_of(static_cast<Finger>(finger + 1)); // the thumb has its own
+      auto checked = check_bone(name, bone_names[bone], fingers_m[finger][bone]);
       if (!checked) return checked;
     }
   }

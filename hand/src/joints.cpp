@@ -32,6 +32,9 @@ constexpr std::array<std::string_view, joint_count> names{
     "little_tip",
 };
 
+constexpr std::array<std::string_view, finger_count> finger_names{"thumb", "index", "middle",
+                                                                  "ring", "little"};
+
 constexpr bool is_metacarpal(Joint joint) noexcept {
   return joint == Joint::thumb_metacarpal || joint == Joint::index_metacarpal ||
          joint == Joint::middle_metacarpal || joint == Joint::ring_metacarpal ||
@@ -42,6 +45,10 @@ constexpr bool is_metacarpal(Joint joint) noexcept {
 
 std::string_view name_of(Joint joint) noexcept {
   return names[index_of(joint)];
+}
+
+std::string_view name_of(Finger finger) noexcept {
+  return finger_names[static_cast<std::size_t>(finger)];
 }
 
 std::optional<Joint> parent_of(Joint joint) noexcept {

@@ -4,11 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/timeline/timeline_file.hpp>
 #include <nendo/viewer/image.hpp>
 
 #include "support/memory_screen.hpp"
 #include "support/program.hpp"
 #include "support/restraint.hpp"
+#include "support/within.hpp"
 
 using namespace nendo;
 using nendo::test::contents;
@@ -59,6 +61,17 @@ double farthest(const std::string& one, const std::string& other) {
   REQUIRE(mesh);
   REQUIRE(other_mesh);
   return (mesh->vertices - other_mesh->vertices).colwise().norm().maxCoeff();
+}
+
+/// Whether the program, no longer the test that forked, has a handler for a signal.
+bool catches(pid_t process, int signal) {
+  const std::string folder = "/proc/" + std::to_string(process);
+  std::error_code gone;
+  if (std::filesystem::read_symlink(folder + "/exe", gone).filename() != "nendo") return false;
+  const std::string status = contents(folder + "/status");
+  const auto at = status.find("SigCgt:");
+  return at != std::string::npos &&
+         (std::stoull(status.substr(at + 7), nullptr, 16) >> (signal - 1) & 1U) != 0;
 }
 
 } // namespace
@@ -119,6 +132,40 @@ TEST_SUITE("edit_command") {
     CAPTURE(drawn.err);
     CHECK(drawn.exit_code == 0);
     CHECK(contents(picture).substr(1, 3) == "PNG");
+  }
+
+  TEST_CASE("the last frame is played, and what is due there, by play and export alike") {
+    const EditedRun run("type1", "2mm");
+    auto timeline = timeline::read_timeline(run.timeline);
+    REQUIRE(timeline);
+    timeline->duration_s = 0.6; // frame 12 of 20 a second, but for rounding
+    timeline->held = true;
+    timeline->events = {{0.6, flow::Request::let_go}};
+    REQUIRE(timeline::write_timeline(run.timeline, *timeline));
+    const json all = json::parse(run.fine({"play", run.timeline, "--json"}));
+    CHECK(all["frames"] == 13);
+    CHECK(all["commits"] == 1);
+    for (const auto& [until, frames] : {std::pair{"0.55", 12}, {"0.6", 13}, {"0.3", 7}}) {
+      const json told = json::parse(run.fine({"play", run.timeline, "--until", until, "--json"}));
+      CHECK(told["frames"] == frames);
+    }
+    const auto exported =
+        test::nendo({"export", run.timeline, "--out", run.path("a.csv"), "--rate", "20", "--json"});
+    CHECK(json::parse(exported.out)["frames"] == 13);
+  }
+
+  TEST_CASE("a play that is stopped is no success, and the file that was there stays") {
+    const EditedRun run("type2", "2mm");
+    run.fine({"retime", run.timeline, "--scale", "1000"});
+    const std::string played = run.path("played.obj");
+    test::write_file(played, "old");
+    test::Program playing({"edit", "play", run.timeline, "--out", played});
+    REQUIRE(test::within(std::chrono::seconds(20), [&] { return catches(playing.id(), SIGINT); }));
+    playing.signal(SIGINT);
+    const auto done = playing.wait();
+    CHECK(done.exit_code == 1);
+    CHECK(is_one_line_about(done.err, "stopped before the end"));
+    CHECK(contents(played) == "old");
   }
 
   TEST_CASE("what cannot be is one line that names the file, and the file stays") {

@@ -21,7 +21,7 @@ struct Take {
   std::filesystem::path path = folder.path() / "take.nendo";
   std::vector<GloveSample> right;
 
-  explicit Take(int samples) {
+  explicit Take(int samples, HostClock::duration step = 10ms) {
     std::vector<std::byte> bytes;
     ByteWriter(bytes).bytes(file_header());
     std::uint32_t chunk = 0;
@@ -41,7 +41,7 @@ struct Take {
       payload.clear();
       ByteWriter writer(payload);
       GloveSample sample;
-      sample.arrival = HostTime(1h + at * 10ms);
+      sample.arrival = HostTime(1h + at * step);
       sample.measured = sample.arrival - 2ms;
       sample.device_time = at * 10ms;
       sample.has_device_time = true;
@@ -116,6 +116,20 @@ TEST_SUITE("replay_driver") {
       CHECK(samples[at].sequence == at);
       CHECK(samples[at].raw == take.right[at % 3].raw);
       CHECK(samples[at].side == Side::left);
+    }
+  }
+
+  TEST_CASE("a recording whose time goes backwards does not hurry from pass to pass") {
+    const Take take(2, -std::chrono::years(20));
+    const auto glove = open_glove(take.spec("?hand=right&loop=yes"));
+    REQUIRE(glove);
+    const HostTime begin = HostClock::now();
+    const auto samples = samples_of(**glove, 20);
+    REQUIRE(samples.size() >= 20);
+    for (std::size_t at = 0; at < 20; ++at) {
+      CHECK(samples[at].raw == take.right[at % 2].raw);
+      CHECK(samples[at].arrival - begin >= at / 2 * 10ms); // a period from pass to pass
+      if (at % 2 == 0) CHECK(samples[at].measured - begin >= -2ms);
     }
   }
 

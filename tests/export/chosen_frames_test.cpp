@@ -5,41 +5,13 @@
 
 #include <doctest/doctest.h>
 
-#include "support/flow_fixtures.hpp"
+#include "support/scripted_frames.hpp"
 
 using namespace nendo;
 using namespace nendo::app;
+using nendo::test::ScriptedFrames;
 
 namespace {
-
-/// Frames at the times that a test wants; a frame's tick is its number.
-class ScriptedFrames final : public FrameSource {
-public:
-  explicit ScriptedFrames(std::vector<double> times_s, double rate_hz = 90.0)
-      : model_(test::ball(3)), layout_(model_.vertices), times_s_(std::move(times_s)),
-        rate_hz_(rate_hz) {
-    frame_.shape = layout_.pack();
-  }
-  const deform::Mesh& model() const override { return model_; }
-  const deform::BlockLayout& layout() const override { return layout_; }
-  double rate_hz() const override { return rate_hz_; }
-  double duration_s() const override { return times_s_.empty() ? 0.0 : times_s_.back(); }
-  bool next() override {
-    if (made_ == times_s_.size()) return false;
-    frame_.tick = made_++;
-    return true;
-  }
-  const flow::Frame& frame() const override { return frame_; }
-  double time_s() const override { return times_s_[made_ - 1]; }
-
-private:
-  deform::Mesh model_;
-  deform::BlockLayout layout_;
-  std::vector<double> times_s_;
-  double rate_hz_;
-  std::size_t made_ = 0;
-  flow::Frame frame_;
-};
 
 std::vector<double> even(std::size_t count, double rate_hz) {
   std::vector<double> times_s;
@@ -107,6 +79,37 @@ TEST_SUITE("chosen_frames") {
     const Taken taken = take_all(*third);
     for (std::size_t at = 0; at < taken.frames.size(); ++at)
       CHECK(taken.frames[at] == 3 * at); // no stutter
+  }
+
+  TEST_CASE("whatever the two rates are, no other frame is nearer to its moment") {
+    std::mt19937 random(4);
+    for (const double latest : {0.0, 0.2, 0.4}) { // of a period
+      for (const double source_hz : {20.0, 30.0, 90.0}) {
+        std::uniform_real_distribution<double> late(0.0, latest / source_hz);
+        auto times_s = even(200, source_hz);
+        for (std::size_t at = 1; at < times_s.size() && latest > 0.0; ++at)
+          times_s[at] += late(random);
+        for (const double rate_hz : {7.0, 24.0, 30.0, 60.0, 77.7, 90.0, 240.0}) {
+          CAPTURE(latest);
+          CAPTURE(source_hz);
+          CAPTURE(rate_hz);
+          ScriptedFrames source(times_s, source_hz);
+          auto chosen = ChosenFrames::make(source, {.rate_hz = rate_hz});
+          REQUIRE(chosen);
+          const Taken taken = take_all(*chosen);
+          REQUIRE(taken.frames.size() == *chosen->count());
+          double worst_s = 0.0;
+          for (std::size_t at = 0; at < taken.frames.size(); ++at) {
+            double nearest_s = 1e9;
+            for (const double time_s : times_s)
+              nearest_s = std::min(nearest_s, std::abs(time_s - taken.times_s[at]));
+            const double off_s = std::abs(times_s[taken.frames[at]] - taken.times_s[at]);
+            worst_s = std::max(worst_s, off_s - nearest_s);
+          }
+          CHECK(worst_s < 1e-12);
+        }
+      }
+    }
   }
 
   TEST_CASE("where frames are missing the one before stays, and none comes early") {

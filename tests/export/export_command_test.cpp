@@ -60,6 +60,28 @@ TEST_SUITE("export_command") {
     CHECK(plain.out.find(" morph targets of the control vectors") != std::string::npos);
   }
 
+  TEST_CASE("every format says whether something was missing in the recording") {
+    const RecordedRun run("type1");
+    const std::string whole = contents(run.path("take.nendo"));
+    std::string damaged = whole;
+    const std::size_t tape = damaged.find("TAPE");
+    REQUIRE(tape != std::string::npos);
+    damaged[tape + 40] = static_cast<char>(damaged[tape + 40] ^ 1);
+    for (const std::string out : {"a.glb", "a.pc2", "a.mdd", "hands.bvh", "a.csv", "a-%03d.obj"}) {
+      CAPTURE(out);
+      test::write_file(run.path("take.nendo"), whole);
+      const auto exact = run.export_to(out);
+      REQUIRE(exact.exit_code == 0);
+      CHECK(exact.err.empty());
+      CHECK(json::parse(exact.out)["exact"] == true);
+      test::write_file(run.path("take.nendo"), damaged);
+      const auto other = run.export_to(out);
+      REQUIRE(other.exit_code == 0);
+      CHECK(is_one_line_about(other.err, "something is missing"));
+      CHECK(json::parse(other.out)["exact"] == false);
+    }
+  }
+
   TEST_CASE("Type-2 keeps within its tolerance, and says so") {
     const RecordedRun run("type2");
     const auto done = run.export_to("take.glb", {"--tolerance", "1e-3", "--no-hands"});

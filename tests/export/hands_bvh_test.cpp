@@ -4,6 +4,8 @@
 
 #include "support/bvh_reader.hpp"
 #include "support/recorded_motion.hpp"
+#include "support/scripted_frames.hpp"
+#include "support/small_disk.hpp"
 
 using namespace nendo;
 using namespace nendo::app;
@@ -42,6 +44,51 @@ TEST_SUITE("hands_bvh") {
         CHECK((world[tip].block<3, 1>(0, 3) - 100.0 * pose[hand::Joint::index_tip].translation())
                   .norm() < 1e-3);
       }
+    }
+  }
+
+  TEST_CASE("whatever goes wrong on the way, neither hand has a new file, and the old ones stay") {
+    const Skeletons both{hand::HandSkeleton(Side::left), hand::HandSkeleton(Side::right)};
+    const test::TemporaryFolder folder;
+    const auto left = folder.path() / "a-left.bvh";
+    const auto right = folder.path() / "a-right.bvh";
+    test::write_bytes(left, "old");
+    const auto check_kept = [&](const Result<Exported>& done, Errc code) {
+      REQUIRE_FALSE(done);
+      CHECK(done.error().code == code);
+      CHECK(test::file_bytes(left) == "old");
+      CHECK_FALSE(std::filesystem::exists(right));
+      const std::filesystem::directory_iterator files(folder.path());
+      CHECK(std::distance(begin(files), end(files)) == 1); // nothing temporary
+    };
+    test::ScriptedFrames broken({0.1, 0.2, 0.3});
+    broken.change = [](flow::Frame& frame) {
+      for (auto& hand : frame.hands)
+        hand.pose.joints.fill(Eigen::Isometry3d::Identity());
+      if (frame.tick == 2)
+        frame.hands[1].pose.joints[hand::index_of(hand::Joint::wrist)].translation().x() =
+            std::nan("");
+    };
+    auto frames = ChosenFrames::make(broken, {.rate_hz = 10.0});
+    REQUIRE(frames);
+    check_kept(export_hands_bvh(*frames, both, folder.path() / "a.bvh"), Errc::bad_input);
+    const RecordedMotion motion(Motion{.ticks = 5});
+    const auto export_to = [&](const std::filesystem::path& path) {
+      const auto source = motion.frames();
+      auto fine = ChosenFrames::make(*source, {.rate_hz = 100.0});
+      REQUIRE(fine);
+      return export_hands_bvh(*fine, both, path);
+    };
+    REQUIRE(export_to(motion.path("b.bvh")));
+    const rlim_t most = std::max(std::filesystem::file_size(motion.path("b-left.bvh")),
+                                 std::filesystem::file_size(motion.path("b-right.bvh")));
+    for (const rlim_t room : {rlim_t{100}, most - 1}) { // in the head, and in the last frame
+      Result<Exported> done = Exported{};
+      {
+        const test::SmallDisk small(room);
+        done = export_to(folder.path() / "a.bvh");
+      }
+      check_kept(done, Errc::failed);
     }
   }
 

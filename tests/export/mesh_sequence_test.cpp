@@ -33,8 +33,9 @@ TEST_SUITE("mesh_sequence") {
                                                      {"%-4d.obj", nullptr}}) {
       CAPTURE(row.pattern);
       const auto name = NumberedName::parse(row.pattern);
-      CHECK(name.has_value() == (row.name != nullptr));
+      CHECK(static_cast<bool>(name) == (row.name != nullptr));
       if (name && row.name != nullptr) CHECK(name->of(7) == row.name);
+      if (!name) CHECK(name.error().message.find("as in take-%04d") != std::string::npos);
     }
     CHECK(NumberedName::parse("%02d")->of(12345) == "12345");
   }

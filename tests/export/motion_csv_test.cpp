@@ -1,11 +1,13 @@
 #include "export/motion_csv.hpp"
 
+#include <limits>
 #include <map>
 #include <sstream>
 
 #include <doctest/doctest.h>
 
 #include "support/recorded_motion.hpp"
+#include "support/scripted_frames.hpp"
 
 using namespace nendo;
 using namespace nendo::app;
@@ -16,7 +18,7 @@ namespace {
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
-  std::istringstream stream(line);
+  std::istringstream stream(line + ","); // getline() gives no empty one at an end
   for (std::string cell; std::getline(stream, cell, ',');)
     cells.push_back(cell);
   return cells;
@@ -71,5 +73,34 @@ TEST_SUITE("motion_csv") {
         CHECK(std::stod(table[name + "ring_tip_z_m"][row]) == doctest::Approx(tip.z()));
       }
     }
+  }
+
+  TEST_CASE("a number that is not finite leaves its cell empty, and no other") {
+    test::ScriptedFrames source({0.1, 0.2, 0.3});
+    source.change = [](flow::Frame& frame) {
+      for (std::size_t slot = 0; slot < 2; ++slot) {
+        frame.hands[slot].present = true;
+        frame.hands[slot].pose.joints.fill(Eigen::Isometry3d::Identity());
+      }
+      if (frame.tick != 1) return;
+      frame.hands[0].angles.thumb_roll_rad = std::numeric_limits<double>::quiet_NaN();
+      frame.hands[1].angles[hand::Finger::ring].mcp_flexion_rad =
+          -std::numeric_limits<double>::infinity();
+      frame.hands[1].pose.joints[hand::index_of(hand::Joint::little_tip)].translation().z() =
+          std::numeric_limits<double>::infinity(); // the last cell of the row
+    };
+    auto frames = ChosenFrames::make(source, {});
+    REQUIRE(frames);
+    const test::TemporaryFolder folder;
+    REQUIRE(export_motion_csv(*frames, folder.path() / "a.csv"));
+    const auto table = table_of(test::file_bytes(folder.path() / "a.csv"));
+    std::vector<std::string> empty;
+    for (const auto& [name, cells] : table) {
+      REQUIRE(cells.size() == 3);
+      CHECK_FALSE(cells[0].empty());
+      if (cells[1].empty()) empty.push_back(name);
+    }
+    CHECK(empty == std::vector<std::string>{"left_thumb_roll_deg", "right_little_tip_z_m",
+                                            "right_ring_mcp_flexion_deg"});
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <nendo/recording/loop_replay.hpp>
+#include <nendo/recording/take_tools.hpp>
 
 #include "support/test_meshes.hpp"
 
@@ -49,6 +50,18 @@ void replay(const Setup& setup, const std::vector<Entry>& entries) {
   require((*replayed)->loop().final_shape().allFinite());
 }
 
+void sum_up(std::span<const std::byte> file, const std::vector<Entry>& entries) {
+  const auto summary = summarise(file, "fuzz");
+  require(summary && summary->gloves.size() == summary->setup.gloves.size());
+  std::uint64_t samples = 0;
+  for (const auto& glove : summary->gloves)
+    samples += glove.samples;
+  require(samples == static_cast<std::uint64_t>(
+                         std::count_if(entries.begin(), entries.end(), [](const Entry& entry) {
+                           return std::holds_alternative<driver::RecordedSample>(entry);
+                         })));
+}
+
 void read(std::span<const std::byte> file) {
   auto reader = TakeReader::of(file, "fuzz");
   if (!reader) {
@@ -63,6 +76,7 @@ void read(std::span<const std::byte> file) {
     require(entries.size() <= 2 * file.size()); // nothing comes out of nothing
   }
   require(reader->chunks().good_end() <= file.size());
+  sum_up(file, entries);
   if (setup.loop) {
     auto& deformer = setup.loop->options.sculptor.deformer;
     deformer.undo_bytes = std::min<std::size_t>(deformer.undo_bytes, 1 << 16);

@@ -30,6 +30,11 @@ TEST_SUITE("joints") {
     CHECK(names.size() == joint_count);
   }
 
+  TEST_CASE("a fingertip is called after its finger") {
+    for (std::size_t at = 0; at < finger_count; ++at)
+      CHECK(name_of(fingertips[at]) == std::string(name_of(static_cast<Finger>(at))) + "_tip");
+  }
+
   TEST_CASE("every joint but the wrist hangs, in the end, on the wrist") {
     CHECK_FALSE(parent_of(Joint::wrist).has_value());
     for (std::size_t at = 0; at < joint_count; ++at) {

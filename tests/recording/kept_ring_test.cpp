@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "crash_keeper.hpp"
 #include "support/takes.hpp"
 #include "support/within.hpp"
 
@@ -19,6 +20,15 @@ using flow::Mode;
 using test::RecordedLoop;
 
 namespace {
+
+/// To do to a ring what a crash may have done to it. An explicit instantiation may name what is
+/// private.
+std::vector<std::byte>& memory_of(KeptRing& ring);
+template <std::vector<std::byte> KeptRing::*memory>
+struct Reach {
+  friend std::vector<std::byte>& memory_of(KeptRing& ring) { return ring.*memory; }
+};
+template struct Reach<&KeptRing::memory_>;
 
 struct Kept {
   std::vector<std::uint64_t> ticks;
@@ -135,6 +145,26 @@ TEST_SUITE("kept_ring") {
     CHECK(filled.written().ticks == std::vector<std::uint64_t>{0, 1, 2, 3, 4});
   }
 
+  TEST_CASE("a payload in whose middle its thread died is left out, and a reader knows it") {
+    for (const std::size_t broken : {0U, 1U, 2U}) {
+      CAPTURE(broken);
+      Filled filled(60s, 1 << 20);
+      std::vector<std::uint64_t> wanted;
+      for (std::size_t payload = 0; payload < 3; ++payload) {
+        if (payload != broken) wanted.insert(wanted.end(), {2 * payload, 2 * payload + 1});
+        filled.push(2);
+      }
+      constexpr std::size_t tick_bytes = 26;
+      memory_of(*filled.ring)[broken * 2 * tick_bytes + 5] ^= std::byte{1};
+      filled.push(2); // whose thread did not die
+      wanted.insert(wanted.end(), {6, 7});
+      const Kept kept = filled.written();
+      CHECK(kept.ticks == wanted);
+      CHECK(kept.gaps == 1);
+      CHECK(kept.damages == 1);
+    }
+  }
+
   TEST_CASE("keep() and the switch at the wrist make files while the loop runs") {
     RecordedLoop live(Mode::type1);
     const auto stem = live.folder.path() / "clay";
@@ -182,6 +212,30 @@ TEST_SUITE("kept_ring") {
       CHECK(kept.damages == 0);
       for (std::size_t at = 0; at < kept.ticks.size(); ++at)
         CHECK(kept.ticks[at] == at);
+    }
+  }
+
+  TEST_CASE("a second thread that crashes does not end the process before the file is written") {
+    for (const int second_crash : {SIGSEGV, SIGABRT}) {
+      CAPTURE(second_crash);
+      Filled filled(1h, std::size_t{64} << 20);
+      constexpr std::uint64_t ticks = 150'000; // 4 MB a payload, so that writing them takes a while
+      const int ended_by = signal_that_ends([&] {
+        for (int payload = 0; payload < 8; ++payload)
+          filled.push(ticks);
+        const CrashKeeper keeper(*filled.ring, filled.path);
+        const std::jthread second([&] {
+          while (::access(filled.path.c_str(), F_OK) != 0) {
+          }
+          ::raise(second_crash);
+        });
+        ::raise(SIGSEGV);
+        ::pause();
+      });
+      CHECK((ended_by == SIGSEGV || ended_by == second_crash));
+      const Kept kept = read(filled.path);
+      CHECK(kept.damages == 0);
+      CHECK(kept.ticks.size() == 8 * ticks);
     }
   }
 

@@ -1,10 +1,8 @@
 #include <nendo/recording/recorder.hpp>
 
-#include <csignal>
-
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 
+#include "support/small_disk.hpp"
 #include "support/takes.hpp"
 #include "support/within.hpp"
 
@@ -15,26 +13,6 @@ using flow::Mode;
 using test::RecordedLoop;
 
 namespace {
-
-/// Files may not become larger than so many bytes, as on a disk that is full.
-class SmallDisk {
-public:
-  explicit SmallDisk(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN); // the write then fails with EFBIG
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit small{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~SmallDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, SIG_DFL);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
-private:
-  rlimit before_{};
-};
 
 struct Counts {
   std::uint64_t samples = 0, requests = 0, ticks = 0, gaps = 0, damages = 0;
@@ -107,7 +85,7 @@ TEST_SUITE("recorder") {
   TEST_CASE("a disk that fills up: one warning, what is written stays whole, the loop goes on") {
     RecordedLoop live(Mode::type1);
     live.record({.chunk_time = 1ms});
-    const SmallDisk small(64 * 1024);
+    const test::SmallDisk small(64 * 1024);
     test::play(live, 100); // a third of what fits
     CHECK(test::within(20s, [&] { return counts_of(live.path).ticks > 0; }));
     for (unsigned seed = 1; seed < 12; ++seed)
@@ -123,6 +101,40 @@ TEST_SUITE("recorder") {
     CHECK(counts.damages == 0);
     CHECK(counts.ticks > 0);
     CHECK_FALSE(counts.has_ending);
+  }
+
+  TEST_CASE("a disk that is full from the beginning is told, and the name stays free") {
+    RecordedLoop live(Mode::type1);
+    std::string said;
+    {
+      const test::SmallDisk small(100);
+      try {
+        live.record();
+      } catch (const std::exception& error) {
+        said = error.what();
+      }
+    }
+    CHECK(said.find("make room") != std::string::npos);
+    CHECK(said.find("recording has ended") == std::string::npos); // none had begun
+    CHECK_FALSE(std::filesystem::exists(live.path));
+    live.record();
+    CHECK(live.end());
+  }
+
+  TEST_CASE("a last minute for which there is no room is told, and leaves no half of a file") {
+    RecordedLoop live(Mode::type1);
+    const auto stem = live.folder.path() / "clay";
+    live.record({.keep_last = 60s, .kept_stem = stem, .chunk_time = 1ms});
+    test::play(live, 100);
+    Result<Recorded> recorded = Recorded{};
+    {
+      const test::SmallDisk small(1000);
+      live.recorder->keep();
+      recorded = live.end();
+    }
+    REQUIRE_FALSE(recorded);
+    CHECK(recorded.error().message.find("cannot be kept") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(stem.string() + ".kept-1.nendo"));
   }
 
   TEST_CASE("a folder that vanishes is told while the loop runs") {

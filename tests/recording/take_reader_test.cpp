@@ -192,6 +192,31 @@ TEST_SUITE("take_reader") {
     CHECK(chunks == 6);
   }
 
+  TEST_CASE("the setup is complete with the first tape, whatever comes behind it") {
+    std::uint32_t chunks = 0;
+    const auto setup = setup_bytes(unusual_setup(), chunks);
+    auto source = driver::ChunkReader::of(setup, "test");
+    REQUIRE(source);
+    std::vector<std::byte> bytes;
+    ByteWriter(bytes).bytes(driver::file_header());
+    std::vector<std::byte> tape;
+    ByteWriter writer(tape);
+    put_entry(writer, flow::Request::grab);
+    driver::append_chunk(bytes, driver::tape_chunk, 0, tape);
+    while (const auto chunk = source->next())
+      driver::append_chunk(bytes, chunk->type, chunk->number + 1, chunk->payload);
+    auto reader = TakeReader::of(bytes, "test");
+    REQUIRE(reader);
+    while (reader->next()) {
+    }
+    CHECK(reader->setup().gloves.empty());
+    CHECK(reader->setup().hands.empty());
+    CHECK_FALSE(reader->setup().loop.has_value());
+    CHECK(reader->setup().program.empty());
+    CHECK(reader->strange() == chunks);
+    CHECK(reader->chunks().damage_count() == 0);
+  }
+
   TEST_CASE("numbers that no loop may have are refused, one by one, and never come out") {
     std::uint32_t chunks = 0;
     const auto bytes = setup_bytes(unusual_setup(), chunks);

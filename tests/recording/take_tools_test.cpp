@@ -1,13 +1,15 @@
 #include <nendo/recording/take_tools.hpp>
 
 #include <algorithm>
-#include <thread>
+#include <functional>
 
 #include <doctest/doctest.h>
 
 #include <nendo/recording/loop_replay.hpp>
 
+#include "support/small_disk.hpp"
 #include "support/takes.hpp"
+#include "support/within.hpp"
 
 using namespace std::chrono_literals;
 using namespace nendo;
@@ -28,6 +30,7 @@ struct Take {
     live.record({.chunk_time = 1ms});
     for (std::uint64_t part = 0; part < ticks / 10; ++part) {
       const HostTime begin = HostClock::now();
+      const auto written = std::filesystem::file_size(live.path);
       for (std::uint64_t at = 0; at < 10; ++at) {
         for (const Side side : {Side::left, Side::right}) {
           GloveSample sample =
@@ -37,7 +40,8 @@ struct Take {
         }
         live.test.loop->tick(10 * part + at, HostClock::now());
       }
-      std::this_thread::sleep_for(30ms); // a chunk of its own, mostly
+      // A chunk of its own, or several.
+      REQUIRE(test::within(20s, [&] { return std::filesystem::file_size(live.path) > written; }));
     }
     REQUIRE(live.end());
     bytes = test::file_bytes(live.path);
@@ -65,6 +69,32 @@ std::uint64_t ticks_in(const std::vector<Entry>& entries) {
       std::count_if(entries.begin(), entries.end(), [](const Entry& entry) {
         return std::holds_alternative<flow::TapedTick>(entry);
       }));
+}
+
+/// A recording whose checksums fit, but which tells of most of its gloves behind the first sample.
+std::vector<std::byte> with_late_gloves(std::uint8_t gloves) {
+  Setup setup = begin_setup("test 1.0");
+  setup.gloves.resize(1);
+  std::uint32_t chunks = 0;
+  std::vector<std::byte> bytes = setup_bytes(setup, chunks);
+  const auto append = [&](driver::ChunkType type, auto&& fill) {
+    std::vector<std::byte> payload;
+    fill(ByteWriter(payload));
+    driver::append_chunk(bytes, type, chunks++, payload);
+  };
+  const auto put_sample_of = [](ByteWriter writer, std::uint8_t glove) {
+    put_entry(writer, driver::RecordedSample{glove, GloveSample{}});
+  };
+  append(driver::tape_chunk, [&](ByteWriter writer) { put_sample_of(writer, 0); });
+  for (std::uint8_t glove = 1; glove < gloves; ++glove)
+    append(driver::glove_chunk, [&](ByteWriter writer) {
+      driver::put_glove(writer, {glove, driver::GloveInfo{}});
+    });
+  append(driver::tape_chunk, [&](ByteWriter writer) {
+    for (std::uint8_t glove = 0; glove < gloves; ++glove)
+      put_sample_of(writer, glove);
+  });
+  return bytes;
 }
 
 } // namespace
@@ -172,6 +202,56 @@ TEST_SUITE("take_tools") {
     const auto refused = cut_take(take.live.path, take.live.folder.path() / "none", 1h, 2h);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().code == Errc::bad_input);
+  }
+
+  TEST_CASE("gloves that are told of behind the first sample are none, and nor are their samples") {
+    const std::uint8_t gloves = 200;
+    const auto bytes = with_late_gloves(gloves);
+    const test::TemporaryFolder folder;
+    const auto path = folder.path() / "late.nendo";
+    test::write_bytes(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    for (const auto& summary : {summarise(bytes, "late"), summarise(path)}) {
+      REQUIRE(summary);
+      REQUIRE(summary->gloves.size() == 1);
+      CHECK(summary->gloves[0].samples == 2);
+      CHECK(summary->strange == 2 * (gloves - 1)); // the gloves, and a sample each
+      CHECK_FALSE(summary->is_whole());
+    }
+  }
+
+  TEST_CASE("a copy for which there is no room leaves no half of a file, and can be tried again") {
+    Take take(20);
+    const std::string whole = take.bytes;
+    const auto model = take.live.test.model;
+    const std::vector<std::function<Result<NewTake>()>> makers{
+        [&] { return repair_take(take.live.path, take.made); },
+        [&] { return cut_take(take.live.path, take.made, 0s, 1h); },
+        [&] { return add_shapes(take.live.path, take.made, model, 100.0); }};
+    for (const auto& make : makers) {
+      const auto full = make();
+      REQUIRE(full);
+      CHECK(std::filesystem::file_size(take.made) == full->bytes);
+      for (const std::uint64_t room : {std::uint64_t{0}, std::uint64_t{10}, std::uint64_t{100},
+                                       full->bytes / 2, full->bytes - 1}) {
+        CAPTURE(room);
+        std::filesystem::remove(take.made);
+        Result<NewTake> made = NewTake{};
+        {
+          const test::SmallDisk small(room);
+          made = make();
+        }
+        REQUIRE_FALSE(made);
+        CHECK(made.error().code == Errc::failed);
+        CHECK(made.error().message.find("make room") != std::string::npos);
+        CHECK(made.error().message.find("recording has ended") == std::string::npos);
+        CHECK_FALSE(std::filesystem::exists(take.made));
+      }
+      const auto again = make();
+      REQUIRE(again);
+      CHECK(again->bytes == full->bytes);
+      std::filesystem::remove(take.made);
+    }
+    CHECK(test::file_bytes(take.live.path) == whole);
   }
 
   TEST_CASE("no file is written over") {

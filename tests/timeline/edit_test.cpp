@@ -149,6 +149,81 @@ TEST_SUITE("edit") {
     CHECK_FALSE(blend(edited, alone, 0.5));
   }
 
+  TEST_CASE("a blend follows the other up to the end, also where its keys lie behind it") {
+    // Between two keys a curve is straight, and so is what is mixed of a still hand and of one.
+    const Timeline some = some_timeline();
+    Timeline one = some;
+    one.duration_s = 5.0;
+    Timeline other = one;
+    other.duration_s = 10.0;
+    for (std::size_t hand = 0; hand < 2; ++hand) {
+      one.hands[hand].keys.resize(1);
+      auto& keys = other.hands[hand].keys;
+      keys.resize(2);
+      keys[0] = one.hands[hand].keys[0];
+      keys[1].time_s = 10.0;
+    }
+    for (const double factor : {0.25, 1.0}) {
+      CAPTURE(factor);
+      Timeline edited = one;
+      REQUIRE(blend(edited, other, factor));
+      CHECK(complaint_about(edited).empty());
+      CHECK(edited.duration_s == 5.0);
+      for (std::size_t hand = 0; hand < 2; ++hand) {
+        const Key& still = one.hands[hand].keys[0];
+        const HandCurve to(other.hands[hand].keys);
+        const HandCurve made(edited.hands[hand].keys);
+        for (int step = 0; step <= 100; ++step) {
+          const double time_s = 0.05 * step;
+          const Key is = made.at(time_s);
+          const Key other_is = to.at(time_s);
+          const Eigen::Vector3d wanted_m =
+              still.wrist_m + factor * (other_is.wrist_m - still.wrist_m);
+          CHECK((is.wrist_m - wanted_m).norm() < 1e-12);
+          for (std::size_t at = 0; at < hand::angle_count; ++at) {
+            const auto angle = hand::angle_at(at);
+            CHECK(is.angles[angle] ==
+                  doctest::Approx(still.angles[angle] +
+                                  factor * (other_is.angles[angle] - still.angles[angle])));
+          }
+          if (factor == 1.0) CHECK(is.wrist_turn.angularDistance(other_is.wrist_turn) < 1e-6);
+        }
+      }
+    }
+  }
+
+  TEST_CASE("a blend keeps what a hand's own keys behind the end make of the time before it") {
+    const Timeline other = some_timeline(2);
+    Timeline one = some_timeline(1);
+    for (HandTrack& hand : one.hands) {
+      hand.keys.erase(hand.keys.begin() + 1, hand.keys.end());
+      hand.keys[0].time_s = 9.0; // it is where this one is, all the time
+    }
+    one.duration_s = 2.0;
+    Timeline edited = one;
+    REQUIRE(blend(edited, other, 0.5));
+    CHECK(complaint_about(edited).empty());
+    for (std::size_t hand = 0; hand < 2; ++hand) {
+      REQUIRE_FALSE(edited.hands[hand].keys.empty());
+      CHECK(edited.hands[hand].keys.back().time_s <= 2.0);
+      const Eigen::Vector3d wanted_m = 0.5 * one.hands[hand].keys[0].wrist_m +
+                                       0.5 * HandCurve(other.hands[hand].keys).at(2.0).wrist_m;
+      CHECK((HandCurve(edited.hands[hand].keys).at(2.0).wrist_m - wanted_m).norm() < 1e-12);
+    }
+  }
+
+  TEST_CASE("a blend that is refused for the second hand has not changed the first") {
+    Timeline edited = some_timeline(1);
+    const Timeline before = edited;
+    Timeline other = some_timeline(2);
+    other.hands[1].keys.back().wrist_m.x() = not_a_number;
+    other.hands[1].keys.back().time_s = 0.001 + other.hands[1].keys[4].time_s;
+    edited.duration_s = 100.0;
+    REQUIRE_FALSE(blend(edited, other, 0.5));
+    edited.duration_s = before.duration_s;
+    CHECK(test::same_bits(edited, before));
+  }
+
   TEST_CASE("a key blended with its neighbours goes to where they would have it") {
     const Timeline before = some_timeline();
     Timeline edited = before;

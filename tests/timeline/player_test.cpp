@@ -111,6 +111,66 @@ TEST_SUITE("player") {
     }
   }
 
+  TEST_CASE("whatever the rate, the frames are all those up to the end, with what is due there") {
+    const deform::Mesh model = test::ball(4);
+    Taken taken(Mode::type1);
+    taken.bend(1);
+    const Timeline one = taken.made(none).timeline;
+    for (const double rate_hz : {20.0, 30.0, 59.94, 60.0, 90.0, 144.0, 1000.0}) {
+      CAPTURE(rate_hz);
+      for (unsigned n = 0; n < 50; ++n) {
+        CAPTURE(n);
+        Timeline timeline = one;
+        timeline.rate_hz = rate_hz;
+        // As a file has it, which people write: a decimal.
+        timeline.duration_s = std::stod(std::to_string(n * 1e9 / rate_hz)) / 1e9;
+        timeline.held = true;
+        timeline.events = {{timeline.duration_s, flow::Request::commit}};
+        const auto player = playing(timeline, model);
+        for (unsigned frame = 0; frame <= n; ++frame) {
+          REQUIRE(player->has_frame_by(frame / rate_hz));
+          if (frame > 0) CHECK_FALSE(player->has_frame_by((frame - 0.1) / rate_hz));
+          REQUIRE(player->stats().commits == 0);
+          REQUIRE(player->next());
+          REQUIRE(player->time_s() == doctest::Approx(frame / rate_hz));
+        }
+        CHECK(player->stats().commits == 1);
+        CHECK_FALSE(player->has_frame_by(1e9));
+        CHECK_FALSE(player->next());
+      }
+    }
+  }
+
+  TEST_CASE("more events than a timeline may have are refused, none is left out") {
+    Taken taken(Mode::type1);
+    for (std::uint64_t tick = 0; tick < 10; ++tick) {
+      for (int times = 0; times < 4; ++times)
+        taken.live.test.requests.try_push(flow::Request::undo);
+      taken.live.test.frame_after_tick(tick);
+    }
+    const std::size_t events = taken.made(none).timeline.events.size();
+    REQUIRE(events == 40);
+    const auto make = [&](std::size_t most) {
+      return timeline_of_take(taken.live.path, taken.live.test.model, none, most);
+    };
+    CHECK(make(40));
+    const auto refused = make(39);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == Errc::bad_input);
+    CHECK(refused.error().message.find("more than 39 events") != std::string::npos);
+    CHECK(refused.error().message.find("nendo recording cut") != std::string::npos);
+  }
+
+  TEST_CASE("more frames than a timeline may have are refused, none is left out") {
+    Taken taken(Mode::type1);
+    taken.bend(10);
+    REQUIRE(taken.made(none).hands[0].frames == 11); // one a tick, and one before
+    const auto refused = timeline_of_take(taken.live.path, taken.live.test.model, none, 10);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.find("more than 10 frames") != std::string::npos);
+    CHECK(timeline_of_take(taken.live.path, taken.live.test.model, none, 11));
+  }
+
   TEST_CASE("with few keys the shape is as near as they are") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       CAPTURE(name_of(mode));

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -22,27 +23,48 @@ constexpr std::array<int, 5> crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
 std::atomic<KeptRing*> kept{nullptr};
 std::array<char, PATH_MAX> kept_path{};
 std::array<struct sigaction, crashes.size()> before{};
-static_assert(std::atomic<KeptRing*>::is_always_lock_free);
+std::atomic<pid_t> writer{0}; // the thread that writes it now
+static_assert(std::atomic<KeptRing*>::is_always_lock_free &&
+              std::atomic<pid_t>::is_always_lock_free);
 
 void say(std::string_view text) noexcept {
   write_all(STDERR_FILENO, std::as_bytes(std::span(text)));
 }
 
-// Only calls that signal-safety(7) lists.
+// From here on only calls that signal-safety(7) lists, and gettid(), which is no more than a system
+// call.
+
+void write_last_minute(KeptRing& ring) noexcept {
+  ring.freeze();
+  const int fd = ::open(kept_path.data(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const bool written = fd >= 0 && ring.write(fd) && ::fsync(fd) == 0;
+  say(written ? "nendo: crashed; the last of what it recorded is in "
+              : "nendo: crashed; the last of what it recorded could not be written to ");
+  say(std::string_view(kept_path.data(), ::strlen(kept_path.data())));
+  say("\n");
+  if (fd >= 0) ::close(fd);
+}
+
+// A disk that does not answer is no reason to never die.
+void wait_for_writer() noexcept {
+  constexpr int most_milliseconds = 2000;
+  for (int waited = 0; writer.load() != 0 && waited < most_milliseconds; ++waited)
+    ::poll(nullptr, 0, 1);
+}
+
 extern "C" void on_crash(int signal) {
-  // Whichever thread comes first; a crash in here finds nothing to do.
-  KeptRing* const ring = kept.exchange(nullptr);
-  if (ring != nullptr) {
-    ring->freeze();
-    const int fd = ::open(kept_path.data(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    const bool written = fd >= 0 && ring->write(fd) && ::fsync(fd) == 0;
-    say(written ? "nendo: crashed; the last of what it recorded is in "
-                : "nendo: crashed; the last of what it recorded could not be written to ");
-    say(std::string_view(kept_path.data(), ::strlen(kept_path.data())));
-    say("\n");
-    if (fd >= 0) ::close(fd);
+  // Whichever thread comes first writes; one that crashes meanwhile must not end the process under
+  // it. A crash in here finds nothing to do.
+  const pid_t self = ::gettid();
+  pid_t other = 0;
+  if (writer.compare_exchange_strong(other, self)) {
+    if (KeptRing* const ring = kept.exchange(nullptr)) write_last_minute(*ring);
+    writer.store(0);
+  } else if (other != self) {
+    wait_for_writer();
   }
-  // The default action is in force again (SA_RESETHAND), and takes place when this returns.
+  // The default action takes place when this returns.
+  ::signal(signal, SIG_DFL);
   ::raise(signal);
 }
 
@@ -56,7 +78,7 @@ CrashKeeper::CrashKeeper(KeptRing& ring, const std::filesystem::path& path) {
   armed_ = true;
   struct sigaction action {};
   action.sa_handler = on_crash;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  // Not SA_RESETHAND: a second thread that crashes in the same way would end the process at once.
   sigemptyset(&action.sa_mask);
   for (std::size_t at = 0; at < crashes.size(); ++at)
     ::sigaction(crashes[at], &action, &before[at]);

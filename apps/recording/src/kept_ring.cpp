@@ -105,12 +105,13 @@ bool KeptRing::write(int fd) const noexcept {
     if (!write_chunk(fd, number++, gap, crc32c(gap))) return false;
   }
   const std::uint64_t end = end_.load(std::memory_order_acquire);
-  for (std::uint64_t at = oldest_.load(std::memory_order_acquire); at != end; ++at) {
+  // What is left out keeps its number, by which a reader knows that it is missing.
+  for (std::uint64_t at = oldest_.load(std::memory_order_acquire); at != end; ++at, ++number) {
     const Slot& kept = slot(at);
     if (kept.bytes > memory_.size() || kept.offset > memory_.size() - kept.bytes) continue;
     const auto payload = std::span(memory_).subspan(kept.offset, kept.bytes);
     if (crc32c(payload) != kept.crc) continue; // its thread died in the middle of it
-    if (!write_chunk(fd, number++, payload, kept.crc)) return false;
+    if (!write_chunk(fd, number, payload, kept.crc)) return false;
   }
   return true;
 }

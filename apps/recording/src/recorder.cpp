@@ -145,12 +145,13 @@ private:
       std::error_code ignored;
       if (!std::filesystem::exists(path, ignored)) break;
     }
-    auto file = create_file(path);
+    auto file = NewFile::create(path);
     if (!file) return fail(file.error());
-    if (!ring_->write(file->get()) || ::fdatasync(file->get()) != 0 || !file->close()) {
+    if (!ring_->write(file->fd()) || ::fdatasync(file->fd()) != 0 || !file->close()) {
       const std::string why = std::generic_category().message(errno);
       return fail({Errc::failed, path.string() + ": cannot be kept: " + why + "; make room"});
     }
+    file->keep();
     ++recorded_.kept;
     tell("kept as " + path.string());
   }
@@ -199,9 +200,9 @@ Result<std::unique_ptr<Recorder>> Recorder::begin(const Setup& setup, flow::Tape
   auto bytes = setup_bytes(setup, chunks);
   std::optional<TakeFile> file;
   if (!options.file.empty()) {
-    auto created = TakeFile::create(options.file, bytes, chunks);
+    auto created = TakeFile::create(options.file, bytes, chunks, TakeFile::Kind::live);
     if (!created) return created.error();
-    file = *std::move(created);
+    file.emplace(*std::move(created));
   }
   std::unique_ptr<KeptRing> ring;
   if (options.keep_last > HostClock::duration::zero()) {

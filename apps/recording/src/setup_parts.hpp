@@ -4,6 +4,7 @@
 
 #include <nendo/base/byte_reader.hpp>
 #include <nendo/base/byte_writer.hpp>
+#include <nendo/driver/sample_record.hpp>
 #include <nendo/recording/setup.hpp>
 
 namespace nendo::recording {
@@ -11,6 +12,11 @@ namespace nendo::recording {
 inline constexpr driver::ChunkType head_chunk = driver::chunk_type("HEAD");
 inline constexpr driver::ChunkType hand_chunk = driver::chunk_type("HAND");
 inline constexpr driver::ChunkType loop_chunk = driver::chunk_type("LOOP");
+
+constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
+  return type == head_chunk || type == hand_chunk || type == loop_chunk ||
+         type == driver::glove_chunk;
+}
 
 void put_head(ByteWriter& writer, const Setup& setup);
 void put_hand(ByteWriter& writer, std::uint8_t number, const HandSetup& hand);

@@ -10,9 +10,8 @@ constexpr std::size_t chunk_bytes = std::size_t{1} << 16;
 Result<TakeCopy> TakeCopy::create(const std::filesystem::path& path, const Setup& setup) {
   std::uint32_t chunks = 0;
   const auto bytes = setup_bytes(setup, chunks);
-  auto file = TakeFile::create(path, bytes, chunks);
+  auto file = TakeFile::create(path, bytes, chunks, TakeFile::Kind::copy);
   if (!file) return file.error();
-  file->sync_at_end();
   return TakeCopy(*std::move(file));
 }
 

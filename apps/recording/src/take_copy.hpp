@@ -11,6 +11,7 @@
 
 namespace nendo::recording {
 
+/// There is no new file unless end() went well.
 class TakeCopy {
 public:
   /// Error: failed (the new file is there already, or cannot be made).

@@ -7,44 +7,46 @@
 #include <string>
 #include <vector>
 
-#include <nendo/base/files.hpp>
 #include <nendo/driver/chunk_file.hpp>
+
+#include "new_file.hpp"
 
 namespace nendo::recording {
 
 class TakeFile {
 public:
-  /// A new file with these first bytes in it, of so many chunks. Error: failed.
+  /// live: what is appended is on the disk, and stays there whatever comes later. copy: the file is
+  /// of use when all of it is there, so that it goes again unless sync() was the last that was
+  /// done.
+  enum class Kind { live, copy };
+
+  /// A new file with these first bytes in it, of so many chunks; there is none after an error.
+  /// Error: failed.
   static Result<TakeFile> create(const std::filesystem::path& path,
-                                 std::span<const std::byte> setup, std::uint32_t chunks);
+                                 std::span<const std::byte> setup, std::uint32_t chunks, Kind kind);
 
-  /// What is appended from now on is on the disk after sync() alone.
-  void sync_at_end() noexcept { syncs_each_ = false; }
-  /// As append() fails.
-  Result<void> sync();
-
-  /// On the disk when this returns. After an error the file ends with the last whole chunk, and
-  /// nothing is written any more: every later call does nothing. Error: failed, once.
+  /// After an error a live file ends with the last whole chunk, and nothing is written any more:
+  /// every later call does nothing. Error: failed, once.
   Result<void> append(driver::ChunkType type, std::span<const std::byte> payload);
+  /// All of a copy is on the disk, and it stays. Error: failed.
+  Result<void> sync();
 
   bool has_failed() const noexcept { return failed_; }
   std::uint64_t bytes() const noexcept { return bytes_; }
-  const std::filesystem::path& path() const noexcept { return path_; }
+  const std::filesystem::path& path() const noexcept { return file_.path(); }
 
 private:
+  TakeFile(NewFile file, std::uint32_t chunks, Kind kind)
+      : file_(std::move(file)), chunks_(chunks), kind_(kind) {}
   Result<void> write(std::span<const std::byte> bytes);
-  Error give_up(const std::string& why);
+  Error give_up(const std::string& why, const std::string& remedy);
 
-  std::filesystem::path path_;
-  Descriptor file_;
-  std::uint32_t chunks_ = 0;
+  NewFile file_;
+  std::uint32_t chunks_;
+  Kind kind_;
   std::uint64_t bytes_ = 0;
   bool failed_ = false;
-  bool syncs_each_ = true;
   std::vector<std::byte> chunk_;
 };
-
-/// A descriptor of a new file, or what is in the way. Error: failed.
-Result<Descriptor> create_file(const std::filesystem::path& path);
 
 } // namespace nendo::recording

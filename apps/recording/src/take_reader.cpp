@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "setup_parts.hpp"
+
 namespace nendo::recording {
 namespace {
 
@@ -132,6 +134,7 @@ bool TakeReader::next_chunk() {
     gap_due_ = gap_due_ || chunks_.damage_count() > damages_told_;
     damages_told_ = chunks_.damage_count();
     if (chunk->type == driver::tape_chunk) {
+      setup_done_ = true;
       records_ = driver::TapeRecords(chunk->payload);
       return true;
     }
@@ -141,6 +144,8 @@ bool TakeReader::next_chunk() {
     } else if (chunk->type == shape_chunk) {
       shape_ = read_shape(chunk->payload);
       ++(shape_ ? shapes_ : strange_);
+    } else if (setup_done_ && is_setup_chunk(chunk->type)) {
+      ++strange_; // whoever reads has counted gloves and hands
     } else if (!read_setup_chunk(chunk->type, chunk->payload, setup_)) {
       ++strange_;
     }

@@ -65,6 +65,24 @@ bool agree(const TakeSummary& summary) {
          summary.ticks == summary.ending->ticks;
 }
 
+Result<TakeSummary> summary_of(Result<TakeReader> reader) {
+  if (!reader) return reader.error();
+  TakeSummary summary;
+  summary.setup = reader->setup();
+  Counter counter(summary);
+  while (const auto entry = reader->next())
+    std::visit(counter, *entry);
+  summary.ending = reader->ending();
+  summary.bytes = reader->chunks().size();
+  summary.good_end = reader->chunks().good_end();
+  summary.damage_count = reader->chunks().damage_count();
+  summary.damages = reader->chunks().damages();
+  summary.strange = reader->strange();
+  summary.shapes = reader->shapes();
+  summary.counts_agree = agree(summary);
+  return summary;
+}
+
 } // namespace
 
 double GloveSummary::rate_hz() const noexcept {
@@ -84,22 +102,11 @@ bool TakeSummary::is_whole() const noexcept {
 }
 
 Result<TakeSummary> summarise(const std::filesystem::path& path) {
-  auto reader = TakeReader::open(path);
-  if (!reader) return reader.error();
-  TakeSummary summary;
-  summary.setup = reader->setup();
-  Counter counter(summary);
-  while (const auto entry = reader->next())
-    std::visit(counter, *entry);
-  summary.ending = reader->ending();
-  summary.bytes = reader->chunks().size();
-  summary.good_end = reader->chunks().good_end();
-  summary.damage_count = reader->chunks().damage_count();
-  summary.damages = reader->chunks().damages();
-  summary.strange = reader->strange();
-  summary.shapes = reader->shapes();
-  summary.counts_agree = agree(summary);
-  return summary;
+  return summary_of(TakeReader::open(path));
+}
+
+Result<TakeSummary> summarise(std::span<const std::byte> bytes, std::string_view name) {
+  return summary_of(TakeReader::of(bytes, name));
 }
 
 } // namespace nendo::recording

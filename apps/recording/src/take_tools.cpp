@@ -68,9 +68,8 @@ Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesy
   if (!reader) return reader.error();
   const auto first = reader->next();
   if (!first) return nothing(from, "nothing in it is whole; there is nothing to save");
-  auto file = TakeFile::create(to, driver::file_header(), 0);
+  auto file = TakeFile::create(to, driver::file_header(), 0, TakeFile::Kind::copy);
   if (!file) return file.error();
-  file->sync_at_end();
   const auto chunks = append_all(*file, *reader, *first);
   if (!chunks) return chunks.error();
   if (const auto synced = file->sync(); !synced) return synced.error();

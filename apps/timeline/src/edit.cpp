@@ -53,6 +53,19 @@ Key between(const Key& one, const Key& other, double factor) {
   return key;
 }
 
+// Of all keys, in order and without the same twice. What moves towards a key behind the end does so
+// up to the end, which then is a key's time, too.
+std::vector<double> times_of(const std::vector<Key>& one, const std::vector<Key>& other,
+                             double end_s) {
+  std::vector<double> times;
+  for (const auto* keys : {&one, &other})
+    for (const Key& key : *keys)
+      times.push_back(std::min(key.time_s, end_s));
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
 } // namespace
 
 Result<HandTrack*> track_of(Timeline& timeline, Side side) {
@@ -151,18 +164,14 @@ Result<void> blend_key(Timeline& timeline, Side side, std::size_t key, double fa
 
 Result<void> blend(Timeline& one, const Timeline& other, double factor) {
   if (!is_fraction(factor)) return refused("a factor must lie within 0 and 1");
+  Timeline result = one;
   bool any = false;
-  for (HandTrack& hand : one.hands) {
+  for (HandTrack& hand : result.hands) {
     const HandTrack* partner = other.track(hand.side);
     if (partner == nullptr) continue;
     any = true;
     if (factor == 0.0) continue;
-    std::vector<double> times;
-    for (const auto* keys : {&std::as_const(hand.keys), &partner->keys})
-      for (const Key& key : *keys)
-        if (key.time_s <= one.duration_s) times.push_back(key.time_s);
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    const std::vector<double> times = times_of(hand.keys, partner->keys, one.duration_s);
     if (times.size() > most_keys) return refused("together they have too many keys");
     const HandCurve from(hand.keys);
     const HandCurve to(partner->keys);
@@ -171,6 +180,8 @@ Result<void> blend(Timeline& one, const Timeline& other, double factor) {
       hand.keys.push_back(between(from.at(time_s), to.at(time_s), factor));
   }
   if (!any) return refused("they have no hand in common");
+  if (std::string wrong = complaint_about(result); !wrong.empty()) return refused(wrong);
+  one = std::move(result);
   return {};
 }
 

@@ -69,8 +69,7 @@ public:
     for (auto& hand : timeline_.hands) {
       const std::size_t slot = flow::Placement::index_of(hand.side);
       const Key key = key_of(time_s, frame.hands[slot].angles, frame.hands[slot].T_stage_wrist);
-      if (time_s > hand.keys.back().time_s && hand.keys.size() < most_keys)
-        hand.keys.push_back(key);
+      if (time_s > hand.keys.back().time_s) hand.keys.push_back(key);
     }
     timeline_.duration_s = time_s;
     see_events(time_s, frame);
@@ -86,9 +85,7 @@ private:
            timeline_.rate_hz;
   }
 
-  void add(double time_s, flow::Request request) {
-    if (timeline_.events.size() < most_events) timeline_.events.push_back({time_s, request});
-  }
+  void add(double time_s, flow::Request request) { timeline_.events.push_back({time_s, request}); }
 
   void see_events(double time_s, const flow::Frame& frame) {
     for (const flow::Request step : steps_)
@@ -110,10 +107,18 @@ private:
   std::optional<flow::TapedTick> first_;
 };
 
+// Of frames or of events; empty if nothing does.
+std::string what_exceeds(const Timeline& timeline, std::size_t most) {
+  if (timeline.events.size() > most) return std::to_string(most) + " events";
+  for (const auto& hand : timeline.hands)
+    if (hand.keys.size() > most) return std::to_string(most) + " frames";
+  return {};
+}
+
 } // namespace
 
 Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
-                                      const Tolerance& tolerance) {
+                                      const Tolerance& tolerance, std::size_t most) {
   auto reader = TakeReader::open(take);
   if (!reader) return reader.error();
   const auto bad = [&take](const std::string& what) {
@@ -131,6 +136,8 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     auto& frames = (*replay)->loop().frames();
     frames.update();
     follower.see(std::get<flow::TapedTick>(*entry), frames.front());
+    if (const std::string many = what_exceeds(made.timeline, most); !many.empty())
+      return bad("has more than " + many + "; cut a part with `nendo recording cut`");
   }
   if (!follower.has_seen()) return bad("there is no tick of a loop in it");
   if (const std::string wrong = complaint_about(made.timeline); !wrong.empty())

@@ -85,6 +85,10 @@ bool Player::ask_what_is_due(double time_s) {
   return next_event_ > first;
 }
 
+bool Player::has_frame_by(double time_s) const noexcept {
+  return made_ < frames_ && time_of(made_) <= time_s + a_hair / timeline_.rate_hz;
+}
+
 bool Player::next() {
   if (made_ == frames_) return false;
   const double time_s = time_of(made_);

@@ -129,7 +129,8 @@ private:
       next_sequence_ = sequence + 1;
       deliver(*sample, sequence, begin + scaled(sample->measured - first), ring);
     }
-    return due + period();
+    // Not only `due`, which a hostile file's last sample may have before its first.
+    return std::max(due, HostClock::now()) + period();
   }
 
   void deliver(GloveSample sample, std::uint64_t sequence, HostTime measured, SampleRing& ring) {

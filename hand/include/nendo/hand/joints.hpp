@@ -56,6 +56,9 @@ enum class Finger : std::uint8_t { thumb, index, middle, ring, little };
 
 inline constexpr std::size_t finger_count = 5;
 
+/// "thumb" to "little".
+std::string_view name_of(Finger finger) noexcept;
+
 inline constexpr std::array<Joint, finger_count> fingertips{
     Joint::thumb_tip, Joint::index_tip, Joint::middle_tip, Joint::ring_tip, Joint::little_tip};
 

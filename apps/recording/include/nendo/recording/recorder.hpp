@@ -41,7 +41,8 @@ class Recorder {
 public:
   /// Makes the file, with the setup in it, and the thread. With keep_last, a crash of the process
   /// (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT) writes what is in memory, until this is destroyed;
-  /// one recorder at a time does so. `tape` must outlive it. Blocks for as long as the disk does.
+  /// one recorder at a time does so, and not for a thread whose stack has overflowed: a handler has
+  /// no other to run on. `tape` must outlive it. Blocks for as long as the disk does.
   /// Error: failed (the file is there already, or cannot be made).
   static Result<std::unique_ptr<Recorder>> begin(const Setup& setup, flow::Tape& tape,
                                                  RecorderOptions options);

@@ -49,7 +49,7 @@ public:
   /// `bytes` must outlive it.
   static Result<TakeReader> of(std::span<const std::byte> bytes, std::string_view name);
 
-  /// Complete, as far as it is whole, when this has been made.
+  /// Complete, as far as it is whole, when this has been made: it does not change any more.
   const Setup& setup() const noexcept { return setup_; }
   /// The next entry that can be used; nothing at the end. Kinds and chunks that this nendo does not
   /// know are passed over.
@@ -77,6 +77,7 @@ private:
   std::uint64_t shapes_ = 0;
   std::uint64_t damages_told_ = 0;
   std::uint64_t strange_ = 0;
+  bool setup_done_ = false; ///< at the first tape
   bool gap_due_ = false;
 };
 

@@ -1,11 +1,14 @@
 #pragma once
 // What may be asked of a recording without a loop: what is in it, whether it is whole, and to have
-// what is whole, or a part of it, as a new file. All of these block for as long as the disk does.
+// what is whole, or a part of it, as a new file, which is there only if it is complete. All of
+// these block for as long as the disk does.
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <nendo/recording/take_reader.hpp>
@@ -50,6 +53,8 @@ struct TakeSummary {
 
 /// Error: bad_input, as TakeReader::open().
 Result<TakeSummary> summarise(const std::filesystem::path& path);
+/// As TakeReader::of().
+Result<TakeSummary> summarise(std::span<const std::byte> bytes, std::string_view name);
 
 /// What was written.
 struct NewTake {

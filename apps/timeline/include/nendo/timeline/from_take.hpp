@@ -17,8 +17,10 @@ struct MadeTimeline {
 /// Runs the recorded loop over `model`, which ought to be the one that was recorded, and takes its
 /// hands' angles and what became of its model: a switch's doing is an event as a request is. The
 /// key at 0 s is the pose in which a hand took hold, a period before the first tick. Blocks.
-/// Errors: bad_input (as TakeReader::open(), LoopReplay::make(); no tick, too long).
+/// Errors: bad_input (as TakeReader::open(), LoopReplay::make(); no tick; more than `most` frames
+/// or events).
 Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
-                                      const Tolerance& tolerance);
+                                      const Tolerance& tolerance, std::size_t most = most_keys);
+static_assert(most_keys == most_events);
 
 } // namespace nendo::timeline

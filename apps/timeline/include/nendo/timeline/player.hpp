@@ -18,6 +18,8 @@ public:
 
   /// Makes the next frame, the first one at 0 s; false: there is none. Allocates for undo.
   bool next();
+  /// There is a next frame, and its time is not after this one, but for rounding.
+  bool has_frame_by(double time_s) const noexcept;
   const flow::Frame& frame() const noexcept { return frame_; } ///< not before next()
   double time_s() const noexcept;                              ///< of it
   /// Of the frame that comes last.
