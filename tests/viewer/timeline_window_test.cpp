@@ -190,7 +190,8 @@ TEST_SUITE("timeline_window") {
     CHECK(*seat.press(seat.on_key(1, 2)).select == StripKey{1, 2});
   }
 
-  TEST_CASE("a fingertip of the selected key's hand follows the mouse; without one, the camera") {
+  TEST_CASE(
+      "a fingertip of the selected key's hand follows the mouse, and without one the camera does") {
     const Room room;
     if (!room.seat) return;
     Seat& seat = *room.seat;

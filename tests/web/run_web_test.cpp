@@ -130,7 +130,7 @@ TEST_SUITE("run_web") {
     }
   }
 
-  TEST_CASE("a browser's client has the loop made anew: settings, reset, recordings; and moves a "
+  TEST_CASE("a browser's client has the loop made anew by settings, reset, recordings, and moves a "
             "hand") {
     const test::TemporaryFolder folder;
     const auto out = folder.path() / "clay.ply";
