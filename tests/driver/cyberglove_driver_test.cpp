@@ -387,7 +387,7 @@ TEST_SUITE("cyberglove_driver") {
     const std::string heard = port.control.heard();
     (*glove)->give({true, {}, {}});
     const std::uint64_t before = (*glove)->stats().records;
-    CHECK(within(2s, [&] { return (*glove)->stats().records > before + 200; }));
+    CHECK(within(10s, [&] { return (*glove)->stats().records > before + 200; }));
     CHECK(port.control.heard() == heard);
   }
 

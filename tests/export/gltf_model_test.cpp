@@ -53,7 +53,8 @@ TEST_SUITE("gltf_model") {
             0.0,
             sign * static_cast<double>(
                        vectors[static_cast<std::size_t>(moment * width + 3 * control + axis)]));
-        const double weight = weights[static_cast<std::size_t>(moment * targets + target)];
+        const auto weight =
+            static_cast<double>(weights[static_cast<std::size_t>(moment * targets + target)]);
         // Products of two floats are exact in doubles.
         worst =
             std::max(worst, (weight * way.row(axis) - vector * influence).cwiseAbs().maxCoeff());
