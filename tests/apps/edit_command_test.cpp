@@ -10,7 +10,7 @@
 #include "support/memory_screen.hpp"
 #include "support/program.hpp"
 #include "support/restraint.hpp"
-#include "support/within.hpp"
+#include "support/eventually.hpp"
 
 using namespace nendo;
 using nendo::test::contents;
@@ -160,7 +160,7 @@ TEST_SUITE("edit_command") {
     const std::string played = run.path("played.obj");
     test::write_file(played, "old");
     test::Program playing({"edit", "play", run.timeline, "--out", played});
-    REQUIRE(test::within(std::chrono::seconds(20), [&] { return catches(playing.id(), SIGINT); }));
+    REQUIRE(test::eventually([&] { return catches(playing.id(), SIGINT); }));
     playing.signal(SIGINT);
     const auto done = playing.wait();
     CHECK(done.exit_code == 1);

@@ -9,9 +9,9 @@
 
 #include <nendo/driver/emulator.hpp>
 
+#include "support/eventually.hpp"
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/within.hpp"
 
 using namespace nendo;
 using namespace nendo::driver;
@@ -64,7 +64,7 @@ TEST_SUITE("cyberglove_driver") {
       const HostTime before = HostClock::now();
       REQUIRE((*glove)->start(ring));
       CHECK_FALSE((*glove)->start(ring));
-      CHECK(within(2s, [&] { return ring.size() >= 20; }));
+      CHECK(eventually([&] { return ring.size() >= 20; }));
       (*glove)->stop();
       std::uint64_t next = 0;
       HostTime last = before;
@@ -101,7 +101,7 @@ TEST_SUITE("cyberglove_driver") {
       REQUIRE_MESSAGE(glove, glove.error().message);
       REQUIRE((*glove)->start(ring));
       GloveSample sample;
-      REQUIRE(within(2s, [&] { return ring.try_pop(sample); }));
+      REQUIRE(eventually([&] { return ring.try_pop(sample); }));
       CHECK(sample.has_device_time == knows_options);
       CHECK(sample[Sensor::thumb_roll].value == 10);
     }
@@ -140,7 +140,7 @@ TEST_SUITE("cyberglove_driver") {
     auto glove = open_port(port);
     REQUIRE(glove);
     REQUIRE((*glove)->start(ring));
-    CHECK(within(2s, [&] { return (*glove)->stats().ring_refused > 5; }));
+    CHECK(eventually([&] { return (*glove)->stats().ring_refused > 5; }));
     (*glove)->stop();
     const GloveStats stats = (*glove)->stats();
     CHECK(stats.records == stats.ring_refused + ring.size());
@@ -154,7 +154,7 @@ TEST_SUITE("cyberglove_driver") {
     REQUIRE(glove);
     for (int round = 0; round < 2; ++round) {
       REQUIRE((*glove)->start(ring));
-      CHECK(within(2s, [&] { return (*glove)->stats().records > 3; }));
+      CHECK(eventually([&] { return (*glove)->stats().records > 3; }));
       const auto start = Clock::now();
       (*glove)->stop();
       (*glove)->stop();
@@ -168,12 +168,12 @@ TEST_SUITE("cyberglove_driver") {
     auto glove = open_port(port);
     REQUIRE(glove);
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     port.mute = true;
-    REQUIRE(within(3s, [&] { return (*glove)->stats().silences == 1; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
     port.mute = false;
     const std::uint64_t before = (*glove)->stats().records;
-    CHECK(within(6s, [&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
     (*glove)->stop();
     CHECK((*glove)->stats().silences == 1);
     CHECK((*glove)->stats().reopened == 0);
@@ -189,7 +189,7 @@ TEST_SUITE("cyberglove_driver") {
     auto glove = open_glove("serial:" + link.string());
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(2s, [&] { return ring.size() > 3; }));
+    REQUIRE(eventually([&] { return ring.size() > 3; }));
 
     first.reset();
     std::filesystem::remove(link);
@@ -201,7 +201,7 @@ TEST_SUITE("cyberglove_driver") {
     const ScriptedPort second(small);
     std::filesystem::create_symlink(second.path(), link);
     GloveSample sample;
-    REQUIRE(within(6s, [&] { return ring.try_pop(sample); }));
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     (*glove)->stop();
     CHECK((*glove)->stats().reopened == 1);
     CHECK(sample.present == sensors_18);
@@ -219,7 +219,7 @@ TEST_SUITE("cyberglove_driver") {
     REQUIRE(glove);
     REQUIRE((*glove)->start(ring));
     GloveSample sample;
-    CHECK(within(6s, [&] { return ring.try_pop(sample) && sample.present == sensors_18; }));
+    CHECK(eventually([&] { return ring.try_pop(sample) && sample.present == sensors_18; }));
     (*glove)->stop();
     CHECK(sample.sequence == 49); // 50 records were sent, the last of them already too short
     CHECK(sample[Sensor::ring_mcp].value == 10 + 9);
@@ -263,7 +263,7 @@ TEST_SUITE("cyberglove_driver") {
             CHECK((*glove)->info().side == side);
             CHECK((*glove)->info().sensors == (sensors == 18 ? sensors_18 : sensors_22));
             CHECK((*glove)->info().rate_hz == doctest::Approx(90.0).epsilon(0.01));
-            CHECK(within(3s, [&] { return ring.size() >= 20; }));
+            CHECK(eventually([&] { return ring.size() >= 20; }));
             (*glove)->stop();
             GloveSample sample;
             CHECK(ring.try_pop(sample));
@@ -291,7 +291,7 @@ TEST_SUITE("cyberglove_driver") {
     CHECK((*glove)->info().rate_hz == 100.0);
     CHECK((*glove)->info().sensors == SensorMask{0x0F});
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     const auto times = [](const ScriptedPort& port) {
       const std::string heard = port.control.heard();
       std::size_t filters = 0;
@@ -306,16 +306,16 @@ TEST_SUITE("cyberglove_driver") {
     };
     CHECK(times(*first) == 1);
     first->control.power_cycle = true;
-    REQUIRE(within(6s, [&] { return times(*first) == 2; }));
+    REQUIRE(eventually([&] { return times(*first) == 2; }));
     const std::uint64_t before = (*glove)->stats().records;
-    CHECK(within(6s, [&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
 
     first.reset();
     std::filesystem::remove(link);
     const ScriptedPort second(script);
     std::filesystem::create_symlink(second.path(), link);
-    REQUIRE(within(6s, [&] { return times(second) == 1; }));
-    REQUIRE(within(6s, [&] { return (*glove)->stats().reopened == 1; }));
+    REQUIRE(eventually([&] { return times(second) == 1; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().reopened == 1; }));
     ring.drain([](const GloveSample& sample) { CHECK(sample.present == SensorMask{0x0F}); });
     (*glove)->stop();
     check_conservation((*glove)->stats());
@@ -332,14 +332,14 @@ TEST_SUITE("cyberglove_driver") {
     auto glove = open_glove("serial:" + link.string());
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     first.reset();
     std::filesystem::remove(link);
     const ScriptedPort second(script);
     std::filesystem::create_symlink(second.path(), link);
-    CHECK(within(6s, [&] { return (*glove)->stats().reopened == 1; }));
+    CHECK(eventually([&] { return (*glove)->stats().reopened == 1; }));
     const std::uint64_t before = (*glove)->stats().records;
-    CHECK(within(3s, [&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
   }
 
   TEST_CASE("what a glove is to show pauses its stream, and is shown again after it came back") {
@@ -353,7 +353,7 @@ TEST_SUITE("cyberglove_driver") {
     CHECK((*glove)->info().abilities.light);
     CHECK((*glove)->info().abilities.vibration);
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     Feedback feedback;
     feedback.light = true;
     feedback.vibration = {1, 2, 3, 4, 5, 6};
@@ -362,16 +362,16 @@ TEST_SUITE("cyberglove_driver") {
                             14);
     const auto is_shown = [&] { return port.control.heard().ends_with(shown); };
     (*glove)->give(feedback);
-    CHECK(within(2s, is_shown));
+    CHECK(eventually(is_shown));
     std::uint64_t before = (*glove)->stats().records;
-    CHECK(within(2s, [&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
     CHECK((*glove)->stats().silences == 0);
 
     port.control.power_cycle = true;
-    CHECK(within(6s, [&] { return (*glove)->stats().silences == 1; }));
-    CHECK(within(6s, is_shown));
+    CHECK(eventually([&] { return (*glove)->stats().silences >= 1; }));
+    CHECK(eventually(is_shown));
     before = (*glove)->stats().records;
-    CHECK(within(3s, [&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
     (*glove)->stop();
     check_conservation((*glove)->stats());
   }
@@ -383,11 +383,11 @@ TEST_SUITE("cyberglove_driver") {
     REQUIRE(glove);
     CHECK_FALSE((*glove)->info().abilities.light);
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     const std::string heard = port.control.heard();
     (*glove)->give({true, {}, {}});
     const std::uint64_t before = (*glove)->stats().records;
-    CHECK(within(10s, [&] { return (*glove)->stats().records > before + 200; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > before + 200; }));
     CHECK(port.control.heard() == heard);
   }
 
@@ -397,14 +397,14 @@ TEST_SUITE("cyberglove_driver") {
     auto glove = open_port(port);
     REQUIRE(glove);
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(2s, [&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     port.control.unplugged = true;
-    REQUIRE(within(4s, [&] { return (*glove)->stats().silences == 1; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
     const std::string heard = port.control.heard();
-    REQUIRE(within(4s, [&] { return port.control.heard().ends_with("?G"); }));
+    REQUIRE(eventually([&] { return port.control.heard().ends_with("?G"); }));
     const std::uint64_t before = (*glove)->stats().records;
     port.control.unplugged = false;
-    CHECK(within(6s, [&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
     // Another one may have been plugged in: the unit was told to look.
     CHECK(port.control.heard().find('\x09', heard.size()) != std::string::npos);
     (*glove)->stop();
@@ -421,8 +421,8 @@ TEST_SUITE("cyberglove_driver") {
     REQUIRE_MESSAGE(glove, glove.error().message);
     CHECK((*glove)->info().rate_hz == 0.0);
     REQUIRE((*glove)->start(ring));
-    CHECK(within(2s, [&] { return port.control.heard().ends_with("Y\x01S"); }));
+    CHECK(eventually([&] { return port.control.heard().ends_with("Y\x01S"); }));
     (*glove)->stop();
-    CHECK(within(2s, [&] { return port.control.heard().ends_with(std::string("\x03Y\0", 3)); }));
+    CHECK(eventually([&] { return port.control.heard().ends_with(std::string("\x03Y\0", 3)); }));
   }
 }

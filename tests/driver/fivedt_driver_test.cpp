@@ -104,7 +104,7 @@ TEST_SUITE("fivedt_driver") {
     REQUIRE_MESSAGE(glove, glove.error().message);
     CHECK((*glove)->info().side == Side::left);
     REQUIRE((*glove)->start(ring));
-    CHECK(within(5s, [&] { return ring.size() > 3; }));
+    CHECK(eventually([&] { return ring.size() > 3; }));
   }
 
   TEST_CASE("a 5DT glove's options that are none are usage errors that name what there is") {
@@ -132,7 +132,7 @@ TEST_SUITE("fivedt_driver") {
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
     GloveSample sample;
-    REQUIRE(within(5s, [&] { return ring.try_pop(sample); }));
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     // The relaxed hand in degrees, of the range of a knuckle.
     struct Joint {
       Sensor sensor;

@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/eventually.hpp"
 #include "support/mocked_usb.hpp"
-#include "support/within.hpp"
 
 using namespace nendo;
 using namespace nendo::driver;
@@ -50,7 +50,7 @@ TEST_SUITE("fivedt_usb_driver") {
                      : product == 0x13 ? "wireless, port A"
                                        : "cable"));
       REQUIRE((*glove)->start(ring));
-      CHECK(within(5s, [&] { return ring.size() >= 40; }));
+      CHECK(eventually([&] { return ring.size() >= 40; }));
       (*glove)->stop();
       const GloveStats stats = (*glove)->stats();
       CHECK(stats.records == ring.size());
@@ -82,7 +82,7 @@ TEST_SUITE("fivedt_usb_driver") {
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
     MockedUsb::with_model(device, [&] { model.odd_reports = {UsbBytes(63, 1), UsbBytes(1, 1)}; });
-    CHECK(within(2s, [&] { return (*glove)->stats().bad_records == 2; }));
+    CHECK(eventually([&] { return (*glove)->stats().bad_records == 2; }));
     CHECK((*glove)->stats().discarded_bytes == 64);
     (*glove)->stop();
   }

@@ -101,7 +101,7 @@ TEST_SUITE("forte_driver") {
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
     GloveSample sample;
-    REQUIRE(within(5s, [&] { return ring.try_pop(sample); }));
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     // The relaxed hand in degrees, of the range of a knuckle.
     struct Joint {
       Sensor sensor;
@@ -126,7 +126,7 @@ TEST_SUITE("forte_driver") {
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
     GloveSample sample;
-    REQUIRE(within(5s, [&] { return ring.try_pop(sample); }));
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     (*glove)->stop();
     int place = 10;
     for (const Sensor sensor :

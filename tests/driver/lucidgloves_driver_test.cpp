@@ -176,7 +176,7 @@ TEST_SUITE("lucidgloves_driver") {
     Feedback feedback;
     feedback.resistance = {1, 2, 3, 4, 5};
     (*glove)->give(feedback);
-    CHECK(within(5s, [&] { return ring.size() > 100; }));
+    CHECK(eventually([&] { return ring.size() > 100; }));
     (*glove)->stop();
     CHECK(port.look<Listener>(unit) == 0);
   }
@@ -223,9 +223,9 @@ TEST_SUITE("lucidgloves_driver") {
     Feedback feedback;
     feedback.resistance = {0, 1, 500, 1000, 65535};
     (*glove)->give(feedback);
-    CHECK(within(5s, [&] { return brakes_of(port) == std::array{0, 1, 500, 1000, 1000}; }));
+    CHECK(eventually([&] { return brakes_of(port) == std::array{0, 1, 500, 1000, 1000}; }));
     (*glove)->stop();
-    CHECK(within(5s, [&] { return brakes_of(port) == std::array{0, 0, 0, 0, 0}; }));
+    CHECK(eventually([&] { return brakes_of(port) == std::array{0, 0, 0, 0, 0}; }));
     CHECK((*glove)->stats().bad_records == 0);
   }
 
@@ -241,10 +241,10 @@ TEST_SUITE("lucidgloves_driver") {
     Feedback feedback;
     feedback.resistance = {1, 2, 3, 4, 5};
     (*glove)->give(feedback);
-    CHECK(within(5s, [&] { return written.last() == "A1B2C3D4E5\n"; })); // of which it takes a part
+    CHECK(eventually([&] { return written.last() == "A1B2C3D4E5\n"; })); // of which it takes a part
     feedback.resistance[0] = 9;
     (*glove)->give(feedback);
-    CHECK(within(5s, [&] { return written.last() == "\nA9B2C3D4E5\n"; }));
+    CHECK(eventually([&] { return written.last() == "\nA9B2C3D4E5\n"; }));
     (*glove)->stop();
     CHECK(written.last() == "A0B0C0D0E0\n");
   }
@@ -258,13 +258,13 @@ TEST_SUITE("lucidgloves_driver") {
     Feedback feedback;
     feedback.resistance = {700, 600, 500, 400, 300};
     (*glove)->give(feedback);
-    REQUIRE(within(5s, [&] { return brakes_of(port)[0] == 700; }));
+    REQUIRE(eventually([&] { return brakes_of(port)[0] == 700; }));
     port.mute = true;
-    REQUIRE(within(5s, [&] { return (*glove)->stats().silences == 1; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
     feedback.resistance[0] = 650; // given while it is silent
     (*glove)->give(feedback);
     port.mute = false;
-    CHECK(within(10s, [&] { return brakes_of(port) == std::array{650, 600, 500, 400, 300}; }));
+    CHECK(eventually([&] { return brakes_of(port) == std::array{650, 600, 500, 400, 300}; }));
   }
 
   TEST_CASE("a hand at rest arrives in the slots of the joints that it bends") {
@@ -276,7 +276,7 @@ TEST_SUITE("lucidgloves_driver") {
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
     GloveSample sample;
-    REQUIRE(within(5s, [&] { return ring.try_pop(sample); }));
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
     // The relaxed hand in degrees, of the range of a knuckle or the 20 degrees of a splay.
     struct Joint {
       Sensor sensor;

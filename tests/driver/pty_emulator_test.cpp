@@ -13,18 +13,18 @@
 
 #include <nendo/driver/emulator.hpp>
 
+#include "support/eventually.hpp"
 #include "support/pty_host.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/within.hpp"
 
 using namespace std::chrono_literals;
 using nendo::Errc;
 using nendo::driver::EmulatorOptions;
 using nendo::driver::GloveEmulator;
+using nendo::test::eventually;
 using nendo::test::PtyHost;
 using nendo::test::ServedEmulator;
 using nendo::test::TemporaryFolder;
-using nendo::test::within;
 
 TEST_SUITE("pty_emulator") {
   namespace {
@@ -61,7 +61,7 @@ TEST_SUITE("pty_emulator") {
       host.send("?S");
       CHECK(host.receive(4) == sensors_reply);
     }
-    CHECK(within(5s, [&] { return emulator->stats().bytes_received == 12; }));
+    CHECK(eventually([&] { return emulator->stats().bytes_received == 12; }));
     const auto stats = emulator->stats();
     CHECK(stats.records_sent >= 100);
     CHECK(stats.bytes_sent >= 2400 + 4 * 4);
@@ -86,7 +86,7 @@ TEST_SUITE("pty_emulator") {
     host.send("U\1");
     CHECK(host.receive(2) == std::string("U\0", 2));
     host.send("s"); // text: nearly four times as many bytes
-    CHECK(within(20s, [&] { return emulator->stats().bytes_refused > 0; }));
+    CHECK(eventually([&] { return emulator->stats().bytes_refused > 0; }));
     const std::string stream = host.receive(40'000);
     std::size_t begin = 0;
     std::size_t records = 0;

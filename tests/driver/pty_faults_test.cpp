@@ -13,9 +13,9 @@
 
 #include <nendo/driver/emulator.hpp>
 
+#include "support/eventually.hpp"
 #include "support/pty_host.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/within.hpp"
 
 using namespace std::chrono_literals;
 using namespace nendo;
@@ -65,7 +65,7 @@ TEST_SUITE("pty_faults") {
       last = ticks;
     }
     CHECK(emulator->stats().bytes_refused == 0);
-    CHECK(test::within(5s, [&] { return emulator->stats().records_sent >= records; }));
+    CHECK(test::eventually([&] { return emulator->stats().records_sent >= records; }));
   }
 
   TEST_CASE("an unplugged terminal hangs up, and another one comes under the other link") {
@@ -79,7 +79,7 @@ TEST_SUITE("pty_faults") {
     before.receive_until([](const std::string&) { return false; });
     CHECK(before.gone());
     CHECK_FALSE(fs::exists(fs::symlink_status(options.link)));
-    REQUIRE(test::within(10s, [&] { return fs::exists(folder.path() / "second"); }));
+    REQUIRE(test::eventually([&] { return fs::exists(folder.path() / "second"); }));
     test::PtyHost after(folder.path() / "second");
     CHECK(after.receive(48).size() >= 48); // the unit has gone on all the time
     CHECK(done(emulator->stats(), "unplug") == 1);
@@ -139,7 +139,7 @@ TEST_SUITE("pty_faults") {
       test::PtyHost host(emulator->tty_path());
       host.send("?S");
       CHECK(host.receive(4).size() == 4);
-      CHECK(test::within(10s, [&] { return done(emulator->stats(), "press") == 1; }));
+      CHECK(test::eventually([&] { return done(emulator->stats(), "press") == 1; }));
     }
     const std::string log = contents(options.log);
     CHECK(log.find(" < 3f 53 |?S|\n") != std::string::npos);

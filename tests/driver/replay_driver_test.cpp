@@ -6,8 +6,8 @@
 
 #include <nendo/driver/sample_record.hpp>
 
+#include "support/eventually.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/within.hpp"
 
 using namespace std::chrono_literals;
 using namespace nendo;
@@ -64,7 +64,7 @@ std::vector<GloveSample> samples_of(Glove& glove, std::size_t wanted) {
   std::vector<GloveSample> samples;
   SampleRing ring(1024);
   REQUIRE(glove.start(ring));
-  test::within(20s, [&] {
+  test::eventually([&] {
     ring.drain([&](const GloveSample& sample) noexcept { samples.push_back(sample); });
     return samples.size() >= wanted;
   });

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "crash_keeper.hpp"
+#include "support/eventually.hpp"
 #include "support/takes.hpp"
-#include "support/within.hpp"
 
 using namespace std::chrono_literals;
 using namespace nendo;
@@ -173,8 +173,8 @@ TEST_SUITE("kept_ring") {
     live.recorder->keep();
     const auto first = std::filesystem::path(stem.string() + ".kept-1.nendo");
     const auto second = std::filesystem::path(stem.string() + ".kept-2.nendo");
-    REQUIRE(test::within(20s, [&] { return std::filesystem::exists(first); }));
-    REQUIRE(test::within(20s, [&] { return std::filesystem::file_size(first) > 100; }));
+    REQUIRE(test::eventually([&] { return std::filesystem::exists(first); }));
+    REQUIRE(test::eventually([&] { return std::filesystem::file_size(first) > 100; }));
     // Turned on for 20 ms by the samples' own times.
     HostTime now = HostClock::now();
     for (std::uint64_t tick = 0; tick < 10; ++tick) {

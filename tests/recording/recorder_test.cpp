@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "support/eventually.hpp"
 #include "support/small_disk.hpp"
 #include "support/takes.hpp"
-#include "support/within.hpp"
 
 using namespace std::chrono_literals;
 using namespace nendo;
@@ -68,7 +68,7 @@ TEST_SUITE("recorder") {
     RecordedLoop live(Mode::type1);
     live.record({.chunk_time = 20ms});
     test::play(live, 100);
-    CHECK(test::within(20s, [&] { return counts_of(live.path).ticks == 100; }));
+    CHECK(test::eventually([&] { return counts_of(live.path).ticks == 100; }));
     CHECK_FALSE(counts_of(live.path).has_ending);
     REQUIRE(live.end());
   }
@@ -87,7 +87,7 @@ TEST_SUITE("recorder") {
     live.record({.chunk_time = 1ms});
     const test::SmallDisk small(64 * 1024);
     test::play(live, 100); // a third of what fits
-    CHECK(test::within(20s, [&] { return counts_of(live.path).ticks > 0; }));
+    CHECK(test::eventually([&] { return counts_of(live.path).ticks > 0; }));
     for (unsigned seed = 1; seed < 12; ++seed)
       test::play(live, 100, seed);
     const auto recorded = live.end();

@@ -7,9 +7,9 @@
 
 #include <nendo/recording/loop_replay.hpp>
 
+#include "support/eventually.hpp"
 #include "support/small_disk.hpp"
 #include "support/takes.hpp"
-#include "support/within.hpp"
 
 using namespace std::chrono_literals;
 using namespace nendo;
@@ -41,7 +41,7 @@ struct Take {
         live.test.loop->tick(10 * part + at, HostClock::now());
       }
       // A chunk of its own, or several.
-      REQUIRE(test::within(20s, [&] { return std::filesystem::file_size(live.path) > written; }));
+      REQUIRE(test::eventually([&] { return std::filesystem::file_size(live.path) > written; }));
     }
     REQUIRE(live.end());
     bytes = test::file_bytes(live.path);

@@ -84,7 +84,7 @@ struct MockedUsb::Device {
   void submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   void answer_control(Urb& urb);
   void advance();
-  void fill(Urb& urb);
+  void fill(Urb& urb, Clock::time_point now);
   int reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   int discard(UMockdevIoctlData* argument);
   int handle(UMockdevIoctlClient* client, unsigned request, UMockdevIoctlData* argument);
@@ -155,15 +155,17 @@ void MockedUsb::Device::answer_control(Urb& urb) {
 
 /// What the bus and the glove did meanwhile.
 void MockedUsb::Device::advance() {
+  // One moment for all: a report that came due between two looks would go to the younger transfer.
+  const Clock::time_point now = Clock::now();
   for (Urb& urb : urbs) {
     if (gone && !urb.finished) urb.finish(-ESHUTDOWN, 0);
-    if (urb.finished || Clock::now() < next_report) continue;
-    fill(urb);
+    if (urb.finished || now < next_report) continue;
+    fill(urb, now);
   }
 }
 
 /// A transfer takes whole packets until one is short or it is full (USB 2.0, 5.3.2).
-void MockedUsb::Device::fill(Urb& urb) {
+void MockedUsb::Device::fill(Urb& urb, Clock::time_point now) {
   if (spoilt > 0) {
     --spoilt;
     return urb.finish(-EILSEQ, 0);
@@ -173,7 +175,7 @@ void MockedUsb::Device::fill(Urb& urb) {
     const auto report = glove.next_report();
     if (!report) return;
     rest = *report;
-    next_report = std::max(next_report + report_period, Clock::now());
+    next_report = std::max(next_report + report_period, now);
   }
   const auto room = static_cast<std::size_t>((*urb).buffer_length);
   const std::size_t count = std::min(room, rest.size());

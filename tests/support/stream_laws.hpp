@@ -13,9 +13,9 @@
 
 #include <nendo/driver/open_glove.hpp>
 
+#include "support/eventually.hpp"
 #include "support/pty_unit.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/within.hpp"
 
 namespace nendo::test {
 
@@ -63,7 +63,7 @@ inline void samples_are_in_order_and_add_up(const Kind& kind) {
   const HostTime before = HostClock::now();
   REQUIRE((*glove)->start(ring));
   CHECK((*glove)->start(ring).error().code == Errc::failed);
-  CHECK(within(5s, [&] { return ring.size() >= 20; }));
+  CHECK(eventually([&] { return ring.size() >= 20; }));
   (*glove)->stop();
   std::uint64_t next = 0;
   HostTime last = before;
@@ -91,7 +91,7 @@ inline void a_full_ring_refuses_and_counts(const Kind& kind) {
   auto glove = driver::open_glove(kind.spec(port.path()));
   REQUIRE_MESSAGE(glove, glove.error().message);
   REQUIRE((*glove)->start(ring));
-  CHECK(within(5s, [&] { return (*glove)->stats().ring_refused > 5; }));
+  CHECK(eventually([&] { return (*glove)->stats().ring_refused > 5; }));
   (*glove)->stop();
   const driver::GloveStats stats = (*glove)->stats();
   CHECK(stats.records == stats.ring_refused + ring.size());
@@ -105,7 +105,7 @@ inline void stop_is_prompt_and_start_works_again(const Kind& kind) {
   REQUIRE_MESSAGE(glove, glove.error().message);
   for (int round = 0; round < 2; ++round) {
     REQUIRE((*glove)->start(ring));
-    CHECK(within(5s, [&] { return (*glove)->stats().records > 3; }));
+    CHECK(eventually([&] { return (*glove)->stats().records > 3; }));
     const auto start = HostClock::now();
     (*glove)->stop();
     (*glove)->stop();
@@ -119,12 +119,12 @@ inline void a_silent_stream_is_started_again(const Kind& kind) {
   auto glove = driver::open_glove(kind.spec(port.path()));
   REQUIRE_MESSAGE(glove, glove.error().message);
   REQUIRE((*glove)->start(ring));
-  REQUIRE(within(5s, [&] { return (*glove)->stats().records > 3; }));
+  REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
   port.mute = true;
-  REQUIRE(within(5s, [&] { return (*glove)->stats().silences == 1; }));
+  REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
   const std::uint64_t before = (*glove)->stats().records;
   port.mute = false;
-  CHECK(within(10s, [&] { return (*glove)->stats().records > before + 3; }));
+  CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
   (*glove)->stop();
   const driver::GloveStats stats = (*glove)->stats();
   CHECK(stats.silences == 1);
@@ -141,13 +141,13 @@ inline void stop_is_prompt_while_silent_or_away(const Kind& kind) {
     auto glove = driver::open_glove(kind.spec(port.path()));
     REQUIRE_MESSAGE(glove, glove.error().message);
     REQUIRE((*glove)->start(ring));
-    REQUIRE(within(5s, [&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     port.mute = true;
     if (away) {
       port.unplug();
       std::this_thread::sleep_for(200ms); // nothing tells that the loss was noticed
     } else {
-      REQUIRE(within(5s, [&] { return (*glove)->stats().silences == 1; }));
+      REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
     }
     const auto start = HostClock::now();
     (*glove)->stop();
@@ -164,16 +164,16 @@ inline void a_glove_that_vanishes_is_found_again(const Kind& kind, bool tells_it
   auto glove = driver::open_glove(kind.spec(link.string()));
   REQUIRE_MESSAGE(glove, glove.error().message);
   REQUIRE((*glove)->start(ring));
-  REQUIRE(within(5s, [&] { return ring.size() > 3; }));
+  REQUIRE(eventually([&] { return ring.size() > 3; }));
 
   first.reset();
   std::filesystem::remove(link);
   const PtyUnit second(kind.make(Side::left));
   std::filesystem::create_symlink(second.path(), link);
-  REQUIRE(within(10s, [&] { return (*glove)->stats().reopened == 1; }));
+  REQUIRE(eventually([&] { return (*glove)->stats().reopened == 1; }));
   ring.drain([](const GloveSample&) {});
   GloveSample sample;
-  REQUIRE(within(5s, [&] { return ring.try_pop(sample); }));
+  REQUIRE(eventually([&] { return ring.try_pop(sample); }));
   (*glove)->stop();
   CHECK(sample.side == (tells_its_hand ? Side::left : Side::right));
   CHECK((*glove)->info().side == Side::right);
