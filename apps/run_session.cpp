@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include <nendo/base/usable_memory.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli.hpp"
@@ -36,7 +35,7 @@ std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
 
 std::size_t most_undo_bytes(const RunOptions& options) noexcept {
   return options.undo_memory_mb ? static_cast<std::size_t>(1e6 * *options.undo_memory_mb)
-                                : usable_memory() / 2;
+                                : deform::half_of_memory();
 }
 
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is

@@ -44,17 +44,15 @@ using Change = std::function<Result<void>(Timeline& timeline)>;
 
 // Reads the file, changes what is in it and writes it back, or to --out.
 int edit(const Options& options, const Change& change) {
-  const std::string& out = options.out.empty() ? options.file : options.out;
-  if (!timeline::is_timeline(out))
-    return report({Errc::usage, (options.out.empty() ? "" : "--out ") + out +
-                                    ": a timeline's name ends in .timeline.toml"});
+  const auto out = edited_file(options.file, options.out);
+  if (!out) return report(out.error());
   auto timeline = timeline::read_timeline(options.file);
   if (!timeline) return report(timeline.error());
   if (const auto changed = change(*timeline); !changed)
     return report({changed.error().code, options.file + ": " + changed.error().message});
-  if (const auto written = timeline::write_timeline(out, *timeline); !written)
+  if (const auto written = timeline::write_timeline(*out, *timeline); !written)
     return report(written.error());
-  std::printf("%s: %zu keys, %.3f s\n", out.c_str(), timeline->key_count(), timeline->duration_s);
+  std::printf("%s: %zu keys, %.3f s\n", out->c_str(), timeline->key_count(), timeline->duration_s);
   std::fflush(stdout);
   return 0;
 }

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "output_place.hpp"
+
 namespace nendo::app {
 namespace {
 
@@ -48,6 +52,16 @@ std::string fixed(double number, int decimals) {
   char digits[400]; // the largest double has 309 before the point
   std::snprintf(digits, sizeof digits, "%.*f", decimals, number);
   return digits;
+}
+
+Result<std::string> edited_file(const std::string& file, const std::string& out) {
+  if (!out.empty()) {
+    if (const auto fine = check_place("--out", out, {timeline::file_ending}); !fine)
+      return fine.error();
+    return out;
+  }
+  if (timeline::is_timeline(file)) return file;
+  return Error{Errc::usage, file + ": a timeline's name ends in .timeline.toml"};
 }
 
 Result<timeline::Tolerance> parse_tolerance(const std::string& text) {

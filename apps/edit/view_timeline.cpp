@@ -35,15 +35,11 @@ struct Options {
 
 constexpr viewer::Size window_size{1180, 760};
 
-Result<void> check(const Options& options, const std::string& out) {
-  if (!timeline::is_timeline(out))
-    return Error{Errc::usage, (options.out.empty() ? "" : "--out ") + out +
-                                  ": a timeline's name ends in .timeline.toml"};
+Result<void> check(const Options& options) {
   if (options.key && options.hand.empty())
     return Error{Errc::usage, "--key: say whose with --hand left or --hand right"};
   if (!options.hand.empty() && !options.key)
     return Error{Errc::usage, "--hand: is for --key; give both"};
-  if (options.screenshot.empty()) return {};
   return check_place("--screenshot", options.screenshot, {".png"});
 }
 
@@ -67,11 +63,12 @@ Result<void> begin_at(const Options& options, EditSession& session) {
   return {};
 }
 
-/// Until somebody quits, or so many pictures of a shape that is made were shown.
+/// Until somebody quits, or so many pictures of a shape that is made were shown. The last picture
+/// is written whatever ended it.
 Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const Options& options) {
   HostTime before = HostClock::now();
   std::uint32_t shown = 0;
-  while (!session.has_ended() && !stop_requested()) {
+  do {
     const HostTime now = HostClock::now();
     session.advance(to_seconds(now - before));
     before = now;
@@ -81,32 +78,32 @@ Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const
     const bool is_settled = found.fresh && !view.computing;
     session.obey(window.show(view, session.moment()));
     if (const auto error = session.progress().error) return *error;
-    if (options.frames == 0 || !is_settled) continue;
-    if (++shown < options.frames) continue;
-    if (options.screenshot.empty()) return {};
-    return write_png(options.screenshot, window.scene_window().screenshot());
-  }
-  return {};
+    if (is_settled) ++shown;
+  } while (!session.has_ended() && !stop_requested() &&
+           (options.frames == 0 || shown < options.frames));
+  if (options.screenshot.empty()) return {};
+  return write_png(options.screenshot, window.scene_window().screenshot());
 }
 
 int view_timeline(const Options& options) {
-  const std::string& out = options.out.empty() ? options.file : options.out;
-  if (const auto fine = check(options, out); !fine) return report(fine.error());
+  const auto out = edited_file(options.file, options.out);
+  if (!out) return report(out.error());
+  if (const auto fine = check(options); !fine) return report(fine.error());
   const auto frames = TimelineFrames::open(options.file, options.mesh);
   if (!frames) return report(frames.error());
   install_stop_signals();
   const timeline::Timeline& timeline = (*frames)->player().timeline();
   const deform::Mesh& model = (*frames)->model();
-  EditSession session(timeline, model, out);
+  EditSession session(timeline, model, *out);
   if (const auto begun = begin_at(options, session); !begun) return report(begun.error());
   auto window = viewer::TimelineWindow::open(
-      "Nendo: " + std::filesystem::path(out).filename().string(), window_size,
+      "Nendo: " + std::filesystem::path(*out).filename().string(), window_size,
       "on a box without a screen `nendo picture` draws a timeline, `nendo export` animates it, and "
       "the other commands of `nendo edit` change it");
   if (!window) return report(window.error());
   (*window)->set_model((*frames)->layout(), viewer::SceneBuilder(model, timeline.units_per_metre));
   const auto done = edit_in(**window, session, options);
-  if (session.history().is_modified()) note(out + ": not saved; the changes are lost");
+  if (session.history().is_modified()) note(*out + ": not saved; the changes are lost");
   return done ? 0 : report(done.error());
 }
 

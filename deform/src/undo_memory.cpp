@@ -4,6 +4,8 @@
 #include <new>
 #include <utility>
 
+#include <nendo/base/usable_memory.hpp>
+
 #include "saved_block.hpp"
 
 namespace nendo::deform {
@@ -53,6 +55,10 @@ bool UndoMemory::refill() {
 SavedChain UndoMemory::take() noexcept {
   SavedChain chain;
   return given_.try_pop(chain) ? chain : SavedChain{};
+}
+
+std::size_t half_of_memory() {
+  return usable_memory() / 2;
 }
 
 } // namespace nendo::deform

@@ -7,10 +7,10 @@
 #include <nendo/timeline/timeline_file.hpp>
 #include <nendo/viewer/image.hpp>
 
+#include "support/eventually.hpp"
 #include "support/memory_screen.hpp"
 #include "support/program.hpp"
 #include "support/restraint.hpp"
-#include "support/eventually.hpp"
 
 using namespace nendo;
 using nendo::test::contents;
@@ -200,6 +200,7 @@ TEST_SUITE("edit_command") {
     refuses({"view", run.path("none.timeline.toml")}, "none.timeline.toml");
     refuses({"view", run.take}, "take.nendo: a timeline's name ends in .timeline.toml");
     refuses({"view", file, "--out", "x.toml"}, "--out x.toml");
+    refuses({"view", file, "--out", "/nowhere/x.timeline.toml"}, "--out /nowhere");
     refuses({"view", file, "--at", "99"}, "--at");
     refuses({"view", file, "--key", "1"}, "--hand");
     refuses({"view", file, "--key", "999", "--hand", "left"}, "999");
@@ -239,6 +240,13 @@ TEST_SUITE("edit_command") {
     CHECK_FALSE(picture("later.png", {"--at", "0.9"}) == begin);
     CHECK_FALSE(picture("key.png", {"--hand", "right", "--key", "0", "--at", "0"}) == begin);
     CHECK(contents(run.timeline) == before);
+
+    const std::string last = run.path("last.png");
+    test::Program looking({"edit", "view", run.timeline, "--screenshot", last});
+    REQUIRE(test::eventually([&] { return catches(looking.id(), SIGTERM); }));
+    looking.signal(SIGTERM);
+    CHECK(looking.wait().exit_code == 0);
+    CHECK(viewer::read_png(last));
   }
 #endif
 }

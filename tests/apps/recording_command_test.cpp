@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "support/json_lines.hpp"
 #include "support/program.hpp"
 
 using namespace nendo;
@@ -16,11 +17,6 @@ using nlohmann::json;
 namespace {
 
 using Arguments = std::vector<std::string>;
-
-json last_object(const test::Finished& done) {
-  const auto lines = lines_of(done.out);
-  return lines.empty() ? json() : json::parse(lines.back());
-}
 
 Arguments joined(Arguments arguments, const Arguments& more) {
   arguments.insert(arguments.end(), more.begin(), more.end());

@@ -12,23 +12,18 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/hand/joint_filter.hpp>
 
-#include "support/memory_screen.hpp"
+#include "support/json_lines.hpp"
 #include "support/program.hpp"
-#include "support/restraint.hpp"
 
 using namespace nendo;
 using nendo::test::EmulatedGlove;
 using nendo::test::is_one_line_about;
+using nendo::test::last_object;
 using nendo::test::lines_of;
 using nendo::test::TemporaryFolder;
 using nlohmann::json;
 
 namespace {
-
-json summary_of(const nendo::test::Finished& done) {
-  const auto lines = lines_of(done.out);
-  return lines.empty() ? json() : json::parse(lines.back());
-}
 
 deform::Mesh shipped_moai() {
   const auto program = std::filesystem::path(NENDO_PROGRAM);
@@ -55,7 +50,7 @@ TEST_SUITE("run") {
            "--mode", mode, "--duration", "4", "--rate", "60", "--json", "--out", out.string()});
       CAPTURE(done.err);
       REQUIRE(done.exit_code == 0);
-      const json summary = summary_of(done);
+      const json summary = last_object(done);
       CHECK(summary["event"] == "summary");
       CHECK(summary["ticks"].get<int>() + summary["missed"].get<int>() == 240);
       CHECK(summary["failed"] == 0);
@@ -92,7 +87,7 @@ TEST_SUITE("run") {
                                           "grab", "--duration", "7", "--json", "--out",
                                           (folder.path() / "shape.ply").string()});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-    const json summary = summary_of(done);
+    const json summary = last_object(done);
     CHECK(summary["switch"] == "grab");
     // The presses are timed from the emulator's start: a slow machine's run may miss the first.
     CHECK(summary["right"]["switch_uses"] >= 1);
@@ -118,7 +113,7 @@ TEST_SUITE("run") {
         if (!injective.empty()) command.push_back(injective);
         const auto done = nendo::test::nendo(command);
         REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-        const json summary = summary_of(done);
+        const json summary = last_object(done);
         CHECK(summary["radius"] == 0.5);
         CHECK(summary["failed"] == 0);
         const json& links = summary["injective"];
@@ -144,57 +139,9 @@ TEST_SUITE("run") {
       run.signal(SIGHUP);
       const auto done = run.wait();
       CHECK(done.exit_code == 0);
-      const double elapsed_s = summary_of(done)["elapsed_s"];
+      const double elapsed_s = last_object(done)["elapsed_s"];
       CHECK((elapsed_s > 2.9) == ignored);
     }
-  }
-
-  TEST_CASE("outputs that are one file are refused before anything is opened") {
-    const TemporaryFolder folder;
-    const std::string one = (folder.path() / "a.obj").string();
-    const std::string same = (folder.path() / "." / "a.obj").string();
-    const auto done = nendo::test::nendo(
-        {"run", "--right", "sim", "--duration", "1", "--out", one, "--record", same});
-    CHECK(done.exit_code == 2);
-    CHECK(is_one_line_about(done.err, "--record"));
-    CHECK(std::filesystem::is_empty(folder.path()));
-  }
-
-  TEST_CASE(
-      "the window's last picture is there, whatever ended the run, or its absence is an error") {
-    const nendo::test::MemoryScreen screen;
-    // Mesa's own memory is not for our sanitizers, in a child either.
-    if (!screen.is_there() || !nendo::test::restraint_is_counted) return;
-    const TemporaryFolder folder;
-    const auto run = [&](const char* frames, const std::string& picture) {
-      return nendo::test::nendo({"view", "--right", "sim", "--duration", "2", "--frames", frames,
-                                 "--screenshot", picture, "--out",
-                                 (folder.path() / "shape.ply").string()});
-    };
-    for (const char* frames : {"2", "100000"}) {
-      const auto picture = folder.path() / (std::string(frames) + ".png");
-      CHECK(run(frames, picture.string()).exit_code == 0);
-      CHECK(std::filesystem::file_size(picture) > 1000);
-    }
-    const auto gone = folder.path() / "gone";
-    std::filesystem::create_directory(gone);
-    std::filesystem::create_symlink("/dev/full", gone / "full.png");
-    const auto failed = run("2", (gone / "full.png").string());
-    CHECK(failed.exit_code == 1);
-    CHECK(failed.err.find("full") != std::string::npos);
-  }
-
-  TEST_CASE("names that are no UTF-8 do not end the program, and its JSON stays JSON") {
-    const TemporaryFolder folder;
-    const std::string out = (folder.path() / "sh\xff"
-                                             "ape.ply")
-                                .string();
-    const auto done = nendo::test::nendo(
-        {"run", "--right", "sim:wave", "--duration", "0.3", "--json", "--out", out});
-    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-    CHECK(summary_of(done)["result"].get<std::string>().ends_with("sh\xef\xbf\xbd"
-                                                                  "ape.ply"));
-    CHECK(std::filesystem::exists(out));
   }
 
   TEST_CASE("a filter is named in the summary with its latency, and none is none") {
@@ -208,8 +155,8 @@ TEST_SUITE("run") {
       REQUIRE_MESSAGE(done.exit_code == 0, done.err);
       return done;
     };
-    CHECK(summary_of(with({"--json"}))["filter"] == json{{"kind", "off"}});
-    const json filter = summary_of(with({"--json", "--filter", "one-euro"}))["filter"];
+    CHECK(last_object(with({"--json"}))["filter"] == json{{"kind", "off"}});
+    const json filter = last_object(with({"--json", "--filter", "one-euro"}))["filter"];
     CHECK(filter["kind"] == "one-euro");
     const double slowest_ms = 1000.0 / (6.283185307179586 * filter["min_cutoff_hz"].get<double>());
     CHECK(filter["worst_latency_ms"]["max"].get<double>() <= slowest_ms * 1.001);
@@ -241,7 +188,7 @@ TEST_SUITE("run") {
                                             "--filter", "one-euro", "--filter-min-cutoff", cutoff,
                                             "--filter-beta", "0", "--json", "--out", out});
       REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-      const json filter = summary_of(done)["filter"];
+      const json filter = last_object(done)["filter"];
       CHECK(filter["min_cutoff_hz"] == std::stod(cutoff));
       CHECK(filter["beta_hz_per_rad_s"] == 0.0);
       // Without beta every joint is late by 1 / (2 pi cutoff) at any speed; the histogram's
@@ -268,7 +215,7 @@ TEST_SUITE("run") {
       REQUIRE_MESSAGE(done.exit_code == 0, done.err);
       return done;
     };
-    const json ranges = summary_of(with({"6", "--adapt", "--json"}))["right"]["ranges"];
+    const json ranges = last_object(with({"6", "--adapt", "--json"}))["right"]["ranges"];
     CHECK(ranges.size() == 18);
     CHECK_FALSE(ranges.contains("index_dip"));
     for (const auto& range : ranges) {
@@ -278,7 +225,7 @@ TEST_SUITE("run") {
     }
     CHECK(ranges["index_mcp"]["turns"].get<int>() > 1);
     CHECK(ranges["wrist_yaw"]["turns"] == 0); // it does not wave with the wrist
-    CHECK_FALSE(summary_of(with({"0.3", "--json"}))["right"].contains("ranges"));
+    CHECK_FALSE(last_object(with({"0.3", "--json"}))["right"].contains("ranges"));
     CHECK(with({"0.3", "--adapt"}).out.find("none: the default's") != std::string::npos);
   }
 
@@ -292,9 +239,9 @@ TEST_SUITE("run") {
     const auto done = program.wait();
     CAPTURE(done.err);
     CHECK(done.exit_code == 0);
-    CHECK(summary_of(done)["event"] == "summary");
-    CHECK(summary_of(done)["right"]["samples"].get<int>() > 50);
-    CHECK_FALSE(summary_of(done).contains("left"));
+    CHECK(last_object(done)["event"] == "summary");
+    CHECK(last_object(done)["right"]["samples"].get<int>() > 50);
+    CHECK_FALSE(last_object(done).contains("left"));
     CHECK(deform::read_mesh(out));
   }
 
@@ -407,7 +354,7 @@ TEST_SUITE("run") {
                             "catch-up:3", "--json", "--out", (folder.path() / "x.obj").string()});
     CAPTURE(done.err);
     REQUIRE(done.exit_code == 0);
-    const json summary = summary_of(done);
+    const json summary = last_object(done);
     CHECK(summary["policy"] == "catch-up:3");
     CHECK(summary["ticks"].get<int>() + summary["missed"].get<int>() == 100);
     std::size_t refused = 0;
@@ -430,7 +377,7 @@ TEST_SUITE("run") {
                                           (folder.path() / "x.obj").string()});
     CAPTURE(done.err);
     REQUIRE(done.exit_code == 0);
-    const json summary = summary_of(done);
+    const json summary = last_object(done);
     CHECK(summary["elapsed_s"].get<double>() >= 1.0);
     CHECK(summary["right"]["samples"].get<int>() > 20);
     // A tick for each sample, and ten a second without one.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <nendo/base/usable_memory.hpp>
-
 namespace nendo::recording {
 namespace {
 
@@ -34,7 +32,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   flow::LoopOptions options = setup.loop->options;
   options.requests = &replay->requests_;
   options.wrists = &replay->wrists_;
-  options.undo_most_bytes = std::min(options.undo_most_bytes, usable_memory() / 2);
+  options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
   replay->loop_ =
       std::make_unique<flow::DeformLoop>(model, setup.loop->placement, std::move(inputs), options);
   if (!is_solved(replay->loop_->grab_status()))

@@ -11,11 +11,9 @@ namespace {
 // The frame before the one in which the first of the events that differ is due.
 std::uint64_t frames_before_events(const Timeline& before, const Timeline& after,
                                    std::uint64_t most) {
-  const auto [one, other] =
-      std::mismatch(before.events.begin(), before.events.end(), after.events.begin(),
-                    after.events.end(), [](const Event& a, const Event& b) {
-                      return a.time_s == b.time_s && a.request == b.request;
-                    });
+  const auto [one, other] = std::mismatch(
+      before.events.begin(), before.events.end(), after.events.begin(), after.events.end(),
+      [](const Event& a, const Event& b) { return same_bits(a, b); });
   double first_s = longest_s;
   if (one != before.events.end()) first_s = std::min(first_s, one->time_s);
   if (other != after.events.end()) first_s = std::min(first_s, other->time_s);

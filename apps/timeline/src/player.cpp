@@ -3,8 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include <nendo/base/usable_memory.hpp>
-
 namespace nendo::timeline {
 namespace {
 
@@ -12,7 +10,7 @@ namespace {
 constexpr double a_hair = 1e-6; // of a frame
 
 flow::ShapingOptions shaping_options(const Timeline& timeline) {
-  flow::ShapingOptions options{timeline.sculptor, usable_memory() / 2};
+  flow::ShapingOptions options{timeline.sculptor, deform::half_of_memory()};
   options.sculptor.deformer.undo_bytes = 0;
   options.most_requests = timeline.events.size() + 1;
   options.held = timeline.held;

@@ -19,10 +19,6 @@ bool within(double value, double least, double most) noexcept {
   return value >= least && value <= most; // false for NaN
 }
 
-bool same(double one, double other) noexcept {
-  return std::bit_cast<std::uint64_t>(one) == std::bit_cast<std::uint64_t>(other);
-}
-
 bool is_place(const Eigen::Vector3d& place_m) noexcept {
   return within(place_m.x(), -farthest_m, farthest_m) &&
          within(place_m.y(), -farthest_m, farthest_m) &&
@@ -90,15 +86,23 @@ Eigen::Isometry3d Key::wrist_pose() const noexcept {
   return pose;
 }
 
+bool same_bits(double one, double other) noexcept {
+  return std::bit_cast<std::uint64_t>(one) == std::bit_cast<std::uint64_t>(other);
+}
+
 bool same_bits(const Key& one, const Key& other) noexcept {
-  bool equal = same(one.time_s, other.time_s);
+  bool equal = same_bits(one.time_s, other.time_s);
   for (std::size_t at = 0; at < hand::angle_count; ++at)
-    equal = equal && same(one.angles[hand::angle_at(at)], other.angles[hand::angle_at(at)]);
+    equal = equal && same_bits(one.angles[hand::angle_at(at)], other.angles[hand::angle_at(at)]);
   for (Eigen::Index axis = 0; axis < 3; ++axis)
-    equal = equal && same(one.wrist_m[axis], other.wrist_m[axis]);
+    equal = equal && same_bits(one.wrist_m[axis], other.wrist_m[axis]);
   for (Eigen::Index part = 0; part < 4; ++part)
-    equal = equal && same(one.wrist_turn.coeffs()[part], other.wrist_turn.coeffs()[part]);
+    equal = equal && same_bits(one.wrist_turn.coeffs()[part], other.wrist_turn.coeffs()[part]);
   return equal;
+}
+
+bool same_bits(const Event& one, const Event& other) noexcept {
+  return same_bits(one.time_s, other.time_s) && one.request == other.request;
 }
 
 HandTrack* Timeline::track(Side side) noexcept {

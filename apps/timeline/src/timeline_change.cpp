@@ -1,20 +1,10 @@
 #include "timeline_change.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
-#include <cstdint>
 
 namespace nendo::timeline {
 namespace {
-
-bool same(double one, double other) noexcept {
-  return std::bit_cast<std::uint64_t>(one) == std::bit_cast<std::uint64_t>(other);
-}
-
-bool same_bits(const Event& one, const Event& other) noexcept {
-  return same(one.time_s, other.time_s) && one.request == other.request;
-}
 
 // What both have at their beginnings and ends stays out of it.
 template <class T>
@@ -31,11 +21,22 @@ Splice<T> splice_between(const std::vector<T>& before, const std::vector<T>& aft
 }
 
 template <class T>
-void put(std::vector<T>& list, std::size_t at, const std::vector<T>& out,
-         const std::vector<T>& in) {
-  const auto begin = list.begin() + static_cast<std::ptrdiff_t>(at);
+void put(std::vector<T>& list, const Splice<T>& splice, bool forth) {
+  const auto& out = forth ? splice.before : splice.after;
+  const auto& in = forth ? splice.after : splice.before;
+  const auto begin = list.begin() + static_cast<std::ptrdiff_t>(splice.at);
   const auto place = list.erase(begin, begin + static_cast<std::ptrdiff_t>(out.size()));
   list.insert(place, in.begin(), in.end());
+}
+
+void go(Timeline& timeline, const TimelineChange& change, bool forth) {
+  timeline.duration_s = forth ? change.duration_after_s : change.duration_before_s;
+  for (std::size_t at = 0; at < change.hands.size(); ++at) {
+    const auto& hand = change.hands[at];
+    timeline.hands[at].side = forth ? hand.side_after : hand.side_before;
+    put(timeline.hands[at].keys, hand.keys, forth);
+  }
+  put(timeline.events, change.events, forth);
 }
 
 } // namespace
@@ -53,30 +54,18 @@ TimelineChange change_between(const Timeline& before, const Timeline& after) {
 }
 
 bool is_empty(const TimelineChange& change) noexcept {
-  return same(change.duration_before_s, change.duration_after_s) && change.events.is_empty() &&
+  return same_bits(change.duration_before_s, change.duration_after_s) && change.events.is_empty() &&
          std::all_of(change.hands.begin(), change.hands.end(), [](const auto& hand) {
            return hand.side_before == hand.side_after && hand.keys.is_empty();
          });
 }
 
 void do_change(Timeline& timeline, const TimelineChange& change) {
-  timeline.duration_s = change.duration_after_s;
-  for (std::size_t at = 0; at < change.hands.size(); ++at) {
-    const auto& hand = change.hands[at];
-    timeline.hands[at].side = hand.side_after;
-    put(timeline.hands[at].keys, hand.keys.at, hand.keys.before, hand.keys.after);
-  }
-  put(timeline.events, change.events.at, change.events.before, change.events.after);
+  go(timeline, change, true);
 }
 
 void undo_change(Timeline& timeline, const TimelineChange& change) {
-  timeline.duration_s = change.duration_before_s;
-  for (std::size_t at = 0; at < change.hands.size(); ++at) {
-    const auto& hand = change.hands[at];
-    timeline.hands[at].side = hand.side_before;
-    put(timeline.hands[at].keys, hand.keys.at, hand.keys.after, hand.keys.before);
-  }
-  put(timeline.events, change.events.at, change.events.after, change.events.before);
+  go(timeline, change, false);
 }
 
 } // namespace nendo::timeline

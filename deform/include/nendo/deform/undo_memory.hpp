@@ -52,4 +52,8 @@ private:
   std::atomic<std::size_t> free_{0};
 };
 
+/// Half of what the program may use, in bytes: so much may be kept for undo where nobody says how
+/// much. As usable_memory().
+std::size_t half_of_memory();
+
 } // namespace nendo::deform

@@ -24,6 +24,7 @@ struct Key {
 };
 
 /// Whether every number of both has the same bits.
+bool same_bits(double one, double other) noexcept;
 bool same_bits(const Key& one, const Key& other) noexcept;
 
 struct HandTrack {
@@ -38,6 +39,8 @@ struct Event {
   double time_s = 0.0;
   flow::Request request = flow::Request::grab;
 };
+
+bool same_bits(const Event& one, const Event& other) noexcept;
 
 /// Times begin at 0, where the hands take hold of the model as it is in its file.
 struct Timeline {
