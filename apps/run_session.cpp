@@ -182,7 +182,8 @@ private:
       if (is_change_due(thread.start)) return true;
       if (HostClock::now() < next_report) continue;
       if (unreported)
-        followers_.progress(frames.front(), to_seconds(HostClock::now() - thread.start));
+        followers_.progress(frames.front(),
+                            before_s_ + to_seconds(HostClock::now() - thread.start));
       unreported = false;
       next_report += milliseconds(250);
     }
@@ -196,6 +197,7 @@ private:
   }
 
   Result<void> renew() {
+    before_s_ += elapsed_s_;
     if (options_.duration_s > 0.0)
       options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
     const flow::Placement placement = placed_.loop->placement();
@@ -225,6 +227,7 @@ private:
   RunRecorder recorder_;
   HoldLights lights_;
   PlacedLoop placed_;
+  double before_s_ = 0.0;  ///< of all loops but the latest
   double elapsed_s_ = 0.0; ///< of the latest loop
   bool told_ = false;
 };

@@ -242,6 +242,36 @@ TEST_SUITE("timeline_window") {
     CHECK(*seat.type(GLFW_KEY_EQUAL).speed > 1.0);
   }
 
+  TEST_CASE("a key that was down only between two pictures counts, and twice if it was twice") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    seat.input.control = true;
+    seat.input.taps = {GLFW_KEY_Z, GLFW_KEY_Z, GLFW_KEY_Y};
+    seat.window->pretend(seat.input);
+    std::vector<EditCommand> commands;
+    for (int picture = 0; picture < 6; ++picture) {
+      const auto wishes = seat.show();
+      commands.insert(commands.end(), wishes.commands.begin(), wishes.commands.end());
+      seat.input = {};
+      seat.window->pretend(seat.input);
+    }
+    using enum EditCommand;
+    CHECK(commands == std::vector{undo, undo, redo});
+  }
+
+  TEST_CASE("a press is where the pointer was, though it has moved on before the picture") {
+    const Room room;
+    if (!room.seat) return;
+    Seat& seat = *room.seat;
+    const Vector2d key = seat.on_key(1, 1);
+    seat.input.clicked_at = key;
+    const Vector2d there = key + Vector2d(40.0, 0.0);
+    CHECK(*seat.move(there, true).select == StripKey{1, 1});
+    seat.input.clicked_at.reset();
+    CHECK(key_drag(seat.move(there, true)).to_s > seat.view.lanes[1].keys_s[1] + 0.1);
+  }
+
   TEST_CASE("who quits with unsaved changes is asked first") {
     const Room room;
     if (!room.seat) return;

@@ -162,6 +162,21 @@ TEST_SUITE("run_web") {
     CHECK(program.wait().exit_code == 0);
   }
 
+  TEST_CASE("the time that a run tells is its own, however often its loop is made anew") {
+    const test::TemporaryFolder folder;
+    test::Program program({"run", "--left", "sim:sculpt", "--web", "0", "--out",
+                           (folder.path() / "clay.ply").string()});
+    Looker looker{address_of(program), {}, {}};
+    looker.come();
+    const auto follow_for = [&](int ticks) { // which take no less than their 90th of a second
+      looker.follow_until([&] { return looker.follower->updates > ticks; });
+    };
+    follow_for(120);
+    looker.change("reset");
+    follow_for(120);
+    CHECK(program.err_so_far().find(" s (Ctrl-C ends)") != std::string::npos); // said each 2 s
+  }
+
   TEST_CASE("an address that is none, or not this machine's, is one line before anything begins") {
     const auto nonsense = test::nendo({"run", "--left", "sim", "--web", "localhost:80"});
     CHECK(nonsense.exit_code == 2);

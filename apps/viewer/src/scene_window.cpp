@@ -10,6 +10,8 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include "quick_input.hpp"
+
 namespace nendo::viewer {
 namespace {
 
@@ -46,7 +48,28 @@ Size pixels_of(GLFWwindow* window) {
 
 constexpr std::chrono::milliseconds least_period(8); // where no screen sets the pace
 
+QuickInput& quick_of(GLFWwindow* window) {
+  return *static_cast<QuickInput*>(glfwGetWindowUserPointer(window));
+}
+
+void on_key(GLFWwindow* window, int key, int, int action, int modifiers) {
+  if (action != GLFW_PRESS) return;
+  quick_of(window).press(key, (modifiers & GLFW_MOD_CONTROL) != 0,
+                         (modifiers & GLFW_MOD_SHIFT) != 0);
+}
+
+// Not glfwGetCursorPos(): that asks where the pointer is now, and not where it was at this event.
+void on_pointer(GLFWwindow* window, double x, double y) {
+  quick_of(window).point(x, y);
+}
+
+void on_button(GLFWwindow* window, int, int action, int) {
+  if (action == GLFW_PRESS) quick_of(window).click();
+}
+
 } // namespace
+
+SceneWindow::SceneWindow() : quick_(std::make_unique<QuickInput>()) {}
 
 Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title, Size size,
                                                        const std::string& instead) {
@@ -72,6 +95,10 @@ Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title,
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
   ImGui::GetStyle().Colors[ImGuiCol_TextDisabled] = {0.68F, 0.70F, 0.72F, 1.0F}; // to be read, too
+  glfwSetWindowUserPointer(window->window_, window->quick_.get());
+  glfwSetKeyCallback(window->window_, on_key); // ImGui's own call these
+  glfwSetMouseButtonCallback(window->window_, on_button);
+  glfwSetCursorPosCallback(window->window_, on_pointer);
   ImGui_ImplGlfw_InitForOpenGL(window->window_, true);
   ImGui_ImplOpenGL3_Init("#version 330");
   return window;
@@ -102,6 +129,7 @@ void SceneWindow::begin_picture(const Moment& moment, bool is_whole) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   if (pretended_) put_pretended();
+  quick_->put();
   ImGui::NewFrame();
 }
 
@@ -114,6 +142,15 @@ void SceneWindow::choose_camera() {
         points.emplace_back(x, y, z);
   const Size size = scene_size();
   camera_ = framing(points, {22.0, 10.0}, 1.0 * size.width / size.height, 0.1);
+}
+
+void SceneWindow::pretend(const PretendedInput& input) {
+  pretended_ = input;
+  for (const int key : input.taps)
+    quick_->press(key, input.control, input.shift);
+  if (!input.clicked_at) return;
+  quick_->point(input.clicked_at->x(), input.clicked_at->y());
+  quick_->click();
 }
 
 // As the window's back end tells ImGui of those that are there.
@@ -157,6 +194,7 @@ void SceneWindow::follow_part_keys() {
 
 void SceneWindow::end_picture() {
   ImGui::Render();
+  quick_->take_back();
   draw_all();
   glfwSwapBuffers(window_);
   std::this_thread::sleep_until(begun_ + least_period);

@@ -6,12 +6,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nendo/viewer/gl_renderer.hpp>
 
 struct GLFWwindow;
 
 namespace nendo::viewer {
+
+class QuickInput;
 
 /// A mouse and a keyboard that are not there: for tests.
 struct PretendedInput {
@@ -21,6 +24,9 @@ struct PretendedInput {
   bool control = false;
   bool shift = false;
   int key = 0; ///< GLFW's number of the one that is down; 0: none
+  // Since the last picture:
+  std::vector<int> taps;                     ///< keys that went down, and up again
+  std::optional<Eigen::Vector2d> clicked_at; ///< where the pointer was when a button went down
 };
 
 class SceneWindow {
@@ -60,10 +66,10 @@ public:
   /// As viewer::silhouette(), of what was shown last, by OpenGL.
   Image silhouette(Size size);
   /// From the next picture on, in place of the mouse and the keyboard that are there.
-  void pretend(const PretendedInput& input) { pretended_ = input; }
+  void pretend(const PretendedInput& input);
 
 private:
-  SceneWindow() = default;
+  SceneWindow();
   void choose_camera();
   void put_pretended() const;
   void draw_all() const;
@@ -72,6 +78,7 @@ private:
   std::unique_ptr<GlRenderer> renderer_;
   std::optional<SceneBuilder> builder_;
   std::optional<PretendedInput> pretended_;
+  std::unique_ptr<QuickInput> quick_;
   SceneParts parts_;
   Scene scene_;
   Camera camera_;
