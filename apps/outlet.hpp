@@ -2,9 +2,11 @@
 // Where the frames of a run go while it runs: to other programs, other machines.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/keepsakes.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
 #include <nendo/flow/wrist_move.hpp>
@@ -27,6 +29,10 @@ public:
   virtual std::optional<flow::WristMove> next_wrist() { return std::nullopt; }
   /// What it wants that only a new loop can give, since the last call.
   virtual flow::LoopChange next_change() { return {}; }
+  /// What it wants kept, since the last call.
+  virtual flow::Keepsakes next_keepsakes() { return {}; }
+  /// What became of that, for its people; whoever of them asked.
+  virtual void tell(const std::string& words) { static_cast<void>(words); }
 };
 
 } // namespace nendo::app

@@ -38,8 +38,8 @@ bool RunKeys::obey(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
   if (*key == 'c' || *key == ' ') ask(flow::Request::commit);
   if (*key == 'u') ask(flow::Request::undo);
   if (*key == 'r' || *key == 'U') ask(flow::Request::redo);
-  if (*key == 's') save(loop);
-  if (*key == 'k') recorder_.keep();
+  if (*key == 's') tell(save(loop));
+  if (*key == 'k') tell(keep_recording());
   if (*key != 'q') return true;
   wait_until_heard();
   return false;
@@ -57,12 +57,25 @@ void RunKeys::ask(flow::Request request) {
     tell("the loop does not answer, so it was not asked to " + std::string(name_of(request)));
 }
 
-void RunKeys::save(flow::DeformLoop& loop) {
+std::string RunKeys::keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop) {
+  std::string words = wanted.shape ? save(loop) : "";
+  if (wanted.recording) words += (words.empty() ? "" : "; ") + keep_recording();
+  tell(words);
+  return words;
+}
+
+std::string RunKeys::keep_recording() {
+  if (!recorder_.keeps()) return "nothing is kept in memory; start with --keep-last 60s";
+  recorder_.keep();
+  return "what was just done is being kept";
+}
+
+std::string RunKeys::save(flow::DeformLoop& loop) {
   const std::string file = next_free_name(out_, saved_);
   deform::Mesh shape = model_;
   loop.layout().unpack(loop.frames().front().shape, shape.vertices);
   const auto written = deform::write_mesh(file, shape);
-  tell(written ? "saved as " + file : written.error().message);
+  return written ? "saved as " + file : written.error().message;
 }
 
 } // namespace nendo::app

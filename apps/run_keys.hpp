@@ -7,6 +7,7 @@
 
 #include <nendo/deform/mesh.hpp>
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/keepsakes.hpp>
 
 #include "keys.hpp"
 #include "run_recording.hpp"
@@ -22,10 +23,13 @@ public:
   /// Waits so long for a key, and does what it stands for; the user sees the frame at the front.
   /// False: the run is to end.
   bool obey(std::chrono::milliseconds patience, flow::DeformLoop& loop);
+  /// What was asked for elsewhere than at the terminal; what became of it, also on standard error.
+  std::string keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop);
 
 private:
   void ask(flow::Request request);
-  void save(flow::DeformLoop& loop);
+  std::string save(flow::DeformLoop& loop);
+  std::string keep_recording();
   void wait_until_heard() const;
 
   Keys keys_;

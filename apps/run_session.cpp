@@ -127,6 +127,18 @@ private:
     }
   }
 
+  void keep_what_is_wanted(RunKeys& keys) {
+    flow::Keepsakes wanted;
+    for (Outlet* outlet : followers_.outlets)
+      wanted.add(outlet->next_keepsakes());
+    if (followers_.onlooker != nullptr) wanted.add(followers_.onlooker->next_keepsakes());
+    if (!wanted.ask_anything()) return;
+    const std::string words = keys.keep(wanted, *placed_.loop);
+    for (Outlet* outlet : followers_.outlets)
+      outlet->tell(words);
+    if (followers_.onlooker != nullptr) followers_.onlooker->tell(words);
+  }
+
   // Whether somebody has wanted a change for which it is time.
   bool is_change_due(HostTime loop_began) {
     for (Outlet* outlet : followers_.outlets)
@@ -181,6 +193,7 @@ private:
         return false;
       if (is_change_due(thread.start)) return true;
       if (HostClock::now() < next_report) continue;
+      keep_what_is_wanted(keys); // no oftener, however often somebody asks
       if (unreported)
         followers_.progress(frames.front(),
                             before_s_ + to_seconds(HostClock::now() - thread.start));

@@ -45,8 +45,10 @@ public:
   /// Called over and over, and by its return sets the pace: within 30 ms. fresh: frames().front()
   /// is another one than at the call before.
   virtual Verdict look(flow::DeformLoop& loop, bool fresh) = 0;
-  /// As Outlet::next_change().
+  /// These as Outlet's.
   virtual flow::LoopChange next_change() { return {}; }
+  virtual flow::Keepsakes next_keepsakes() { return {}; }
+  virtual void tell(const std::string& words) { static_cast<void>(words); }
   /// After the last loop, whatever ended it; the shape has been written. An error is the run's.
   virtual Result<void> end() { return {}; }
 };

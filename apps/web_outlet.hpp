@@ -22,6 +22,8 @@ public:
   std::optional<flow::Request> next_request() override;
   std::optional<flow::WristMove> next_wrist() override { return server_->next_wrist(); }
   flow::LoopChange next_change() override { return server_->next_change(); }
+  flow::Keepsakes next_keepsakes() override { return server_->next_keepsakes(); }
+  void tell(const std::string& words) override { server_->tell(words); }
 
   const web::Server& server() const noexcept { return *server_; }
   std::string name; ///< of the model, for people

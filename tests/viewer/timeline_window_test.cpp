@@ -247,10 +247,10 @@ TEST_SUITE("timeline_window") {
     if (!room.seat) return;
     Seat& seat = *room.seat;
     seat.input.control = true;
-    seat.input.taps = {GLFW_KEY_Z, GLFW_KEY_Z, GLFW_KEY_Y};
+    seat.input.taps = {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_Z, GLFW_KEY_Z, GLFW_KEY_Y};
     seat.window->pretend(seat.input);
     std::vector<EditCommand> commands;
-    for (int picture = 0; picture < 6; ++picture) {
+    for (int picture = 0; picture < 4; ++picture) {
       const auto wishes = seat.show();
       commands.insert(commands.end(), wishes.commands.begin(), wishes.commands.end());
       seat.input = {};

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include <Eigen/Geometry>
+#include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
 
 #include <nendo/viewer/live_window.hpp>
@@ -91,6 +92,58 @@ TEST_SUITE("window") {
     const Image shown = window.screenshot();
     CHECK(shown.size() == size);
     CHECK_FALSE(shown == Image(size, shown.at(0, 0)));
+  }
+
+  TEST_CASE("there is a key for all that the panel has, and a reset is asked about first") {
+    if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    test::LoopUnderTest test(flow::Mode::type1);
+    auto opened = LiveWindow::open("test", {400, 300});
+    REQUIRE(opened);
+    LiveWindow& window = **opened;
+    flow::LoopSettings settings;
+    settings.radius_m.fill(0.1);
+    window.begin(test.loop->layout(), SceneBuilder(test.model, test.placement.units_per_metre),
+                 settings);
+    const flow::Frame& frame = test.frame_after_tick(0);
+    const auto type = [&](int key) {
+      PretendedInput input;
+      input.taps = {key};
+      window.pretend(input);
+      const auto wishes = window.show(frame, false, {});
+      window.pretend({});
+      window.show(frame, false, {});
+      return wishes;
+    };
+    using flow::Request;
+    for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
+                                       {GLFW_KEY_L, Request::let_go},
+                                       {GLFW_KEY_C, Request::commit},
+                                       {GLFW_KEY_U, Request::undo},
+                                       {GLFW_KEY_R, Request::redo}})
+      CHECK(type(key).requests == std::vector{request});
+    CHECK(type(GLFW_KEY_T).record);
+    CHECK(type(GLFW_KEY_S).keepsakes.shape);
+    CHECK(type(GLFW_KEY_K).keepsakes.recording);
+    CHECK(type(GLFW_KEY_Q).quit);
+
+    CHECK_FALSE(type(GLFW_KEY_ENTER).settings); // they are in force
+    type(GLFW_KEY_M);
+    type(GLFW_KEY_N);
+    type(GLFW_KEY_RIGHT_BRACKET);
+    const auto wanted = type(GLFW_KEY_ENTER).settings;
+    REQUIRE(wanted);
+    CHECK(wanted->mode == flow::Mode::type2);
+    CHECK(wanted->kernel == deform::Wendland::c4);
+    for (const double radius_m : wanted->radius_m)
+      CHECK(radius_m == doctest::Approx(0.11));
+
+    CHECK_FALSE(type(GLFW_KEY_X).reset);
+    CHECK(type(GLFW_KEY_G).requests.empty()); // the question comes first
+    type(GLFW_KEY_ESCAPE);
+    window.show(frame, false, {});
+    CHECK(type(GLFW_KEY_G).requests.size() == 1);
   }
 
   TEST_CASE("the mouse takes the hand that is seen under it, wherever the model's origin is") {

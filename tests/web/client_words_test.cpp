@@ -37,6 +37,15 @@ TEST_SUITE("client_words") {
     CHECK((!end->reset && !end->settings && end->record == false));
   }
 
+  TEST_CASE("what is to be kept is the shape or the recording") {
+    const auto shape = parsed_as<flow::Keepsakes>("save");
+    REQUIRE(shape);
+    CHECK((shape->shape && !shape->recording));
+    const auto recording = parsed_as<flow::Keepsakes>("keep");
+    REQUIRE(recording);
+    CHECK((recording->recording && !recording->shape));
+  }
+
   TEST_CASE("settings are mode, kernel and five radii in metres") {
     const auto change = parsed_as<flow::LoopChange>("settings type2 c4 0.1 0.125 0.08 1e-2 10");
     REQUIRE(change);

@@ -55,7 +55,8 @@ public:
     const auto type = in.take<std::uint8_t>();
     if (type == 1) take_shape(in);
     if (type == 2) take_update(in);
-    return (type == 1 || type == 2) && in.at == message.size();
+    if (type == 3) take_words(in);
+    return type >= 1 && type <= 3 && in.at == message.size();
   }
 
   /// In the mesh's order and units.
@@ -94,6 +95,7 @@ public:
   std::array<bool, 2> present{}, other_bones{};
   std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
+  std::string told;                  ///< to the people who look on
   std::uint64_t implied_centres = 0; ///< that were left out
 
 private:
@@ -129,6 +131,12 @@ private:
     std::array<float, 12> polynomial{};
     std::vector<Function> functions;
   };
+
+  void take_words(Bytes& in) {
+    in.at += 3;
+    told.assign(reinterpret_cast<const char*>(in.bytes.data()) + 4, in.bytes.size() - 4);
+    in.at = in.bytes.size();
+  }
 
   void take_shape(Bytes& in) {
     ++shapes;

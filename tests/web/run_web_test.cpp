@@ -1,5 +1,6 @@
 // `nendo run --web`, from outside.
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -9,12 +10,14 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "following_client.hpp"
+#include "support/eventually.hpp"
 #include "support/program.hpp"
 #include "web_client.hpp"
 
 using namespace nendo;
 using nendo::test::FollowingClient;
 using nendo::test::WebClient;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -160,6 +163,33 @@ TEST_SUITE("run_web") {
     CHECK(looker.follower->forearms[0].angularDistance(Eigen::Quaterniond::Identity()) < 2e-4);
     program.signal(SIGTERM);
     CHECK(program.wait().exit_code == 0);
+  }
+
+  TEST_CASE("a browser's client has the shape saved and the recording kept, and is told where") {
+    const test::TemporaryFolder folder;
+    const auto out = folder.path() / "clay.ply";
+    test::Program program({"run", "--left", "sim:sculpt?seed=7", "--right", "sim:sculpt?seed=7",
+                           "--web", "0", "--keep-last", "10s", "--out", out.string()});
+    Looker looker{address_of(program), {}, {}};
+    looker.come();
+    const auto told_after = [&](const std::string& words, const std::string& what) {
+      REQUIRE(looker.client->say(words));
+      looker.follow_until([&] { return looker.follower->told.find(what) != std::string::npos; });
+    };
+    looker.follow_until([&] { return looker.follower->updates > 60; });
+    const auto saved = folder.path() / "clay-1.ply";
+    told_after("save", "saved as " + saved.string());
+    const auto shape = deform::read_mesh(saved);
+    REQUIRE(shape);
+    CHECK(shape->vertices.cols() == static_cast<Eigen::Index>(looker.follower->order.size()));
+    told_after("keep", "is being kept");
+    CHECK(test::eventually([&] {
+      return std::any_of(fs::directory_iterator(folder.path()), fs::directory_iterator(),
+                         [](const auto& file) { return file.path().extension() == ".nendo"; });
+    }));
+    program.signal(SIGTERM);
+    CHECK(program.wait().exit_code == 0);
+    CHECK(fs::exists(out));
   }
 
   TEST_CASE("the time that a run tells is its own, however often its loop is made anew") {

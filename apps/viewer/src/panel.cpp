@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -19,8 +20,8 @@ namespace {
 constexpr std::array finger_names{"thumb", "index", "middle", "ring", "little"};
 constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2, deform::Wendland::c4,
                              deform::Wendland::c6};
-constexpr float least_radius_cm = 1.0F;
-constexpr float most_radius_cm = 40.0F;
+constexpr double least_radius_m = 0.01;
+constexpr double most_radius_m = 0.4;
 
 constexpr std::array key_table{
     KeyLine{"g", "grab: the hands take hold"},
@@ -28,7 +29,13 @@ constexpr std::array key_table{
     KeyLine{"c", "commit: this shape becomes the rest shape"},
     KeyLine{"u", "undo the last commit"},
     KeyLine{"r", "redo what was undone"},
+    KeyLine{"x", "reset: back to the model as it was loaded"},
     KeyLine{"t", "a take: record from this shape on, and end that"},
+    KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
+    KeyLine{"s", "save the model as it is now"},
+    KeyLine{"m, n", "the other mode, the next kernel"},
+    KeyLine{"[, ]", "smaller radii, larger ones"},
+    KeyLine{"Enter", "apply the mode, kernel and radii that are chosen"},
     KeyLine{"q", "quit; the shape is written"},
 };
 
@@ -52,6 +59,10 @@ std::array<float, 15> bends_of(const hand::HandPose& pose) {
                                            static_cast<Joint>(metacarpal + joint + 1));
   }
   return bends;
+}
+
+bool pressed(int key) {
+  return ImGui::IsKeyPressed(key, false);
 }
 
 void chart(const char* name, const Strip& strip, const char* unit) {
@@ -89,8 +100,32 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, 
   ask("Commit", Request::commit);
   ask("Undo", Request::undo);
   ask("Redo", Request::redo);
-  if (ImGui::Button("Reset")) wishes.reset = true;
+  if (ImGui::Button("Reset")) reset_asked = true;
   if (ImGui::Button(gauges.recording ? "End the recording" : "Record")) wishes.record = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Keep")) wishes.keepsakes.recording = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Save")) wishes.keepsakes.shape = true;
+  if (!gauges.told.empty()) {
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 290.0F);
+    ImGui::TextUnformatted(gauges.told.c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
+void LiveWindow::Panel::question(Wishes& wishes) {
+  constexpr const char* title = "Back to the model as it was loaded?";
+  if (std::exchange(reset_asked, false)) ImGui::OpenPopup(title);
+  const ImVec2 middle(ImGui::GetIO().DisplaySize.x / 2.0F, ImGui::GetIO().DisplaySize.y / 2.0F);
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
+  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::TextUnformatted("What has been shaped is lost, for undo begins anew.");
+  const bool reset = ImGui::Button("Reset");
+  ImGui::SameLine();
+  const bool stay = ImGui::Button("Keep the shape") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
+  wishes.reset = reset;
+  if (reset || stay) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
 }
 
 void LiveWindow::Panel::settings(Wishes& wishes) {
@@ -109,9 +144,10 @@ void LiveWindow::Panel::settings(Wishes& wishes) {
   for (std::size_t finger = 0; finger < (one_radius ? 1 : finger_names.size()); ++finger) {
     auto radius_cm = static_cast<float>(100.0 * wanted.radius_m[finger]);
     if (ImGui::SliderFloat(one_radius ? "radius" : finger_names[finger], &radius_cm,
-                           least_radius_cm, most_radius_cm, "%.1f cm"))
+                           static_cast<float>(100.0 * least_radius_m),
+                           static_cast<float>(100.0 * most_radius_m), "%.1f cm"))
       wanted.radius_m[finger] =
-          static_cast<double>(std::clamp(radius_cm, least_radius_cm, most_radius_cm)) / 100;
+          std::clamp(static_cast<double>(radius_cm) / 100, least_radius_m, most_radius_m);
   }
   if (one_radius) wanted.radius_m.fill(wanted.radius_m[0]);
   if (wanted == in_force) {
@@ -152,16 +188,35 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
   }
 }
 
+void LiveWindow::Panel::settings_keys(Wishes& wishes) {
+  if (pressed(GLFW_KEY_M))
+    wanted.mode = wanted.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
+  if (pressed(GLFW_KEY_N)) {
+    const auto at = std::find(kernels.begin(), kernels.end(), wanted.kernel);
+    wanted.kernel = at == kernels.end() || at + 1 == kernels.end() ? kernels.front() : at[1];
+  }
+  constexpr double larger = 1.1;
+  for (const auto& [key, factor] :
+       {std::pair{GLFW_KEY_LEFT_BRACKET, 1.0 / larger}, {GLFW_KEY_RIGHT_BRACKET, larger}})
+    if (ImGui::IsKeyPressed(key, true))
+      for (double& radius_m : wanted.radius_m)
+        radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
+  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force)) wishes.settings = wanted;
+}
+
 void LiveWindow::Panel::keys(Wishes& wishes) {
-  if (ImGui::GetIO().WantTextInput) return;
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  if (ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) return;
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
                                      {GLFW_KEY_C, Request::commit},
                                      {GLFW_KEY_U, Request::undo},
                                      {GLFW_KEY_R, Request::redo}})
     if (pressed(key)) wishes.requests.push_back(request);
+  if (pressed(GLFW_KEY_X)) reset_asked = true;
   if (pressed(GLFW_KEY_T)) wishes.record = true;
+  if (pressed(GLFW_KEY_K)) wishes.keepsakes.recording = true;
+  if (pressed(GLFW_KEY_S)) wishes.keepsakes.shape = true;
+  settings_keys(wishes);
   if (pressed(GLFW_KEY_Q)) wishes.quit = true;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (keys_shown)
@@ -182,6 +237,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Wish
   if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
     panel_->hands(frame, gauges);
   ImGui::End();
+  panel_->question(wishes);
   window_->follow_part_keys();
   panel_->keys(wishes);
 }

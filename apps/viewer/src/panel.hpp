@@ -31,13 +31,16 @@ struct LiveWindow::Panel {
   std::uint64_t last_tick = 0;
   bool keys_shown = false;
   bool one_radius = true;
+  bool reset_asked = false; ///< and not answered whether it is meant
 
   void follow(const flow::Frame& frame, double rate_hz);
   void buttons(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes);
+  void question(Wishes& wishes);
   void settings(Wishes& wishes);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
   void keys(Wishes& wishes);
+  void settings_keys(Wishes& wishes);
 };
 
 } // namespace nendo::viewer

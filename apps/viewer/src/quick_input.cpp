@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 namespace nendo::viewer {
@@ -13,6 +14,7 @@ constexpr std::size_t most_waiting = 64; // of somebody who leans on the keyboar
 } // namespace
 
 void QuickInput::press(int key, bool control, bool shift) {
+  if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) return; // come with the others
   if (key <= 0 || key >= IM_ARRAYSIZE(ImGui::GetIO().KeysDown)) return;
   if (waiting_.size() < most_waiting) waiting_.push_back({key, control, shift});
 }

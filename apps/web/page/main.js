@@ -67,7 +67,9 @@ function open(model) {
   }
   socket.onmessage = ({ data }) => {
     if (stale) return
-    if (new DataView(data).getUint8(0) === 1) stale = !takeShape(readShape(data), model)
+    const type = new DataView(data).getUint8(0)
+    if (type === 3) panel.tell(new TextDecoder().decode(data.slice(4)))
+    else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
     dirty = true

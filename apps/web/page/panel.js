@@ -5,7 +5,15 @@ const KEYS = [
   ['c', 'commit: this shape becomes the rest shape', panel => panel.ask('commit')],
   ['u', 'undo the last commit', panel => panel.ask('undo')],
   ['r', 'redo what was undone', panel => panel.ask('redo')],
+  ['x', 'reset: back to the model as it was loaded', panel => panel.reset()],
   ['t', 'a take: record from this shape on, and end that', panel => panel.record()],
+  ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
+  ['s', 'save the model as it is now', panel => panel.ask('save')],
+  ['m', 'the other mode', panel => panel.shaping.otherMode()],
+  ['n', 'the next kernel', panel => panel.shaping.nextKernel()],
+  ['[', 'smaller radii', panel => panel.shaping.scale(1 / 1.1)],
+  [']', 'larger radii', panel => panel.shaping.scale(1.1)],
+  ['Enter', 'apply the mode, kernel and radii that are chosen', panel => panel.shaping.apply()],
   ['h', 'hands on and off', panel => panel.toggle('skin')],
   ['b', 'bones on and off', panel => panel.toggle('bones')],
   ['v', 'control vectors on and off', panel => panel.toggle('vectors')],
@@ -25,8 +33,9 @@ class Panel {
     const requests = [...document.querySelectorAll('[data-request]')]
     for (const button of requests) button.addEventListener('click', () => ask(button.dataset.request))
     this.buttons = [...requests, element('reset'), element('record')]
+    this.tell('')
     element('record').addEventListener('click', () => this.record())
-    element('reset').addEventListener('click', () => element('reset-dialog').showModal())
+    element('reset').addEventListener('click', () => this.reset())
     element('reset-dialog').addEventListener('close', ({ target }) => {
       if (target.returnValue === 'reset') ask('reset')
       target.returnValue = ''
@@ -45,11 +54,16 @@ class Panel {
 
   press(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return
-    if (event.target.matches('select') || element('reset-dialog').open) return // which have keys of their own
+    // Which have keys of their own, or take Enter for a click.
+    if (event.target.matches('select') || element('reset-dialog').open) return
+    if (event.key === 'Enter' && event.target.matches('button, input')) return
     const key = KEYS.find(([name]) => name === event.key)
     if (key) key[2](this)
   }
   toggle(part) { element('show-' + part).click() }
+  reset() {
+    if (!element('reset').disabled) element('reset-dialog').showModal()
+  }
   record() {
     if (this.model) this.ask(this.model.recorded ? 'end recording' : 'record')
   }
@@ -59,6 +73,7 @@ class Panel {
     else dialog.showModal()
   }
 
+  tell(words) { element('told').textContent = words }
   say(words) {
     element('banner').textContent = words
     element('banner').hidden = words === ''

@@ -11,9 +11,13 @@ class Shaping {
     element('shaping').addEventListener('input', event => this.choose(event.target))
     element('shaping').addEventListener('submit', event => {
       event.preventDefault()
-      const { mode, kernel, radii } = this.asked = this.wanted
-      this.ask(`settings type${mode} ${kernel} ${radii.join(' ')}`)
+      this.apply()
     })
+  }
+  apply() {
+    if (element('apply').disabled) return
+    const { mode, kernel, radii } = this.asked = this.wanted
+    this.ask(`settings type${mode} ${kernel} ${radii.join(' ')}`)
   }
   makeSlider(finger, at) {
     const label = element('radii').appendChild(document.createElement('label'))
@@ -50,6 +54,17 @@ class Shaping {
     if (input.id === 'kernel') wanted.kernel = input.value
     if (slider) wanted.radii[slider.at] = Number(input.value) / 100
     if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
+    this.show()
+  }
+  otherMode() { document.querySelector('[name=mode]:not(:checked)').click() }
+  nextKernel() {
+    const select = element('kernel')
+    select.selectedIndex = (select.selectedIndex + 1) % select.length
+    this.choose(select)
+  }
+  scale(factor) {
+    if (!this.wanted) return
+    this.wanted.radii = this.wanted.radii.map(radius => Math.min(0.4, Math.max(0.01, factor * radius)))
     this.show()
   }
   show() {

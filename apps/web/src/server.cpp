@@ -60,6 +60,16 @@ flow::LoopChange Server::next_change() noexcept {
   return all;
 }
 
+flow::Keepsakes Server::next_keepsakes() noexcept {
+  flow::Keepsakes all;
+  work_->keepsakes.drain([&](const flow::Keepsakes& more) noexcept { all.add(more); });
+  return all;
+}
+
+void Server::tell(std::string words) {
+  work_->tell(std::move(words));
+}
+
 void Server::tell_bad_records(std::array<std::uint32_t, 2> counts) noexcept {
   work_->bad_records = counts[0] | std::uint64_t{counts[1]} << 32U;
 }

@@ -80,6 +80,7 @@ void Server::Work::obey(Connection& connection, const std::string& text, HostTim
   // Full: the loop stands still, and asking again is as good.
   if (const auto* request = std::get_if<flow::Request>(&*wish)) requests.try_push(*request);
   if (const auto* change = std::get_if<flow::LoopChange>(&*wish)) changes.try_push(*change);
+  if (const auto* wanted = std::get_if<flow::Keepsakes>(&*wish)) keepsakes.try_push(*wanted);
   if (const auto* move = std::get_if<flow::WristMove>(&*wish)) {
     auto& wrist = wrists[flow::Placement::index_of(move->side)];
     wrist.back() = *move;

@@ -22,6 +22,10 @@ constexpr milliseconds frame_period(8);
 /// How soon it is noticed that somebody is overdue.
 constexpr milliseconds patience(250);
 
+std::string words_message(const std::string& words) {
+  return std::string{static_cast<char>(MessageType::words), 0, 0, 0} + words;
+}
+
 void write_loop(std::uint16_t loop, std::size_t at, std::vector<std::byte>& message) {
   std::memcpy(message.data() + at, &loop, sizeof loop);
 }
@@ -54,6 +58,14 @@ void Server::Work::present(std::shared_ptr<FrameTap> tap, std::vector<std::byte>
   wake();
 }
 
+void Server::Work::tell(std::string words) {
+  {
+    const std::scoped_lock lock(show_mutex_);
+    words_ = std::move(words);
+  }
+  wake();
+}
+
 std::size_t Server::Work::clients() const noexcept {
   return static_cast<std::size_t>(
       std::count_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
@@ -66,6 +78,7 @@ void Server::Work::run() {
     wait();
     const HostTime now = HostClock::now();
     take_show();
+    pass_on_words(now);
     std::size_t at = 2; // behind the listener and the waker
     for (Connection& connection : connections_)
       look_at(connection, polled_[at++].revents, now);
@@ -121,6 +134,20 @@ void Server::Work::take_show() {
   for (Connection& connection : connections_)
     if (connection.stage() == Connection::Stage::socket)
       connection.close(CloseCode::service_restart, HostClock::now());
+}
+
+// To all who have room for them: words are not worth waiting for.
+void Server::Work::pass_on_words(HostTime now) {
+  std::string words;
+  {
+    const std::scoped_lock lock(show_mutex_);
+    words.swap(words_);
+  }
+  if (words.empty()) return;
+  const SharedBytes message = shared_bytes(words_message(words));
+  for (Connection& client : connections_)
+    if (client.stage() == Connection::Stage::socket && client.has_room())
+      client.send(Opcode::binary, message, false, now);
 }
 
 // A system that has no descriptor left says at once, and over and over, that somebody waits.

@@ -26,12 +26,14 @@ public:
   Work& operator=(const Work&) = delete;
 
   void present(std::shared_ptr<FrameTap> tap, std::vector<std::byte> model);
+  void tell(std::string words);
 
   const Endpoint endpoint;
   const std::string token;
   // From this thread.
   SpscRing<flow::Request> requests{64};
   SpscRing<flow::LoopChange> changes{64};
+  SpscRing<flow::Keepsakes> keepsakes{64};
   /// By flow::Placement::index_of(side). Only the newest counts: who moves a hand all the time
   /// fills nothing up.
   std::array<LatestValue<flow::WristMove>, 2> wrists{LatestValue(flow::WristMove{}),
@@ -54,6 +56,7 @@ private:
   void wait();
   void wake() noexcept;
   void take_show();
+  void pass_on_words(HostTime now);
   void end();
   void accept_all(HostTime now);
   void make_place();
@@ -71,9 +74,10 @@ private:
 
   const ServerLimits limits_;
   Descriptor listener_, waker_;
-  std::mutex show_mutex_;    ///< between present() and this thread
+  std::mutex show_mutex_;    ///< between present(), tell() and this thread
   std::optional<Show> next_; ///< guarded by it
   std::uint16_t loops_ = 0;  ///< likewise
+  std::string words_;        ///< likewise; the newest, and empty if they have been passed on
   Show show_;
   std::list<Connection> connections_; ///< in the order in which they came
   std::vector<pollfd> polled_;

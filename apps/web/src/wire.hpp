@@ -16,7 +16,7 @@ namespace nendo::web {
 
 static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
 
-enum class MessageType : std::uint8_t { shape = 1, update = 2 };
+enum class MessageType : std::uint8_t { shape = 1, update = 2, words = 3 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 
 /// Of an update message; its fields are in PROTOCOL.md's order and have no gaps.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <nendo/flow/frame.hpp>
+#include <nendo/flow/keepsakes.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
 #include <nendo/viewer/hand_mover.hpp>
@@ -27,6 +28,7 @@ struct Gauges {
   std::array<std::uint64_t, 2> lost{}; ///< samples that found no room
   bool recording = false;              ///< goes on now
   double restart_ms = 0.0;             ///< of the last change of settings; 0: none yet
+  std::string told;                    ///< what became of the last wish to keep something
 };
 
 /// What a person wants, since the last picture.
@@ -36,6 +38,7 @@ struct Wishes {
   std::optional<LoopSettings> settings; ///< to go on with, in place of those in force
   bool reset = false;                   ///< back to the model as it was loaded
   bool record = false;                  ///< the recording is to begin, or to end
+  flow::Keepsakes keepsakes;
   bool quit = false;
 };
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/flow/keepsakes.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
 #include <nendo/flow/wrist_move.hpp>
@@ -75,6 +76,10 @@ public:
   std::optional<flow::WristMove> next_wrist() noexcept;
   /// What only a new loop can give, of all who asked since the last call.
   flow::LoopChange next_change() noexcept;
+  /// What is to be kept, of all who asked since the last call.
+  flow::Keepsakes next_keepsakes() noexcept;
+  /// Words for the people who look on now. Any thread; does not wait for the network.
+  void tell(std::string words);
   /// Of the gloves, for who looks. Any thread, wait-free.
   void tell_bad_records(std::array<std::uint32_t, 2> counts) noexcept;
   /// Any thread, wait-free; each for itself.
