@@ -114,11 +114,21 @@ void CardinalWeights::apply(const Points& displacements, const BlockShape& rest,
     displacements_[j] = {by[0], by[1], by[2], 0.0F};
   }
   const std::uint64_t stamp = BlockShape::new_stamp();
+  const auto apply_piece = [&](std::size_t begin, std::size_t end) {
+    apply_weights(cache_, begin, end, displacements_.data(), rest.data(), to.data());
+    for (std::size_t at = begin; at < end; ++at)
+      to.set_stamp(blocks_[at].block, stamp);
+  };
+  // Back and forth: what is a little larger than a cache would, always read in one direction, never
+  // be there when it is read again.
+  const bool back = std::exchange(goes_back_, !goes_back_);
+  const std::size_t blocks = cache_.block_count;
   evaluator.parts().in_pieces(
-      cache_.block_count, blocks_a_piece, [&](std::size_t begin, std::size_t end, std::size_t) {
-        apply_weights(cache_, begin, end, displacements_.data(), rest.data(), to.data());
-        for (std::size_t at = begin; at < end; ++at)
-          to.set_stamp(blocks_[at].block, stamp);
+      blocks, blocks_a_piece, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t at = begin; at < end; at += blocks_a_piece) {
+          const std::size_t until = std::min(at + blocks_a_piece, end);
+          back ? apply_piece(blocks - until, blocks - at) : apply_piece(at, until);
+        }
       });
   if (&rest == &to) return;
   for (std::size_t block = 0; block < rest.block_count(); ++block)

@@ -59,6 +59,7 @@ private:
   std::vector<std::array<float, 4>> displacements_; ///< in units
   WeightCache cache_{};
   bool built_ = false;
+  bool goes_back_ = false; ///< the next apply()
 };
 
 } // namespace nendo::deform
