@@ -156,6 +156,7 @@ private:
     LoopThread thread(loop, options_);
     tell_refusals(thread.grants());
     const bool is_another_wanted = watch(thread, picture, keys);
+    keep_what_is_wanted(keys); // just before the end
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
     model_.vertices = loop.final_shape();

@@ -68,6 +68,8 @@ Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeleto
     }
     done.last_s = frames.time_s();
   }
+  for (HandFile& hand : *files) // both hands, or what was there stays
+    if (const auto synced = hand.file.sync(); !synced) return synced.error();
   for (HandFile& hand : *files) {
     if (const auto finished = hand.file.finish(); !finished) return finished.error();
     done.files.push_back(hand.path.string());

@@ -108,6 +108,24 @@ private:
   std::atomic<int> frames_{0};
 };
 
+/// Wants the shape kept, and ends the run at once.
+class Keeper final : public Onlooker {
+public:
+  void begin(const PlacedLoop&, const deform::Mesh&, const std::vector<OpenHand>&,
+             const RunOptions&) override {}
+  Verdict look(flow::DeformLoop&, bool fresh) override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return fresh && ++frames_ >= 60 ? Verdict::end : Verdict::go_on;
+  }
+  flow::Keepsakes next_keepsakes() override { return {frames_ >= 60 && told.empty(), false}; }
+  void tell(const std::string& words) override { told.push_back(words); }
+
+  std::vector<std::string> told;
+
+private:
+  int frames_ = 0;
+};
+
 /// Ends a run when all have what they wanted.
 class Ender final : public Onlooker {
 public:
@@ -199,6 +217,22 @@ TEST_SUITE("run_session") {
     CHECK((written->vertices - mesh.vertices).cwiseAbs().maxCoeff() > 1e-3);
     // The hands go on moving meanwhile, by less than a simulated one does in a quarter second.
     CHECK(renewer.most_jump < 0.15);
+  }
+
+  TEST_CASE("what is to be kept just before the end is kept, and who asked is told where") {
+    Run run;
+    auto hands = open_hands(run.options, run.mesh, run.bell);
+    REQUIRE(hands);
+    Keeper keeper;
+    REQUIRE(run_session(run.options, *hands, run.mesh, {[](const auto&, double) {}, &keeper}));
+    const auto saved = run.folder.path() / "out-1.ply";
+    CHECK(keeper.told == std::vector{"saved as " + saved.string()});
+    const auto kept = deform::read_mesh(saved);
+    const auto last = deform::read_mesh(run.options.out);
+    REQUIRE((kept && last));
+    CHECK(kept->vertices.cols() == run.mesh.vertices.cols());
+    CHECK((kept->vertices - last->vertices).cwiseAbs().maxCoeff() < 0.15); // a tick or two
+    CHECK((kept->vertices - run.mesh.vertices).cwiseAbs().maxCoeff() > 1e-4);
   }
 
   TEST_CASE("each loop that is recorded is a recording of its own, which replays by itself") {

@@ -102,6 +102,8 @@ TEST_SUITE("files") {
     REQUIRE(file.write(std::string_view("in two")));
     CHECK(file.size() == 11);
     CHECK(read() == "old");
+    REQUIRE(file.sync());
+    CHECK(read() == "old");
     REQUIRE(file.finish());
     CHECK(read() == "new, in two");
     CHECK(entries(folder.path()) == 1);

@@ -153,10 +153,15 @@ Result<void> FileReplacement::write(std::span<const std::byte> bytes) {
   return {};
 }
 
+Result<void> FileReplacement::sync() {
+  if (::fsync(file_.get()) != 0 || !file_.close()) return failure(errno);
+  return {};
+}
+
 Result<void> FileReplacement::finish() {
-  const bool done = ::fsync(file_.get()) == 0 && file_.close() &&
-                    ::rename(temporary_.c_str(), target_.c_str()) == 0;
-  if (!done) return failure(errno);
+  if (file_.is_open())
+    if (const auto synced = sync(); !synced) return synced;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) return failure(errno);
   temporary_.clear();
   sync_folder_of(target_);
   return {};

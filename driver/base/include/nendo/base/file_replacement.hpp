@@ -24,6 +24,9 @@ public:
   /// After what was written before. Error: failed (disk full, ...).
   Result<void> write(std::span<const std::byte> bytes);
   Result<void> write(std::string_view text) { return write(std::as_bytes(std::span(text))); }
+  /// Nothing follows but finish(), which can then hardly fail: for who replaces several files, and
+  /// wants all of them or none. Error: failed (what a disk found full only now).
+  Result<void> sync();
   /// Syncs and gives the file its name; the last call. Error: failed.
   Result<void> finish();
 
