@@ -28,7 +28,7 @@ constexpr milliseconds least_loop(250);
 // parts.
 std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
   constexpr std::size_t most = std::size_t{64} << 20;
-  constexpr std::size_t shapes_of_a_vertex = 64 * 3 * sizeof(float);
+  constexpr std::size_t shapes_of_a_vertex = std::size_t{64} * 3 * sizeof(float);
   return std::min(most,
                   shapes_of_a_vertex * static_cast<std::size_t>(model.vertices.cols() + 1000));
 }

@@ -160,7 +160,7 @@ Result<void> FileReplacement::sync() {
 
 Result<void> FileReplacement::finish() {
   if (file_.is_open())
-    if (const auto synced = sync(); !synced) return synced;
+    if (const auto synced = sync(); !synced) return synced.error();
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) return failure(errno);
   temporary_.clear();
   sync_folder_of(target_);
@@ -170,7 +170,7 @@ Result<void> FileReplacement::finish() {
 Result<void> replace_file(const fs::path& path, std::string_view contents) {
   auto file = FileReplacement::begin(path);
   if (!file) return file.error();
-  if (const auto written = file->write(contents); !written) return written;
+  if (const auto written = file->write(contents); !written) return written.error();
   return file->finish();
 }
 
