@@ -38,8 +38,8 @@ bool RunKeys::obey(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
   if (*key == 'c' || *key == ' ') ask(flow::Request::commit);
   if (*key == 'u') ask(flow::Request::undo);
   if (*key == 'r' || *key == 'U') ask(flow::Request::redo);
-  if (*key == 's') tell(save(loop));
-  if (*key == 'k') tell(keep_recording());
+  if (*key == 's') keep({.shape = true}, loop);
+  if (*key == 'k') keep({.recording = true}, loop);
   if (*key != 'q') return true;
   wait_until_heard();
   return false;

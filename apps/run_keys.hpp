@@ -23,7 +23,7 @@ public:
   /// Waits so long for a key, and does what it stands for; the user sees the frame at the front.
   /// False: the run is to end.
   bool obey(std::chrono::milliseconds patience, flow::DeformLoop& loop);
-  /// What was asked for elsewhere than at the terminal; what became of it, also on standard error.
+  /// Keeps it; what became of that, which standard error tells, too.
   std::string keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop);
 
 private:

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/undo_memory.hpp>
 
 #include "cli.hpp"
 #include "hold_lights.hpp"
@@ -127,23 +128,25 @@ private:
     }
   }
 
+  // The onlooker last: what it wants counts.
+  template <class Ask>
+  void for_each_follower(Ask&& ask) const {
+    for (Outlet* outlet : followers_.outlets)
+      ask(*outlet);
+    if (followers_.onlooker != nullptr) ask(*followers_.onlooker);
+  }
+
   void keep_what_is_wanted(RunKeys& keys) {
     flow::Keepsakes wanted;
-    for (Outlet* outlet : followers_.outlets)
-      wanted.add(outlet->next_keepsakes());
-    if (followers_.onlooker != nullptr) wanted.add(followers_.onlooker->next_keepsakes());
+    for_each_follower([&](Follower& follower) { wanted.add(follower.next_keepsakes()); });
     if (!wanted.ask_anything()) return;
     const std::string words = keys.keep(wanted, *placed_.loop);
-    for (Outlet* outlet : followers_.outlets)
-      outlet->tell(words);
-    if (followers_.onlooker != nullptr) followers_.onlooker->tell(words);
+    for_each_follower([&](Follower& follower) { follower.tell(words); });
   }
 
   // Whether somebody has wanted a change for which it is time.
   bool is_change_due(HostTime loop_began) {
-    for (Outlet* outlet : followers_.outlets)
-      wanted_.add(outlet->next_change());
-    if (followers_.onlooker != nullptr) wanted_.add(followers_.onlooker->next_change());
+    for_each_follower([&](Follower& follower) { wanted_.add(follower.next_change()); });
     if (!differs(wanted_, placed_, options_)) wanted_ = {};
     return wanted_.asks_anything() && HostClock::now() - loop_began >= least_loop;
   }

@@ -33,11 +33,10 @@ bool is_over(const RunOptions& options, HostTime start) noexcept;
 using Progress = std::function<void(const flow::Frame& frame, double elapsed_s)>;
 
 /// Who looks on from the main thread while a loop runs, and may have it made anew.
-class Onlooker {
+class Onlooker : public Follower {
 public:
   enum class Verdict { go_on, end };
 
-  virtual ~Onlooker() = default;
   /// Before each loop's first tick. `model` is what it shapes; all live until the next call but
   /// `options`, which are those in force.
   virtual void begin(const PlacedLoop& placed, const deform::Mesh& model,
@@ -45,10 +44,6 @@ public:
   /// Called over and over, and by its return sets the pace: within 30 ms. fresh: frames().front()
   /// is another one than at the call before.
   virtual Verdict look(flow::DeformLoop& loop, bool fresh) = 0;
-  /// These as Outlet's.
-  virtual flow::LoopChange next_change() { return {}; }
-  virtual flow::Keepsakes next_keepsakes() { return {}; }
-  virtual void tell(const std::string& words) { static_cast<void>(words); }
   /// After the last loop, whatever ended it; the shape has been written. An error is the run's.
   virtual Result<void> end() { return {}; }
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/deform/undo_memory.hpp>
+
 namespace nendo::recording {
 namespace {
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/deform/undo_memory.hpp>
+
 namespace nendo::timeline {
 namespace {
 

@@ -5,10 +5,8 @@
 #include <cstdio>
 #include <utility>
 
-#include <GLFW/glfw3.h>
-#include <imgui.h>
-
 #include "key_list.hpp"
+#include "widgets.hpp"
 
 namespace nendo::viewer {
 
@@ -59,10 +57,6 @@ std::array<float, 15> bends_of(const hand::HandPose& pose) {
                                            static_cast<Joint>(metacarpal + joint + 1));
   }
   return bends;
-}
-
-bool pressed(int key) {
-  return ImGui::IsKeyPressed(key, false);
 }
 
 void chart(const char* name, const Strip& strip, const char* unit) {
@@ -116,13 +110,11 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, 
 void LiveWindow::Panel::question(Wishes& wishes) {
   constexpr const char* title = "Back to the model as it was loaded?";
   if (std::exchange(reset_asked, false)) ImGui::OpenPopup(title);
-  const ImVec2 middle(ImGui::GetIO().DisplaySize.x / 2.0F, ImGui::GetIO().DisplaySize.y / 2.0F);
-  ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
-  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  if (!begin_question(title)) return;
   ImGui::TextUnformatted("What has been shaped is lost, for undo begins anew.");
   const bool reset = ImGui::Button("Reset");
   ImGui::SameLine();
-  const bool stay = ImGui::Button("Keep the shape") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
+  const bool stay = ImGui::Button("Keep the shape") || pressed(GLFW_KEY_ESCAPE);
   wishes.reset = reset;
   if (reset || stay) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
@@ -192,13 +184,13 @@ void LiveWindow::Panel::settings_keys(Wishes& wishes) {
   if (pressed(GLFW_KEY_M))
     wanted.mode = wanted.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
   if (pressed(GLFW_KEY_N)) {
-    const auto at = std::find(kernels.begin(), kernels.end(), wanted.kernel);
-    wanted.kernel = at == kernels.end() || at + 1 == kernels.end() ? kernels.front() : at[1];
+    const auto at = std::find(kernels.begin(), kernels.end(), wanted.kernel) - kernels.begin();
+    wanted.kernel = kernels[(static_cast<std::size_t>(at) + 1) % kernels.size()];
   }
   constexpr double larger = 1.1;
   for (const auto& [key, factor] :
        {std::pair{GLFW_KEY_LEFT_BRACKET, 1.0 / larger}, {GLFW_KEY_RIGHT_BRACKET, larger}})
-    if (ImGui::IsKeyPressed(key, true))
+    if (pressed(key, true))
       for (double& radius_m : wanted.radius_m)
         radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
   if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force)) wishes.settings = wanted;

@@ -11,6 +11,7 @@
 #include <imgui.h>
 
 #include "quick_input.hpp"
+#include "widgets.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -189,7 +190,7 @@ void SceneWindow::follow_part_keys() {
                                   {GLFW_KEY_B, &parts_.bones},
                                   {GLFW_KEY_V, &parts_.vectors},
                                   {GLFW_KEY_D, &parts_.radii}})
-    if (ImGui::IsKeyPressed(key, false)) *part = !*part;
+    if (pressed(key)) *part = !*part;
 }
 
 void SceneWindow::end_picture() {

@@ -4,10 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <GLFW/glfw3.h>
-#include <imgui.h>
-
 #include "strip_drawing.hpp"
+#include "widgets.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -125,7 +123,7 @@ void StripWidget::follow_mouse(const TimelineView& view, double x, double y, Edi
     strip_.pan(static_cast<double>(io.MouseDelta.x));
   if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
     press(view, x, y, wishes);
-  if (taken_ && ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) {
+  if (taken_ && pressed(GLFW_KEY_ESCAPE)) {
     if (taken_->moved) wishes.drop = true;
     taken_.reset();
   }

@@ -4,10 +4,8 @@
 #include <array>
 #include <filesystem>
 
-#include <GLFW/glfw3.h>
-#include <imgui.h>
-
 #include "key_list.hpp"
+#include "widgets.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -55,10 +53,6 @@ constexpr std::array shortcuts{
     Shortcut{GLFW_KEY_M, EditCommand::mirror},
     Shortcut{GLFW_KEY_E, EditCommand::export_glb},
 };
-
-bool pressed(int key, bool repeats = false) {
-  return ImGui::IsKeyPressed(key, repeats);
-}
 
 // True: pressed, and it can be.
 bool button(const char* words, bool possible) {
@@ -192,9 +186,7 @@ void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditWis
   wanted = wanted || (!open && !io.WantTextInput && pressed(GLFW_KEY_Q));
   if (wanted && !view.modified) wishes.quit = true;
   if (wanted && view.modified && !open) ImGui::OpenPopup(question);
-  const ImVec2 middle(io.DisplaySize.x / 2.0F, io.DisplaySize.y / 2.0F);
-  ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
-  if (!ImGui::BeginPopupModal(question, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  if (!begin_question(question)) return;
   ImGui::Text("Save the changes to %s?", view.file.c_str());
   const bool save = ImGui::Button("Save and quit");
   ImGui::SameLine();

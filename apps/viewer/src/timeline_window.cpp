@@ -2,11 +2,9 @@
 
 #include <utility>
 
-#include <GLFW/glfw3.h>
-#include <imgui.h>
-
 #include "pointing.hpp"
 #include "timeline_panel.hpp"
+#include "widgets.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -65,7 +63,7 @@ bool TimelineWindow::move_tip(const TimelineView& view, const Moment& moment, Ed
             TipMover::tip_at(camera, hand->pose, {io.MousePos.x, io.MousePos.y}, size))
       tips.take(hand->pose, *finger);
   if (!tips.finger()) return false;
-  const bool given_up = ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
+  const bool given_up = pressed(GLFW_KEY_ESCAPE);
   if (given_up || hand == nullptr || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     (given_up ? wishes.drop : wishes.keep) = true;
     tips.let_go();

@@ -33,7 +33,6 @@ class Panel {
     const requests = [...document.querySelectorAll('[data-request]')]
     for (const button of requests) button.addEventListener('click', () => ask(button.dataset.request))
     this.buttons = [...requests, element('reset'), element('record')]
-    this.tell('')
     element('record').addEventListener('click', () => this.record())
     element('reset').addEventListener('click', () => this.reset())
     element('reset-dialog').addEventListener('close', ({ target }) => {

@@ -1,4 +1,5 @@
 // What only a new loop can change: mode, kernel and radii. What is chosen is asked for by Apply.
+const LEAST_RADIUS = 0.01, MOST_RADIUS = 0.4
 const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
 
 // Radii to a micrometre: they have been in other units meanwhile.
@@ -24,7 +25,7 @@ class Shaping {
     const name = label.appendChild(document.createElement('span'))
     const range = label.appendChild(document.createElement('input'))
     const output = label.appendChild(document.createElement('output'))
-    Object.assign(range, { type: 'range', min: 1, max: 40, step: 0.5, id: 'radius-' + finger })
+    Object.assign(range, { type: 'range', min: 100 * LEAST_RADIUS, max: 100 * MOST_RADIUS, step: 0.5, id: 'radius-' + finger })
     return { label, name, range, output, at }
   }
 
@@ -64,7 +65,7 @@ class Shaping {
   }
   scale(factor) {
     if (!this.wanted) return
-    this.wanted.radii = this.wanted.radii.map(radius => Math.min(0.4, Math.max(0.01, factor * radius)))
+    this.wanted.radii = this.wanted.radii.map(radius => Math.min(MOST_RADIUS, Math.max(LEAST_RADIUS, factor * radius)))
     this.show()
   }
   show() {

@@ -1,0 +1,23 @@
+#pragma once
+// What every window's widgets need of ImGui.
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+namespace nendo::viewer {
+
+/// Whether a key, by GLFW's number, goes down now; repeats: or is held down, now and then.
+inline bool pressed(int key, bool repeats = false) {
+  return ImGui::IsKeyPressed(key, repeats);
+}
+
+/// A question in the window's middle, if it is open: then its buttons follow, and
+/// ImGui::EndPopup().
+inline bool begin_question(const char* title) {
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(all.x / 2.0F, all.y / 2.0F), ImGuiCond_Appearing,
+                          ImVec2(0.5F, 0.5F));
+  return ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+}
+
+} // namespace nendo::viewer
