@@ -45,9 +45,10 @@ void write_last_minute(KeptRing& ring) noexcept {
   if (fd >= 0) ::close(fd);
 }
 
-// A disk that does not answer is no reason to never die.
+// A slow card takes ten seconds for a full ring; a disk that does not answer is no reason to never
+// die.
 void wait_for_writer() noexcept {
-  constexpr int most_milliseconds = 2000;
+  constexpr int most_milliseconds = 30'000;
   for (int waited = 0; writer.load() != 0 && waited < most_milliseconds; ++waited)
     ::poll(nullptr, 0, 1);
 }
