@@ -15,9 +15,6 @@ namespace {
 /// So many blocks at a time are one thread's: enough to be worth the asking.
 constexpr std::size_t blocks_a_piece = 16;
 
-/// A shape larger than this is not expected to stay in the caches (350 000 vertices).
-constexpr std::size_t cached_bytes = std::size_t{4} << 20;
-
 double extent_of(const std::vector<BlockBounds>& bounds) noexcept {
   float extent = 0.0F;
   for (const auto& box : bounds)
@@ -88,7 +85,7 @@ BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
           .begin = 0,
           .end = blocks,
           .scratch = parts.lists[0].scratch(),
-          .large = blocks * sizeof(VertexBlock) > cached_bytes};
+          .large = leaves_caches(from.shape)};
 }
 
 /// In pieces; normals may be null; `after` is told of each block whether the field reaches it.

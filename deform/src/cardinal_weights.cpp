@@ -10,8 +10,6 @@ namespace nendo::deform {
 
 namespace {
 
-/// Beyond, each vertex would carry so many weights that evaluating the field is cheaper.
-constexpr std::size_t most_starts = 64;
 /// Weights that are smaller in a whole block are left out there: fingertips that are far from it
 /// weigh something, because A^-1 is dense, but less with each one in between. A vertex loses at
 /// most 1e-7 of the sum of the displacements.
@@ -25,20 +23,25 @@ CardinalWeights::CardinalWeights(const BlockLayout& layout, Eigen::Index starts,
                                  std::size_t weight_bytes)
     : origin_(layout.origin()), unit_(layout.unit()), starts_(static_cast<std::size_t>(starts)),
       unit_displacements_(Points::Zero(3, starts)), unit_field_(std::move(field)),
-      entries_(static_cast<std::size_t>(unit_field_.centres.cols())), displacements_(starts_) {
+      entries_(static_cast<std::size_t>(unit_field_.centres.cols())), displacements_(starts_),
+      steps_(starts_) {
   const std::size_t blocks = layout.block_count();
-  if (starts_ == 0 || starts_ > most_starts) return;
-  const std::size_t room = std::min(blocks * starts_, weight_bytes / bytes_a_weight);
+  if (starts_ == 0 || starts_ > most_weighted_starts) return;
+  const std::size_t room =
+      std::min(blocks * starts_, weight_bytes / (bytes_in_steps + sizeof(WeightEntry)));
   if (room == 0) return;
+  const std::size_t bytes =
+      std::min(room * bytes_in_float, weight_bytes - room * sizeof(WeightEntry));
   map_.resize(entries_ * starts_);
   polynomial_.resize(4 * starts_);
   room_for_kernels_ = hwy::AllocateAligned<double>(block_size * entries_);
+  room_for_weights_ = hwy::AllocateAligned<float>(block_size * starts_);
   blocks_.resize(blocks);
-  weight_starts_.resize(room);
+  weight_entries_.resize(room);
   reached_.resize(blocks);
-  weights_ = hwy::AllocateAligned<float>(block_size * room);
-  std::memset(weights_.get(), 0, block_size * room * sizeof(float)); // its pages are there now
-  cache_ = {blocks_.data(), weights_.get(), weight_starts_.data(), room, 0, 0, 0.0};
+  weights_ = hwy::AllocateAligned<std::byte>(bytes);
+  std::memset(weights_.get(), 0, bytes); // its pages are there now
+  cache_ = {blocks_.data(), weight_entries_.data(), weights_.get(), room, bytes, 0, 0, 0, 0.0};
 }
 
 /// The coefficients are linear in the displacements, and each axis is solved by itself: a unit for
@@ -73,9 +76,10 @@ void CardinalWeights::take_coefficients(Eigen::Index start, Eigen::Index axis) n
 bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
                             BlockEvaluator& evaluator) noexcept {
   built_ = false;
-  cache_.used = 0;
+  cache_.used_entries = 0;
+  cache_.used_bytes = 0;
   BlockEvaluator::Parts& parts = evaluator.parts();
-  if (cache_.room == 0 || !solve_units(solver) ||
+  if (cache_.most_entries == 0 || !solve_units(solver) ||
       !parts.field.assign(unit_field_, BlockField::Zeros::kept))
     return false;
   FieldView view = parts.field.view();
@@ -90,8 +94,12 @@ bool CardinalWeights::build(CsrbfSolver& solver, const BoundedShape& rest,
                        .begin = 0,
                        .end = rest.shape.block_count(),
                        .scratch = parts.lists[0].scratch()};
-  const WeightSource source{map_.data(), global ? polynomial_.data() : nullptr, starts_,
-                            least_weight, room_for_kernels_.get()};
+  const WeightSource source{map_.data(),
+                            global ? polynomial_.data() : nullptr,
+                            starts_,
+                            least_weight,
+                            room_for_kernels_.get(),
+                            room_for_weights_.get()};
   built_ = build_weights(view, pass, source, cache_);
   return built_;
 }
@@ -112,16 +120,24 @@ void CardinalWeights::apply(const Points& displacements, const BlockShape& rest,
     const Eigen::Vector3f by =
         (displacements.col(static_cast<Eigen::Index>(j)) / unit_).cast<float>();
     displacements_[j] = {by[0], by[1], by[2], 0.0F};
+    steps_[j] = {weight_step * by[0], weight_step * by[1], weight_step * by[2], 0.0F};
   }
   const std::uint64_t stamp = BlockShape::new_stamp();
+  const bool large = leaves_caches(rest);
   const auto apply_piece = [&](std::size_t begin, std::size_t end) {
-    apply_weights(cache_, begin, end, displacements_.data(), rest.data(), to.data());
+    apply_weights(cache_, {.by = displacements_.data(),
+                           .by_step = steps_.data(),
+                           .from = rest.data(),
+                           .to = to.data(),
+                           .begin = begin,
+                           .end = end,
+                           .large = large});
     for (std::size_t at = begin; at < end; ++at)
       to.set_stamp(blocks_[at].block, stamp);
   };
   // Back and forth: what is a little larger than a cache would, always read in one direction, never
   // be there when it is read again.
-  const bool back = std::exchange(goes_back_, !goes_back_);
+  const bool back = std::exchange(goes_back_, !goes_back_ && !large);
   const std::size_t blocks = cache_.block_count;
   evaluator.parts().in_pieces(
       blocks, blocks_a_piece, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -25,7 +25,9 @@ public:
   /// for them, or none for so many start points.
   bool build(CsrbfSolver& solver, const BoundedShape& rest, BlockEvaluator& evaluator) noexcept;
   bool is_built() const noexcept { return built_; }
-  std::size_t bytes_used() const noexcept { return cache_.used * bytes_a_weight; }
+  std::size_t bytes_used() const noexcept {
+    return cache_.used_bytes + cache_.used_entries * sizeof(WeightEntry);
+  }
 
   /// Whether displacements (3 by #starts, model units) keep the rest shape finite.
   bool fits(const Points& displacements, const BoundedShape& rest) const noexcept;
@@ -36,9 +38,6 @@ public:
   void update_rest_bounds(const Points& displacements, BoundedShape& rest) const noexcept;
 
 private:
-  /// 64 weights and the number of their start point.
-  static constexpr std::size_t bytes_a_weight = block_size * sizeof(float) + sizeof(std::uint16_t);
-
   bool solve_units(CsrbfSolver& solver) noexcept;
   void take_coefficients(Eigen::Index start, Eigen::Index axis) noexcept;
   double bound(const Points& displacements) const noexcept;
@@ -53,10 +52,12 @@ private:
   VectorArray<double> room_for_kernels_;
   std::size_t entries_;
   std::vector<WeightedBlock> blocks_;
-  VectorArray<float> weights_;
-  std::vector<std::uint16_t> weight_starts_;
+  VectorArray<float> room_for_weights_;
+  VectorArray<std::byte> weights_;
+  std::vector<WeightEntry> weight_entries_;
   std::vector<std::uint8_t> reached_;
   std::vector<std::array<float, 4>> displacements_; ///< in units
+  std::vector<std::array<float, 4>> steps_;         ///< those, times weight_step
   WeightCache cache_{};
   bool built_ = false;
   bool goes_back_ = false; ///< the next apply()

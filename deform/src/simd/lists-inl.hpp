@@ -203,18 +203,21 @@ static HWY_NOINLINE void measure_bounds(const BlockPass& pass, std::size_t begin
       pass.new_bounds[block] = vector_bounds(ListVectors(), pass.to[block]);
 }
 
+/// Of shapes that do not stay in the caches, so many blocks before their turn.
 constexpr std::size_t fetched_ahead = 2;
+
+HWY_INLINE void fetch(const VertexBlock& vertices) {
+  for (const auto* coordinates : {&vertices.x, &vertices.y, &vertices.z})
+    for (std::size_t at = 0; at < block_size; at += 64 / sizeof(float))
+      hwy::Prefetch(coordinates->data() + at);
+}
 
 /// Asks for the vertices of listed blocks that something reaches, up to and with `last`. How long
 /// lists are cannot be foretold, so that processors do not get so far ahead by themselves.
 static HWY_NOINLINE void fetch_until(ListedBlocks& blocks, std::size_t last) {
   if (blocks.fetched < blocks.begin) blocks.fetched = blocks.begin;
   for (; blocks.fetched < blocks.end && blocks.fetched <= last; ++blocks.fetched) {
-    if (blocks.sizes[blocks.fetched - blocks.begin] == 0) continue;
-    const VertexBlock& vertices = blocks.pass.from[blocks.fetched];
-    for (const auto* coordinates : {&vertices.x, &vertices.y, &vertices.z})
-      for (std::size_t at = 0; at < block_size; at += 64 / sizeof(float))
-        hwy::Prefetch(coordinates->data() + at);
+    if (blocks.sizes[blocks.fetched - blocks.begin] > 0) fetch(blocks.pass.from[blocks.fetched]);
   }
 }
 

@@ -1,5 +1,9 @@
 #include "simd/weight_kernels.hpp"
 
+#include <cmath>
+#include <cstring>
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/weight_kernels.cpp"
 #include "simd/targets.hpp"
@@ -73,6 +77,38 @@ HWY_INLINE double weights_of(const WeightSource& source, std::size_t j, const st
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
+/// What steps of these weights count from; NaN if they are too far apart, or one of them is 0 and
+/// another too far from it.
+HWY_INLINE float middle_of(const float* weights) {
+  const hn::ScalableTag<float> d;
+  auto least = hn::Load(d, weights);
+  auto most = least;
+  auto nearest = hn::Abs(least); // to zero
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto w = hn::Load(d, weights + lane);
+    least = hn::Min(least, w);
+    most = hn::Max(most, w);
+    nearest = hn::Min(nearest, hn::Abs(w));
+  }
+  const float lowest = hn::GetLane(hn::MinOfLanes(d, least));
+  const float highest = hn::GetLane(hn::MaxOfLanes(d, most));
+  const bool has_zero = hn::GetLane(hn::MinOfLanes(d, nearest)) == 0.0F;
+  const float middle = has_zero ? 0.0F : 0.5F * (lowest + highest);
+  const bool near = highest - middle <= most_from_middle && middle - lowest <= most_from_middle;
+  return near ? middle : std::numeric_limits<float>::quiet_NaN();
+}
+
+HWY_INLINE void store_steps(const float* weights, float middle, std::byte* to) {
+  const hn::ScalableTag<float> d;
+  const hn::Rebind<std::int16_t, decltype(d)> d16;
+  auto* const steps = reinterpret_cast<std::int16_t*>(to);
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const auto from_middle = hn::Sub(hn::Load(d, weights + lane), hn::Set(d, middle));
+    const auto number = hn::NearestInt(hn::Mul(from_middle, hn::Set(d, 1.0F / weight_step)));
+    hn::Store(hn::DemoteTo(d16, number), d16, steps + lane);
+  }
+}
+
 struct WeightBuild {
   const FieldView& field;
   const BlockPass& pass;
@@ -87,76 +123,144 @@ struct WeightBuild {
       kernel_of(field.kernel, field.precise_entries[list[at]], pass.from[block],
                 source.room_for_kernels + at * block_size);
     WeightedBlock& made = cache.blocks[cache.block_count];
-    made = {static_cast<std::uint32_t>(block), 0, cache.used};
-    for (std::size_t j = 0; j < source.starts; ++j) {
-      done = cache.used < cache.room;
-      if (!done) return;
-      const double largest = weights_of(source, j, list, size, pass.from[block],
-                                        cache.weights + cache.used * block_size);
-      done = largest <= most_units; // false for NaN
-      if (!done) return;
-      if (largest <= static_cast<double>(source.least)) continue;
-      cache.largest = largest > cache.largest ? largest : cache.largest;
-      cache.starts[cache.used++] = static_cast<std::uint16_t>(j);
-      ++made.count;
-    }
-    if (made.count == 0) return;
+    made = {static_cast<std::uint32_t>(block), 0, 0, cache.used_entries, cache.used_bytes};
+    done = weigh(list, size, pass.from[block], made);
+    if (!done || made.in_steps + made.in_float == 0) return;
     pass.reached[block] = 1;
     ++cache.block_count;
+  }
+
+  /// False if there is no room, or a weight is not finite.
+  HWY_INLINE bool weigh(const std::uint32_t* list, std::size_t size, const VertexBlock& vertices,
+                        WeightedBlock& made) {
+    std::array<WeightEntry, most_weighted_starts> entries;
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < source.starts; ++j) {
+      float* const weights = source.room_for_weights + count * block_size;
+      const double largest = weights_of(source, j, list, size, vertices, weights);
+      if (!(largest <= most_units)) return false; // NaN, too
+      if (largest <= static_cast<double>(source.least)) continue;
+      cache.largest = largest > cache.largest ? largest : cache.largest;
+      entries[count++] = {static_cast<std::uint32_t>(j), middle_of(weights)};
+    }
+    if (cache.used_entries + count > cache.most_entries) return false;
+    for (const bool in_steps : {true, false})
+      for (std::size_t at = 0; at < count; ++at)
+        if (std::isnan(entries[at].middle) != in_steps &&
+            !keep(entries[at], source.room_for_weights + at * block_size, in_steps, made))
+          return false;
+    return true;
+  }
+
+  HWY_INLINE bool keep(WeightEntry entry, const float* weights, bool in_steps,
+                       WeightedBlock& made) {
+    const std::size_t bytes = in_steps ? bytes_in_steps : bytes_in_float;
+    if (cache.used_bytes + bytes > cache.most_bytes) return false;
+    std::byte* const to = cache.weights + cache.used_bytes;
+    if (in_steps) {
+      store_steps(weights, entry.middle, to);
+      ++made.in_steps;
+    } else {
+      std::memcpy(to, weights, bytes);
+      entry.middle = 0.0F;
+      ++made.in_float;
+    }
+    cache.entries[cache.used_entries++] = entry;
+    cache.used_bytes += bytes;
+    return true;
   }
 };
 
 bool build(const FieldView& field, const BlockPass& pass, const WeightSource& source,
            WeightCache& cache) {
   cache.block_count = 0;
-  cache.used = 0;
+  cache.used_entries = 0;
+  cache.used_bytes = 0;
   cache.largest = 0.0;
   WeightBuild work{field, pass, source, cache};
   for_each_block(field.centres, pass, work);
   return work.done;
 }
 
-/// Four vectors at a time: twelve sums fit the registers of every instruction set.
-void apply(const WeightCache& cache, std::size_t begin, std::size_t end,
-           const std::array<float, 4>* displacements, const VertexBlock* from, VertexBlock* to) {
+/// So many vectors at a time: twelve sums fit the registers of every instruction set.
+constexpr std::size_t abreast = 4;
+
+/// weight(n): those of the n-th vector.
+template <class D, class V, class Weight>
+HWY_INLINE void add_weighted(D d, const std::array<float, 4>& by, const Weight& weight,
+                             Vectors3<V> (&places)[abreast]) {
+  const V by_x = hn::Set(d, by[0]);
+  const V by_y = hn::Set(d, by[1]);
+  const V by_z = hn::Set(d, by[2]);
+  for (std::size_t n = 0; n < abreast; ++n) {
+    const V w = weight(n);
+    places[n].x = hn::MulAdd(w, by_x, places[n].x);
+    places[n].y = hn::MulAdd(w, by_y, places[n].y);
+    places[n].z = hn::MulAdd(w, by_z, places[n].z);
+  }
+}
+
+/// What the middles of a block's weights in steps move all of its vertices by.
+HWY_INLINE std::array<float, 4> moved_by_middles(const WeightEntry* entries, std::size_t count,
+                                                 const std::array<float, 4>* displacements) {
+  const hn::CappedTag<float, 4> d;
+  HWY_ALIGN std::array<float, 4> moved{};
+  for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+    auto sum = hn::Zero(d);
+    for (std::size_t k = 0; k < count; ++k)
+      sum = hn::MulAdd(hn::Set(d, entries[k].middle),
+                       hn::LoadU(d, displacements[entries[k].start].data() + lane), sum);
+    hn::Store(sum, d, moved.data() + lane);
+  }
+  return moved;
+}
+
+HWY_INLINE void apply_block(const WeightCache& cache, const WeightedBlock& block,
+                            const WeightPass& pass, bool streams) {
   const hn::ScalableTag<float> d;
-  using V = hn::Vec<decltype(d)>;
-  constexpr std::size_t abreast = 4;
+  const hn::Rebind<std::int32_t, decltype(d)> d32;
+  const hn::Rebind<std::int16_t, decltype(d)> d16;
   const std::size_t lanes = hn::Lanes(d);
-  for (std::size_t at = begin; at < end; ++at) {
-    const WeightedBlock& block = cache.blocks[at];
-    const VertexBlock& source = from[block.block];
-    VertexBlock& target = to[block.block];
-    const std::uint16_t* const starts = cache.starts + block.first;
-    for (std::size_t lane = 0; lane < block_size; lane += abreast * lanes) {
-      V x[abreast];
-      V y[abreast];
-      V z[abreast];
-      for (std::size_t n = 0; n < abreast; ++n) {
-        x[n] = hn::Load(d, source.x.data() + lane + n * lanes);
-        y[n] = hn::Load(d, source.y.data() + lane + n * lanes);
-        z[n] = hn::Load(d, source.z.data() + lane + n * lanes);
-      }
-      const float* weights = cache.weights + block.first * block_size + lane;
-      for (std::uint32_t k = 0; k < block.count; ++k, weights += block_size) {
-        const std::array<float, 4>& by = displacements[starts[k]];
-        const V by_x = hn::Set(d, by[0]);
-        const V by_y = hn::Set(d, by[1]);
-        const V by_z = hn::Set(d, by[2]);
-        for (std::size_t n = 0; n < abreast; ++n) {
-          const V w = hn::Load(d, weights + n * lanes);
-          x[n] = hn::MulAdd(w, by_x, x[n]);
-          y[n] = hn::MulAdd(w, by_y, y[n]);
-          z[n] = hn::MulAdd(w, by_z, z[n]);
-        }
-      }
-      for (std::size_t n = 0; n < abreast; ++n) {
-        hn::Store(x[n], d, target.x.data() + lane + n * lanes);
-        hn::Store(y[n], d, target.y.data() + lane + n * lanes);
-        hn::Store(z[n], d, target.z.data() + lane + n * lanes);
-      }
+  const WeightEntry* const in_steps = cache.entries + block.first;
+  const WeightEntry* const in_float = in_steps + block.in_steps;
+  const auto* const steps = reinterpret_cast<const std::int16_t*>(cache.weights + block.first_byte);
+  const auto* const floats = reinterpret_cast<const float*>(steps + block.in_steps * block_size);
+  const auto middles = moved_by_middles(in_steps, block.in_steps, pass.by);
+  for (std::size_t lane = 0; lane < block_size; lane += abreast * lanes) {
+    Vectors3<hn::Vec<decltype(d)>> places[abreast];
+    for (std::size_t n = 0; n < abreast; ++n)
+      places[n] = load_vectors(d, pass.from[block.block], lane + n * lanes);
+    for (std::size_t k = 0; k < block.in_steps; ++k) {
+      const auto weight = [&](std::size_t n) HWY_ATTR {
+        const auto number = hn::Load(d16, steps + k * block_size + lane + n * lanes);
+        return hn::ConvertTo(d, hn::PromoteTo(d32, number));
+      };
+      add_weighted(d, pass.by_step[in_steps[k].start], weight, places);
+    }
+    for (std::size_t k = 0; k < block.in_float; ++k) {
+      const auto weight = [&](std::size_t n) HWY_ATTR {
+        return hn::Load(d, floats + k * block_size + lane + n * lanes);
+      };
+      add_weighted(d, pass.by[in_float[k].start], weight, places);
+    }
+    const auto one = [&](std::size_t) HWY_ATTR { return hn::Set(d, 1.0F); };
+    add_weighted(d, middles, one, places);
+    for (std::size_t n = 0; n < abreast; ++n) {
+      VertexBlock& to = pass.to[block.block];
+      const std::size_t at = lane + n * lanes;
+      streams ? stream_vectors(d, places[n], to, at) : store_vectors(d, places[n], to, at);
     }
   }
+}
+
+void apply(const WeightCache& cache, const WeightPass& pass) {
+  const bool streams = pass.large && pass.to != pass.from;
+  for (std::size_t at = pass.begin; at < pass.end; ++at) {
+    if (pass.large && at + fetched_ahead < cache.block_count)
+      fetch(pass.from[cache.blocks[at + fetched_ahead].block]);
+    apply_block(cache, cache.blocks[at], pass, streams);
+  }
+  if (streams) hwy::FlushStream();
 }
 
 void bounds_into(const VertexBlock& block, BlockBounds& bounds) {
@@ -178,10 +282,8 @@ bool build_weights(const FieldView& field, const BlockPass& pass, const WeightSo
   return HWY_DYNAMIC_DISPATCH(build)(field, pass, source, cache);
 }
 
-void apply_weights(const WeightCache& cache, std::size_t begin, std::size_t end,
-                   const std::array<float, 4>* displacements, const VertexBlock* from,
-                   VertexBlock* to) noexcept {
-  HWY_DYNAMIC_DISPATCH(apply)(cache, begin, end, displacements, from, to);
+void apply_weights(const WeightCache& cache, const WeightPass& pass) noexcept {
+  HWY_DYNAMIC_DISPATCH(apply)(cache, pass);
 }
 
 void update_bounds(const VertexBlock& block, BlockBounds& bounds) noexcept {

@@ -1,7 +1,9 @@
 #pragma once
 // Cardinal weights: with frozen start points, a vertex moves by sum_j W_j(x) g_j, linear in the
-// displacements g_j. W = Phi A^-1 is computed in double and stored in float: coefficients of
-// thousands that cancel (crowded fingertips) are gone before anything is rounded.
+// displacements g_j. W = Phi A^-1 is computed in double and only then rounded: coefficients of
+// thousands that cancel (crowded fingertips) are gone by then. What counts when they are applied is
+// how many bytes are read: where a start point's weights differ little within a block, as nearly
+// everywhere, they are kept as steps of 16 bits from the middle of their range.
 
 #include <array>
 #include <cstddef>
@@ -11,21 +13,37 @@
 
 namespace nendo::deform {
 
-/// 64 weights for each of `count` start points: starts[first + k] are their numbers,
-/// weights[64 (first + k)] on their weights.
+/// What weights in steps are multiples of, counted from the middle: off by half of it at most.
+inline constexpr float weight_step = 0x1p-19F;
+/// Beyond, each vertex would carry so many weights that evaluating the field is cheaper.
+inline constexpr std::size_t most_weighted_starts = 64;
+/// As far from the middle as 16 bits go.
+inline constexpr float most_from_middle = 32767 * weight_step;
+
+/// Start point `start` at the 64 vertices of a block.
+struct WeightEntry {
+  std::uint32_t start;
+  float middle; ///< 0 where a weight is 0, which moves nothing at all; of float weights always
+};
+
+/// entries[first] on: `in_steps` of them in steps, then `in_float`; their weights at
+/// weights[first_byte] on, in the same order.
 struct WeightedBlock {
   std::uint32_t block;
-  std::uint32_t count;
-  std::size_t first;
+  std::uint16_t in_steps, in_float;
+  std::size_t first, first_byte;
 };
+
+inline constexpr std::size_t bytes_in_steps = block_size * sizeof(std::int16_t);
+inline constexpr std::size_t bytes_in_float = block_size * sizeof(float);
 
 struct WeightCache {
   WeightedBlock* blocks; ///< room for all of the shape's
-  float* weights;        ///< 64 times `room`
-  std::uint16_t* starts; ///< `room`
-  std::size_t room;
+  WeightEntry* entries;  ///< `most_entries`
+  std::byte* weights;    ///< `most_bytes`, aligned for vectors
+  std::size_t most_entries, most_bytes;
   std::size_t block_count;
-  std::size_t used;
+  std::size_t used_entries, used_bytes;
   double largest; ///< absolute weight
 };
 
@@ -39,16 +57,25 @@ struct WeightSource {
   /// Weights that are nowhere in a block larger than this are left out there.
   float least;
   double* room_for_kernels; ///< 64 for each entry, of which there must be precise ones
+  float* room_for_weights;  ///< 64 for each start point
 };
 
 /// Fills the cache; false if its room is not enough, or a weight is not finite.
 bool build_weights(const FieldView& field, const BlockPass& pass, const WeightSource& source,
                    WeightCache& cache) noexcept;
 
-/// to = from + sum_j W_j displacements[j], for the cache's blocks [begin, end). `to` may be `from`.
-void apply_weights(const WeightCache& cache, std::size_t begin, std::size_t end,
-                   const std::array<float, 4>* displacements, const VertexBlock* from,
-                   VertexBlock* to) noexcept;
+/// The cache's blocks [begin, end) of a shape; `to` may be `from`.
+struct WeightPass {
+  const std::array<float, 4>* by;      ///< start points' displacements: x, y, z, 0
+  const std::array<float, 4>* by_step; ///< those, times weight_step
+  const VertexBlock* from;
+  VertexBlock* to;
+  std::size_t begin, end;
+  bool large; ///< as BlockPass has it
+};
+
+/// to = from + sum_j W_j g_j.
+void apply_weights(const WeightCache& cache, const WeightPass& pass) noexcept;
 
 /// Of written blocks, for who changes a shape in place.
 void update_bounds(const VertexBlock& block, BlockBounds& bounds) noexcept;
