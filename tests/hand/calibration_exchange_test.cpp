@@ -100,7 +100,7 @@ void is_refused(const Result<ImportedCalibration>& result, const std::string& pl
 }
 
 std::string stored(const std::string& name) {
-  const auto path = std::filesystem::path(__FILE__).parent_path() / "calibrations" / name;
+  const auto path = std::filesystem::path(NENDO_CALIBRATIONS) / name;
   std::ifstream file(path, std::ios::binary);
   REQUIRE(file);
   return {std::istreambuf_iterator<char>(file), {}};

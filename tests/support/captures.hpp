@@ -10,8 +10,7 @@
 namespace nendo::test {
 
 inline std::string read_capture(const std::string& name) {
-  const auto path =
-      std::filesystem::path(__FILE__).parent_path().parent_path() / "driver" / "captures" / name;
+  const auto path = std::filesystem::path(NENDO_CAPTURES) / name;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error("cannot read " + path.string());
   return {std::istreambuf_iterator<char>(file), {}};
