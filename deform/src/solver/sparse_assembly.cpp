@@ -16,7 +16,8 @@ public:
   Columns(const CsrbfOptions& options, const Points& starts, const Supports& supports,
           const OwnFunctions& own)
       : starts_(starts), own_(own), kernel_(options.kernel, supports), ties_(options, supports),
-        reach_(std::max(kernel_.reach(), ties_.reach())), grid_(starts, reach_),
+        reach_(std::max(kernel_.reach(), ties_.reach())),
+        squared_reach_(reach_ * reach_ * (1.0 + 1e-12)), grid_(starts, reach_),
         own_diagonal_(starts.cols()), ties_diagonal_(Eigen::VectorXd::Zero(starts.cols())),
         column_(static_cast<std::size_t>(starts.cols()), 0.0),
         in_use_(static_cast<std::size_t>(starts.cols()), 0),
@@ -75,7 +76,9 @@ private:
   }
 
   void add_shared(Eigen::Index i, Eigen::Index j, SparseAssembly& out) {
-    const double distance = std::sqrt((starts_.col(i) - starts_.col(j)).squaredNorm());
+    const double squared = (starts_.col(i) - starts_.col(j)).squaredNorm();
+    if (squared > squared_reach_) return; // most of those in the cells around
+    const double distance = std::sqrt(squared);
     if (!(distance < reach_) && distance != 0.0) return;
     double& value = entry(static_cast<std::uint32_t>(i));
     if (distance < ties_.reach() || distance == 0.0) {
@@ -94,6 +97,7 @@ private:
   SharedKernel kernel_;
   Ties ties_;
   double reach_;
+  double squared_reach_; ///< or a little more: rounded
   PointGrid grid_;
   Eigen::VectorXd own_diagonal_, ties_diagonal_;
   std::vector<double> column_;

@@ -56,7 +56,7 @@ public:
     const bool is_large = lower_.size() >= least_minimum_degree_points;
     if (order == PointOrder::minimum_degree || (order == PointOrder::by_size && is_large)) {
       Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> from_place;
-      Eigen::AMDOrdering<int>()(Matrix(symmetric), from_place);
+      Eigen::AMDOrdering<int>()(symmetric, from_place);
       to_place_ = from_place.inverse();
     } else {
       to_place_.setIdentity(lower_.size());
