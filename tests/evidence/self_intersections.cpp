@@ -1,8 +1,9 @@
-// self_intersections STROKES SUBDIVISIONS LONGEST MODEL...: deforms spheres, a plane and the models
-// named by violent random strokes, with and without injective chains, and has CGAL count the pairs
-// of faces that intersect then and did not before. Where any is left with chains, the mesh is
-// subdivided (midpoints: the same surface, edges half as long) and the strokes that left it are
-// repeated. Prints a table in Markdown.
+// self_intersections STROKES SUBDIVISIONS LONGEST EDGE MODEL...: deforms spheres, a plane and the
+// models named by violent random strokes of up to LONGEST radii, with and without injective chains,
+// and has CGAL count the pairs of faces that intersect then and did not before. A mesh with an edge
+// longer than EDGE radii is subdivided (midpoints: the same surface, edges half as long) until it
+// has none. Where any pair is left with chains, it is subdivided further and the strokes that left
+// it are repeated. Prints a table in Markdown.
 
 #include <algorithm>
 #include <cstdio>
@@ -92,9 +93,12 @@ public:
     radius_ = radius_part * deform::diagonal_of(mesh_.vertices);
   }
 
-  void run(const char* type, const std::vector<Stroke>& all, int subdivisions) {
+  void run(const char* type, const std::vector<Stroke>& all, int subdivisions,
+           double longest_edge) {
     std::vector<Stroke> strokes = all;
     Mesh mesh = mesh_;
+    while (edges_of(mesh).longest > longest_edge * radius_)
+      mesh = subdivided(mesh);
     for (int level = 0; level <= subdivisions && !strokes.empty(); ++level) {
       if (level > 0) mesh = subdivided(mesh);
       strokes = run_once(type, strokes, mesh);
@@ -174,17 +178,19 @@ std::vector<Trial> trials(const std::vector<std::string>& models) {
 } // namespace
 
 int main(int argc, char** argv) {
-  const int strokes = argc > 3 ? std::atoi(argv[1]) : 0;
-  const double longest = argc > 3 ? std::atof(argv[3]) : 0.0;
-  if (strokes <= 0 || !(longest > 0.0)) {
-    std::cerr << "usage: self_intersections STROKES SUBDIVISIONS LONGEST MODEL...\n";
+  const int strokes = argc > 4 ? std::atoi(argv[1]) : 0;
+  const double longest = argc > 4 ? std::atof(argv[3]) : 0.0;
+  const double longest_edge = argc > 4 ? std::atof(argv[4]) : 0.0;
+  if (strokes <= 0 || !(longest > 0.0) || !(longest_edge >= 0.01)) {
+    std::cerr << "usage: self_intersections STROKES SUBDIVISIONS LONGEST EDGE MODEL...\n"
+                 "LONGEST > 0, EDGE >= 0.01: radii; 0.01 is a million faces and more\n";
     return 2;
   }
   std::puts(
       "| mesh | faces | before | mean edge / r | longest / r | type | strokes | off: strokes | "
       "off: pairs | on: strokes | on: pairs | links | held | not reached | least det |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
-  for (Trial& trial : trials({argv + 4, argv + argc})) {
+  for (Trial& trial : trials({argv + 5, argv + argc})) {
     std::mt19937 random(2004);
     std::vector<Stroke> type1;
     std::vector<Stroke> type2;
@@ -194,7 +200,7 @@ int main(int argc, char** argv) {
       type2.push_back(
           evidence::type2_stroke(random, trial.mesh().vertices, trial.radius(), longest));
     }
-    trial.run("1", type1, std::atoi(argv[2]));
-    trial.run("2", type2, std::atoi(argv[2]));
+    trial.run("1", type1, std::atoi(argv[2]), longest_edge);
+    trial.run("2", type2, std::atoi(argv[2]), longest_edge);
   }
 }
