@@ -104,6 +104,10 @@ TEST_SUITE("replay_driver") {
     }
     CHECK((*glove)->stats().records == samples.size());
     CHECK((*glove)->stats().missed == 1);
+    const auto again = samples_of(**glove, take.right.size());
+    REQUIRE(again.size() == take.right.size());
+    CHECK(again.back().raw == take.right.back().raw);
+    CHECK(again.front().sequence == samples.back().sequence + 1);
   }
 
   TEST_CASE("with loop=yes it begins again, and its sequence goes on") {

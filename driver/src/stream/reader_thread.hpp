@@ -18,16 +18,15 @@ namespace nendo::driver {
 class ReaderThread {
 public:
   /// Runs `read` until it returns, which it does soon after `stop` was asked for. `source` names
-  /// the glove. Errors: failed (called twice, no thread).
+  /// the glove. Errors: failed (not stopped since it was started, no thread).
   Result<void> start(const std::string& source,
                      std::function<void(const std::stop_token& stop)> read) {
-    if (started_) return Error{Errc::failed, source + ": start() was called twice"};
+    if (thread_.joinable()) return Error{Errc::failed, source + ": start() was called twice"};
     try {
       thread_ = std::jthread(std::move(read));
     } catch (const std::system_error& error) {
       return Error{Errc::failed, source + ": no thread for the reader: " + error.what()};
     }
-    started_ = true;
     return {};
   }
 
@@ -47,7 +46,6 @@ public:
 private:
   std::mutex mutex_; ///< nobody else takes it: the wait wants one
   std::condition_variable_any wake_;
-  bool started_ = false;
   std::jthread thread_; // last: joined before what it uses is gone
 };
 
