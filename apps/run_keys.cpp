@@ -38,8 +38,8 @@ bool RunKeys::obey(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
   if (*key == 'c' || *key == ' ') ask(flow::Request::commit);
   if (*key == 'u') ask(flow::Request::undo);
   if (*key == 'r' || *key == 'U') ask(flow::Request::redo);
-  if (*key == 's') keep({.shape = true}, loop);
-  if (*key == 'k') keep({.recording = true}, loop);
+  if (*key == 's') wanted_.shape = true;
+  if (*key == 'k') wanted_.recording = true;
   if (*key != 'q') return true;
   wait_until_heard();
   return false;
@@ -57,7 +57,8 @@ void RunKeys::ask(flow::Request request) {
     tell("the loop does not answer, so it was not asked to " + std::string(name_of(request)));
 }
 
-std::string RunKeys::keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop) {
+std::string RunKeys::keep(flow::Keepsakes wanted, flow::DeformLoop& loop) {
+  wanted.add(std::exchange(wanted_, {}));
   std::string words = wanted.shape ? save(loop) : "";
   if (wanted.recording) words += (words.empty() ? "" : "; ") + keep_recording();
   tell(words);

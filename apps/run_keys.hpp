@@ -23,8 +23,10 @@ public:
   /// Waits so long for a key, and does what it stands for; the user sees the frame at the front.
   /// False: the run is to end.
   bool obey(std::chrono::milliseconds patience, flow::DeformLoop& loop);
-  /// Keeps it; what became of that, which standard error tells, too.
-  std::string keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop);
+  /// What keys want kept.
+  const flow::Keepsakes& wanted() const noexcept { return wanted_; }
+  /// Keeps this, and what keys want; what became of that, which standard error tells, too.
+  std::string keep(flow::Keepsakes wanted, flow::DeformLoop& loop);
 
 private:
   void ask(flow::Request request);
@@ -37,6 +39,7 @@ private:
   const deform::Mesh& model_;
   std::string out_;
   RunRecorder& recorder_;
+  flow::Keepsakes wanted_;
   int saved_ = 0;
 };
 

@@ -139,7 +139,7 @@ private:
   void keep_what_is_wanted(RunKeys& keys) {
     flow::Keepsakes wanted;
     for_each_follower([&](Follower& follower) { wanted.add(follower.next_keepsakes()); });
-    if (!wanted.ask_anything()) return;
+    if (!wanted.ask_anything() && !keys.wanted().ask_anything()) return;
     const std::string words = keys.keep(wanted, *placed_.loop);
     for_each_follower([&](Follower& follower) { follower.tell(words); });
   }
@@ -184,6 +184,7 @@ private:
     bool unreported = false;
     while (!thread.ended && !stop_requested() && !is_over(options_, thread.start)) {
       if (!keys.obey(patience, *placed_.loop)) return false;
+      if (keys.wanted().ask_anything()) keep_what_is_wanted(keys);
       placed_.loop->refill_undo();
       const bool fresh = frames.update();
       if (fresh) {

@@ -51,7 +51,7 @@ TEST_SUITE("bench") {
 
   TEST_CASE("no fault makes a CyberGlove deliver what was not sent, or stay away") {
     const auto done =
-        nendo::test::nendo({"bench", "faults", "--seconds", "7", "--at-once", "32", "--json"});
+        nendo::test::nendo({"bench", "faults", "--seconds", "7", "--at-once", "16", "--json"});
     CHECK_MESSAGE(done.exit_code == 0, done.err);
     const auto lines = lines_of(done.out);
     CHECK(lines.size() == 64); // 16 faults, 4 kinds of CyberGlove

@@ -12,6 +12,7 @@
 #include "following_client.hpp"
 #include "support/eventually.hpp"
 #include "support/program.hpp"
+#include "support/terminal_program.hpp"
 #include "web_client.hpp"
 
 using namespace nendo;
@@ -26,20 +27,23 @@ struct Address {
   std::string token;
 };
 
-/// As it stands on the program's standard error, once it does.
-Address address_of(const test::Program& program) {
+/// As it stands in what the program said; port 0 before it does.
+Address address_in(const std::string& said) {
   const std::string before = "http://127.0.0.1:";
-  for (int turn = 0; turn < 6000; ++turn) {
-    const std::string said = program.err_so_far();
-    const auto at = said.find(before);
-    if (at != std::string::npos && said.find('\n', at) != std::string::npos) {
-      const auto mark = said.find("/#", at);
-      return {static_cast<std::uint16_t>(std::stoi(said.substr(at + before.size()))),
-              said.substr(mark + 2, said.find('\n', at) - mark - 2)};
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return {};
+  const auto at = said.find(before);
+  if (at == std::string::npos || said.find('\n', at) == std::string::npos) return {};
+  const auto mark = said.find("/#", at) + 2;
+  return {static_cast<std::uint16_t>(std::stoi(said.substr(at + before.size()))),
+          said.substr(mark, said.find_first_of("\r\n", at) - mark)};
+}
+
+Address address_of(const test::Program& program) {
+  Address address;
+  test::eventually([&] {
+    address = address_in(program.err_so_far());
+    return address.port != 0;
+  });
+  return address;
 }
 
 std::vector<std::byte> bytes_of(const std::string& text) {
@@ -190,6 +194,31 @@ TEST_SUITE("run_web") {
     program.signal(SIGTERM);
     CHECK(program.wait().exit_code == 0);
     CHECK(fs::exists(out));
+  }
+
+  TEST_CASE("who looks on from afar is told of what keys in the terminal keep") {
+    const test::TemporaryFolder folder;
+    const auto out = folder.path() / "clay.ply";
+    test::TerminalProgram program({"run", "--left", "sim:sculpt?seed=7", "--web", "0",
+                                   "--keep-last", "10s", "--out", out.string()},
+                                  200, 24);
+    Address address;
+    REQUIRE(program.sees([&](const test::VtScreen& screen) {
+      address = address_in(screen.transcript());
+      return address.port != 0;
+    }));
+    Looker looker{address, {}, {}};
+    looker.come();
+    for (const auto& answer : {std::pair{'s', "clay-1.ply"}, {'k', "is being kept"}}) {
+      const std::string what = answer.second;
+      REQUIRE(program.press(answer.first));
+      looker.follow_until([&] { return looker.follower->told.find(what) != std::string::npos; });
+      CHECK(program.sees([&](const test::VtScreen& screen) {
+        return screen.transcript().find(what) != std::string::npos;
+      }));
+    }
+    CHECK(program.press('q'));
+    CHECK(program.wait() == 0);
   }
 
   TEST_CASE("the time that a run tells is its own, however often its loop is made anew") {
