@@ -228,9 +228,7 @@ TEST_SUITE("calibrate") {
     const auto file = hand::calibration_file_name("dora", "", Side::right) + ".unfinished";
     write_file(stored / file, "nonsense\n");
     TerminalProgram refused({"calibrate", "sim", "--user", "dora"}, 200, 26);
-    REQUIRE(refused.sees([](const VtScreen& screen) {
-      return screen.transcript().find("--fresh") != std::string::npos;
-    }));
+    REQUIRE(refused.tells("--fresh"));
     CHECK(refused.wait() == 5);
     TerminalProgram fresh({"calibrate", "sim", "--user", "dora", "--fresh"}, 100, 26);
     REQUIRE(fresh.sees("Pose 1 of"));

@@ -13,15 +13,6 @@ using nendo::test::TemporaryFolder;
 using nendo::test::TerminalProgram;
 using nendo::test::VtScreen;
 
-namespace {
-
-bool tells(TerminalProgram& program, const std::string& text) {
-  return program.sees(
-      [&](const VtScreen& screen) { return screen.transcript().find(text) != std::string::npos; });
-}
-
-} // namespace
-
 TEST_SUITE("run_keys") {
   TEST_CASE("saved shapes get numbers before their ending") {
     CHECK(app::numbered("a/shape.obj", 2) == "a/shape-2.obj");
@@ -33,13 +24,13 @@ TEST_SUITE("run_keys") {
     const auto out = folder.path() / "shape.obj";
     std::ofstream(folder.path() / "shape-1.obj") << "somebody else's";
     TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
-    REQUIRE(tells(program, "keys: g lets go"));
-    REQUIRE(tells(program, "ticks"));
+    REQUIRE(program.tells("keys: g lets go"));
+    REQUIRE(program.tells("ticks"));
     CHECK(program.is_raw());
     CHECK(program.press('g'));
-    REQUIRE(tells(program, "  let go"));
+    REQUIRE(program.tells("  let go"));
     CHECK(program.press('s'));
-    REQUIRE(tells(program, "shape-2.obj")); // what is there stays
+    REQUIRE(program.tells("shape-2.obj")); // what is there stays
     CHECK(program.press('g'));
     REQUIRE(program.sees([](const VtScreen& screen) {
       const std::string& text = screen.transcript();

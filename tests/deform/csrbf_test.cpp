@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "support/dense_field.hpp"
 #include "support/fields.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
@@ -14,6 +15,7 @@
 using namespace nendo::deform;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using nendo::test::dense_displacements;
 using nendo::test::fitted;
 using nendo::test::largest;
 using nendo::test::random_points;
@@ -22,34 +24,6 @@ using nendo::test::values;
 TEST_SUITE("csrbf") {
   constexpr Wendland kernels[] = {Wendland::c0, Wendland::c2, Wendland::c4, Wendland::c6};
   constexpr Polynomial polynomials[] = {Polynomial::none, Polynomial::constant, Polynomial::linear};
-
-  /// The paper's equations as one system in world coordinates, with another factorisation.
-  static Points reference(const CsrbfOptions& options, const Points& starts, double radius,
-                          const Points& displacements, const Points& points) {
-    const Eigen::Index n = starts.cols();
-    const Eigen::Index terms = options.polynomial == Polynomial::linear     ? 4
-                               : options.polynomial == Polynomial::constant ? 1
-                                                                            : 0;
-    const auto row = [&](const Vector3d& x) {
-      Eigen::RowVectorXd weights(n + terms);
-      for (Eigen::Index j = 0; j < n; ++j)
-        weights[j] = wendland(options.kernel, (x - starts.col(j)).norm() / radius);
-      if (terms > 0) weights[n] = 1.0;
-      if (terms > 1) weights.tail<3>() = x.transpose();
-      return weights;
-    };
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + terms, n + terms);
-    Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(n + terms, 3);
-    for (Eigen::Index i = 0; i < n; ++i)
-      system.row(i) = row(starts.col(i));
-    system.bottomLeftCorner(terms, n) = system.topRightCorner(n, terms).transpose();
-    right.topRows(n) = displacements.transpose();
-    const Eigen::MatrixX3d solution = system.fullPivHouseholderQr().solve(right);
-    Points result(3, points.cols());
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      result.col(i) = (row(points.col(i)) * solution).transpose();
-    return result;
-  }
 
   TEST_CASE("the field takes every start point where its control vector says") {
     std::mt19937 random(1);
@@ -72,7 +46,7 @@ TEST_SUITE("csrbf") {
         const Points points = random_points(random, 200, 20.0);
         const CsrbfOptions options{kernel, polynomial};
         const CsrbfField field = fitted(options, starts, 9.0, displacements);
-        const Points expected = reference(options, starts, 9.0, displacements, points);
+        const Points expected = dense_displacements(options, starts, 9.0, displacements, points);
         CHECK(largest(values(field, points) - expected) < 1e-9 * largest(expected));
       }
   }

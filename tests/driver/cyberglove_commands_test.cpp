@@ -249,6 +249,6 @@ TEST_SUITE("cyberglove_commands") {
     const HostTime start = HostClock::now();
     for (int k = 0; k < 25; ++k)
       CHECK(commands.set(Setting::filter, k % 2 == 0) == Answer::good);
-    CHECK(HostClock::now() - start < 10s);
+    CHECK(HostClock::now() - start < 1s);
   }
 }

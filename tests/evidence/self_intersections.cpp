@@ -93,12 +93,15 @@ public:
     radius_ = radius_part * deform::diagonal_of(mesh_.vertices);
   }
 
-  void run(const char* type, const std::vector<Stroke>& all, int subdivisions,
-           double longest_edge) {
+  /// Until no edge is longer, in radii.
+  void subdivide_to(double longest_edge) {
+    while (edges_of(mesh_).longest > longest_edge * radius_)
+      mesh_ = subdivided(mesh_);
+  }
+
+  void run(const char* type, const std::vector<Stroke>& all, int subdivisions) {
     std::vector<Stroke> strokes = all;
     Mesh mesh = mesh_;
-    while (edges_of(mesh).longest > longest_edge * radius_)
-      mesh = subdivided(mesh);
     for (int level = 0; level <= subdivisions && !strokes.empty(); ++level) {
       if (level > 0) mesh = subdivided(mesh);
       strokes = run_once(type, strokes, mesh);
@@ -200,7 +203,8 @@ int main(int argc, char** argv) {
       type2.push_back(
           evidence::type2_stroke(random, trial.mesh().vertices, trial.radius(), longest));
     }
-    trial.run("1", type1, std::atoi(argv[2]), longest_edge);
-    trial.run("2", type2, std::atoi(argv[2]), longest_edge);
+    trial.subdivide_to(longest_edge); // the strokes are those of the mesh as it was
+    trial.run("1", type1, std::atoi(argv[2]));
+    trial.run("2", type2, std::atoi(argv[2]));
   }
 }

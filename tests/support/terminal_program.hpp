@@ -65,6 +65,12 @@ public:
   bool sees(const std::string& text) {
     return sees([&](const VtScreen& screen) { return screen.shows(text); });
   }
+  /// The same of all that was ever shown.
+  bool tells(const std::string& text) {
+    return sees([&](const VtScreen& screen) {
+      return screen.transcript().find(text) != std::string::npos;
+    });
+  }
   bool press(char key) const { return ::write(master_, &key, 1) == 1; }
   void signal(int number) const { ::kill(pid_, number); }
   void resize(unsigned short columns, unsigned short rows) {

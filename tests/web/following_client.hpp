@@ -42,9 +42,9 @@ public:
       if ((flags >> slot & 1U) != 0)
         for (Skeleton& skeleton : bones_[slot])
           take_bones(in, skeleton);
-    rest = in.take_all<float>(3 * vertices);
+    rest = in.take_all<float>(std::size_t{3} * vertices);
     order = in.take_all<std::uint32_t>(vertices);
-    corners = in.take_all<std::uint32_t>(3 * triangles);
+    corners = in.take_all<std::uint32_t>(std::size_t{3} * triangles);
     name.assign(reinterpret_cast<const char*>(model.data()) + in.at, name_bytes);
     good = good && in.at + name_bytes == model.size();
   }
@@ -144,7 +144,7 @@ private:
     if (in.take<std::uint16_t>() != loop) good = false;
     const auto vertices = in.take<std::uint32_t>();
     number = in.take<std::uint64_t>();
-    base_ = in.take_all<float>(3 * vertices);
+    base_ = in.take_all<float>(std::size_t{3} * vertices);
     pending_.clear();
   }
 
