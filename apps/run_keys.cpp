@@ -57,8 +57,7 @@ void RunKeys::ask(flow::Request request) {
     tell("the loop does not answer, so it was not asked to " + std::string(name_of(request)));
 }
 
-std::string RunKeys::keep(flow::Keepsakes wanted, flow::DeformLoop& loop) {
-  wanted.add(std::exchange(wanted_, {}));
+std::string RunKeys::keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop) {
   std::string words = wanted.shape ? save(loop) : "";
   if (wanted.recording) words += (words.empty() ? "" : "; ") + keep_recording();
   tell(words);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nendo/deform/mesh.hpp>
 #include <nendo/flow/deform_loop.hpp>
@@ -23,10 +24,10 @@ public:
   /// Waits so long for a key, and does what it stands for; the user sees the frame at the front.
   /// False: the run is to end.
   bool obey(std::chrono::milliseconds patience, flow::DeformLoop& loop);
-  /// What keys want kept.
-  const flow::Keepsakes& wanted() const noexcept { return wanted_; }
-  /// Keeps this, and what keys want; what became of that, which standard error tells, too.
-  std::string keep(flow::Keepsakes wanted, flow::DeformLoop& loop);
+  /// What keys want kept, since the last call.
+  flow::Keepsakes next_keepsakes() noexcept { return std::exchange(wanted_, {}); }
+  /// Keeps it; what became of that, which standard error tells, too.
+  std::string keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop);
 
 private:
   void ask(flow::Request request);

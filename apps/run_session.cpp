@@ -136,10 +136,14 @@ private:
     if (followers_.onlooker != nullptr) ask(*followers_.onlooker);
   }
 
-  void keep_what_is_wanted(RunKeys& keys) {
+  void keep_what_followers_want(RunKeys& keys) {
     flow::Keepsakes wanted;
     for_each_follower([&](Follower& follower) { wanted.add(follower.next_keepsakes()); });
-    if (!wanted.ask_anything() && !keys.wanted().ask_anything()) return;
+    keep_and_tell(wanted, keys);
+  }
+
+  void keep_and_tell(const flow::Keepsakes& wanted, RunKeys& keys) {
+    if (!wanted.ask_anything()) return;
     const std::string words = keys.keep(wanted, *placed_.loop);
     for_each_follower([&](Follower& follower) { follower.tell(words); });
   }
@@ -159,7 +163,7 @@ private:
     LoopThread thread(loop, options_);
     tell_refusals(thread.grants());
     const bool is_another_wanted = watch(thread, picture, keys);
-    keep_what_is_wanted(keys); // just before the end
+    keep_what_followers_want(keys); // just before the end
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
     model_.vertices = loop.final_shape();
@@ -184,7 +188,7 @@ private:
     bool unreported = false;
     while (!thread.ended && !stop_requested() && !is_over(options_, thread.start)) {
       if (!keys.obey(patience, *placed_.loop)) return false;
-      if (keys.wanted().ask_anything()) keep_what_is_wanted(keys);
+      keep_and_tell(keys.next_keepsakes(), keys);
       placed_.loop->refill_undo();
       const bool fresh = frames.update();
       if (fresh) {
@@ -198,7 +202,7 @@ private:
         return false;
       if (is_change_due(thread.start)) return true;
       if (HostClock::now() < next_report) continue;
-      keep_what_is_wanted(keys); // no oftener, however often somebody asks
+      keep_what_followers_want(keys); // no oftener, however often somebody asks
       if (unreported)
         followers_.progress(frames.front(),
                             before_s_ + to_seconds(HostClock::now() - thread.start));

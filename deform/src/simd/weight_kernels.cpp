@@ -225,7 +225,9 @@ HWY_INLINE void apply_block(const WeightCache& cache, const WeightedBlock& block
   const WeightEntry* const in_float = in_steps + block.in_steps;
   const auto* const steps = reinterpret_cast<const std::int16_t*>(cache.weights + block.first_byte);
   const auto* const floats = reinterpret_cast<const float*>(steps + block.in_steps * block_size);
-  const auto middles = moved_by_middles(in_steps, block.in_steps, pass.by);
+  const auto by_middles = moved_by_middles(in_steps, block.in_steps, pass.by);
+  const Vectors3<hn::Vec<decltype(d)>> middles{hn::Set(d, by_middles[0]), hn::Set(d, by_middles[1]),
+                                               hn::Set(d, by_middles[2])};
   for (std::size_t lane = 0; lane < block_size; lane += abreast * lanes) {
     Vectors3<hn::Vec<decltype(d)>> places[abreast];
     for (std::size_t n = 0; n < abreast; ++n)
@@ -243,12 +245,11 @@ HWY_INLINE void apply_block(const WeightCache& cache, const WeightedBlock& block
       };
       add_weighted(d, pass.by[in_float[k].start], weight, places);
     }
-    const auto one = [&](std::size_t) HWY_ATTR { return hn::Set(d, 1.0F); };
-    add_weighted(d, middles, one, places);
     for (std::size_t n = 0; n < abreast; ++n) {
       VertexBlock& to = pass.to[block.block];
       const std::size_t at = lane + n * lanes;
-      streams ? stream_vectors(d, places[n], to, at) : store_vectors(d, places[n], to, at);
+      const auto moved = sum_of(places[n], middles);
+      streams ? stream_vectors(d, moved, to, at) : store_vectors(d, moved, to, at);
     }
   }
 }
