@@ -23,14 +23,15 @@ TEST_SUITE("normals") {
   const Mesh ball = nendo::test::sphere(20, 30, 5.0);
   const Points outward = ball.vertices.colwise().normalized();
 
-  /// Ten random functions, which fold nothing.
-  static CsrbfField gentle_field(unsigned seed, Wendland kernel = Wendland::c2) {
+  /// Random functions, which fold nothing.
+  static CsrbfField gentle_field(unsigned seed, Wendland kernel = Wendland::c2,
+                                 Eigen::Index count = 10) {
     std::mt19937 random(seed);
     CsrbfField field;
     field.kernel = kernel;
-    field.centres = random_points(random, 10, 5.0);
-    field.coefficients = random_points(random, 10, 0.25);
-    field.radii = Eigen::VectorXd::LinSpaced(10, 3.0, 5.0);
+    field.centres = random_points(random, count, 5.0);
+    field.coefficients = random_points(random, count, 0.25);
+    field.radii = Eigen::VectorXd::LinSpaced(count, 3.0, 5.0);
     return field;
   }
 
@@ -118,6 +119,36 @@ TEST_SUITE("normals") {
           BlockShape after;
           evaluator.turn(rest, before, after);
           CHECK(largest(unpacked(layout, after) - turned(field, ball.vertices, outward)) < 1e-5);
+        }
+    }
+    use_simd("");
+  }
+
+  // Fewer than three have a way of their own (few_centres-inl.hpp).
+  TEST_CASE("one, two and three supports, by every instruction set, turn as double makes them") {
+    const BlockLayout layout(ball.vertices);
+    const BlockShape before = layout.pack_vectors(outward);
+    for (const auto name : simd_names()) {
+      REQUIRE(use_simd(name));
+      CAPTURE(name);
+      for (const auto kernel : {Wendland::c0, Wendland::c2, Wendland::c4, Wendland::c6})
+        for (const Eigen::Index count : {1, 2, 3}) {
+          CsrbfField field = gentle_field(83, kernel, count);
+          field.radii.setConstant(20.0); // each reaches all blocks
+          field.coefficients *= 4.0;
+          BlockEvaluator evaluator(layout, count, {});
+          REQUIRE(evaluator.set_field(field));
+          BoundedShape moved(layout.pack());
+          BlockShape after = before;
+          REQUIRE(evaluator.displace(moved, &after));
+          const Points exact = turned(field, ball.vertices, outward);
+          CHECK(largest(exact - outward) > 0.05);
+          CHECK(largest(unpacked(layout, after) - exact) < 1e-5);
+          Points places;
+          Points reference;
+          layout.unpack(moved.shape, places);
+          displace(field, ball.vertices, reference);
+          CHECK(largest(places - reference) < 1e-5 * layout.diagonal());
         }
     }
     use_simd("");

@@ -9,8 +9,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "simd/few_centres-inl.hpp"
 #include "simd/kernels-inl.hpp"
 #include "simd/lists-inl.hpp"
+#include "simd/tangents-inl.hpp"
 #include "simd/turning-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -29,24 +31,42 @@ struct Turning {
     const bool reached = size > 0 || field.polynomial != nullptr;
     pass.reached[block] = reached ? 1 : 0;
     if (!reached) return;
-    const hn::ScalableTag<Real> d;
-    using V = hn::Vec<decltype(d)>;
+    if (field.polynomial == nullptr && size == 1)
+      return turn(block, [&](auto d, auto& at, std::size_t) HWY_ATTR {
+        return turned_by_one<kernel>(d, moves, entries[list[0]], at);
+      });
+    if (field.polynomial == nullptr && size == 2)
+      return turn(block, [&](auto d, auto& at, std::size_t) HWY_ATTR {
+        return turned_by_two<kernel>(d, moves, entries[list[0]], entries[list[1]], at);
+      });
     // All roots of the first centre together: they take longer than processors look ahead.
     alignas(64) Real distances[block_size];
-    for (std::size_t lane = 0; size > 0 && lane < block_size; lane += hn::Lanes(d)) {
-      const auto place = load_vectors(d, pass.from[block], lane);
-      hn::Store(distance_to(d, entries[list[0]], place), d, distances + lane);
+    const hn::ScalableTag<Real> all;
+    for (std::size_t lane = 0; size > 0 && lane < block_size; lane += hn::Lanes(all)) {
+      const auto place = load_vectors(all, pass.from[block], lane);
+      hn::Store(distance_to(all, entries[list[0]], place), all, distances + lane);
     }
-    VertexBlock images;
-    for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
-      TurningVector<V> at{load_vectors(d, pass.from[block], lane),
-                          load_vectors(d, normals.from[block], lane),
-                          size > 0 ? hn::Load(d, distances + lane) : hn::Zero(d),
-                          {hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
+    turn(block, [&](auto d, auto& at, std::size_t lane) HWY_ATTR {
+      if (size > 0) at.distance = hn::Load(d, distances + lane);
       if (moves && field.polynomial != nullptr)
         at.sum = polynomial_at(d, *field.polynomial, at.place);
-      store_vectors(d, image_of(d, list, size, at), images, lane);
-      if (moves) store_vectors(d, sum_of(at.place, at.sum), pass.to[block], lane);
+      return image_of(d, list, size, at);
+    });
+  }
+
+  /// image(d, at, lane) is asked for each vector of a block's vertices, and adds to at.sum.
+  template <class Image>
+  HWY_INLINE void turn(std::size_t block, const Image& image) {
+    const hn::ScalableTag<Real> d;
+    const auto zero = hn::Zero(d);
+    VertexBlock images;
+    for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+      TurningVector<hn::Vec<decltype(d)>> at{load_vectors(d, pass.from[block], lane),
+                                             load_vectors(d, normals.from[block], lane),
+                                             zero,
+                                             {zero, zero, zero}};
+      store_vectors(d, image(d, at, lane), images, lane);
+      if (pass.to != nullptr) store_vectors(d, sum_of(at.place, at.sum), pass.to[block], lane);
     }
     normalise(images, normals.from[block], normals.to[block]);
   }
