@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include <nendo/deform/octree_order.hpp>
+#include "block_order.hpp"
 
 namespace nendo::deform {
 
@@ -37,7 +37,7 @@ void BlockShape::follow(const BlockShape& other) {
 
 BlockLayout::BlockLayout(Points vertices)
     : original_(std::move(vertices)), diagonal_(diagonal_of(original_)),
-      order_(octree_order(original_)) {
+      order_(block_order(original_)) {
   const auto [lowest, highest] = finite_box_of(original_);
   if (!(lowest[0] <= highest[0])) return;
   origin_ = lowest / 2.0 + highest / 2.0;

@@ -55,7 +55,7 @@ private:
   std::vector<std::uint64_t> stamps_;
 };
 
-/// Which vertex of a mesh stands where in the blocks (in octree order), and what their numbers
+/// Which vertex of a mesh stands where in the blocks (near ones together), and what their numbers
 /// mean: vertex = origin + unit * coordinate. Blocks count from the middle of the model in a power
 /// of two that is about its half size, so that a model far from zero loses nothing, and none is too
 /// large for float. Immutable: any thread may use it.

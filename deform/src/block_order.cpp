@@ -1,0 +1,90 @@
+#include "block_order.hpp"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include <nendo/deform/vertex_blocks.hpp>
+
+namespace nendo::deform {
+
+namespace {
+
+/// Enough of a place to choose neighbours by, which is not to be fetched from afar.
+struct Place {
+  std::array<float, 3> at;
+  std::uint32_t index;
+};
+using Places = std::vector<Place>::iterator;
+
+/// In shares of the model's largest side: numbers that float holds.
+std::vector<Place> places_of(const Points& points) {
+  const auto [lowest, highest] = finite_box_of(points);
+  const double half = (highest / 2.0 - lowest / 2.0).maxCoeff();
+  std::vector<Place> places;
+  places.reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    Place place{{}, static_cast<std::uint32_t>(i)};
+    for (Eigen::Index axis = 0; axis < 3 && half > 0.0; ++axis)
+      place.at[static_cast<std::size_t>(axis)] =
+          static_cast<float>((points(axis, i) / 2.0 - lowest[axis] / 2.0) / half);
+    places.push_back(place);
+  }
+  return places;
+}
+
+std::size_t longest_side(Places begin, Places end) noexcept {
+  std::array<float, 3> low = begin->at;
+  std::array<float, 3> high = low;
+  for (Places place = begin; place != end; ++place)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], place->at[axis]);
+      high[axis] = std::max(high[axis], place->at[axis]);
+    }
+  std::size_t longest = 0;
+  for (std::size_t axis = 1; axis < 3; ++axis)
+    if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+  return longest;
+}
+
+/// Half of the blocks, in whole groups of those that are asked for together while there are
+/// several.
+std::size_t left_blocks(std::size_t blocks) noexcept {
+  constexpr std::size_t group = 16;
+  return blocks < 2 * group ? blocks / 2 : (blocks / 2 + group / 2) / group * group;
+}
+
+void halve(Places begin, Places end) {
+  const auto count = static_cast<std::size_t>(end - begin);
+  if (count <= block_size) {
+    std::sort(begin, end, [](const Place& a, const Place& b) { return a.index < b.index; });
+    return;
+  }
+  const std::size_t axis = longest_side(begin, end);
+  const std::size_t left = left_blocks((count + block_size - 1) / block_size) * block_size;
+  const Places middle = begin + static_cast<std::ptrdiff_t>(left);
+  // Equal coordinates by their indices: so the order is the same with every library.
+  std::nth_element(begin, middle, end, [axis](const Place& a, const Place& b) {
+    return std::tie(a.at[axis], a.index) < std::tie(b.at[axis], b.index);
+  });
+  halve(begin, middle);
+  halve(middle, end);
+}
+
+} // namespace
+
+std::vector<std::uint32_t> block_order(const Points& points) {
+  std::vector<Place> places = places_of(points);
+  const Places finite =
+      std::stable_partition(places.begin(), places.end(), [&points](const Place& place) {
+        return points.col(place.index).allFinite();
+      });
+  halve(places.begin(), finite);
+  std::vector<std::uint32_t> order;
+  order.reserve(places.size());
+  for (const Place& place : places)
+    order.push_back(place.index);
+  return order;
+}
+
+} // namespace nendo::deform
