@@ -28,7 +28,11 @@ public:
     const double margin =
         reach * 1e-12 + 1e-15 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
     const Cell first = cell_at(low.array() - (reach + margin));
-    const Cell last = cell_at(high.array() + (reach + margin));
+    Cell last = cell_at(high.array() + (reach + margin));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      last[axis] = std::min(last[axis], highest_[axis]);
+      if (first[axis] > last[axis]) return;
+    }
     const std::uint64_t rows = (last[1] - first[1] + 1) * (last[2] - first[2] + 1);
     if (rows >= sorted_.size()) {
       for (const Entry& entry : sorted_)
@@ -38,10 +42,7 @@ public:
     for (std::uint64_t z = first[2]; z <= last[2]; ++z)
       for (std::uint64_t y = first[1]; y <= last[1]; ++y) {
         const std::uint64_t end = key_of({last[0], y, z});
-        auto at =
-            std::lower_bound(sorted_.begin(), sorted_.end(), key_of({first[0], y, z}),
-                             [](const Entry& entry, std::uint64_t key) { return entry.key < key; });
-        for (; at != sorted_.end() && at->key <= end; ++at)
+        for (auto at = first_from({first[0], y, z}); at != sorted_.end() && at->key <= end; ++at)
           visit(at->point);
       }
   }
@@ -58,10 +59,22 @@ private:
     return cell[2] << (2 * bits) | cell[1] << bits | cell[0];
   }
   Cell cell_at(const Eigen::Vector3d& place) const noexcept;
+  void index_cells();
+  std::size_t number_of(const Cell& cell) const noexcept {
+    return (cell[2] * (highest_[1] + 1) + cell[1]) * (highest_[0] + 1) + cell[0];
+  }
+  /// The first entry of that cell or of those behind it.
+  std::vector<Entry>::const_iterator first_from(const Cell& cell) const noexcept {
+    if (!begins_.empty()) return sorted_.begin() + begins_[number_of(cell)];
+    return std::lower_bound(sorted_.begin(), sorted_.end(), key_of(cell),
+                            [](const Entry& entry, std::uint64_t key) { return entry.key < key; });
+  }
 
   Eigen::Vector3d lowest_ = Eigen::Vector3d::Zero();
+  Cell highest_{}; ///< of any point
   double cells_per_unit_ = 1.0;
   std::vector<Entry> sorted_;
+  std::vector<std::uint32_t> begins_; ///< of each cell in sorted_, if there are not many more cells
 };
 
 } // namespace nendo::deform

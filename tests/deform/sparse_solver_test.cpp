@@ -61,6 +61,25 @@ TEST_SUITE("sparse solver") {
     }
   }
 
+  // Neighbours are then looked for in another way (PointGrid).
+  TEST_CASE("two crowds that are a thousand supports apart give the dense field, too") {
+    std::mt19937 random(9);
+    Points starts = nendo::app::bumpy_sheet(random, 160);
+    starts.rightCols(80).array() += 1000.0 * radius_for(15.0, 160);
+    const Points g = random_points(random, 160, 1.0);
+    const Points points = starts + random_points(random, 160, 0.1);
+    const VectorXd radii = VectorXd::Constant(160, radius_for(15.0, 160));
+    CsrbfField fields[2];
+    for (const bool sparse : {false, true}) {
+      CsrbfSolver solver({.storage = sparse ? Storage::sparse : Storage::dense});
+      REQUIRE(is_solved(solver.build(starts, radii)));
+      REQUIRE(is_solved(solver.solve(g, fields[sparse ? 1 : 0])));
+      CHECK(solver.effort().sparse == sparse);
+    }
+    const Points moved = values(fields[0], points);
+    CHECK(largest(values(fields[1], points) - moved) < 1e-8 * largest(moved));
+  }
+
   TEST_CASE("an octree's order keeps the factor sparse, minimum degree more so") {
     std::mt19937 random(2);
     const Points starts = nendo::app::bumpy_sheet(random, 2000);

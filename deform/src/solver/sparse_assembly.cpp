@@ -35,7 +35,6 @@ public:
     grid_.visit_near(centre, centre, reach_, [&](std::uint32_t i) {
       if (static_cast<Eigen::Index>(i) > j) add_shared(static_cast<Eigen::Index>(i), j, out);
     });
-    std::sort(used_.begin(), used_.end());
     SparseLower& lower = out.lower;
     lower.rows.push_back(static_cast<int>(j));
     lower.values.push_back(0.0); // finish_diagonal()

@@ -9,7 +9,8 @@
 
 namespace nendo::deform {
 
-/// The lower triangle, column by column, rows ascending, the diagonal entry first.
+/// The lower triangle, column by column: the diagonal entry first, the others as they were found,
+/// since what permutes them next asks for no order.
 struct SparseLower {
   std::vector<int> begins{0}; ///< #columns + 1
   std::vector<int> rows;
