@@ -139,8 +139,21 @@ TEST_SUITE("window") {
     for (const double radius_m : wanted->radius_m)
       CHECK(radius_m == doctest::Approx(0.11));
 
+    const auto drawn_after = [&](int key) {
+      type(key);
+      window.show(frame, false, {});
+      std::size_t places = 0;
+      for (const Surface& solid : window.scene().solids)
+        places += solid.places.size();
+      return places;
+    };
+    const std::size_t without_bones = drawn_after(GLFW_KEY_B);
+    const std::size_t with_bones = drawn_after(GLFW_KEY_B);
+    CHECK(with_bones > without_bones);
+
     CHECK_FALSE(type(GLFW_KEY_X).reset);
     CHECK(type(GLFW_KEY_G).requests.empty()); // the question comes first
+    CHECK(drawn_after(GLFW_KEY_B) == with_bones);
     type(GLFW_KEY_ESCAPE);
     window.show(frame, false, {});
     CHECK(type(GLFW_KEY_G).requests.size() == 1);

@@ -197,7 +197,7 @@ void LiveWindow::Panel::settings_keys(Wishes& wishes) {
 }
 
 void LiveWindow::Panel::keys(Wishes& wishes) {
-  if (ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) return;
+  if (!takes_keys()) return;
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
                                      {GLFW_KEY_C, Request::commit},

@@ -184,8 +184,7 @@ void SceneWindow::move_camera() {
 }
 
 void SceneWindow::follow_part_keys() {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantTextInput || io.KeyCtrl) return;
+  if (!takes_keys() || ImGui::GetIO().KeyCtrl) return;
   for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts_.hands},
                                   {GLFW_KEY_B, &parts_.bones},
                                   {GLFW_KEY_V, &parts_.vectors},

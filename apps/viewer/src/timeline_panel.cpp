@@ -158,7 +158,7 @@ void TimelineWindow::Panel::whole(const TimelineView& view, EditWishes& wishes) 
 
 void TimelineWindow::Panel::keys(const TimelineView& view, EditWishes& wishes) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantTextInput || ImGui::IsPopupOpen(question)) return;
+  if (!takes_keys()) return;
   auto& commands = wishes.commands;
   if (io.KeyCtrl) {
     if (pressed(GLFW_KEY_Z, true))
@@ -181,9 +181,8 @@ void TimelineWindow::Panel::keys(const TimelineView& view, EditWishes& wishes) {
 }
 
 void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditWishes& wishes) {
-  const ImGuiIO& io = ImGui::GetIO();
   const bool open = ImGui::IsPopupOpen(question);
-  wanted = wanted || (!open && !io.WantTextInput && pressed(GLFW_KEY_Q));
+  wanted = wanted || (takes_keys() && pressed(GLFW_KEY_Q));
   if (wanted && !view.modified) wishes.quit = true;
   if (wanted && view.modified && !open) ImGui::OpenPopup(question);
   if (!begin_question(question)) return;

@@ -11,6 +11,11 @@ inline bool pressed(int key, bool repeats = false) {
   return ImGui::IsKeyPressed(key, repeats);
 }
 
+/// Whether keys are the window's: nobody writes, and no question or list is open.
+inline bool takes_keys() {
+  return !ImGui::GetIO().WantTextInput && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
+}
+
 /// A question in the window's middle, if it is open: then its buttons follow, and
 /// ImGui::EndPopup().
 inline bool begin_question(const char* title) {

@@ -46,7 +46,7 @@ public:
   void begin_picture(const Moment& moment, bool is_whole = true);
   /// The mouse turns, shifts and zooms, unless it is over a widget.
   void move_camera();
-  /// h, b, v and d show and hide the scene's parts, unless somebody writes.
+  /// h, b, v and d show and hide the scene's parts, unless somebody writes or is asked something.
   void follow_part_keys();
   /// Draws it all; waits for the screen, 20 ms at most without one.
   void end_picture();
