@@ -46,13 +46,8 @@ std::vector<std::string> choices_in(const std::string& type) {
   return choices;
 }
 
-OptionModel model_of(const CLI::Option& option) {
+OptionModel nameless_model_of(const CLI::Option& option) {
   OptionModel model;
-  if (option.get_positional()) model.names.push_back(option.get_name(true));
-  for (const std::string& name : option.get_snames())
-    model.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames())
-    model.names.push_back("--" + name);
   if (option.get_type_size() != 0) {
     const std::string type = option.get_type_name();
     model.value = type.substr(0, type.find(':'));
@@ -66,10 +61,24 @@ OptionModel model_of(const CLI::Option& option) {
   return model;
 }
 
+/// An option that may also be given by its place alone is two in the model, as it is in --help.
+void add_models_of(const CLI::Option& option, std::vector<OptionModel>& models) {
+  OptionModel model = nameless_model_of(option);
+  if (option.get_positional()) {
+    models.push_back(model);
+    models.back().names.push_back(option.get_name(true));
+  }
+  for (const std::string& name : option.get_snames())
+    model.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames())
+    model.names.push_back("--" + name);
+  if (!model.names.empty()) models.push_back(std::move(model));
+}
+
 CommandModel model_of(const CLI::App& app) {
   CommandModel model{app.get_name(), app.get_description(), app.get_footer(), {}, {}};
   for (const CLI::Option* option : app.get_options())
-    model.options.push_back(model_of(*option));
+    add_models_of(*option, model.options);
   for (const CLI::App* command : app.get_subcommands(is_shown))
     model.commands.push_back(model_of(*command));
   return model;

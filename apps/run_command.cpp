@@ -166,7 +166,7 @@ void add_run_options(Command& command, const std::shared_ptr<CommandOptions>& op
       "\nWithout --left and --right every identified glove is used, or simulated hands.");
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
-  command.add_option("--mesh", run_options.mesh,
+  command.add_option("MODEL,--mesh", run_options.mesh,
                      "OBJ or PLY file to shape; without it, the shipped Moai");
   command.add_option(
       "--mode", options->mode,

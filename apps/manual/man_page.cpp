@@ -96,7 +96,7 @@ std::string usage(const std::string& path, const CommandModel& command) {
   std::string text = bold(path) + " [" + italic("OPTIONS") + "]";
   for (const OptionModel& option : command.options) {
     if (!option.is_positional()) continue;
-    const std::string word = italic(option.names.front());
+    const std::string word = italic(option.names.front()) + (option.repeats ? "..." : "");
     text += option.required ? ' ' + word : " [" + word + ']';
   }
   if (!command.commands.empty()) text += ' ' + italic("COMMAND");

@@ -143,7 +143,7 @@ void add_stress(Command& program) {
                      "Seconds to look at the machine alone before; 0: do not");
   command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");
   command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
-  command.add_option("--mesh", arguments->run.mesh,
+  command.add_option("MODEL,--mesh", arguments->run.mesh,
                      "OBJ or PLY file; without it, the shipped Moai");
   command.add_option("--mode", arguments->mode, "type1 or type2");
   command.add_option("--radius", arguments->run.radius, "As of nendo run");

@@ -108,7 +108,12 @@ TEST_SUITE("manual") {
         shown = contents(manual.path("plain"));
         REQUIRE(shown.find("SYNOPSIS") != std::string::npos);
       }
-      for (const std::string& option : options_in(help_of(line))) {
+      const std::string help = help_of(line);
+      const std::string usage = lines_of(help.substr(help.find("[OPTIONS]"))).front();
+      if (usage.find("SUBCOMMAND") == std::string::npos)
+        CHECK_MESSAGE(shown.find("nendo " + joined(line) + usage + '\n') != std::string::npos,
+                      page << ": " << usage);
+      for (const std::string& option : options_in(help)) {
         const bool found = shown.find(' ' + option + ' ') != std::string::npos ||
                            shown.find(' ' + option + '\n') != std::string::npos ||
                            shown.find(' ' + option + ',') != std::string::npos;

@@ -330,7 +330,10 @@ TEST_SUITE("run") {
           Case{{"--hand-length", "nan"}, 2, "--hand-length"},
           Case{{"--adapt", "--user", "anna"}, 2, "--adapt"},
           Case{{"--adapt", "--calibration", "none"}, 2, "--adapt"},
-          Case{{"--mesh", "/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"}}) {
+          Case{{"--mesh", "/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"},
+          Case{{"/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"},
+          Case{{"a.obj", "--mesh", "b.obj"}, 2, "--mesh"},
+          Case{{"a.obj", "b.obj"}, 2, "b.obj"}}) {
       std::vector<std::string> arguments{"run", "--right", "sim", "--out", out};
       arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
       const auto done = nendo::test::nendo(arguments);
