@@ -147,7 +147,7 @@ Result<void> write_panels(const Options& options, const std::vector<Panel>& pane
     std::snprintf(number, sizeof number, "-%02zu.png", at);
     auto name = out.parent_path() / out.stem();
     name += number;
-    if (const auto done = write_png(name, panels[at].image); !done) return done;
+    if (auto done = write_png(name, panels[at].image); !done) return done;
   }
   return {};
 }

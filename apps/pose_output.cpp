@@ -65,12 +65,12 @@ public:
 
   std::optional<Side> only_side() const override { return side_; }
   Result<void> put(HostTime, Side, const hand::HandPose& pose, SensorMask) override {
-    if (const auto added = file_.add(pose); !added) return added;
+    if (auto added = file_.add(pose); !added) return added;
     return ++put_ % most_pending_frames != 0 ? Result<void>() : flush();
   }
   Result<void> flush() override { return file_.flush(); }
   Result<void> finish() override {
-    if (const auto finished = file_.finish(); !finished) return finished;
+    if (auto finished = file_.finish(); !finished) return finished;
     std::cout << path_ << ": " << file_.frames() << " poses of a " << name_of(side_) << " hand"
               << std::endl;
     return {};

@@ -48,7 +48,7 @@ Result<void> check(const Options& options) {
   if (!(options.duration_s >= 0.0 && options.duration_s <= most_duration_s)) {
     return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
   }
-  if (const auto fine = options.length.check(); !fine) return fine;
+  if (auto fine = options.length.check(); !fine) return fine;
   return check(options.calibration);
 }
 
@@ -115,7 +115,7 @@ Result<void> stream(OpenHand& hand, const Options& options, PoseOutput& output) 
     while (goes_on && hand.ring->try_pop(sample))
       goes_on = poses.take(sample);
     goes_on = goes_on && poses.pass_time(now);
-    if (const auto flushed = output.flush(); !flushed) return flushed;
+    if (auto flushed = output.flush(); !flushed) return flushed;
     if (goes_on) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return poses.state();

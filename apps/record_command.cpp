@@ -34,8 +34,8 @@ Result<void> check(Options& options) {
     if (!seconds) return seconds.error();
     options.duration_s = *seconds;
   }
-  if (const auto fine = options.length.check(); !fine) return fine;
-  if (const auto fine = check(options.calibration); !fine) return fine;
+  if (auto fine = options.length.check(); !fine) return fine;
+  if (auto fine = check(options.calibration); !fine) return fine;
   std::error_code ignored;
   if (std::filesystem::exists(options.out, ignored)) {
     return Error{Errc::failed, "--out " + options.out +

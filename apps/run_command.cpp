@@ -90,17 +90,17 @@ Result<void> check(CommandOptions& options) {
         run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
     return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
   }
-  if (const auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
+  if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
   if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
     return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
   }
   if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
     return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
-  if (const auto fine = check_radius(run.radius); !fine) return fine;
-  if (const auto fine = run.length.check(); !fine) return fine;
-  if (const auto fine = check(run.calibration); !fine) return fine;
+  if (auto fine = check_radius(run.radius); !fine) return fine;
+  if (auto fine = run.length.check(); !fine) return fine;
+  if (auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
-  if (const auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
+  if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
   if (run.mesh.empty()) run.mesh = shipped_model("moai.obj").string();
   return check_outputs(options);
 }

@@ -160,7 +160,7 @@ Result<void> measure_loop(const RtOptions& options) {
                 1'000'000 / interval_us, options.seconds);
   }
   for (const auto part : {beside_cyclictest, spinning, whole_pipeline}) {
-    if (const auto done = part(options, model); !done) return done;
+    if (auto done = part(options, model); !done) return done;
   }
   return {};
 }

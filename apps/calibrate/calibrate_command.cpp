@@ -52,7 +52,7 @@ Result<void> check(const Options& options) {
     return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
   if (options.user.empty())
     return Error{Errc::usage, "--user is missing: whose hand is it? e.g. --user anna"};
-  if (const auto fine = HandLength{options.length_mm}.check(); !fine) return fine;
+  if (auto fine = HandLength{options.length_mm}.check(); !fine) return fine;
   if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
     return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
   const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;

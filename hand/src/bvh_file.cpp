@@ -124,7 +124,7 @@ Result<void> BvhFile::flush() {
 }
 
 Result<void> BvhFile::finish() {
-  if (const auto flushed = flush(); !flushed) return flushed;
+  if (auto flushed = flush(); !flushed) return flushed;
   if (::fsync(fd_) != 0) return failure(errno);
   if (::close(std::exchange(fd_, -1)) != 0) return failure(errno);
   if (::rename(part_.c_str(), target_.c_str()) != 0) return failure(errno);

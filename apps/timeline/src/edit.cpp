@@ -90,7 +90,7 @@ Result<void> move_key(Timeline& timeline, Side side, std::size_t key, double to_
   std::vector<Key> keys = (*track)->keys;
   Key moved = keys[key];
   keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(key));
-  if (const auto fine = check_place(timeline, keys, to_s); !fine) return fine;
+  if (auto fine = check_place(timeline, keys, to_s); !fine) return fine;
   moved.time_s = to_s;
   keys.insert(place_of(keys, to_s), moved);
   (*track)->keys = std::move(keys);
@@ -101,7 +101,7 @@ Result<void> copy_key(Timeline& timeline, Side side, std::size_t key, double to_
   auto track = track_with_key(timeline, side, key);
   if (!track) return track.error();
   std::vector<Key>& keys = (*track)->keys;
-  if (const auto fine = check_place(timeline, keys, to_s); !fine) return fine;
+  if (auto fine = check_place(timeline, keys, to_s); !fine) return fine;
   Key copy = keys[key];
   copy.time_s = to_s;
   keys.insert(place_of(keys, to_s), copy);
@@ -120,7 +120,7 @@ Result<void> add_key(Timeline& timeline, Side side, double at_s) {
   auto track = track_of(timeline, side);
   if (!track) return track.error();
   std::vector<Key>& keys = (*track)->keys;
-  if (const auto fine = check_place(timeline, keys, at_s); !fine) return fine;
+  if (auto fine = check_place(timeline, keys, at_s); !fine) return fine;
   keys.insert(place_of(keys, at_s), HandCurve(keys).at(at_s));
   return {};
 }
