@@ -1,10 +1,11 @@
 #include "block_order.hpp"
 
 #include <algorithm>
-#include <array>
 #include <tuple>
 
 #include <nendo/deform/vertex_blocks.hpp>
+
+#include "simd/field_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -12,7 +13,7 @@ namespace {
 
 /// Enough of a place to choose neighbours by, which is not to be fetched from afar.
 struct Place {
-  std::array<float, 3> at;
+  Eigen::Vector3f at;
   std::uint32_t index;
 };
 using Places = std::vector<Place>::iterator;
@@ -24,34 +25,30 @@ std::vector<Place> places_of(const Points& points) {
   std::vector<Place> places;
   places.reserve(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Place place{{}, static_cast<std::uint32_t>(i)};
-    for (Eigen::Index axis = 0; axis < 3 && half > 0.0; ++axis)
-      place.at[static_cast<std::size_t>(axis)] =
-          static_cast<float>((points(axis, i) / 2.0 - lowest[axis] / 2.0) / half);
+    Place place{Eigen::Vector3f::Zero(), static_cast<std::uint32_t>(i)};
+    if (half > 0.0) place.at = ((points.col(i) / 2.0 - lowest / 2.0) / half).cast<float>();
     places.push_back(place);
   }
   return places;
 }
 
-std::size_t longest_side(Places begin, Places end) noexcept {
-  std::array<float, 3> low = begin->at;
-  std::array<float, 3> high = low;
-  for (Places place = begin; place != end; ++place)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], place->at[axis]);
-      high[axis] = std::max(high[axis], place->at[axis]);
-    }
-  std::size_t longest = 0;
-  for (std::size_t axis = 1; axis < 3; ++axis)
-    if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+Eigen::Index longest_side(Places begin, Places end) noexcept {
+  Eigen::Vector3f low = begin->at;
+  Eigen::Vector3f high = low;
+  for (Places place = begin; place != end; ++place) {
+    low = low.cwiseMin(place->at);
+    high = high.cwiseMax(place->at);
+  }
+  Eigen::Index longest = 0;
+  (high - low).maxCoeff(&longest);
   return longest;
 }
 
 /// Half of the blocks, in whole groups of those that are asked for together while there are
 /// several.
 std::size_t left_blocks(std::size_t blocks) noexcept {
-  constexpr std::size_t group = 16;
-  return blocks < 2 * group ? blocks / 2 : (blocks / 2 + group / 2) / group * group;
+  if (blocks < 2 * group_size) return blocks / 2;
+  return (blocks / 2 + group_size / 2) / group_size * group_size;
 }
 
 void halve(Places begin, Places end) {
@@ -60,7 +57,7 @@ void halve(Places begin, Places end) {
     std::sort(begin, end, [](const Place& a, const Place& b) { return a.index < b.index; });
     return;
   }
-  const std::size_t axis = longest_side(begin, end);
+  const Eigen::Index axis = longest_side(begin, end);
   const std::size_t left = left_blocks((count + block_size - 1) / block_size) * block_size;
   const Places middle = begin + static_cast<std::ptrdiff_t>(left);
   // Equal coordinates by their indices: so the order is the same with every library.

@@ -29,7 +29,7 @@ void PointGrid::index_cells() {
     cells *= highest + 1; // of 22 bits each
     if (cells > most) return;
   }
-  begins_.assign(cells, 0);
+  begins_.reserve(cells);
   std::size_t at = 0;
   Cell cell{};
   for (cell[2] = 0; cell[2] <= highest_[2]; ++cell[2])
@@ -37,7 +37,7 @@ void PointGrid::index_cells() {
       for (cell[0] = 0; cell[0] <= highest_[0]; ++cell[0]) {
         while (at < sorted_.size() && sorted_[at].key < key_of(cell))
           ++at;
-        begins_[number_of(cell)] = static_cast<std::uint32_t>(at);
+        begins_.push_back(static_cast<std::uint32_t>(at)); // as number_of() counts them
       }
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numeric>
 #include <random>
-#include <set>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -19,22 +18,15 @@ using namespace nendo::deform;
 
 namespace {
 
-std::vector<std::set<std::uint32_t>> blocks_of(const std::vector<std::uint32_t>& order) {
-  std::vector<std::set<std::uint32_t>> blocks((order.size() + block_size - 1) / block_size);
-  for (std::size_t at = 0; at < order.size(); ++at)
-    blocks[at / block_size].insert(order[at]);
-  return blocks;
-}
-
 /// Pairs of a block and a ball around a vertex (every seventh) that meets the block's bounds.
 std::size_t meetings(const Points& points, const std::vector<std::uint32_t>& order, double radius) {
   std::size_t count = 0;
-  for (const auto& block : blocks_of(order)) {
-    Eigen::Vector3d low = points.col(*block.begin());
+  for (std::size_t begin = 0; begin < order.size(); begin += block_size) {
+    Eigen::Vector3d low = points.col(order[begin]);
     Eigen::Vector3d high = low;
-    for (const std::uint32_t vertex : block) {
-      low = low.cwiseMin(points.col(vertex));
-      high = high.cwiseMax(points.col(vertex));
+    for (std::size_t at = begin; at < std::min(begin + block_size, order.size()); ++at) {
+      low = low.cwiseMin(points.col(order[at]));
+      high = high.cwiseMax(points.col(order[at]));
     }
     for (Eigen::Index i = 0; i < points.cols(); i += 7) {
       const Eigen::Vector3d centre = points.col(i);
@@ -49,7 +41,7 @@ std::size_t meetings(const Points& points, const std::vector<std::uint32_t>& ord
 
 TEST_SUITE("block_order") {
   TEST_CASE("a sheet of 32 by 32 falls into squares of 8 by 8, in whichever order it came") {
-    Points sheet = nendo::test::grid(31, 1.0).vertices;
+    const Points sheet = nendo::test::grid(31, 1.0).vertices;
     std::vector<std::uint32_t> came(1024);
     std::iota(came.begin(), came.end(), 0U);
     for (int round = 0; round < 3; ++round) {
@@ -57,13 +49,11 @@ TEST_SUITE("block_order") {
       for (std::size_t at = 0; at < came.size(); ++at)
         points.col(static_cast<Eigen::Index>(at)) = sheet.col(came[at]);
       const BlockLayout layout(points);
-      for (const auto& block : blocks_of(layout.order())) {
-        std::vector<std::uint32_t> members(block.begin(), block.end());
-        Points places(3, 64);
-        for (std::size_t at = 0; at < members.size(); ++at)
-          places.col(static_cast<Eigen::Index>(at)) = points.col(members[at]);
-        const Eigen::Vector3d size = places.rowwise().maxCoeff() - places.rowwise().minCoeff();
-        CHECK(size.maxCoeff() == doctest::Approx(7.0 / 31.0));
+      const BlockShape shape = layout.pack();
+      for (std::size_t block = 0; block < layout.block_count(); ++block) {
+        const auto sides = bounds_of(shape[block]).sides;
+        const float longest = -std::min({sides[0] + sides[4], sides[1] + sides[5]});
+        CHECK(layout.unit() * static_cast<double>(longest) == doctest::Approx(7.0 / 31.0));
       }
       std::shuffle(came.begin(), came.end(), std::mt19937(static_cast<unsigned>(round)));
     }
