@@ -38,7 +38,7 @@ float as_float(double value) noexcept {
 } // namespace
 
 BlockField::BlockField(const BlockLayout& layout, Eigen::Index entries)
-    : origin_(layout.origin()), unit_(layout.unit()),
+    : origin_(layout.origin()), inverse_unit_(1.0 / layout.unit()),
       tolerance_(most_float_error * layout.diagonal() / layout.unit()) {
   reserve(entries);
 }
@@ -61,7 +61,7 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
   sum_of_coefficients_ = 0.0;
   largest_coefficient_ = 0.0;
   const Eigen::Matrix<double, 3, 3> slope = field.polynomial.rightCols<3>();
-  const Eigen::Vector3d constant = (field.polynomial.col(0) + slope * origin_) / unit_;
+  const Eigen::Vector3d constant = (field.polynomial.col(0) + slope * origin_) * inverse_unit_;
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     polynomial_[static_cast<std::size_t>(axis)] = {constant[axis], slope(axis, 0), slope(axis, 1),
                                                    slope(axis, 2)};
@@ -93,15 +93,16 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
 void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, double radius,
                               const Eigen::Vector3d& coefficient, Wendland kernel) {
   const double r = std::clamp(radius, 1.0 / most_units, most_units);
+  const double inverse = 1.0 / r;
   const Eigen::Vector3d scaled =
-      kernel_factor(kernel) / power(r, weight_power(kernel)) * coefficient;
+      kernel_factor(kernel) * power(inverse, weight_power(kernel)) * coefficient;
   const Eigen::Vector3d steep =
-      slope_factor(kernel) / power(r, 2 + slope_power(kernel)) * coefficient;
+      slope_factor(kernel) * power(inverse, 2 + slope_power(kernel)) * coefficient;
   precise_entries_[at] = {centre[0],
                           centre[1],
                           centre[2],
                           r,
-                          1.0 / r,
+                          inverse,
                           1.25 * r,
                           {scaled[0], scaled[1], scaled[2]},
                           {steep[0], steep[1], steep[2]}};
@@ -131,9 +132,9 @@ bool BlockField::assign_entries(const CsrbfField& field, Zeros zeros) {
   for (Eigen::Index i = 0; i < field.centres.cols(); ++i) {
     if (zeros == Zeros::left_out && field.coefficients.col(i).isZero(0.0)) continue;
     const auto at = static_cast<std::size_t>(size_++);
-    const Eigen::Vector3d centre = (field.centres.col(i) - origin_) / unit_;
-    const Eigen::Vector3d coefficient = field.coefficients.col(i) / unit_;
-    const double radius = field.radii[i] / unit_;
+    const Eigen::Vector3d centre = (field.centres.col(i) - origin_) * inverse_unit_;
+    const Eigen::Vector3d coefficient = field.coefficients.col(i) * inverse_unit_;
+    const double radius = field.radii[i] * inverse_unit_;
     finite = finite && radius > 0.0 && centre.allFinite() && coefficient.allFinite();
     const double largest = coefficient.cwiseAbs().maxCoeff();
     sum_of_coefficients_ += largest;

@@ -45,8 +45,8 @@ private:
                     const Eigen::Vector3d& coefficient, Wendland kernel);
 
   Eigen::Vector3d origin_;
-  double unit_;
-  double tolerance_; ///< of the error of float sums, in units
+  double inverse_unit_; ///< exact: units are powers of two
+  double tolerance_;    ///< of the error of float sums, in units
   Eigen::Index capacity_ = 0;
   Eigen::Index size_ = 0;
   VectorArray<float> x_, y_, z_, squared_radius_;

@@ -29,11 +29,11 @@ void limit(const Eigen::Vector3d& chord, Eigen::Ref<Eigen::Vector3d> tangent) no
     tangent.setZero();
     return;
   }
-  const double along = tangent.dot(chord) / squared;
-  if (along < 0.0) tangent -= along * chord;
-  const double longest = most_slope * std::sqrt(squared);
-  const double length = tangent.norm();
-  if (length > longest) tangent *= longest / length;
+  const double along = tangent.dot(chord);
+  if (along < 0.0) tangent -= along / squared * chord;
+  const double longest = most_slope * most_slope * squared;
+  const double length = tangent.squaredNorm();
+  if (length > longest) tangent *= std::sqrt(longest / length);
 }
 
 } // namespace
@@ -113,18 +113,41 @@ constexpr Weights weights_at(double u) noexcept {
   return {u * u * (3.0 - 2.0 * u), u * v * v, -u * u * v};
 }
 
+/// What the products of chord and tangents with each other weigh in the square of each step: a
+/// matrix, column by column.
+template <std::size_t steps>
+constexpr std::array<double, 6 * steps> squared_step_weights() noexcept {
+  std::array<double, 6 * steps> weights{};
+  Weights before{};
+  for (std::size_t step = 0; step < steps; ++step) {
+    const Weights here = weights_at(static_cast<double>(step + 1) / steps);
+    const double c = here.chord - before.chord;
+    const double l = here.leaving - before.leaving;
+    const double a = here.arriving - before.arriving;
+    const double products[] = {c * c, l * l, a * a, 2.0 * c * l, 2.0 * c * a, 2.0 * l * a};
+    for (std::size_t column = 0; column < 6; ++column)
+      weights[column * steps + step] = products[column];
+    before = here;
+  }
+  return weights;
+}
+
 } // namespace
 
 void FingertipCurve::measure() noexcept {
-  lengths_[0] = 0.0;
-  Weights before{};
-  for (std::size_t step = 1; step <= steps; ++step) {
-    const Weights here = weights_at(static_cast<double>(step) / steps);
-    scratch_ = (here.chord - before.chord) * chord_ + (here.leaving - before.leaving) * leaving_ +
-               (here.arriving - before.arriving) * arriving_;
-    lengths_[step] = lengths_[step - 1] + std::sqrt(scratch_.colwise().squaredNorm().maxCoeff());
-    before = here;
+  static constexpr auto weights = squared_step_weights<steps>();
+  const Eigen::Map<const Eigen::Matrix<double, steps, 6>> squared_steps(weights.data());
+  Eigen::Matrix<double, steps, 1> farthest = Eigen::Matrix<double, steps, 1>::Zero();
+  for (Eigen::Index i = 0; i < chord_.cols(); ++i) {
+    const Eigen::Vector3d c = chord_.col(i);
+    const Eigen::Vector3d l = leaving_.col(i);
+    const Eigen::Vector3d a = arriving_.col(i);
+    const Eigen::Vector<double, 6> products{c.squaredNorm(), l.squaredNorm(), a.squaredNorm(),
+                                            c.dot(l),        c.dot(a),        l.dot(a)};
+    farthest = farthest.cwiseMax(squared_steps * products);
   }
+  for (std::size_t step = 0; step < steps; ++step)
+    lengths_[step + 1] = lengths_[step] + std::sqrt(farthest[static_cast<Eigen::Index>(step)]);
 }
 
 bool FingertipCurve::next_cut(Points& cut) noexcept {

@@ -1,5 +1,6 @@
 #include "solver/dense_assembly.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/shared_kernel.hpp"
@@ -28,6 +29,8 @@ bool assemble_dense(const CsrbfOptions& options, const Points& starts, const Sup
   const SharedKernel kernel(options.kernel, supports);
   const Ties ties(options, supports);
   const bool has_own = own.size() > 0;
+  const double reach = std::max(kernel.reach(), ties.reach());
+  const double squared_reach = reach * reach * (1.0 + 1e-12); // or a little more: rounded
   if (has_own) {
     lower.setZero();
     add_own(own, lower);
@@ -37,8 +40,13 @@ bool assemble_dense(const CsrbfOptions& options, const Points& starts, const Sup
   bool merged = false;
   for (Eigen::Index j = 0; j < n; ++j)
     for (Eigen::Index i = j + 1; i < n; ++i) {
-      const double distance = std::sqrt((starts.col(i) - starts.col(j)).squaredNorm());
       double value = has_own ? lower(i, j) : 0.0;
+      const double squared = (starts.col(i) - starts.col(j)).squaredNorm();
+      if (squared > squared_reach) { // of local supports most
+        lower(i, j) = value;
+        continue;
+      }
+      const double distance = std::sqrt(squared);
       if (distance < ties.reach() || distance == 0.0) {
         const double size = has_own ? (lower(i, i) + lower(j, j)) / 2.0 : 0.0;
         const double tie = ties.strength(distance, size, size - value);

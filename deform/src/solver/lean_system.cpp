@@ -1,6 +1,5 @@
 #include <array>
 #include <cassert>
-#include <cmath>
 
 #include "solver/dense_assembly.hpp"
 #include "solver/kernel_system.hpp"
@@ -27,6 +26,7 @@ public:
     return merged ? Assembled::merged : Assembled::ok;
   }
 
+  /// M = L D L^T, Cholesky's without roots, which ten points would wait for one after the other.
   /// Right-looking: each finished column is taken from those after it, which are contiguous.
   bool factorise(double ridge) override {
     for (Eigen::Index j = 0; j < n_; ++j) {
@@ -37,16 +37,16 @@ public:
     for (Eigen::Index k = 0; k < n_; ++k) {
       double* const column = &factor_[index(0, k)];
       if (!(column[k] > 0.0)) return false;
-      const double inverse = 1.0 / std::sqrt(column[k]);
-      inverse_diagonal_[static_cast<std::size_t>(k)] = inverse;
-      for (Eigen::Index i = k + 1; i < n_; ++i)
-        column[i] *= inverse;
+      const double inverse = 1.0 / column[k];
+      inverse_pivots_[static_cast<std::size_t>(k)] = inverse;
       for (Eigen::Index j = k + 1; j < n_; ++j) {
         double* const target = &factor_[index(0, j)];
-        const double value = column[j];
+        const double value = column[j] * inverse;
         for (Eigen::Index i = j; i < n_; ++i)
           target[i] -= value * column[i];
       }
+      for (Eigen::Index i = k + 1; i < n_; ++i)
+        column[i] *= inverse;
     }
     return true;
   }
@@ -54,17 +54,16 @@ public:
   void solve_in_place(Rows& rows) noexcept override {
     for (Eigen::Index k = 0; k < n_; ++k) {
       const double* const column = &factor_[index(0, k)];
-      const Row solved = Row(rows.row(k)) * inverse_diagonal_[static_cast<std::size_t>(k)];
-      rows.row(k) = solved;
+      const Row solved = rows.row(k);
       for (Eigen::Index i = k + 1; i < n_; ++i)
         rows.row(i) -= column[i] * solved;
     }
     for (Eigen::Index k = n_ - 1; k >= 0; --k) {
       const double* const column = &factor_[index(0, k)];
-      Row sum = rows.row(k);
-      for (Eigen::Index i = k + 1; i < n_; ++i)
+      Row sum = Row(rows.row(k)) * inverse_pivots_[static_cast<std::size_t>(k)];
+      for (Eigen::Index i = n_ - 1; i > k; --i) // the latest row comes last: only it is waited for
         sum -= column[i] * rows.row(i);
-      rows.row(k) = sum * inverse_diagonal_[static_cast<std::size_t>(k)];
+      rows.row(k) = sum;
     }
   }
 
@@ -94,7 +93,7 @@ private:
   Eigen::MatrixXd lower_;
   Eigen::VectorXd diagonal_;
   alignas(16) std::array<double, static_cast<std::size_t>(most* most)> factor_{};
-  std::array<double, static_cast<std::size_t>(most)> inverse_diagonal_{};
+  std::array<double, static_cast<std::size_t>(most)> inverse_pivots_{};
 };
 
 } // namespace

@@ -46,7 +46,7 @@ private:
   double piece_length_;
   double cut_length_ = 0.0;   ///< piece_length_, but for long ways
   Points chord_;              ///< from from_ to to_
-  Points scratch_;            ///< where a sample leads, or a step
+  Points scratch_;            ///< where a sample leads
   Points from_, to_;          ///< the last piece of the curve
   Points leaving_, arriving_; ///< its tangents, as dp/du with u from 0 to 1
   Points tangent_;            ///< at to_, by length
