@@ -16,7 +16,8 @@ constexpr double default_radius_fraction = 0.2;
 constexpr double piece_fraction = 0.05;
 
 std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
-                                       const RunOptions& options) {
+                                       const RunOptions& options,
+                                       const std::optional<Legacy>& legacy) {
   std::vector<flow::HandInput> inputs;
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
@@ -29,6 +30,7 @@ std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
     inputs.back().swapped = swapped.calibration;
     inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(swapped.size));
     inputs.back().adapt = hand.known.adapt;
+    if (legacy) inputs.back().learned = legacy->learned[flow::Placement::index_of(hand.side)];
   }
   return inputs;
 }
@@ -86,18 +88,21 @@ std::pair<double, double> least_and_largest(const deform::Supports& supports) {
 
 } // namespace
 
+Legacy legacy_of(const flow::DeformLoop& ended) {
+  return {ended.placement(), {ended.learned(Side::left), ended.learned(Side::right)}};
+}
+
 Result<void> check_radius(const std::string& text) {
   if (text.empty() || deform::parse_supports_by_point(text, 10)) return {};
   return bad_radius(text, "is none");
 }
 
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
-                              const deform::Mesh& model,
-                              const std::optional<flow::Placement>& kept_placement) {
+                              const deform::Mesh& model, const std::optional<Legacy>& legacy) {
   const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
-  auto inputs = inputs_of(hands, options);
+  auto inputs = inputs_of(hands, options, legacy);
   auto supports = supports_for(options.radius, 5 * static_cast<Eigen::Index>(inputs.size()), size);
   if (!supports) return supports.error();
   const auto [least_radius, largest_radius] = least_and_largest(*supports);
@@ -107,7 +112,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   // between them.
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
-  const auto placement = kept_placement ? *kept_placement : placement_for(hands, inputs, model);
+  const auto placement = legacy ? legacy->placement : placement_for(hands, inputs, model);
   PlacedSetup setup{inputs, placement, loop_options};
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {

@@ -1,6 +1,7 @@
 #pragma once
 // A loop over the hands that are open, placed so that they hold the model between them.
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -26,11 +27,17 @@ struct PlacedLoop {
   bool recorded = false; ///< to a file, as long as it runs
 };
 
-/// As options.loop says, with the supports that options.radius says. Without a placement the hands
-/// are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
+/// What a loop leaves to the next one of the same hands.
+struct Legacy {
+  flow::Placement placement;
+  std::array<std::optional<hand::LearnedRanges>, 2> learned; ///< of the hands' gloves, by side
+};
+Legacy legacy_of(const flow::DeformLoop& ended);
+
+/// As options.loop says, with the supports that options.radius says. Without a legacy the hands are
+/// put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
-                              const deform::Mesh& model,
-                              const std::optional<flow::Placement>& placement = {});
+                              const deform::Mesh& model, const std::optional<Legacy>& legacy = {});
 
 /// What a frame of that loop may hold, for whoever keeps room for it.
 struct FrameRoom {

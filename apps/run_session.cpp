@@ -105,9 +105,9 @@ public:
   }
 
 private:
-  Result<void> begin_loop(const std::optional<flow::Placement>& placement) {
+  Result<void> begin_loop(const std::optional<Legacy>& legacy) {
     options_.loop.tape = recorder_.tape_for(options_.recording);
-    auto placed = place_loop(options_, hands_, model_, placement);
+    auto placed = place_loop(options_, hands_, model_, legacy);
     if (!placed) return placed.error();
     placed_ = *std::move(placed);
     if (const auto begun = recorder_.begin(options_, placed_.setup, hands_, model_); !begun)
@@ -222,7 +222,7 @@ private:
     before_s_ += elapsed_s_;
     if (options_.duration_s > 0.0)
       options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
-    const flow::Placement placement = placed_.loop->placement();
+    const Legacy legacy = legacy_of(*placed_.loop);
     const flow::LoopChange change = std::exchange(wanted_, {});
     apply({}, placed_, options_);
     const RunOptions options = options_;
@@ -230,12 +230,12 @@ private:
     apply(change, placed_, options_);
     if (change.reset) model_.vertices = loaded_;
     take_newest(hands_);
-    const auto begun = begin_loop(placement);
+    const auto begun = begin_loop(legacy);
     if (begun) return {};
     note(begun.error().message + "; the run goes on as it was");
     options_ = options;
     model_.vertices = shape;
-    return begin_loop(placement);
+    return begin_loop(legacy);
   }
 
   RunOptions options_;

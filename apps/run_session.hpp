@@ -58,10 +58,10 @@ struct Followers {
 /// Runs until the duration is over, a stop signal comes, or a key (run_keys.hpp) or the onlooker,
 /// if any, says so, then writes the shape; says on standard error which rights were refused. A loop
 /// that is made anew, because a follower wants a change, goes on from the shape and the poses as
-/// they are (but what --adapt has learned begins anew), with the hands where they were, and is
-/// recorded to a file of its own if that is asked for; a few times a second at most, whoever asks
-/// how often. A change with which no loop can begin is told of on standard error, and not made. The
-/// outcome is the last loop's, with every recording. Blocks.
+/// they are, with the hands where they were and what --adapt has learned of them, and is recorded
+/// to a file of its own if that is asked for; a few times a second at most, whoever asks how often.
+/// A change with which no loop can begin is told of on standard error, and not made. The outcome is
+/// the last loop's, with every recording. Blocks.
 Result<RunOutcome> run_session(RunOptions options, std::vector<OpenHand>& hands, deform::Mesh model,
                                const Followers& followers);
 

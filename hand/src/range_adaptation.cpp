@@ -54,6 +54,47 @@ RangeAdaptation::RangeAdaptation(CountScale counts) noexcept
   }
 }
 
+RangeAdaptation::RangeAdaptation(CountScale counts, const LearnedRanges& learned) noexcept
+    : RangeAdaptation(counts) {
+  side_ = learned.side;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const LearnedRanges::Sensor& sensor = learned.sensors[slot];
+    Learner& learner = learners_[slot];
+    if (!learner.can_have_learned(sensor, counts)) continue;
+    learner.low = sensor.low_counts;
+    learner.high = sensor.high_counts;
+    learner.bottoms = sensor.bottoms;
+    learner.tops = sensor.tops;
+    calibration_.sensors[slot] = sensor.line;
+  }
+}
+
+/// Numbers may come from a file.
+bool RangeAdaptation::Learner::can_have_learned(const LearnedRanges::Sensor& sensor,
+                                                CountScale counts) const noexcept {
+  constexpr double rounding = 1e-9;
+  constexpr double most_gain_rad = 1e3; // beyond what any line is on its way to
+  constexpr double most_offset = 1e6;
+  return usual_span > 0.0 && sensor.low_counts >= -rounding &&
+         sensor.high_counts <= counts.most + rounding &&
+         sensor.high_counts - sensor.low_counts >= (1.0 - rounding) * least_span * usual_span &&
+         sensor.line.gain_rad_per_count > 1.0 / most_gain_rad / most_offset &&
+         sensor.line.gain_rad_per_count <= most_gain_rad &&
+         std::abs(sensor.line.offset_counts) <= most_offset;
+}
+
+std::optional<LearnedRanges> RangeAdaptation::learned() const noexcept {
+  if (!side_) return std::nullopt;
+  LearnedRanges learned{*side_, {}};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const Learner& learner = learners_[slot];
+    if (learner.usual_span == 0.0) continue;
+    learned.sensors[slot] = {learner.low, learner.high, learner.bottoms, learner.tops,
+                             calibration_.sensors[slot]};
+  }
+  return learned;
+}
+
 bool RangeAdaptation::Learner::median(std::uint16_t count, double& result) noexcept {
   recent[seen % window] = count;
   ++seen;
@@ -117,7 +158,7 @@ void RangeAdaptation::drift(std::size_t slot, double interval_s) noexcept {
 }
 
 void RangeAdaptation::push(const GloveSample& sample) noexcept {
-  if (begun_ && sample.side != side_) *this = RangeAdaptation(counts_);
+  if (side_ && sample.side != *side_) *this = RangeAdaptation(counts_);
   const HostTime time = sample.has_device_time ? sample.measured : sample.arrival;
   const double interval_s =
       begun_ ? std::clamp(seconds_between(last_time_, time), 0.0, longest_interval_s) : 0.0;

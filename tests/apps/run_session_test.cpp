@@ -268,6 +268,31 @@ TEST_SUITE("run_session") {
     }
   }
 
+  TEST_CASE("what --adapt has learned goes on in the next loop, and stands in its recording") {
+    Run run;
+    run.options.left = run.options.right = "sim:grasp";
+    run.options.calibration.adapt = true;
+    Wisher wisher(Changes{{.record = true}, {.settings = other_settings}});
+    wisher.least_frames = 270;
+    const auto outcome = run.follow({&wisher});
+    REQUIRE(outcome.recordings.size() == 2);
+    std::array<std::uint64_t, 2> turns{};
+    for (std::size_t at = 0; at < turns.size(); ++at) {
+      const auto& file = outcome.recordings[at].file;
+      replay(file); // exactly
+      const auto take = recording::TakeReader::open(file);
+      REQUIRE(take);
+      for (const auto& hand : take->setup().hands) {
+        REQUIRE(hand.learned);
+        CHECK(hand.learned->side == hand.side);
+        for (const auto& sensor : hand.learned->sensors)
+          turns[at] += std::uint64_t{sensor.bottoms} + sensor.tops;
+      }
+    }
+    CHECK(turns[0] > 0);
+    CHECK(turns[1] > turns[0]);
+  }
+
   TEST_CASE("whoever follows a run has its settings changed, and only those that it names") {
     Run run;
     Wisher wisher(Changes{{.settings = other_settings}, {.reset = true}});

@@ -1,6 +1,9 @@
 #include <nendo/hand/range_adaptation.hpp>
 
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <random>
@@ -277,11 +280,74 @@ TEST_SUITE("range_adaptation") {
     CHECK(visitor.range().turns == 0); // not even the first one's
   }
 
+  TEST_CASE("another one goes on from what was learned, without a jump, and learns on") {
+    CHECK_FALSE(RangeAdaptation().learned().has_value());
+    Visitor visitor;
+    visitor.swing(80.0, 180.0, 4); // the lines are still on their way
+    const auto learned = visitor.adaptation.learned();
+    REQUIRE(learned);
+    Visitor next{.adaptation = RangeAdaptation({}, *learned), .now = visitor.now + 10s};
+    next.push(180.0);
+    CHECK(same_lines(next.adaptation.calibration(), visitor.adaptation.calibration()));
+    const SensorRange before = next.range();
+    CHECK(before.low_counts == visitor.range().low_counts);
+    CHECK(before.high_counts == visitor.range().high_counts);
+    CHECK(before.turns == visitor.range().turns);
+    CHECK(before.turns > 4);
+    visitor.swing(80.0, 180.0, 60);
+    next.swing(80.0, 180.0, 60);
+    CHECK(next.range().turns > before.turns + 100);
+    CHECK(next.range().low_counts == doctest::Approx(visitor.range().low_counts).epsilon(0.01));
+    CHECK(next.range().high_counts == doctest::Approx(visitor.range().high_counts).epsilon(0.01));
+
+    RangeAdaptation of_other_hand({}, *learned);
+    GloveSample left = visitor.sample(100.0);
+    left.side = Side::left;
+    of_other_hand.push(left);
+    CHECK(same_lines(of_other_hand.calibration(), default_calibration()));
+    CHECK(of_other_hand.ranges()[pip].turns == 0);
+  }
+
+  TEST_CASE("a sensor of which is told what cannot have been learned begins anew, no other does") {
+    Visitor visitor;
+    visitor.swing(80.0, 180.0, 20);
+    const auto learned = visitor.adaptation.learned();
+    REQUIRE(learned);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto good = learned->sensors[pip];
+    using Told = LearnedRanges::Sensor;
+    for (const Told& bad :
+         {Told{}, Told{nan, 200.0, 1, 1, good.line}, Told{60.0, nan, 1, 1, good.line},
+          Told{200.0, 60.0, 1, 1, good.line}, Told{100.0, 101.0, 1, 1, good.line},
+          Told{-5.0, 200.0, 1, 1, good.line}, Told{60.0, 300.0, 1, 1, good.line},
+          Told{60.0, 200.0, 1, 1, {0.0, 60.0}}, Told{60.0, 200.0, 1, 1, {-0.01, 60.0}},
+          Told{60.0, 200.0, 1, 1, {nan, 60.0}}, Told{60.0, 200.0, 1, 1, {0.01, nan}},
+          Told{60.0, 200.0, 1, 1, {1e300, 60.0}}, Told{60.0, 200.0, 1, 1, {0.01, -1e300}}}) {
+      LearnedRanges told = *learned;
+      told.sensors[pip] = bad;
+      const RangeAdaptation adaptation({}, told);
+      const RangeAdaptation fresh;
+      CHECK(adaptation.ranges()[pip].low_counts == fresh.ranges()[pip].low_counts);
+      CHECK(adaptation.ranges()[pip].turns == 0);
+      CHECK(adaptation.calibration().sensors[pip].gain_rad_per_count ==
+            fresh.calibration().sensors[pip].gain_rad_per_count);
+      CHECK(adaptation.ranges()[pip + 1].turns == visitor.adaptation.ranges()[pip + 1].turns);
+    }
+  }
+
   TEST_CASE("whatever comes, the lines are finite and rise, and the bounds are counts") {
     std::mt19937 random(6);
+    const auto any_double = [&random] {
+      constexpr std::array<double, 4> likely{0.0, 1.0, 100.0, 0.01};
+      if (random() % 2 == 0) return likely[random() % 4];
+      return std::bit_cast<double>((std::uint64_t{random()} << 32U) | random());
+    };
     for (const CountScale counts :
          {CountScale{0, false}, {0, true}, {1, false}, {1, true}, {255, false}, {65535, true}}) {
-      Visitor visitor{.counts = counts};
+      LearnedRanges learned;
+      for (auto& sensor : learned.sensors)
+        sensor = {any_double(), any_double(), 1, 4'000'000'000, {any_double(), any_double()}};
+      Visitor visitor{.counts = counts, .adaptation = RangeAdaptation(counts, learned)};
       for (int n = 0; n < 20'000; ++n) {
         GloveSample sample = visitor.sample(0.0);
         sample.has_device_time = random() % 2 == 0;

@@ -1,6 +1,7 @@
 #include <nendo/recording/loop_replay.hpp>
 
 #include <atomic>
+#include <memory>
 #include <thread>
 
 #include <doctest/doctest.h>
@@ -67,6 +68,33 @@ TEST_SUITE("loop_replay") {
       CHECK(stats.silences == wanted.silences);
       CHECK(wanted.commits + wanted.undos > 0);
     }
+  }
+
+  TEST_CASE("a loop that goes on with what one before it has learned is replayed with that") {
+    RecordedLoop before(Mode::type1, FilterKind::off, true);
+    test::play(before, 600);
+    RecordedLoop live(Mode::type1, FilterKind::off, true);
+    auto& test = live.test;
+    for (auto& input : test.inputs)
+      input.learned = before.test.loop->learned(input.skeleton.side());
+    test.loop =
+        std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
+    live.setup = test::setup_of(test);
+    live.record();
+    test::play(live, 600);
+    REQUIRE(live.end());
+    const auto replay = replayed(live.path, test.model);
+    CHECK(replay->is_exact());
+    CHECK(replay->loop().final_shape() == test.loop->final_shape());
+    const auto turns = [](const flow::DeformLoop& loop) {
+      std::uint64_t sum = 0;
+      for (const auto& sensor : loop.stats().ranges[0])
+        sum += sensor.turns;
+      return sum;
+    };
+    CHECK(turns(*before.test.loop) > 0);
+    CHECK(turns(replay->loop()) == turns(*test.loop));
+    CHECK(turns(*test.loop) > turns(*before.test.loop));
   }
 
   TEST_CASE("every frame on the way is the live one's") {

@@ -54,6 +54,8 @@ def hand(b):
     h = {"side": b.take("B"), "size": b.take("dd"), "first": sample(b), "gated": b.take("B"), "filter": b.take("Bddd"),
          "adapt": b.take("BHB")}
     h["own"], h["swapped"], h["swapped_size"] = calibration(b), calibration(b), b.take("dd")
+    if b.take("B"):
+        h["learned"] = {"side": b.take("B"), "sensors": [b.take("ddIIdd") for _ in range(24)]}
     return h
 
 
@@ -101,7 +103,7 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 0, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 1, crc32c(data[:12])), "header"
     at = 16
     number = 0
     readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "TAPE": tape, "SHAP": shape, "END ": end}

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <random>
+#include <span>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -79,6 +80,9 @@ Setup unusual_setup() {
   input.calibration.mixed_in[3] = 0.125;
   input.calibration.middle_bias = 0.7;
   input.swapped[Sensor::thumb_ip] = {-1.0 / 3.0, 1e-9};
+  auto& learned = input.learned.emplace();
+  learned.side = Side::left;
+  learned.sensors[21] = {12.5, 3000.0, 17, 4'000'000'000, {0.001, -3.5}};
   input.first.device_time = std::chrono::nanoseconds(123456789);
   input.first.has_device_time = true;
   test.options.policy = flow::OverrunPolicy::catch_up;
@@ -143,6 +147,10 @@ TEST_SUITE("take_reader") {
       check_calibration(lines[at]["own"], setup.hands[hand].calibration);
       check_calibration(lines[at]["swapped"], setup.hands[hand].swapped);
     }
+    CHECK(lines[3]["learned"]["side"] == 0);
+    CHECK(lines[3]["learned"]["sensors"][21] ==
+          json::parse("[12.5, 3000.0, 17, 4000000000, 0.001, -3.5]"));
+    CHECK_FALSE(lines[4].contains("learned"));
     const auto& options = setup.loop->options;
     CHECK(lines[at]["mesh"] == "ball.obj");
     CHECK(lines[at]["vertices"] == setup.loop->mesh_sum.vertices);
@@ -190,6 +198,23 @@ TEST_SUITE("take_reader") {
     CHECK(setup_bytes(read, again) == bytes);
     CHECK(again == chunks);
     CHECK(chunks == 6);
+  }
+
+  TEST_CASE("a hand of format 1.0, which ends before what was learned, is read") {
+    std::uint32_t chunks = 0;
+    const auto bytes = setup_bytes(test::setup_of(test::LoopUnderTest(Mode::type1)), chunks);
+    auto reader = driver::ChunkReader::of(bytes, "test");
+    REQUIRE(reader);
+    Setup setup;
+    while (const auto chunk = reader->next()) {
+      if (chunk->type != driver::chunk_type("HAND")) continue;
+      const std::span whole(chunk->payload);
+      Setup cut = setup;
+      CHECK_FALSE(read_setup_chunk(chunk->type, whole.first(whole.size() - 2), cut));
+      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - 1), setup));
+      CHECK_FALSE(setup.hands.back().learned.has_value());
+    }
+    CHECK(setup.hands.size() == 2);
   }
 
   TEST_CASE("the setup is complete with the first tape, whatever comes behind it") {

@@ -31,7 +31,7 @@ ShapingOptions shaping_options(const LoopOptions& options) {
 }
 
 hand::CalibrationInForce calibration_of(const HandInput& input) noexcept {
-  if (input.adapt) return hand::CalibrationInForce(*input.adapt);
+  if (input.adapt) return hand::CalibrationInForce(*input.adapt, input.learned);
   return {input.first.side, input.calibration, input.swapped};
 }
 
@@ -227,6 +227,15 @@ Placement DeformLoop::placement() const {
   for (const Hand& hand : hands_)
     placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
   return placement;
+}
+
+std::optional<hand::LearnedRanges> DeformLoop::learned(Side side) const {
+  for (const Hand& hand : hands_) {
+    const auto* const adaptation = hand.calibration.adaptation();
+    if (hand.slot == Placement::index_of(side) && adaptation != nullptr)
+      return adaptation->learned();
+  }
+  return std::nullopt;
 }
 
 Points DeformLoop::final_shape() {

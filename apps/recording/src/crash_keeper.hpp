@@ -9,7 +9,7 @@ namespace nendo::recording {
 
 /// From construction to destruction SIGSEGV, SIGBUS, SIGILL, SIGFPE and SIGABRT have `ring` written
 /// to `path`, unless that is there already, and then do what they do by default. Threads that crash
-/// meanwhile wait, 2 s at most. A stack that has overflowed has no room for a handler, so that
+/// meanwhile wait, 30 s at most. A stack that has overflowed has no room for a handler, so that
 /// nothing is written then. Whoever handled them before does so again afterwards. One at a time: a
 /// second one does nothing.
 class CrashKeeper {

@@ -16,6 +16,7 @@ flow::HandInput HandSetup::input(SampleRing* ring) const {
   input.swapped = swapped;
   input.swapped_skeleton.emplace(side, swapped_size);
   input.adapt = adapt;
+  input.learned = learned;
   return input;
 }
 
@@ -28,6 +29,7 @@ HandSetup hand_setup(const flow::HandInput& input, const hand::HandSize& size,
   setup.gated = input.gated;
   setup.filter = input.filter;
   setup.adapt = input.adapt;
+  setup.learned = input.learned;
   setup.calibration = input.calibration;
   setup.swapped = input.swapped;
   setup.swapped_size = swapped_size;

@@ -47,6 +47,39 @@ bool read_calibration(ByteReader& reader, hand::Calibration& calibration) {
   return fine;
 }
 
+void put_learned(ByteWriter& writer, const hand::LearnedRanges& learned) {
+  writer.u8(static_cast<std::uint8_t>(learned.side));
+  for (const auto& sensor : learned.sensors) {
+    writer.f64_le(sensor.low_counts);
+    writer.f64_le(sensor.high_counts);
+    writer.u32_le(sensor.bottoms);
+    writer.u32_le(sensor.tops);
+    writer.f64_le(sensor.line.gain_rad_per_count);
+    writer.f64_le(sensor.line.offset_counts);
+  }
+}
+
+/// Whether they can have been learned is for RangeAdaptation to judge.
+bool read_learned(ByteReader& reader, hand::LearnedRanges& learned) {
+  const unsigned side = reader.u8();
+  learned.side = side == 0 ? Side::left : Side::right;
+  bool fine = side <= 1;
+  const auto number = [&] {
+    const double value = reader.f64_le();
+    fine = fine && is_number(value);
+    return value;
+  };
+  for (auto& sensor : learned.sensors) {
+    sensor.low_counts = number();
+    sensor.high_counts = number();
+    sensor.bottoms = reader.u32_le();
+    sensor.tops = reader.u32_le();
+    sensor.line.gain_rad_per_count = number();
+    sensor.line.offset_counts = number();
+  }
+  return fine;
+}
+
 bool read_filter(ByteReader& reader, hand::FilterOptions& filter) {
   const unsigned kind = reader.u8();
   filter.kind = static_cast<hand::FilterKind>(kind);
@@ -108,6 +141,8 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const HandSetup& hand) {
   put_calibration(writer, hand.calibration);
   put_calibration(writer, hand.swapped);
   put_size(writer, hand.swapped_size);
+  writer.u8(static_cast<std::uint8_t>(hand.learned.has_value()));
+  if (hand.learned) put_learned(writer, *hand.learned);
 }
 
 bool read_hand(ByteReader& reader, std::vector<HandSetup>& hands) {
@@ -127,7 +162,11 @@ bool read_hand(ByteReader& reader, std::vector<HandSetup>& hands) {
   const bool calibrated = read_calibration(reader, hand.calibration) &&
                           read_calibration(reader, hand.swapped) &&
                           read_size(reader, hand.swapped_size);
-  if (reader.overrun() || side > 1 || !sized || !filters || !calibrated) return false;
+  bool has_learned = true;
+  if (reader.remaining() > 0 && reader.u8() != 0) // format 1.0 ends before it
+    has_learned = read_learned(reader, hand.learned.emplace());
+  if (reader.overrun() || side > 1 || !sized || !filters || !calibrated || !has_learned)
+    return false;
   hands.push_back(hand);
   return true;
 }

@@ -16,8 +16,10 @@ public:
   /// `own` is for samples of that side, `swapped` for the others.
   CalibrationInForce(Side side, const Calibration& own, const Calibration& swapped) noexcept
       : side_(side), own_(own), swapped_(swapped) {}
-  /// Learned from the samples of a glove with such counts.
-  explicit CalibrationInForce(CountScale counts) noexcept : adaptation_(counts) {}
+  /// Learned from the samples of a glove with such counts; goes on from `learned` if there is any.
+  explicit CalibrationInForce(CountScale counts,
+                              const std::optional<LearnedRanges>& learned = {}) noexcept
+      : adaptation_(learned ? RangeAdaptation(counts, *learned) : RangeAdaptation(counts)) {}
 
   /// The calibration for this sample, the next in time; valid until the next call. Wait-free, no
   /// allocation.

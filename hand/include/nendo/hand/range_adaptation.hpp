@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
@@ -25,6 +26,17 @@ struct SensorRange {
   std::uint64_t turns = 0;  ///< how many turns of the joint taught them; 0: the default's counts
 };
 using SensorRanges = std::array<SensorRange, sensor_slots>;
+
+/// All that a learner needs to go on where another one stopped.
+struct LearnedRanges {
+  struct Sensor {
+    double low_counts = 0.0, high_counts = 0.0; ///< as SensorRange has them
+    std::uint32_t bottoms = 0, tops = 0;        ///< turns that taught the one and the other
+    SensorCalibration line; ///< on its way to them; a gain of 0: nothing can be learned
+  };
+  Side side = Side::right; ///< of the hand that they are of
+  std::array<Sensor, sensor_slots> sensors{};
+};
 
 class RangeAdaptation {
 public:
@@ -41,6 +53,9 @@ public:
 
   /// Of a glove whose counts mean this. Nothing is ever learned with `most` = 0.
   explicit RangeAdaptation(CountScale counts = {}) noexcept;
+  /// Goes on, as after a pause in which no sensor sent anything. A sensor of which `learned` tells
+  /// what cannot have been learned begins anew.
+  RangeAdaptation(CountScale counts, const LearnedRanges& learned) noexcept;
 
   /// The next sample, in time. A count that is gone again within two samples is not seen. A sample
   /// of the other hand, another glove's, begins anew, from the default. Wait-free, no allocation.
@@ -50,6 +65,8 @@ public:
   const Calibration& calibration() const noexcept { return calibration_; }
   /// What the lines are on their way to. Zeros for slots that no glove fills.
   SensorRanges ranges() const noexcept;
+  /// For whoever goes on. Null before the first sample: nothing is known, not even which hand's.
+  std::optional<LearnedRanges> learned() const noexcept;
 
 private:
   static constexpr std::size_t window = 5; ///< of the median that takes out spikes
@@ -69,6 +86,7 @@ private:
     void learn_top(double amplitude) noexcept;
     void learn_bottom(double amplitude) noexcept;
     bool median(std::uint16_t count, double& result) noexcept;
+    bool can_have_learned(const LearnedRanges::Sensor& sensor, CountScale counts) const noexcept;
   };
   /// Turns the sensor's line towards its bounds.
   void drift(std::size_t slot, double interval_s) noexcept;
@@ -77,8 +95,8 @@ private:
   Calibration calibration_;
   std::array<Learner, sensor_slots> learners_{};
   HostTime last_time_{};
-  Side side_ = Side::right;
-  bool begun_ = false;
+  std::optional<Side> side_; ///< of the samples so far
+  bool begun_ = false;       ///< last_time_ is one
 };
 
 } // namespace nendo::hand

@@ -35,6 +35,7 @@ struct HandInput {
   hand::Calibration swapped = hand::default_calibration();
   /// A glove with such counts: its ranges are learned while it is used, in place of calibrations.
   std::optional<CountScale> adapt{};
+  std::optional<hand::LearnedRanges> learned{}; ///< what that goes on from
   /// For the samples that `swapped` is for; nullopt: the other hand has the same size. Of the same
   /// side as `skeleton`: it shapes as that hand.
   std::optional<hand::HandSkeleton> swapped_skeleton{};
@@ -97,6 +98,9 @@ public:
   const LoopStats& stats() const noexcept { return stats_; }
   /// Where the hands are; not while the loop runs.
   Placement placement() const;
+  /// What adaptation has learned of the glove of the hand of that side, if it does; not while the
+  /// loop runs.
+  std::optional<hand::LearnedRanges> learned(Side side) const;
   /// Makes room for more undos (Shaping::refill_undo), as far as LoopOptions::undo_most_bytes.
   bool refill_undo() { return shaping_.refill_undo(); }
   /// Makes points in the mesh's order of a frame's shape. Any thread.

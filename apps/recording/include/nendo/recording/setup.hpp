@@ -23,9 +23,10 @@ struct HandSetup {
   bool gated = true;
   hand::FilterOptions filter;
   std::optional<CountScale> adapt;
-  hand::Calibration calibration; ///< of gloves of the first sample's side
-  hand::Calibration swapped;     ///< of the other side's
-  hand::HandSize swapped_size;   ///< of the hand in them
+  std::optional<hand::LearnedRanges> learned; ///< what that went on from
+  hand::Calibration calibration;              ///< of gloves of the first sample's side
+  hand::Calibration swapped;                  ///< of the other side's
+  hand::HandSize swapped_size;                ///< of the hand in them
 
   /// `ring` as HandInput has it.
   flow::HandInput input(SampleRing* ring) const;
