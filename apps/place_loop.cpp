@@ -89,7 +89,7 @@ std::pair<double, double> least_and_largest(const deform::Supports& supports) {
 } // namespace
 
 Legacy legacy_of(const flow::DeformLoop& ended) {
-  return {ended.placement(), {ended.learned(Side::left), ended.learned(Side::right)}};
+  return {ended.placement(), ended.learned()};
 }
 
 Result<void> check_radius(const std::string& text) {

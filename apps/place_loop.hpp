@@ -30,7 +30,7 @@ struct PlacedLoop {
 /// What a loop leaves to the next one of the same hands.
 struct Legacy {
   flow::Placement placement;
-  std::array<std::optional<hand::LearnedRanges>, 2> learned; ///< of the hands' gloves, by side
+  std::array<std::optional<hand::LearnedRanges>, 2> learned; ///< DeformLoop::learned()
 };
 Legacy legacy_of(const flow::DeformLoop& ended);
 

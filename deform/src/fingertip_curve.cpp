@@ -136,18 +136,19 @@ constexpr std::array<double, 6 * steps> squared_step_weights() noexcept {
 
 void FingertipCurve::measure() noexcept {
   static constexpr auto weights = squared_step_weights<steps>();
-  const Eigen::Map<const Eigen::Matrix<double, steps, 6>> squared_steps(weights.data());
-  Eigen::Matrix<double, steps, 1> farthest = Eigen::Matrix<double, steps, 1>::Zero();
+  const Eigen::Map<const Eigen::Matrix<double, steps, 6>> weights_by_step(weights.data());
+  Eigen::Matrix<double, steps, 1> squared_lengths = Eigen::Matrix<double, steps, 1>::Zero();
   for (Eigen::Index i = 0; i < chord_.cols(); ++i) {
     const Eigen::Vector3d c = chord_.col(i);
     const Eigen::Vector3d l = leaving_.col(i);
     const Eigen::Vector3d a = arriving_.col(i);
     const Eigen::Vector<double, 6> products{c.squaredNorm(), l.squaredNorm(), a.squaredNorm(),
                                             c.dot(l),        c.dot(a),        l.dot(a)};
-    farthest = farthest.cwiseMax(squared_steps * products);
+    squared_lengths = squared_lengths.cwiseMax(weights_by_step * products);
   }
   for (std::size_t step = 0; step < steps; ++step)
-    lengths_[step + 1] = lengths_[step] + std::sqrt(farthest[static_cast<Eigen::Index>(step)]);
+    lengths_[step + 1] =
+        lengths_[step] + std::sqrt(squared_lengths[static_cast<Eigen::Index>(step)]);
 }
 
 bool FingertipCurve::next_cut(Points& cut) noexcept {

@@ -73,12 +73,13 @@ RangeAdaptation::RangeAdaptation(CountScale counts, const LearnedRanges& learned
 bool RangeAdaptation::Learner::can_have_learned(const LearnedRanges::Sensor& sensor,
                                                 CountScale counts) const noexcept {
   constexpr double rounding = 1e-9;
-  constexpr double most_gain_rad = 1e3; // beyond what any line is on its way to
+  constexpr double least_gain_rad = 1e-9; // a line on its way to any usual range lies far within
+  constexpr double most_gain_rad = 1e3;
   constexpr double most_offset = 1e6;
   return usual_span > 0.0 && sensor.low_counts >= -rounding &&
          sensor.high_counts <= counts.most + rounding &&
          sensor.high_counts - sensor.low_counts >= (1.0 - rounding) * least_span * usual_span &&
-         sensor.line.gain_rad_per_count > 1.0 / most_gain_rad / most_offset &&
+         sensor.line.gain_rad_per_count >= least_gain_rad &&
          sensor.line.gain_rad_per_count <= most_gain_rad &&
          std::abs(sensor.line.offset_counts) <= most_offset;
 }

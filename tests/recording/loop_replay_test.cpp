@@ -75,8 +75,9 @@ TEST_SUITE("loop_replay") {
     test::play(before, 600);
     RecordedLoop live(Mode::type1, FilterKind::off, true);
     auto& test = live.test;
+    const auto learned = before.test.loop->learned();
     for (auto& input : test.inputs)
-      input.learned = before.test.loop->learned(input.skeleton.side());
+      input.learned = learned[flow::Placement::index_of(input.skeleton.side())];
     test.loop =
         std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
     live.setup = test::setup_of(test);

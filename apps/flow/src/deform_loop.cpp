@@ -30,11 +30,6 @@ ShapingOptions shaping_options(const LoopOptions& options) {
   return shaping;
 }
 
-hand::CalibrationInForce calibration_of(const HandInput& input) noexcept {
-  if (input.adapt) return hand::CalibrationInForce(*input.adapt, input.learned);
-  return {input.first.side, input.calibration, input.swapped};
-}
-
 HostClock::duration duration_of(double seconds) noexcept {
   return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
 }
@@ -50,7 +45,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
-    const hand::CalibrationInForce calibration = calibration_of(input);
+    const hand::CalibrationInForce calibration = input.in_force();
     const hand::JointFilter filter(input.filter);
     hands_.push_back(
         {std::move(input), slot, placement.T_stage_wrist[slot], calibration, {}, filter});
@@ -229,13 +224,12 @@ Placement DeformLoop::placement() const {
   return placement;
 }
 
-std::optional<hand::LearnedRanges> DeformLoop::learned(Side side) const {
-  for (const Hand& hand : hands_) {
-    const auto* const adaptation = hand.calibration.adaptation();
-    if (hand.slot == Placement::index_of(side) && adaptation != nullptr)
-      return adaptation->learned();
-  }
-  return std::nullopt;
+std::array<std::optional<hand::LearnedRanges>, 2> DeformLoop::learned() const {
+  std::array<std::optional<hand::LearnedRanges>, 2> learned;
+  for (const Hand& hand : hands_)
+    if (const auto* const adaptation = hand.calibration.adaptation())
+      learned[hand.slot] = adaptation->learned();
+  return learned;
 }
 
 Points DeformLoop::final_shape() {

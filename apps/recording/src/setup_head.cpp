@@ -20,31 +20,44 @@ bool is_hand_length(double length_m) {
   return length_m >= least_hand_m && length_m <= most_hand_m;
 }
 
-void put_calibration(ByteWriter& writer, const hand::Calibration& calibration) {
-  for (const auto& line : calibration.sensors) {
-    writer.f64_le(line.gain_rad_per_count);
-    writer.f64_le(line.offset_counts);
+/// The next numbers, and whether all of them are some.
+struct Numbers {
+  ByteReader& reader;
+  bool fine = true;
+
+  double next() {
+    const double value = reader.f64_le();
+    fine = fine && is_number(value);
+    return value;
   }
+};
+
+void put_line(ByteWriter& writer, const hand::SensorCalibration& line) {
+  writer.f64_le(line.gain_rad_per_count);
+  writer.f64_le(line.offset_counts);
+}
+
+void read_line(Numbers& numbers, hand::SensorCalibration& line) {
+  line.gain_rad_per_count = numbers.next();
+  line.offset_counts = numbers.next();
+}
+
+void put_calibration(ByteWriter& writer, const hand::Calibration& calibration) {
+  for (const auto& line : calibration.sensors)
+    put_line(writer, line);
   for (const double part : calibration.mixed_in)
     writer.f64_le(part);
   writer.f64_le(calibration.middle_bias);
 }
 
 bool read_calibration(ByteReader& reader, hand::Calibration& calibration) {
-  bool fine = true;
-  const auto number = [&] {
-    const double value = reader.f64_le();
-    fine = fine && is_number(value);
-    return value;
-  };
-  for (auto& line : calibration.sensors) {
-    line.gain_rad_per_count = number();
-    line.offset_counts = number();
-  }
+  Numbers numbers{reader};
+  for (auto& line : calibration.sensors)
+    read_line(numbers, line);
   for (double& part : calibration.mixed_in)
-    part = number();
-  calibration.middle_bias = number();
-  return fine;
+    part = numbers.next();
+  calibration.middle_bias = numbers.next();
+  return numbers.fine;
 }
 
 void put_learned(ByteWriter& writer, const hand::LearnedRanges& learned) {
@@ -54,8 +67,7 @@ void put_learned(ByteWriter& writer, const hand::LearnedRanges& learned) {
     writer.f64_le(sensor.high_counts);
     writer.u32_le(sensor.bottoms);
     writer.u32_le(sensor.tops);
-    writer.f64_le(sensor.line.gain_rad_per_count);
-    writer.f64_le(sensor.line.offset_counts);
+    put_line(writer, sensor.line);
   }
 }
 
@@ -63,32 +75,25 @@ void put_learned(ByteWriter& writer, const hand::LearnedRanges& learned) {
 bool read_learned(ByteReader& reader, hand::LearnedRanges& learned) {
   const unsigned side = reader.u8();
   learned.side = side == 0 ? Side::left : Side::right;
-  bool fine = side <= 1;
-  const auto number = [&] {
-    const double value = reader.f64_le();
-    fine = fine && is_number(value);
-    return value;
-  };
+  Numbers numbers{reader};
   for (auto& sensor : learned.sensors) {
-    sensor.low_counts = number();
-    sensor.high_counts = number();
+    sensor.low_counts = numbers.next();
+    sensor.high_counts = numbers.next();
     sensor.bottoms = reader.u32_le();
     sensor.tops = reader.u32_le();
-    sensor.line.gain_rad_per_count = number();
-    sensor.line.offset_counts = number();
+    read_line(numbers, sensor.line);
   }
-  return fine;
+  return side <= 1 && numbers.fine;
 }
 
 bool read_filter(ByteReader& reader, hand::FilterOptions& filter) {
   const unsigned kind = reader.u8();
   filter.kind = static_cast<hand::FilterKind>(kind);
-  filter.min_cutoff_hz = reader.f64_le();
-  filter.beta_hz_per_rad_s = reader.f64_le();
-  filter.derivative_cutoff_hz = reader.f64_le();
-  return kind <= static_cast<unsigned>(hand::FilterKind::one_euro) &&
-         is_number(filter.min_cutoff_hz) && is_number(filter.beta_hz_per_rad_s) &&
-         is_number(filter.derivative_cutoff_hz);
+  Numbers numbers{reader};
+  filter.min_cutoff_hz = numbers.next();
+  filter.beta_hz_per_rad_s = numbers.next();
+  filter.derivative_cutoff_hz = numbers.next();
+  return kind <= static_cast<unsigned>(hand::FilterKind::one_euro) && numbers.fine;
 }
 
 void put_size(ByteWriter& writer, const hand::HandSize& size) {

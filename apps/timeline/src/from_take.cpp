@@ -24,9 +24,7 @@ Key key_of(double time_s, const hand::JointAngles& angles, const Eigen::Isometry
 
 // As the loop had it before its first tick.
 hand::JointAngles first_angles(const recording::HandSetup& hand) {
-  auto in_force = hand.adapt
-                      ? hand::CalibrationInForce(*hand.adapt, hand.learned)
-                      : hand::CalibrationInForce(hand.first.side, hand.calibration, hand.swapped);
+  auto in_force = hand.input(nullptr).in_force();
   return hand::joint_angles(hand.first, in_force.follow(hand.first));
 }
 

@@ -29,8 +29,7 @@ bool assemble_dense(const CsrbfOptions& options, const Points& starts, const Sup
   const SharedKernel kernel(options.kernel, supports);
   const Ties ties(options, supports);
   const bool has_own = own.size() > 0;
-  const double reach = std::max(kernel.reach(), ties.reach());
-  const double squared_reach = reach * reach * (1.0 + 1e-12); // or a little more: rounded
+  const double squared_reach = squared_or_more(std::max(kernel.reach(), ties.reach()));
   if (has_own) {
     lower.setZero();
     add_own(own, lower);

@@ -5,6 +5,12 @@
 
 namespace nendo::deform {
 
+/// Of a distance, to compare squared ones with before their roots are taken: or a little more, for
+/// they are rounded.
+constexpr double squared_or_more(double distance) noexcept {
+  return distance * distance * (1.0 + 1e-12);
+}
+
 class SharedKernel {
 public:
   SharedKernel(Wendland kernel, const Supports& supports) noexcept

@@ -16,9 +16,9 @@ public:
   Columns(const CsrbfOptions& options, const Points& starts, const Supports& supports,
           const OwnFunctions& own)
       : starts_(starts), own_(own), kernel_(options.kernel, supports), ties_(options, supports),
-        reach_(std::max(kernel_.reach(), ties_.reach())),
-        squared_reach_(reach_ * reach_ * (1.0 + 1e-12)), grid_(starts, reach_),
-        own_diagonal_(starts.cols()), ties_diagonal_(Eigen::VectorXd::Zero(starts.cols())),
+        reach_(std::max(kernel_.reach(), ties_.reach())), squared_reach_(squared_or_more(reach_)),
+        grid_(starts, reach_), own_diagonal_(starts.cols()),
+        ties_diagonal_(Eigen::VectorXd::Zero(starts.cols())),
         column_(static_cast<std::size_t>(starts.cols()), 0.0),
         in_use_(static_cast<std::size_t>(starts.cols()), 0),
         functions_of_(static_cast<std::size_t>(starts.cols())) {
@@ -96,7 +96,7 @@ private:
   SharedKernel kernel_;
   Ties ties_;
   double reach_;
-  double squared_reach_; ///< or a little more: rounded
+  double squared_reach_;
   PointGrid grid_;
   Eigen::VectorXd own_diagonal_, ties_diagonal_;
   std::vector<double> column_;

@@ -2,6 +2,7 @@
 // The loop: drains the gloves' rings, computes both hands' fingertips, makes control vectors of
 // them, deforms the model and publishes the frame, at a fixed rate.
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -39,6 +40,12 @@ struct HandInput {
   /// For the samples that `swapped` is for; nullopt: the other hand has the same size. Of the same
   /// side as `skeleton`: it shapes as that hand.
   std::optional<hand::HandSkeleton> swapped_skeleton{};
+
+  /// For its samples from the first one on.
+  hand::CalibrationInForce in_force() const noexcept {
+    if (adapt) return hand::CalibrationInForce(*adapt, learned);
+    return {first.side, calibration, swapped};
+  }
 };
 
 /// What a tick does; some of it, to measure that alone. What is left out stays as it was.
@@ -98,9 +105,9 @@ public:
   const LoopStats& stats() const noexcept { return stats_; }
   /// Where the hands are; not while the loop runs.
   Placement placement() const;
-  /// What adaptation has learned of the glove of the hand of that side, if it does; not while the
-  /// loop runs.
-  std::optional<hand::LearnedRanges> learned(Side side) const;
+  /// What adaptation has learned of the hands' gloves, by Placement::index_of(); nullopt where it
+  /// does not. Not while the loop runs.
+  std::array<std::optional<hand::LearnedRanges>, 2> learned() const;
   /// Makes room for more undos (Shaping::refill_undo), as far as LoopOptions::undo_most_bytes.
   bool refill_undo() { return shaping_.refill_undo(); }
   /// Makes points in the mesh's order of a frame's shape. Any thread.
