@@ -34,8 +34,8 @@ struct ThreadClock {
 };
 
 /// The best time of a few frames in a row, over turns that several measurements take. A turn lasts
-/// a millisecond, or its few frames: after the first ones the caches hold what this one works with,
-/// not what the one before it did.
+/// a millisecond, and some frames at least: after the first ones the caches hold what this one
+/// works with, not what the one before it did.
 template <class Clock>
 class BestBy {
 public:
@@ -43,11 +43,12 @@ public:
   template <class Frame>
   void measure(std::size_t vertices, const Frame& frame) {
     constexpr std::chrono::milliseconds turn(1);
+    constexpr std::size_t least_frames = 8;
     const std::size_t frames =
         std::clamp<std::size_t>(100'000 / std::max<std::size_t>(vertices, 1), 2, 64);
     const auto begin = Clock::now();
     auto last = begin;
-    for (std::size_t n = 0; last - begin < turn;) {
+    for (std::size_t n = 0; last - begin < turn || n < least_frames;) {
       for (std::size_t end = n + frames; n < end; ++n)
         frame(n);
       const auto now = Clock::now();

@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include <hwy/cache_control.h>
+
 #include <nendo/deform/block_evaluator.hpp>
 
 #include "block_field.hpp"
@@ -49,7 +51,8 @@ struct BlockEvaluator::Parts {
   std::optional<SpinWorker> worker;
 
   /// Calls range(begin, end, thread) for pieces of [0, count), by whichever thread is free; each
-  /// piece's result must depend on nothing but the piece.
+  /// piece's result must depend on nothing but the piece. What it writes past the caches is flushed
+  /// once a thread: a flush takes as long as many blocks.
   template <class Range>
   void in_pieces(std::size_t count, std::size_t piece, const Range& range) noexcept;
 };
@@ -60,6 +63,7 @@ void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t piece,
   constexpr std::size_t least_pieces = 8; // less is done before the other thread has begun
   if (!worker || count < least_pieces * piece) {
     range(std::size_t{0}, count, std::size_t{0});
+    hwy::FlushStream();
     return;
   }
   struct Shared {
@@ -70,7 +74,7 @@ void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t piece,
     void work(std::size_t thread) noexcept {
       for (;;) {
         const std::size_t begin = next.fetch_add(piece, std::memory_order_relaxed);
-        if (begin >= count) return;
+        if (begin >= count) return hwy::FlushStream();
         range(begin, std::min(begin + piece, count), thread);
       }
     }

@@ -115,6 +115,19 @@ TEST_SUITE("block_evaluator") {
     use_simd("");
   }
 
+  TEST_CASE("as many supports as vectors hold, fewer and more, are what double makes") {
+    const Points mesh = nendo::test::sphere(30, 50, 5.0).vertices;
+    for (const auto name : simd_names()) {
+      REQUIRE(use_simd(name));
+      for (unsigned count = 1; count <= 40; ++count) {
+        CAPTURE(name);
+        CAPTURE(count);
+        CHECK(apart(random_field(static_cast<Eigen::Index>(count), 2.0, 60 + count), mesh) < 1e-6);
+      }
+    }
+    use_simd("");
+  }
+
   TEST_CASE("thousands of small supports, and supports larger than any model") {
     std::mt19937 random(52);
     const Points mesh = random_points(random, 3000, 5.0);

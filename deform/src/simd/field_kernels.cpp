@@ -62,6 +62,38 @@ HWY_INLINE void add_entries(D d, const FieldEntry<hn::TFromD<D>>* entries,
   add_entry<kernel>(d, entries[list[count - 1]], distances, sums);
 }
 
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void load_places(D d, const VertexBlock& from, std::size_t lane,
+                            Vectors3<V> (&places)[abreast]) {
+  for (std::size_t n = 0; n < abreast; ++n)
+    places[n] = load_vectors(d, from, lane + n * hn::Lanes(d));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store_places(D d, const Vectors3<V> (&places)[abreast], VertexBlock& to,
+                             std::size_t lane, bool streams) {
+  for (std::size_t n = 0; n < abreast; ++n) {
+    const std::size_t at = lane + n * hn::Lanes(d);
+    streams ? stream_vectors(d, places[n], to, at) : store_vectors(d, places[n], to, at);
+  }
+}
+
+/// What a single centre does is added to the places themselves: nothing is summed before.
+template <Wendland kernel, class Real>
+HWY_INLINE void displace_block_by_one(const FieldEntry<Real>& entry, const VertexBlock& from,
+                                      VertexBlock& to, bool streams) {
+  const hn::ScalableTag<Real> d;
+  using V = hn::Vec<decltype(d)>;
+  for (std::size_t lane = 0; lane < block_size; lane += abreast * hn::Lanes(d)) {
+    Vectors3<V> places[abreast];
+    V distances[abreast];
+    load_places(d, from, lane, places);
+    distances_to(d, entry, places, distances);
+    add_entry<kernel>(d, entry, distances, places);
+    store_places(d, places, to, lane, streams);
+  }
+}
+
 template <Wendland kernel, class Real>
 HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* entries,
                                const std::uint32_t* list, std::size_t size, const VertexBlock& from,
@@ -71,19 +103,16 @@ HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* e
   for (std::size_t lane = 0; lane < block_size; lane += abreast * hn::Lanes(d)) {
     Vectors3<V> places[abreast];
     Vectors3<V> sums[abreast];
+    load_places(d, from, lane, places);
     for (std::size_t n = 0; n < abreast; ++n) {
-      const std::size_t at = lane + n * hn::Lanes(d);
-      places[n] = load_vectors(d, from, at);
       sums[n] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
       if (field.polynomial == nullptr) continue;
       sums[n] = polynomial_at(d, *field.polynomial, places[n]);
     }
     add_entries<kernel>(d, entries, list, size, places, sums);
-    for (std::size_t n = 0; n < abreast; ++n) {
-      const std::size_t at = lane + n * hn::Lanes(d);
-      const Vectors3<V> moved = sum_of(places[n], sums[n]);
-      streams ? stream_vectors(d, moved, to, at) : store_vectors(d, moved, to, at);
-    }
+    for (std::size_t n = 0; n < abreast; ++n)
+      places[n] = sum_of(places[n], sums[n]);
+    store_places(d, places, to, lane, streams);
   }
 }
 
@@ -98,17 +127,19 @@ struct Displacement {
     const bool reached = size > 0 || field.polynomial != nullptr;
     pass.reached[block] = reached ? 1 : 0;
     if (!reached) return;
-    displace_block<kernel>(field, entries, list, size, pass.from[block], pass.to[block], streams);
+    const VertexBlock& from = pass.from[block];
+    VertexBlock& to = pass.to[block];
+    if (size == 1 && field.polynomial == nullptr)
+      return displace_block_by_one<kernel>(entries[list[0]], from, to, streams);
+    displace_block<kernel>(field, entries, list, size, from, to, streams);
   }
 };
 
 template <Wendland kernel, class Real>
 void displace_blocks(const FieldView& field, const FieldEntry<Real>* entries,
                      const BlockPass& pass) {
-  const bool streams = pass.large && pass.to != pass.from;
-  Displacement<kernel, Real> work{field, entries, pass, streams};
+  Displacement<kernel, Real> work{field, entries, pass, pass.large && pass.to != pass.from};
   for_each_block(field.centres, pass, work);
-  if (streams) hwy::FlushStream();
 }
 
 template <Wendland kernel>

@@ -108,7 +108,7 @@ struct BlockPass {
   std::size_t begin, end;
   ListScratch scratch;
   /// The shape does not stay in the caches: blocks are fetched before their turn, and written past
-  /// the caches where `to` is another shape.
+  /// the caches where `to` is another shape: readable by others after hwy::FlushStream().
   bool large = false;
 };
 

@@ -46,13 +46,21 @@ constexpr std::size_t groups_together = 16;
 
 using ListVectors = hn::ScalableTag<float>;
 
-/// Which of a vector of centres reach a box: those whose squared distance to it is at most the
-/// squared radius.
-HWY_INLINE hn::Mask<ListVectors> reaching(const CentreArrays& centres, std::size_t at,
-                                          const BlockBounds& box) {
+struct CentreVector {
+  hn::Vec<ListVectors> x, y, z, squared_radius;
+  const std::uint32_t* names;
+};
+
+HWY_INLINE CentreVector load_centres(const CentreArrays& centres, std::size_t at) {
   const ListVectors d;
-  const auto outside = [&](const float* coordinates, std::size_t axis) HWY_ATTR {
-    const auto centre = hn::Load(d, coordinates + at);
+  return {hn::Load(d, centres.x + at), hn::Load(d, centres.y + at), hn::Load(d, centres.z + at),
+          hn::Load(d, centres.squared_radius + at), centres.names + at};
+}
+
+/// Which of them reach a box: those whose squared distance to it is at most the squared radius.
+HWY_INLINE hn::Mask<ListVectors> reaching(const CentreVector& centres, const BlockBounds& box) {
+  const ListVectors d;
+  const auto outside = [&](hn::Vec<ListVectors> centre, std::size_t axis) HWY_ATTR {
     const auto below = hn::Sub(hn::Set(d, box.sides[axis]), centre);
     const auto above = hn::Add(hn::Set(d, box.sides[axis + 4]), centre);
     return hn::Max(hn::Max(below, above), hn::Zero(d));
@@ -61,7 +69,7 @@ HWY_INLINE hn::Mask<ListVectors> reaching(const CentreArrays& centres, std::size
   const auto y = outside(centres.y, 1);
   const auto z = outside(centres.z, 2);
   const auto squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-  return hn::Le(squared, hn::Load(d, centres.squared_radius + at));
+  return hn::Le(squared, centres.squared_radius);
 }
 
 /// Bit n of the result: lane n of a mask.
@@ -88,25 +96,48 @@ HWY_INLINE void store_set_lanes(const std::uint32_t* from, std::uint32_t bits, s
   }
 }
 
-/// The names of the centres that reach a box.
-HWY_INLINE std::size_t list_reaching(const CentreArrays& centres, const BlockBounds& box,
-                                     std::uint32_t* list) {
+/// The names of those of a vector of centres that reach a box; gives how many.
+HWY_INLINE std::size_t store_reaching(const CentreVector& centres, const BlockBounds& box,
+                                      std::uint32_t* to) {
   const ListVectors d;
-  std::size_t size = 0;
-  for (std::size_t at = 0; at < centres.count; at += hn::Lanes(d)) {
-    const auto reached = reaching(centres, at, box);
-    if constexpr (hn::MaxLanes(ListVectors()) >= 16) { // an instruction
-      const hn::RebindToUnsigned<ListVectors> du;
-      const auto names = hn::Load(du, centres.names + at);
-      hn::StoreU(hn::Compress(names, hn::RebindMask(du, reached)), du, list + size);
-      size += hn::CountTrue(d, reached);
-    } else {
-      const std::uint32_t bits = bits_of(reached);
-      store_set_lanes(centres.names + at, bits, list + size);
-      size += static_cast<std::size_t>(std::popcount(bits));
-    }
+  const auto reached = reaching(centres, box);
+  if constexpr (hn::MaxLanes(ListVectors()) >= 16) { // an instruction
+    const hn::RebindToUnsigned<ListVectors> du;
+    hn::StoreU(hn::Compress(hn::Load(du, centres.names), hn::RebindMask(du, reached)), du, to);
+    return hn::CountTrue(d, reached);
+  } else {
+    const std::uint32_t bits = bits_of(reached);
+    store_set_lanes(centres.names, bits, to);
+    return static_cast<std::size_t>(std::popcount(bits));
   }
-  return size;
+}
+
+/// Of boxes, the centres that reach each, to lists that are `room` apart.
+HWY_INLINE void list_reaching(const CentreArrays& centres, const BlockBounds* boxes,
+                              std::size_t count, std::uint32_t* list, std::size_t room,
+                              std::size_t* sizes) {
+  for (std::size_t box = 0; box < count; ++box, list += room) {
+    std::size_t size = 0;
+    for (std::size_t at = 0; at < centres.count; at += hn::Lanes(ListVectors()))
+      size += store_reaching(load_centres(centres, at), boxes[box], list + size);
+    sizes[box] = size;
+  }
+}
+
+/// The same where all centres fit so many vectors, which then stay in registers.
+template <std::size_t vectors>
+HWY_INLINE void list_reaching_few(const CentreArrays& centres, const BlockBounds* boxes,
+                                  std::size_t count, std::uint32_t* list, std::size_t room,
+                                  std::size_t* sizes) {
+  CentreVector held[vectors];
+  for (std::size_t n = 0; n < vectors; ++n)
+    held[n] = load_centres(centres, n * hn::Lanes(ListVectors()));
+  for (std::size_t box = 0; box < count; ++box, list += room) {
+    std::size_t size = 0;
+    for (const CentreVector& few : held)
+      size += store_reaching(few, boxes[box], list + size);
+    sizes[box] = size;
+  }
 }
 
 HWY_INLINE BlockBounds common_bounds(const BlockBounds* bounds, std::size_t begin,
@@ -126,7 +157,7 @@ static HWY_NOINLINE CentreArrays gather_reaching(const CentreArrays& centres,
   const ListVectors d;
   std::size_t count = 0;
   for (std::size_t at = 0; at < centres.count; at += hn::Lanes(d)) {
-    const auto reached = reaching(centres, at, box);
+    const auto reached = reaching(load_centres(centres, at), box);
     if constexpr (hn::MaxLanes(ListVectors()) >= 16) {
       const hn::RebindToUnsigned<ListVectors> du;
       const auto take = [&](const float* from, float* to) HWY_ATTR {
@@ -190,10 +221,14 @@ static HWY_NOINLINE void list_next(ListedBlocks& blocks) {
         gather_reaching(blocks.near, common_bounds(pass.bounds, blocks.begin, blocks.end),
                         pass.scratch.candidates[1]);
   }
-  const std::size_t room = list_room(blocks.nearest.count);
-  std::uint32_t* list = pass.scratch.lists;
-  for (std::size_t block = blocks.begin; block < blocks.end; ++block, list += room)
-    blocks.sizes[block - blocks.begin] = list_reaching(blocks.nearest, pass.bounds[block], list);
+  const auto list = [&](const auto& by) HWY_ATTR {
+    by(blocks.nearest, pass.bounds + blocks.begin, blocks.end - blocks.begin, pass.scratch.lists,
+       list_room(blocks.nearest.count), blocks.sizes);
+  };
+  const std::size_t lanes = hn::Lanes(ListVectors());
+  if (blocks.nearest.count <= lanes) return list(list_reaching_few<1>);
+  if (blocks.nearest.count <= 2 * lanes) return list(list_reaching_few<2>);
+  list(list_reaching);
 }
 
 /// Of written blocks, all together: each would have to wait for its vertices.
@@ -204,7 +239,7 @@ static HWY_NOINLINE void measure_bounds(const BlockPass& pass, std::size_t begin
 }
 
 /// Of shapes that do not stay in the caches, so many blocks before their turn.
-constexpr std::size_t fetched_ahead = 2;
+constexpr std::size_t fetched_ahead = 4;
 
 HWY_INLINE void fetch(const VertexBlock& vertices) {
   for (const auto* coordinates : {&vertices.x, &vertices.y, &vertices.z})

@@ -261,7 +261,6 @@ void apply(const WeightCache& cache, const WeightPass& pass) {
       fetch(pass.from[cache.blocks[at + fetched_ahead].block]);
     apply_block(cache, cache.blocks[at], pass, streams);
   }
-  if (streams) hwy::FlushStream();
 }
 
 void bounds_into(const VertexBlock& block, BlockBounds& bounds) {
