@@ -39,7 +39,8 @@ function(nendo_settings target scope)
     $<$<BOOL:${NENDO_WERROR}>:-Werror>)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Under two gigabytes it leaves its garbage: a tenth of the time that Eigen's templates take, for a sixth more memory.
-    target_compile_options(${target} PRIVATE "SHELL:--param ggc-min-heapsize=2097152")
+    # Not where clang-tidy and clangd read the flags, which do not know it.
+    target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:SHELL:--param ggc-min-heapsize=2097152>")
   endif()
   # GCC 12 sees impossible lengths in std::string and std::vector that it has inlined, and the insides of empty optionals.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
