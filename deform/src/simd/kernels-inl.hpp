@@ -10,6 +10,7 @@
 
 #include <array>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "simd/field_kernels.hpp"
@@ -69,6 +70,15 @@ HWY_INLINE void stream_vectors(D, const Vectors3<V>& values, VertexBlock& to, st
   stream(values.x, to.x);
   stream(values.y, to.y);
   stream(values.z, to.z);
+}
+
+/// Of shapes that do not stay in the caches, so many blocks before their turn.
+constexpr std::size_t fetched_ahead = 4;
+
+HWY_INLINE void fetch(const VertexBlock& vertices) {
+  for (const auto* coordinates : {&vertices.x, &vertices.y, &vertices.z})
+    for (std::size_t at = 0; at < block_size; at += 64 / sizeof(float))
+      hwy::Prefetch(coordinates->data() + at);
 }
 
 template <class V>
