@@ -12,8 +12,7 @@ namespace nendo::deform {
 
 namespace {
 
-/// So many blocks at a time are one thread's: enough to be worth the asking.
-constexpr std::size_t blocks_a_piece = 16;
+constexpr Sharing sharing{.piece = 16, .least = 3};
 
 double extent_of(const std::vector<BlockBounds>& bounds) noexcept {
   float extent = 0.0F;
@@ -92,20 +91,19 @@ BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
 template <class After>
 void run(const BlockPass& whole, const NormalPass* normals, BlockEvaluator::Parts& parts,
          const After& after) noexcept {
-  parts.in_pieces(whole.end, blocks_a_piece,
-                  [&](std::size_t begin, std::size_t end, std::size_t thread) {
-                    BlockPass piece = whole;
-                    piece.begin = begin;
-                    piece.end = end;
-                    piece.scratch = parts.lists[thread].scratch();
-                    if (normals != nullptr) {
-                      displace_normals_pass(parts.field.view(), piece, *normals);
-                    } else {
-                      displace_pass(parts.field.view(), piece);
-                    }
-                    for (std::size_t block = begin; block < end; ++block)
-                      after(block, parts.reached[block] > 0);
-                  });
+  parts.in_pieces(whole.end, sharing, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+    BlockPass piece = whole;
+    piece.begin = begin;
+    piece.end = end;
+    piece.scratch = parts.lists[thread].scratch();
+    if (normals != nullptr) {
+      displace_normals_pass(parts.field.view(), piece, *normals);
+    } else {
+      displace_pass(parts.field.view(), piece);
+    }
+    for (std::size_t block = begin; block < end; ++block)
+      after(block, parts.reached[block] > 0);
+  });
 }
 
 } // namespace

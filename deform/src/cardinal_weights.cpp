@@ -14,8 +14,8 @@ namespace {
 /// weigh something, because A^-1 is dense, but less with each one in between. A vertex loses at
 /// most 1e-7 of the sum of the displacements.
 constexpr float least_weight = 1e-7F;
-/// So many blocks at a time are one thread's.
-constexpr std::size_t blocks_a_piece = 16;
+/// With weights, blocks take half as long as without.
+constexpr Sharing sharing{.piece = 16, .least = 8};
 
 } // namespace
 
@@ -136,13 +136,14 @@ void CardinalWeights::apply(const Points& displacements, const BlockShape& rest,
       to.set_stamp(blocks_[at].block, stamp);
   };
   // Back and forth: what is a little larger than a cache would, always read in one direction, never
-  // be there when it is read again.
-  const bool back = std::exchange(goes_back_, !goes_back_ && !large);
+  // be there when it is read again. Not with a second thread, which would get the other's half.
+  const bool one_way = large || evaluator.parts().worker.has_value();
+  const bool back = std::exchange(goes_back_, !goes_back_ && !one_way);
   const std::size_t blocks = cache_.block_count;
   evaluator.parts().in_pieces(
-      blocks, blocks_a_piece, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t at = begin; at < end; at += blocks_a_piece) {
-          const std::size_t until = std::min(at + blocks_a_piece, end);
+      blocks, sharing, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t at = begin; at < end; at += sharing.piece) {
+          const std::size_t until = std::min(at + sharing.piece, end);
           back ? apply_piece(blocks - until, blocks - at) : apply_piece(at, until);
         }
       });

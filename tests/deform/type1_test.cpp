@@ -160,6 +160,32 @@ TEST_SUITE("type1") {
     use_simd("");
   }
 
+  TEST_CASE("two threads make the same bits as one, frame after frame") {
+    const Points starts = nendo::app::table1_starts();
+    for (const int cells : {88, 110}) { // 7921 vertices, too few for two with weights, and 12 321
+      const Points mesh = nendo::app::table1_plane(cells);
+      for (const std::size_t room : weight_rooms) {
+        CAPTURE(cells);
+        CAPTURE(room);
+        Type1Deformer one(mesh, 10, 20.0, {}, {.weight_bytes = room});
+        Type1Deformer two(mesh, 10, 20.0, {}, {.threads = 2, .weight_bytes = room});
+        REQUIRE(is_solved(one.grab(starts)));
+        REQUIRE(is_solved(two.grab(starts)));
+        std::mt19937 random(24);
+        BlockShape by_one;
+        BlockShape by_two;
+        for (int frame = 0; frame < 10; ++frame) {
+          const Points ends = starts + nendo::app::table1_displacements(random);
+          REQUIRE(is_solved(one.apply(ends, by_one)));
+          REQUIRE(is_solved(two.apply(ends, by_two)));
+          const Points places = unpacked(one, by_one);
+          CHECK(places != mesh);
+          CHECK(unpacked(two, by_two) == places);
+        }
+      }
+    }
+  }
+
   TEST_CASE("weights for other kernels, for polynomials and for fingers that share a place") {
     Points starts = start_points();
     starts.col(3) = starts.col(8);

@@ -13,7 +13,7 @@ namespace nendo::deform {
 
 struct EvaluationOptions {
   /// 1 or 2. The second one spins from construction on and keeps a core busy; results are the same.
-  /// Models of less than 8192 vertices keep to one.
+  /// Models of less than 3072 vertices keep to one, with Type-1's weights of less than 8192.
   int threads = 1;
   /// Most memory for Type-1's weights; where they need more, fields are evaluated instead, in about
   /// twice the time. Weights that leave the processor's caches gain nothing.
