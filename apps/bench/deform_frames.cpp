@@ -21,9 +21,26 @@ std::array<deform::Points, poses> random_ends(const deform::Points& starts) {
   return ends;
 }
 
-void stroke(deform::Type2Deformer& deformer, const deform::Points& starts,
-            const std::array<deform::Points, poses>& ends, std::size_t n) {
-  deformer.end_at(n % 2 == 0 ? ends[n % poses] : starts);
+namespace {
+
+/// A stroke that end_at() applies in one piece, however long.
+constexpr double one_piece = 1e9;
+
+deform::DeformerOptions undoable(const deform::Points& mesh, double radius, int threads) {
+  deform::DeformerOptions options;
+  options.supports = deform::one_radius(radius);
+  options.evaluation.threads = threads;
+  options.undo_bytes = 14 * static_cast<std::size_t>(mesh.cols()) + 4096; // 832 for each 64
+  return options;
+}
+
+} // namespace
+
+Strokes::Strokes(const deform::Points& mesh, const deform::Points& starts, double radius,
+                 int threads)
+    : starts_(starts), ends_(random_ends(starts)),
+      deformer_(mesh, starts.cols(), one_piece, undoable(mesh, radius, threads)) {
+  deformer_.begin(starts_);
 }
 
 } // namespace nendo::app

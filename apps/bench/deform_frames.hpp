@@ -12,15 +12,8 @@
 namespace nendo::app {
 
 inline constexpr std::size_t poses = 16; ///< different ones, so that nothing is learnt by heart
-/// A stroke that end_at() applies in one piece, however long.
-inline constexpr double one_piece = 1e9;
-
 /// Where the fingertips go, at random but always the same.
 std::array<deform::Points, poses> random_ends(const deform::Points& starts);
-
-/// The n-th stroke: there and back, so that the shape stays a plane more or less.
-void stroke(deform::Type2Deformer& deformer, const deform::Points& starts,
-            const std::array<deform::Points, poses>& ends, std::size_t n);
 
 /// What the processor has given to this thread: what other work takes of the machine does not
 /// count.
@@ -34,8 +27,8 @@ struct ThreadClock {
 };
 
 /// The best time of a few frames in a row, over turns that several measurements take. A turn lasts
-/// a millisecond, and some frames at least: after the first ones the caches hold what this one
-/// works with, not what the one before it did.
+/// a millisecond or a hundred frames, but some at least: after the first ones the caches hold what
+/// this one works with, not what the one before it did.
 template <class Clock>
 class BestBy {
 public:
@@ -44,11 +37,12 @@ public:
   void measure(std::size_t vertices, const Frame& frame) {
     constexpr std::chrono::milliseconds turn(1);
     constexpr std::size_t least_frames = 8;
+    constexpr std::size_t most_frames = 100;
     const std::size_t frames =
         std::clamp<std::size_t>(100'000 / std::max<std::size_t>(vertices, 1), 2, 64);
     const auto begin = Clock::now();
     auto last = begin;
-    for (std::size_t n = 0; last - begin < turn || n < least_frames;) {
+    for (std::size_t n = 0; n < least_frames || (n < most_frames && last - begin < turn);) {
       for (std::size_t end = n + frames; n < end; ++n)
         frame(n);
       const auto now = Clock::now();
@@ -68,5 +62,28 @@ private:
 using Best = BestBy<std::chrono::steady_clock>;
 /// For frames that take longer than the scheduler lets a thread alone.
 using BestOfThread = BestBy<ThreadClock>;
+
+/// Type-2: strokes of ten fingertips there and back, each one piece. Back is not quite the inverse
+/// of there: after thousands of strokes the vertices would have gathered in a few places. Each turn
+/// begins with the mesh as it was.
+class Strokes {
+public:
+  Strokes(const deform::Points& mesh, const deform::Points& starts, double radius, int threads = 1);
+
+  /// A turn.
+  template <class Clock>
+  void measure(BestBy<Clock>& best) {
+    begin();
+    best.measure(deformer_.layout().vertex_count(), [&](std::size_t n) { stroke(n); });
+  }
+  void begin() { deformer_.undo(starts_); }
+  void stroke(std::size_t n) { deformer_.end_at(n % 2 == 0 ? ends_[n % poses] : starts_); }
+  const deform::Type2Deformer& deformer() const noexcept { return deformer_; }
+
+private:
+  deform::Points starts_;
+  std::array<deform::Points, poses> ends_;
+  deform::Type2Deformer deformer_;
+};
 
 } // namespace nendo::app

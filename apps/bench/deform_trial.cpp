@@ -18,15 +18,14 @@ using namespace nendo::deform;
 struct Deformers {
   Deformers(const Points& mesh, const Points& starts, double radius)
       : type1(mesh, 10, radius, {}), evaluated1(mesh, 10, radius, {}, {.weight_bytes = 0}),
-        type2(mesh, 10, radius, one_piece, {}) {
+        type2(mesh, starts, radius) {
     type1.grab(starts);
     evaluated1.grab(starts);
-    type2.begin(starts);
   }
 
   Type1Deformer type1;
   Type1Deformer evaluated1;
-  Type2Deformer type2;
+  Strokes type2;
   BlockShape out; ///< type1's
   BlockShape other;
 };
@@ -55,10 +54,9 @@ void measure_two_threads(const Points& mesh, double radius, int repetitions, Cel
     for (int n = 0; n < repetitions; ++n)
       best1.measure(vertices, [&](std::size_t k) { type1.apply(ends[k % poses], out); });
   }
-  Type2Deformer type2(mesh, 10, radius, one_piece, {}, {.threads = 2});
-  type2.begin(starts);
+  Strokes type2(mesh, starts, radius, 2);
   for (int n = 0; n < repetitions; ++n)
-    best2.measure(vertices, [&](std::size_t k) { stroke(type2, starts, ends, k); });
+    type2.measure(best2);
   times.type1_2threads_us = best1.us();
   times.type2_2threads_us = best2.us();
 }
@@ -86,7 +84,7 @@ CellTimes measure_cell(const Points& mesh, double radius, int repetitions) {
     e1.measure(vertices, [&](std::size_t k) {
       deformers.evaluated1.apply(ends[k % poses], deformers.other);
     });
-    t2.measure(vertices, [&](std::size_t k) { stroke(deformers.type2, starts, ends, k); });
+    deformers.type2.measure(t2);
     if (n % 8 == 0) grab.measure(vertices, [&](std::size_t) { deformers.type1.grab(starts); });
   }
   times.plain1_us = p1.us();
@@ -147,7 +145,7 @@ LargeTimes measure_large(int cells, int repetitions) {
     e1.measure(times.vertices, [&](std::size_t k) {
       deformers.evaluated1.apply(ends[k % poses], deformers.other);
     });
-    t2.measure(times.vertices, [&](std::size_t k) { stroke(deformers.type2, starts, ends, k); });
+    deformers.type2.measure(t2);
     memory.measure(times.vertices, [&](std::size_t k) {
       from[0].x[0] = static_cast<float>(k);
       std::copy(from.begin(), from.end(), to.begin());

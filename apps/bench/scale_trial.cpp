@@ -67,13 +67,17 @@ std::optional<GrowthTimes> measure_growth(int cells, int repetitions) {
       best.measure(times.vertices, [&](std::size_t k) { type1.apply(ends[k % poses], out); });
     times.type1_us = best.us();
   }
-  const std::size_t before = resident_bytes();
-  Type2Deformer type2(mesh, 10, radius, one_piece, {});
-  type2.begin(starts);
+  {
+    const std::size_t before = resident_bytes();
+    Type2Deformer type2(mesh, 10, radius, radius, {});
+    type2.begin(starts);
+    type2.end_at(ends[0]);
+    times.type2_bytes = resident_bytes() - before;
+  }
+  Strokes type2(mesh, starts, radius);
   BestOfThread best;
   for (int n = 0; n < repetitions; ++n)
-    best.measure(times.vertices, [&](std::size_t k) { stroke(type2, starts, ends, k); });
-  times.type2_bytes = resident_bytes() - before;
+    type2.measure(best);
   times.type2_us = best.us();
   return times;
 }

@@ -36,9 +36,8 @@ public:
     PlainDeformer plain1(plane_, starts_, radius_);
     PlainDeformer plain2(plane_, starts_, radius_);
     Type1Deformer type1(plane_, starts_.cols(), radius_, {});
-    Type2Deformer type2(plane_, starts_.cols(), radius_, one_piece, {});
+    Strokes type2(plane_, starts_, radius_);
     type1.grab(starts_);
-    type2.begin(starts_);
     BlockShape out;
     Best p1, p2, t1, t2;
     for_seconds(seconds, [&] {
@@ -47,7 +46,7 @@ public:
         p2.measure(vertices_, [&](std::size_t n) { plain2.stroke(ends_, n); });
       }
       t1.measure(vertices_, [&](std::size_t n) { type1.apply(ends_[n % poses], out); });
-      t2.measure(vertices_, [&](std::size_t n) { stroke(type2, starts_, ends_, n); });
+      type2.measure(t2);
     });
     cell.plain_loop = {p1.per_second(), p2.per_second()};
     cell.one_thread = {t1.per_second(), t2.per_second()};
@@ -65,12 +64,9 @@ public:
     return best.per_second();
   }
   double type2_by_two(double seconds) {
-    Type2Deformer type2(plane_, starts_.cols(), radius_, one_piece, {}, {.threads = 2});
-    type2.begin(starts_);
+    Strokes type2(plane_, starts_, radius_, 2);
     Best best;
-    for_seconds(seconds, [&] {
-      best.measure(vertices_, [&](std::size_t n) { stroke(type2, starts_, ends_, n); });
-    });
+    for_seconds(seconds, [&] { type2.measure(best); });
     return best.per_second();
   }
 
