@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/two_processors.hpp"
+
 namespace nendo::app {
 
 void LoopArguments::add_to(Command& command, bool short_names) {
@@ -32,9 +34,30 @@ void LoopArguments::add_to(Command& command, bool short_names) {
                   "Wake early and spin to the deadline: on, off, auto (below 2000 Hz); only where "
                   "SCHED_FIFO is granted")
       .under("Timing");
+  command
+      .add_option("--threads", threads,
+                  "2: a second thread takes half of a model of 3072 vertices or more, to the same "
+                  "shape bit for bit. It spins, so that it is there at once, and keeps a "
+                  "processor busy; not with --priority")
+      .under("Timing");
 }
 
-Result<void> LoopArguments::parse(flow::PaceOptions& pace, flow::RealtimeOptions& realtime) const {
+/// The loop may have to wait for the second thread, which therefore must not come after others;
+/// but a thread that spins above all others leaves them no processor.
+Result<void> LoopArguments::check_threads() const {
+  if (threads != 1 && threads != 2)
+    return Error{Errc::usage, "--threads " + std::to_string(threads) + ": use 1 or 2"};
+  if (threads == 1) return {};
+  if (priority > 0)
+    return Error{Errc::usage, "--threads 2: not with --priority " + std::to_string(priority) +
+                                  "; a thread that spins with SCHED_FIFO leaves its processor to "
+                                  "nobody: use --priority 0, or one thread"};
+  const auto processors = two_processors();
+  if (!processors) return Error{Errc::failed, "--threads 2: " + processors.error().message};
+  return {};
+}
+
+Result<void> LoopArguments::parse(flow::LoopOptions& loop, flow::RealtimeOptions& realtime) const {
   if (priority > flow::most_priority) {
     return Error{Errc::usage, "--priority " + std::to_string(priority) +
                                   ": use 1 to 97 (readers of gloves run two above), or 0 for "
@@ -47,7 +70,7 @@ Result<void> LoopArguments::parse(flow::PaceOptions& pace, flow::RealtimeOptions
     if (!cpus) return cpus.error();
     realtime.affinity = *std::move(cpus);
   }
-  if (!flow::parse_policy(policy, pace)) {
+  if (!flow::parse_policy(policy, loop)) {
     return Error{Errc::usage, "--policy " + policy +
                                   ": use skip, catch-up:N with N from 1 to 1000, re-anchor or "
                                   "sample"};
@@ -56,11 +79,12 @@ Result<void> LoopArguments::parse(flow::PaceOptions& pace, flow::RealtimeOptions
     return Error{Errc::usage, "--spin " + spin + ": use on, off or auto"};
   // A margin costs the same whatever the rate: at 2 kHz it is a tenth of the processor and more.
   constexpr double most_auto_rate_hz = 2000.0;
-  pace.spin = spin == "on" || (spin == "auto" && pace.rate_hz < most_auto_rate_hz);
+  loop.spin = spin == "on" || (spin == "auto" && loop.rate_hz < most_auto_rate_hz);
   if (spin == "on" && priority == 0)
     return Error{Errc::usage, "--spin on: only with --priority; the ordinary scheduler makes a "
                               "thread that spins later, not sooner"};
-  return {};
+  loop.sculptor.deformer.evaluation.threads = static_cast<int>(threads);
+  return check_threads();
 }
 
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants) {

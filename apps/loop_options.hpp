@@ -1,12 +1,13 @@
 #pragma once
-// The options of the commands that run the loop: how it is paced, and what it asks of the system.
+// The options of the commands that run the loop: how it is paced, what it asks of the system, and
+// whether a second thread helps.
 
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <nendo/flow/pacer.hpp>
+#include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/realtime.hpp>
 
 #include "command.hpp"
@@ -19,11 +20,16 @@ struct LoopArguments {
   bool lock_memory = false;
   std::string policy = "skip";
   std::string spin = "auto";
+  std::uint32_t threads = 1;
 
   /// Names as cyclictest has them. `short_names`: -p, -a and -m, too.
   void add_to(Command& command, bool short_names = false);
-  /// Reads them into `pace` and `realtime`. Error: usage, naming the option and what it may be.
-  Result<void> parse(flow::PaceOptions& pace, flow::RealtimeOptions& realtime) const;
+  /// Reads them into `loop` and `realtime`. Errors: usage, naming the option and what it may be;
+  /// failed (no processor for a second thread).
+  Result<void> parse(flow::LoopOptions& loop, flow::RealtimeOptions& realtime) const;
+
+private:
+  Result<void> check_threads() const;
 };
 
 /// An object for each right that was asked for: name, wanted, granted, why, remedy.

@@ -108,6 +108,7 @@ void print_summary_json(const RunOptions& options, const std::vector<OpenHand>& 
                     {"radius", outcome.radius},
                     {"rate_hz", options.loop.rate_hz},
                     {"policy", flow::describe_policy(options.loop)},
+                    {"threads", options.loop.sculptor.deformer.evaluation.threads},
                     {"realtime", grants_json(outcome.grants)},
                     {"ticks", stats.ticks},
                     {"overruns", stats.overruns},

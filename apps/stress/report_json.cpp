@@ -49,6 +49,7 @@ ordered_json environment_json(const StressOptions& options, const StressOutcome&
                     {"duration_s", options.run.duration_s},
                     {"policy", flow::describe_policy(loop)},
                     {"spin", outcome.spins},
+                    {"threads", loop.sculptor.deformer.evaluation.threads},
                     {"mode", flow::name_of(loop.sculptor.mode)},
                     {"vertices", outcome.vertices},
                     {"gloves", outcome.gloves},

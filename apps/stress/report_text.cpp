@@ -70,9 +70,10 @@ void print_table(const ordered_json& report, const ordered_json& earlier) {
 void print_environment(const StressOutcome& outcome, const ordered_json& report) {
   const Environment& machine = outcome.environment;
   const ordered_json& about = report["environment"];
-  std::printf("nendo stress: %.1f s at %g Hz, policy %s%s\n", outcome.elapsed_s,
+  std::printf("nendo stress: %.1f s at %g Hz, policy %s%s%s\n", outcome.elapsed_s,
               about["rate_hz"].get<double>(), about["policy"].get<std::string>().c_str(),
-              outcome.spins ? ", spinning to each deadline" : "");
+              outcome.spins ? ", spinning to each deadline" : "",
+              about["threads"] == 2 ? ", two threads" : "");
   std::printf("  %-14s Linux %s%s%s, %u CPUs%s\n", "machine", machine.kernel.c_str(),
               machine.preemption.empty() ? "" : " ", machine.preemption.c_str(), machine.cpus,
               machine.hypervisor ? ", virtual: the host may stop it at any time" : "");

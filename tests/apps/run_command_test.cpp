@@ -6,6 +6,8 @@
 #include <sstream>
 #include <thread>
 
+#include <sched.h>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
@@ -396,10 +398,59 @@ TEST_SUITE("run") {
                                         {"--policy", "hurry"},
                                         {"--policy", "catch-up:0"},
                                         {"--spin", "on"},
-                                        {"--spin", "maybe"}}) {
+                                        {"--spin", "maybe"},
+                                        {"--threads", "0"},
+                                        {"--threads", "3"}}) {
       const auto done = nendo::test::nendo({"run", "--left", "sim", option, value});
       CHECK(done.exit_code == 2);
       CHECK(is_one_line_about(done.err, option));
     }
+  }
+
+  TEST_CASE("what two threads have shaped is what one makes of the recording, byte for byte") {
+    if (std::thread::hardware_concurrency() < 2) return;
+    const TemporaryFolder folder;
+    const auto take = (folder.path() / "take").string();
+    const auto live = folder.path() / "live.obj";
+    const auto again = folder.path() / "again.obj";
+    for (const std::string mode : {"type1", "type2"}) {
+      const auto done = nendo::test::nendo({"run", "--left", "sim", "--right", "sim", "--mode",
+                                            mode, "--threads", "2", "--duration", "0.5", "--record",
+                                            take, "--json", "--out", live.string()});
+      CAPTURE(done.err);
+      REQUIRE(done.exit_code == 0);
+      const json summary = last_object(done);
+      CHECK(summary["threads"] == 2);
+      CHECK(summary["failed"] == 0);
+      REQUIRE(
+          nendo::test::nendo({"replay", take, "--no-clock", "--out", again.string()}).exit_code ==
+          0);
+      const std::string shape = nendo::test::contents(live);
+      CHECK(shape.size() > 1000);
+      CHECK(nendo::test::contents(again) == shape);
+      for (const auto& file : {std::filesystem::path(take), live, again})
+        std::filesystem::remove(file);
+    }
+  }
+
+  TEST_CASE("a second thread needs a processor, and the loop to be scheduled like it") {
+    const auto with_priority =
+        nendo::test::nendo({"run", "--left", "sim", "--threads", "2", "--priority", "5"});
+    CHECK(with_priority.exit_code == 2);
+    CHECK(is_one_line_about(with_priority.err, "--threads 2: not with --priority 5"));
+    const auto stress = nendo::test::nendo({"stress", "--threads", "2"});
+    CHECK(stress.exit_code == 2);
+    CHECK(is_one_line_about(stress.err, "--priority 0"));
+
+    cpu_set_t allowed, first;
+    REQUIRE(sched_getaffinity(0, sizeof allowed, &allowed) == 0);
+    CPU_ZERO(&first);
+    for (std::size_t n = 0; CPU_COUNT(&first) == 0; ++n)
+      if (CPU_ISSET(n, &allowed)) CPU_SET(n, &first);
+    REQUIRE(sched_setaffinity(0, sizeof first, &first) == 0);
+    const auto alone = nendo::test::nendo({"run", "--left", "sim", "--threads", "2"});
+    REQUIRE(sched_setaffinity(0, sizeof allowed, &allowed) == 0);
+    CHECK(alone.exit_code == 1);
+    CHECK(is_one_line_about(alone.err, "--threads 2"));
   }
 }
