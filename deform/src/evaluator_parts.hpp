@@ -85,7 +85,7 @@ void BlockEvaluator::Parts::in_pieces(std::size_t count, const Sharing& sharing,
       hwy::FlushStream();
     }
   } shared{range, count, sharing.piece, (count + sharing.piece - 1) / sharing.piece};
-  worker->run([](void* context) noexcept { static_cast<Shared*>(context)->work(1); }, &shared);
+  worker->run({[](void* context) noexcept { static_cast<Shared*>(context)->work(1); }, &shared});
   shared.work(0);
   worker->end();
 }

@@ -89,6 +89,10 @@ TEST_SUITE("proofs") {
     prove("sequence_stage.hpp", sequence_stage_scenarios());
   }
 
+  TEST_CASE("the offer of a job keeps its laws, and needs every order that it states") {
+    prove("job_offer.hpp", job_offer_scenarios());
+  }
+
   TEST_CASE("the pool of frames keeps its laws over the ring's") {
     prove("frame_pool.hpp", frame_pool_scenarios());
   }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <nendo/base/frame_pool.hpp>
+#include <nendo/base/job_offer.hpp>
 #include <nendo/base/latest_value.hpp>
 #include <nendo/base/overwriting_ring.hpp>
 #include <nendo/base/sequence_stage.hpp>
@@ -188,6 +189,45 @@ struct Staged {
   }
 };
 
+/// Jobs are numbers; done is what their number makes of `result`.
+struct Jobs {
+  JobOffer<Value, Explored> offer;
+  Explored::Plain<Value> result{0};
+  Numbers withdrawn, seen_done; ///< the offering thread's
+  Numbers done;                 ///< the other's
+  bool waits = false; ///< the offering thread gave up before it had seen the last one done
+
+  /// False: the job was taken, and is not done yet.
+  bool give(Value number) {
+    offer.offer(number);
+    if (offer.withdraw()) {
+      withdrawn.push_back(number);
+      return true;
+    }
+    waits = !offer.is_done();
+    if (waits) return false;
+    require(result == number, "what was done is seen");
+    seen_done.push_back(number);
+    return true;
+  }
+  void look() {
+    Value number = 0;
+    if (!offer.take(number)) return;
+    result = number;
+    done.push_back(number);
+    offer.done();
+  }
+  void check() {
+    Value number = 0;
+    require(!offer.take(number), "no job is left");
+    if (waits) {
+      require(offer.is_done(), "a job that could not be withdrawn was done");
+      seen_done.push_back(result);
+    }
+    require(seen_done == done, "each job was withdrawn or done, and that once");
+  }
+};
+
 } // namespace
 
 std::vector<Scenario> spsc_ring_scenarios() {
@@ -330,6 +370,21 @@ std::vector<Scenario> sequence_stage_scenarios() {
                                 require(shared->read(number) == (number == 3 || number == 4),
                                         "at rest the newest are there, and only those");
                             }};
+           }}};
+}
+
+std::vector<Scenario> job_offer_scenarios() {
+  return {{"three jobs, three looks", [] {
+             const auto shared = std::make_shared<Jobs>();
+             return Program{{[=] {
+                               for (Value number = 1; number <= 3 && shared->give(number);)
+                                 ++number;
+                             },
+                             [=] {
+                               for (int n = 0; n < 3; ++n)
+                                 shared->look();
+                             }},
+                            [=] { shared->check(); }};
            }}};
 }
 

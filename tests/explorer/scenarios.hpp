@@ -20,5 +20,6 @@ std::vector<Scenario> overwriting_ring_scenarios();
 std::vector<Scenario> latest_value_scenarios();
 std::vector<Scenario> frame_pool_scenarios();
 std::vector<Scenario> sequence_stage_scenarios();
+std::vector<Scenario> job_offer_scenarios();
 
 } // namespace nendo::explorer
