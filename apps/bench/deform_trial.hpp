@@ -1,6 +1,6 @@
 #pragma once
 // What `nendo bench deform` measures: the deformers beside a plain loop, on the plane of the
-// paper's Table 1, and on a model of a million vertices beside what the machine can do at best.
+// paper's Table 1, and on models of a million and more beside what the machine can do at best.
 
 #include <cstddef>
 
