@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/two_processors.hpp"
+#include "two_processors.hpp"
 
 namespace nendo::app {
 
@@ -36,9 +36,9 @@ void LoopArguments::add_to(Command& command, bool short_names) {
       .under("Timing");
   command
       .add_option("--threads", threads,
-                  "2: a second thread takes half of a model of 3072 vertices or more, to the same "
-                  "shape bit for bit. It spins, so that it is there at once, and keeps a "
-                  "processor busy; not with --priority")
+                  "2: a second thread takes half of a large model, to the same shape bit for bit. "
+                  "It spins, so that it is there at once, and keeps a processor busy; not with "
+                  "--priority")
       .under("Timing");
 }
 

@@ -8,10 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <nendo/base/usable_memory.hpp>
-
 #include "bench/bench.hpp"
 #include "bench/deform_trial.hpp"
+#include "bench/plane_room.hpp"
 #include "bench/simd_choice.hpp"
 #include "bench/table1.hpp"
 #include "cli.hpp"
@@ -91,14 +90,9 @@ void print_large(const LargeTimes& times, bool json) {
       times.evaluated1_us / floor_us, times.type2_us, times.type2_us / floor_us);
 }
 
-/// A square of so many cells a side.
 void bench_large(int cells, int repetitions, bool json) {
-  constexpr std::size_t bytes_a_vertex = 300;
-  const auto side = static_cast<std::size_t>(cells) + 1;
-  const std::size_t vertices = side * side;
-  if (usable_memory() < bytes_a_vertex * vertices)
-    return note("bench deform: too little memory for " + std::to_string(vertices) + " vertices");
-  print_large(measure_large(cells, repetitions), json);
+  if (has_room_for_plane(cells, "bench deform"))
+    print_large(measure_large(cells, repetitions), json);
 }
 
 int bench_deform(const Options& options) {

@@ -23,14 +23,13 @@ std::array<deform::Points, poses> random_ends(const deform::Points& starts) {
 
 namespace {
 
-/// A stroke that end_at() applies in one piece, however long.
-constexpr double one_piece = 1e9;
-
 deform::DeformerOptions undoable(const deform::Points& mesh, double radius, int threads) {
   deform::DeformerOptions options;
   options.supports = deform::one_radius(radius);
   options.evaluation.threads = threads;
-  options.undo_bytes = 14 * static_cast<std::size_t>(mesh.cols()) + 4096; // 832 for each 64
+  constexpr std::size_t bytes_a_block = 832;
+  options.undo_bytes =
+      bytes_a_block * (static_cast<std::size_t>(mesh.cols()) / deform::block_size + 1);
   return options;
 }
 

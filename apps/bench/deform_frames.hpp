@@ -12,6 +12,9 @@
 namespace nendo::app {
 
 inline constexpr std::size_t poses = 16; ///< different ones, so that nothing is learnt by heart
+/// A stroke that end_at() applies in one piece, however long.
+inline constexpr double one_piece = 1e9;
+
 /// Where the fingertips go, at random but always the same.
 std::array<deform::Points, poses> random_ends(const deform::Points& starts);
 

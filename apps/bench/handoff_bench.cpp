@@ -18,7 +18,7 @@
 #include <nendo/base/latest_value.hpp>
 
 #include "bench/rt_bench.hpp"
-#include "bench/two_processors.hpp"
+#include "bench/two_threads.hpp"
 
 namespace nendo::app {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "bench/contending_rings.hpp"
 #include "bench/rt_bench.hpp"
-#include "bench/two_processors.hpp"
+#include "bench/two_threads.hpp"
 
 namespace nendo::app {
 namespace {

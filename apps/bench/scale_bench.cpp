@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/bench.hpp"
+#include "bench/plane_room.hpp"
 #include "bench/scale_trial.hpp"
 #include "bench/simd_choice.hpp"
 #include "bench/table1.hpp"
@@ -100,12 +101,8 @@ void bench_growth(const Options& options, int repetitions) {
       "  B/vert.\n");
   for (const int cells : {315, 999, 3161}) {
     if (options.short_form && cells > 315) break;
-    if (const auto times = measure_growth(cells, repetitions)) {
-      print(*times, options.json);
-    } else {
-      note("bench scale: too little memory left for " + std::to_string((cells + 1) * (cells + 1)) +
-           " vertices");
-    }
+    if (has_room_for_plane(cells, "bench scale"))
+      print(measure_growth(cells, repetitions), options.json);
   }
 }
 

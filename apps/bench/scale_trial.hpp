@@ -3,7 +3,6 @@
 // points, up to a thousand, and with normals. Times are the thread's, the best of many.
 
 #include <cstddef>
-#include <optional>
 
 namespace nendo::app {
 
@@ -18,8 +17,8 @@ struct GrowthTimes {
   std::size_t type2_bytes = 0;
 };
 
-/// The plane of Table 1 in so many cells a side. Nothing if the machine has too little memory left.
-std::optional<GrowthTimes> measure_growth(int cells, int repetitions);
+/// The plane of Table 1 in so many cells a side.
+GrowthTimes measure_growth(int cells, int repetitions);
 
 /// Many small supports beside ten that reach every vertex.
 struct CrowdTimes {

@@ -12,7 +12,7 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr Sharing sharing{.piece = 16, .least = 3};
+constexpr std::size_t least_shared = 3; // pieces
 
 double extent_of(const std::vector<BlockBounds>& bounds) noexcept {
   float extent = 0.0F;
@@ -91,19 +91,20 @@ BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
 template <class After>
 void run(const BlockPass& whole, const NormalPass* normals, BlockEvaluator::Parts& parts,
          const After& after) noexcept {
-  parts.in_pieces(whole.end, sharing, [&](std::size_t begin, std::size_t end, std::size_t thread) {
-    BlockPass piece = whole;
-    piece.begin = begin;
-    piece.end = end;
-    piece.scratch = parts.lists[thread].scratch();
-    if (normals != nullptr) {
-      displace_normals_pass(parts.field.view(), piece, *normals);
-    } else {
-      displace_pass(parts.field.view(), piece);
-    }
-    for (std::size_t block = begin; block < end; ++block)
-      after(block, parts.reached[block] > 0);
-  });
+  parts.in_pieces(whole.end, least_shared,
+                  [&](std::size_t begin, std::size_t end, std::size_t thread) {
+                    BlockPass piece = whole;
+                    piece.begin = begin;
+                    piece.end = end;
+                    piece.scratch = parts.lists[thread].scratch();
+                    if (normals != nullptr) {
+                      displace_normals_pass(parts.field.view(), piece, *normals);
+                    } else {
+                      displace_pass(parts.field.view(), piece);
+                    }
+                    for (std::size_t block = begin; block < end; ++block)
+                      after(block, parts.reached[block] > 0);
+                  });
 }
 
 } // namespace

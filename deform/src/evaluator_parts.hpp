@@ -42,11 +42,8 @@ private:
   std::array<VectorArray<float>, 8> numbers_;
 };
 
-/// How work is shared with a second thread.
-struct Sharing {
-  std::size_t piece; ///< so many at a time are one thread's: enough to be worth the asking
-  std::size_t least; ///< fewer pieces are done before the other thread has begun
-};
+/// So many blocks at a time are one thread's: enough to be worth the asking.
+inline constexpr std::size_t blocks_a_piece = 16;
 
 struct BlockEvaluator::Parts {
   Parts(const BlockLayout& layout, Eigen::Index entries, int threads);
@@ -56,35 +53,36 @@ struct BlockEvaluator::Parts {
   std::vector<std::uint8_t> reached;
   std::optional<SpinWorker> worker;
 
-  /// Calls range(begin, end, thread) for pieces of [0, count): one thread's from the front, the
+  /// Calls range(begin, end, thread) for pieces of `count` blocks: one thread's from the front, the
   /// other's from the back, until they meet, so that next time each finds most of its pieces in its
-  /// own core's caches. Each piece's result must depend on nothing but the piece. What it writes
+  /// own core's caches. Fewer pieces than least_shared are done before the other thread has begun:
+  /// they are not shared. Each piece's result must depend on nothing but the piece. What it writes
   /// past the caches is flushed once a thread: a flush takes as long as many blocks.
   template <class Range>
-  void in_pieces(std::size_t count, const Sharing& sharing, const Range& range) noexcept;
+  void in_pieces(std::size_t count, std::size_t least_shared, const Range& range) noexcept;
 };
 
 template <class Range>
-void BlockEvaluator::Parts::in_pieces(std::size_t count, const Sharing& sharing,
+void BlockEvaluator::Parts::in_pieces(std::size_t count, std::size_t least_shared,
                                       const Range& range) noexcept {
-  if (!worker || count < sharing.least * sharing.piece) {
+  if (!worker || count < least_shared * blocks_a_piece) {
     range(std::size_t{0}, count, std::size_t{0});
     hwy::FlushStream();
     return;
   }
   struct Shared {
     const Range& range;
-    std::size_t count, piece, pieces;
+    std::size_t count, pieces;
     std::atomic<std::size_t> taken{0};
 
     void work(std::size_t thread) noexcept {
       for (std::size_t own = 0; taken.fetch_add(1, std::memory_order_relaxed) < pieces; ++own) {
-        const std::size_t begin = (thread == 0 ? own : pieces - 1 - own) * piece;
-        range(begin, std::min(begin + piece, count), thread);
+        const std::size_t begin = (thread == 0 ? own : pieces - 1 - own) * blocks_a_piece;
+        range(begin, std::min(begin + blocks_a_piece, count), thread);
       }
       hwy::FlushStream();
     }
-  } shared{range, count, sharing.piece, (count + sharing.piece - 1) / sharing.piece};
+  } shared{range, count, (count + blocks_a_piece - 1) / blocks_a_piece};
   worker->run({[](void* context) noexcept { static_cast<Shared*>(context)->work(1); }, &shared});
   shared.work(0);
   worker->end();

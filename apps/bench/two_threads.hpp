@@ -8,17 +8,10 @@
 #include <functional>
 
 #include <nendo/base/atomics.hpp>
-#include <nendo/base/result.hpp>
+
+#include "two_processors.hpp"
 
 namespace nendo::app {
-
-struct TwoProcessors {
-  int first = 0;
-  int second = 0;
-};
-
-/// The first two that this process may use; an error if there is only one.
-Result<TwoProcessors> two_processors();
 
 /// Runs each on its processor, at the same time, and returns when both are done.
 void run_on(const TwoProcessors& processors, const std::function<void()>& on_first,

@@ -1,4 +1,4 @@
-#include "bench/two_processors.hpp"
+#include "bench/two_threads.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,20 +20,6 @@ void stay_on(int processor) noexcept {
 }
 
 } // namespace
-
-Result<TwoProcessors> two_processors() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) < 2)
-    return Error{Errc::failed,
-                 "two threads at once need two processors, and here is one; see taskset(1)"};
-  TwoProcessors processors{-1, -1};
-  for (int n = 0; processors.second < 0; ++n) {
-    if (!CPU_ISSET(static_cast<std::size_t>(n), &allowed)) continue;
-    (processors.first < 0 ? processors.first : processors.second) = n;
-  }
-  return processors;
-}
 
 void run_on(const TwoProcessors& processors, const std::function<void()>& on_first,
             const std::function<void()>& on_second) {
