@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include <nendo/flow/keepsakes.hpp>
 #include <nendo/flow/loop_settings.hpp>
+#include <nendo/flow/save_request.hpp>
 
 namespace nendo::app {
 
@@ -15,7 +15,7 @@ public:
   /// What it wants that only a new loop can give, since the last call.
   virtual flow::LoopChange next_change() { return {}; }
   /// What it wants kept, since the last call.
-  virtual flow::Keepsakes next_keepsakes() { return {}; }
+  virtual flow::SaveRequest next_save_request() { return {}; }
   /// What became of that, for its people; whoever of them asked.
   virtual void tell(const std::string& words) { static_cast<void>(words); }
 };

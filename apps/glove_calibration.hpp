@@ -7,7 +7,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
-#include <nendo/hand/calibration_in_force.hpp>
+#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/skeleton.hpp>
 
 #include "command.hpp"
@@ -35,8 +35,8 @@ struct KnownHands {
 
   const KnownHand& of(Side wanted) const noexcept { return wanted == side ? own : swapped; }
   const KnownHand& not_of(Side side_now) const noexcept { return side_now == side ? swapped : own; }
-  hand::CalibrationInForce in_force() const noexcept {
-    if (adapt) return hand::CalibrationInForce(*adapt);
+  hand::ActiveCalibration in_force() const noexcept {
+    if (adapt) return hand::ActiveCalibration(*adapt);
     return {side, own.calibration, swapped.calibration};
   }
 };

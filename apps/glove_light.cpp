@@ -9,13 +9,13 @@ void GloveLight::show(bool lit) noexcept {
   lit_ = lit;
   driver::Feedback feedback;
   feedback.light = lit;
-  glove_.give(feedback);
+  glove_.set_feedback(feedback);
 }
 
 void GloveLight::put_out() noexcept {
   if (!lit_) return;
   show(false);
-  std::this_thread::sleep_for(std::chrono::milliseconds(250)); // Glove::give: within 0.2 s
+  std::this_thread::sleep_for(std::chrono::milliseconds(250)); // Glove::set_feedback: within 0.2 s
 }
 
 } // namespace nendo::app

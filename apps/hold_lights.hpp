@@ -1,6 +1,6 @@
 #pragma once
 // The lights of the gloves whose switches do something: lit while the hands hold the model. Given
-// from the main thread, because Glove::give takes a lock, which is nothing for the loop.
+// from the main thread, because Glove::set_feedback takes a lock, which is nothing for the loop.
 
 #include <memory>
 #include <vector>

@@ -47,7 +47,7 @@ public:
       gauges_.lost[slot] = stats.ring_refused;
     }
     wishes_ = window_->show(loop.frames().front(), fresh, gauges_);
-    keepsakes_.add(wishes_.keepsakes);
+    keepsakes_.add(wishes_.save_request);
     if (fresh) ++shown_;
     for (const auto request : wishes_.requests)
       requests_->try_push(request); // full: the loop stands still, and asking again is as good
@@ -65,7 +65,7 @@ public:
     return change;
   }
 
-  flow::Keepsakes next_keepsakes() override { return std::exchange(keepsakes_, {}); }
+  flow::SaveRequest next_save_request() override { return std::exchange(keepsakes_, {}); }
   void tell(const std::string& words) override { gauges_.told = words; }
 
   Result<void> end() override {
@@ -86,7 +86,7 @@ private:
   const std::vector<OpenHand>* hands_ = nullptr;
   Gauges gauges_;
   Wishes wishes_;
-  flow::Keepsakes keepsakes_; ///< wanted and not asked for yet
+  flow::SaveRequest keepsakes_; ///< wanted and not asked for yet
   std::uint32_t shown_ = 0;
   HostTime changed_at_{};
 };

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include <nendo/viewer/moment.hpp>
+#include <nendo/viewer/scene_frame.hpp>
 
 namespace nendo::app {
 namespace {

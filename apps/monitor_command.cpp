@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include <nendo/driver/open_glove.hpp>
-#include <nendo/hand/calibration_in_force.hpp>
+#include <nendo/hand/active_calibration.hpp>
 
 #include "angle_sources_json.hpp"
 #include "cli.hpp"
@@ -35,7 +35,7 @@ struct Options {
 struct Monitored {
   driver::Glove& glove;
   SampleRing& ring;
-  hand::CalibrationInForce* calibrations;      ///< null: counts only
+  hand::ActiveCalibration* calibrations;       ///< null: counts only
   std::uint64_t most;                          ///< samples to show; 0: no end
   const hand::Calibration* in_force = nullptr; ///< of the sample that came last; null: none
   std::uint64_t shown = 0;
@@ -64,7 +64,7 @@ void show_lines(Monitored& monitored) {
 }
 
 /// False: the user wants to end it.
-bool obey(char key, SeenCounts& seen, GloveLight& light) {
+bool handle(char key, SeenCounts& seen, GloveLight& light) {
   if (key == 'r') seen.forget();
   if (key == 'l') light.show(!light.is_lit());
   return key != 'q';
@@ -93,7 +93,7 @@ void show_screen(Monitored& monitored) {
            HostClock::now() < now + frame_time) {
       const auto left =
           std::chrono::ceil<std::chrono::milliseconds>(now + frame_time - HostClock::now());
-      if (const auto key = terminal.key(left)) goes_on = obey(*key, seen, light);
+      if (const auto key = terminal.key(left)) goes_on = handle(*key, seen, light);
     }
   }
   terminal.leave();
@@ -107,7 +107,7 @@ int monitor(const Options& options) {
   if (const auto fine = check(options.calibration); !fine) return report(fine.error());
   const auto glove = driver::open_glove(options.glove);
   if (!glove) return report(glove.error());
-  std::optional<hand::CalibrationInForce> calibrations;
+  std::optional<hand::ActiveCalibration> calibrations;
   if (!options.raw) {
     const auto known = known_hands((*glove)->info(), (*glove)->info().side, options.calibration);
     if (!known) return report(known.error());

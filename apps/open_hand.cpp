@@ -10,13 +10,15 @@ namespace nendo::app {
 
 using std::chrono::milliseconds;
 
-Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side, Bell* bell) {
+Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side,
+                           EventCount* event_count) {
   auto glove = driver::open_glove(spec, side);
   if (!glove) return glove.error();
-  return hand_of(*std::move(glove), side, bell);
+  return hand_of(*std::move(glove), side, event_count);
 }
 
-OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side, Bell* bell) {
+OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
+                 EventCount* event_count) {
   const Side own_side = glove->info().side;
   if (side && own_side != *side) {
     note(glove->info().source + " says that it is a " + std::string(name_of(own_side)) +
@@ -24,7 +26,7 @@ OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
   }
   OpenHand hand;
   hand.side = side.value_or(own_side);
-  hand.ring = std::make_unique<SampleRing>(1024, bell);
+  hand.ring = std::make_unique<SampleRing>(1024, event_count);
   hand.glove = std::move(glove);
   return hand;
 }

@@ -25,13 +25,14 @@ struct OpenHand {
 };
 
 /// Opens the glove for that hand, and says so on standard error if it calls itself the other one;
-/// without `side`, for the hand that it is. `bell` is rung by each sample. Blocks and fails as
+/// without `side`, for the hand that it is. each sample notifies `event_count`. Blocks and fails as
 /// open_glove().
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
-                           Bell* bell = nullptr);
+                           EventCount* event_count = nullptr);
 
 /// The same of a glove that is open already.
-OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side, Bell* bell);
+OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
+                 EventCount* event_count);
 
 /// Takes the first sample of a started glove out of the ring. Blocks, 2 s at most. Errors:
 /// no_device if none comes, failed if a stop signal does.

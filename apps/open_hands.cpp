@@ -13,11 +13,11 @@ namespace {
 
 // Both hands that the machine has, or simulated ones. A glove that is there but may not be used is
 // an error; one that does not answer is told of, and the other hand goes on alone.
-Result<std::vector<OpenHand>> open_any(Bell* bell) {
+Result<std::vector<OpenHand>> open_any(EventCount* event_count) {
   std::vector<OpenHand> hands;
   std::vector<std::string> why;
   for (const Side side : {Side::left, Side::right}) {
-    auto hand = open_hand("auto:" + std::string(name_of(side)), side, bell);
+    auto hand = open_hand("auto:" + std::string(name_of(side)), side, event_count);
     if (hand) {
       hands.push_back(*std::move(hand));
     } else if (hand.error().code != Errc::no_device) {
@@ -36,7 +36,7 @@ Result<std::vector<OpenHand>> open_any(Bell* bell) {
   note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
        "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {
-    auto hand = open_hand("sim", side, bell);
+    auto hand = open_hand("sim", side, event_count);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
@@ -44,22 +44,22 @@ Result<std::vector<OpenHand>> open_any(Bell* bell) {
 }
 
 Result<OpenHand> open_touching(const RunOptions& options, const deform::Mesh& model,
-                               const std::string& spec, Side side, Bell* bell) {
+                               const std::string& spec, Side side, EventCount* event_count) {
   auto touching = open_touching_glove(spec, side, model, options.length.size({}));
   if (!touching) return touching.error();
-  OpenHand hand = hand_of(std::move(touching->glove), side, bell);
+  OpenHand hand = hand_of(std::move(touching->glove), side, event_count);
   hand.T_stage_wrist = touching->T_stage_wrist;
   return hand;
 }
 
 Result<std::vector<OpenHand>> open_named(const RunOptions& options, const deform::Mesh& model,
-                                         Bell* bell) {
+                                         EventCount* event_count) {
   std::vector<OpenHand> hands;
   for (const auto& [spec, side] :
        {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
     if (spec->empty()) continue;
-    auto hand = is_touching(*spec) ? open_touching(options, model, *spec, side, bell)
-                                   : open_hand(*spec, side, bell);
+    auto hand = is_touching(*spec) ? open_touching(options, model, *spec, side, event_count)
+                                   : open_hand(*spec, side, event_count);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
@@ -80,10 +80,10 @@ Result<void> check_switch(flow::SwitchAction action, const std::vector<OpenHand>
 } // namespace
 
 Result<std::vector<OpenHand>> open_hands(RunOptions& options, const deform::Mesh& model,
-                                         Bell& bell) {
-  if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.bell = &bell;
+                                         EventCount& event_count) {
+  if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.event_count = &event_count;
   const bool named = !options.left.empty() || !options.right.empty();
-  Bell* const rung = options.loop.bell;
+  EventCount* const rung = options.loop.event_count;
   auto hands = named ? open_named(options, model, rung) : open_any(rung);
   if (!hands) return hands;
   if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)

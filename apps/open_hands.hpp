@@ -14,9 +14,9 @@ namespace nendo::app {
 /// is identified, and simulated hands, saying so, if there is nothing. Errors as open_glove();
 /// no_device if no sample comes; as known_hands(); as open_touching_glove(), whose hands touch
 /// `model`. The readers get the priority that goes with the loop's; what the system says to that is
-/// added to options.grants. With OverrunPolicy::sample, `bell` is what wakes the loop; it must
-/// outlive both.
+/// added to options.grants. With OverrunPolicy::sample, `event_count` is what wakes the loop; it
+/// must outlive both.
 Result<std::vector<OpenHand>> open_hands(RunOptions& options, const deform::Mesh& model,
-                                         Bell& bell);
+                                         EventCount& event_count);
 
 } // namespace nendo::app

@@ -17,7 +17,7 @@ constexpr double piece_fraction = 0.05;
 
 std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
                                        const RunOptions& options,
-                                       const std::optional<Legacy>& legacy) {
+                                       const std::optional<Carryover>& carryover) {
   std::vector<flow::HandInput> inputs;
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
@@ -30,7 +30,7 @@ std::vector<flow::HandInput> inputs_of(const std::vector<OpenHand>& hands,
     inputs.back().swapped = swapped.calibration;
     inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(swapped.size));
     inputs.back().adapt = hand.known.adapt;
-    if (legacy) inputs.back().learned = legacy->learned[flow::Placement::index_of(hand.side)];
+    if (carryover) inputs.back().learned = carryover->learned[flow::Placement::index_of(hand.side)];
   }
   return inputs;
 }
@@ -88,7 +88,7 @@ std::pair<double, double> least_and_largest(const deform::Supports& supports) {
 
 } // namespace
 
-Legacy legacy_of(const flow::DeformLoop& ended) {
+Carryover carryover_of(const flow::DeformLoop& ended) {
   return {ended.placement(), ended.learned()};
 }
 
@@ -98,11 +98,12 @@ Result<void> check_radius(const std::string& text) {
 }
 
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
-                              const deform::Mesh& model, const std::optional<Legacy>& legacy) {
+                              const deform::Mesh& model,
+                              const std::optional<Carryover>& carryover) {
   const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
-  auto inputs = inputs_of(hands, options, legacy);
+  auto inputs = inputs_of(hands, options, carryover);
   auto supports = supports_for(options.radius, 5 * static_cast<Eigen::Index>(inputs.size()), size);
   if (!supports) return supports.error();
   const auto [least_radius, largest_radius] = least_and_largest(*supports);
@@ -112,7 +113,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenH
   // between them.
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
-  const auto placement = legacy ? legacy->placement : placement_for(hands, inputs, model);
+  const auto placement = carryover ? carryover->placement : placement_for(hands, inputs, model);
   PlacedSetup setup{inputs, placement, loop_options};
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {

@@ -28,16 +28,17 @@ struct PlacedLoop {
 };
 
 /// What a loop leaves to the next one of the same hands.
-struct Legacy {
+struct Carryover {
   flow::Placement placement;
   std::array<std::optional<hand::LearnedRanges>, 2> learned; ///< DeformLoop::learned()
 };
-Legacy legacy_of(const flow::DeformLoop& ended);
+Carryover carryover_of(const flow::DeformLoop& ended);
 
-/// As options.loop says, with the supports that options.radius says. Without a legacy the hands are
-/// put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
+/// As options.loop says, with the supports that options.radius says. Without a carryover the hands
+/// are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<OpenHand>& hands,
-                              const deform::Mesh& model, const std::optional<Legacy>& legacy = {});
+                              const deform::Mesh& model,
+                              const std::optional<Carryover>& carryover = {});
 
 /// What a frame of that loop may hold, for whoever keeps room for it.
 struct FrameRoom {

@@ -97,7 +97,7 @@ private:
   const Options& options_;
   PoseOutput& output_;
   HostTime start_;
-  hand::CalibrationInForce calibration_;
+  hand::ActiveCalibration calibration_;
   hand::SensorGate gate_;
   hand::HandSkeleton left_;
   hand::HandSkeleton right_;

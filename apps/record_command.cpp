@@ -84,18 +84,19 @@ recording::Setup setup_for(const std::vector<OpenHand>& hands, const Options& op
   return setup;
 }
 
-/// From the gloves' rings to the tape, until it is over.
-void copy_samples(const std::vector<OpenHand>& hands, flow::Tape& tape, double duration_s) {
+/// From the gloves' rings to the input log, until it is over.
+void copy_samples(const std::vector<OpenHand>& hands, flow::InputLog& input_log,
+                  double duration_s) {
   const HostTime start = HostClock::now();
   const auto drain = [&] {
     for (std::size_t at = 0; at < hands.size(); ++at) {
       hands[at].ring->drain([&](const GloveSample& sample) noexcept {
-        tape.sample(static_cast<std::uint8_t>(at), sample);
+        input_log.sample(static_cast<std::uint8_t>(at), sample);
       });
     }
   };
   for (std::size_t at = 0; at < hands.size(); ++at)
-    tape.sample(static_cast<std::uint8_t>(at), hands[at].first);
+    input_log.sample(static_cast<std::uint8_t>(at), hands[at].first);
   while (!stop_requested() &&
          (duration_s <= 0.0 || to_seconds(HostClock::now() - start) < duration_s)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -111,14 +112,15 @@ int record(Options& options) {
   install_stop_signals();
   const auto hands = open_gloves(options);
   if (!hands) return report(hands.error());
-  flow::Tape tape;
+  flow::InputLog input_log;
   recording::RecorderOptions wanted;
   wanted.file = options.out;
   wanted.tell = note;
   const HostTime start = HostClock::now();
-  auto recorder = recording::Recorder::begin(setup_for(*hands, options), tape, std::move(wanted));
+  auto recorder =
+      recording::Recorder::begin(setup_for(*hands, options), input_log, std::move(wanted));
   if (!recorder) return report(recorder.error());
-  copy_samples(*hands, tape, options.duration_s);
+  copy_samples(*hands, input_log, options.duration_s);
   const auto recorded = (*recorder)->end();
   if (!recorded) return static_cast<int>(recorded.error().code); // it was told at once
   const double elapsed_s = to_seconds(HostClock::now() - start);

@@ -7,7 +7,7 @@ namespace nendo::app {
 namespace {
 
 // Times do not fall, whatever a recording says.
-double time_after(double before_s, const recording::Setup& setup, const flow::TapedTick& tick) {
+double time_after(double before_s, const recording::Setup& setup, const flow::LoggedTick& tick) {
   return std::max(before_s, seconds_between(setup.begun_host, tick.woke));
 }
 
@@ -20,7 +20,7 @@ struct Extent {
 Extent extent_of(recording::TakeReader reader) {
   Extent extent;
   while (const auto entry = reader.next()) {
-    const auto* const tick = std::get_if<flow::TapedTick>(&*entry);
+    const auto* const tick = std::get_if<flow::LoggedTick>(&*entry);
     if (tick == nullptr) continue;
     extent.last_s = time_after(extent.last_s, reader.setup(), *tick);
     if (extent.ticks++ == 0) extent.first_s = extent.last_s;
@@ -57,7 +57,7 @@ Result<std::unique_ptr<RecordedFrames>> RecordedFrames::open(const std::filesyst
 bool RecordedFrames::next() {
   while (const auto entry = reader_.next()) {
     if (!replay_->feed(*entry)) continue;
-    time_s_ = time_after(time_s_, setup(), std::get<flow::TapedTick>(*entry));
+    time_s_ = time_after(time_s_, setup(), std::get<flow::LoggedTick>(*entry));
     replay_->loop().frames().update();
     return true;
   }

@@ -109,7 +109,7 @@ Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) 
   done.to_the_end = true;
   while (const auto entry = reader->next()) {
     compare_shapes(*reader, (*replay)->loop(), done);
-    if (const auto* tick = std::get_if<flow::TapedTick>(&*entry)) {
+    if (const auto* tick = std::get_if<flow::LoggedTick>(&*entry)) {
       if (tick->woke >= last) done.to_the_end = false;
       pace.wait_for(tick->woke);
       if (stop_requested()) done.to_the_end = false;

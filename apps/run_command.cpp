@@ -130,8 +130,8 @@ int run(CommandOptions& options) {
     if (!opened) return report(opened.error());
     browser = *std::move(opened);
   }
-  Bell bell;
-  auto hands = open_hands(wanted, *model, bell);
+  EventCount event_count;
+  auto hands = open_hands(wanted, *model, event_count);
   if (!hands) return report(hands.error());
   ServiceNotice service;
   Followers followers;

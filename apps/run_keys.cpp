@@ -30,7 +30,7 @@ RunKeys::RunKeys(const RunOptions& options, const deform::Mesh& model, RunRecord
       "q ends");
 }
 
-bool RunKeys::obey(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
+bool RunKeys::handle(std::chrono::milliseconds patience, flow::DeformLoop& loop) {
   const auto key = keys_.next(patience);
   if (!key) return true;
   const bool held = loop.frames().front().held;
@@ -57,7 +57,7 @@ void RunKeys::ask(flow::Request request) {
     tell("the loop does not answer, so it was not asked to " + std::string(name_of(request)));
 }
 
-std::string RunKeys::keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop) {
+std::string RunKeys::keep(const flow::SaveRequest& wanted, flow::DeformLoop& loop) {
   std::string words = wanted.shape ? save(loop) : "";
   if (wanted.recording) words += (words.empty() ? "" : "; ") + keep_recording();
   tell(words);

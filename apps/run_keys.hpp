@@ -8,7 +8,7 @@
 
 #include <nendo/deform/mesh.hpp>
 #include <nendo/flow/deform_loop.hpp>
-#include <nendo/flow/keepsakes.hpp>
+#include <nendo/flow/save_request.hpp>
 
 #include "keys.hpp"
 #include "run_recording.hpp"
@@ -23,11 +23,11 @@ public:
 
   /// Waits so long for a key, and does what it stands for; the user sees the frame at the front.
   /// False: the run is to end.
-  bool obey(std::chrono::milliseconds patience, flow::DeformLoop& loop);
+  bool handle(std::chrono::milliseconds patience, flow::DeformLoop& loop);
   /// What keys want kept, since the last call.
-  flow::Keepsakes next_keepsakes() noexcept { return std::exchange(wanted_, {}); }
+  flow::SaveRequest next_save_request() noexcept { return std::exchange(wanted_, {}); }
   /// Keeps it; what became of that, which standard error tells, too.
-  std::string keep(const flow::Keepsakes& wanted, flow::DeformLoop& loop);
+  std::string keep(const flow::SaveRequest& wanted, flow::DeformLoop& loop);
 
 private:
   void ask(flow::Request request);
@@ -40,7 +40,7 @@ private:
   const deform::Mesh& model_;
   std::string out_;
   RunRecorder& recorder_;
-  flow::Keepsakes wanted_;
+  flow::SaveRequest wanted_;
   int saved_ = 0;
 };
 

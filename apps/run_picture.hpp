@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include <nendo/flow/deform_loop.hpp>
-#include <nendo/viewer/moment.hpp>
+#include <nendo/viewer/scene_frame.hpp>
 
 namespace nendo::app {
 
@@ -25,7 +25,7 @@ private:
   deform::Mesh before_;
   deform::Supports supports_;
   viewer::HoldFollower holds_;
-  viewer::Moment first_, last_;
+  viewer::SceneFrame first_, last_;
   double units_per_metre_ = 0.0; ///< 0: no frame has been seen
 };
 

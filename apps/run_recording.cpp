@@ -62,9 +62,9 @@ recording::Setup begin_setup(const std::vector<OpenHand>& hands, const std::stri
   return setup;
 }
 
-flow::Tape* RunRecorder::tape_for(const RecordingOptions& options) {
-  tape_ = options.wanted() ? std::make_unique<flow::Tape>() : nullptr;
-  return tape_.get();
+flow::InputLog* RunRecorder::input_log_for(const RecordingOptions& options) {
+  input_log_ = options.wanted() ? std::make_unique<flow::InputLog>() : nullptr;
+  return input_log_.get();
 }
 
 std::string RunRecorder::next_name(const RecordingOptions& options, bool with_model) {
@@ -79,7 +79,7 @@ std::string RunRecorder::next_name(const RecordingOptions& options, bool with_mo
 
 Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& placed,
                                 const std::vector<OpenHand>& hands, const deform::Mesh& model) {
-  if (!tape_) return {};
+  if (!input_log_) return {};
   const auto& asked = options.recording;
   const auto sum = recording::sum_of(model.vertices);
   const bool with_model = sum != loaded_;
@@ -105,7 +105,7 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
   wanted.kept_stem = asked.kept_stem;
   wanted.keep_on_switch = options.loop.switch_action == flow::SwitchAction::keep;
   wanted.tell = note;
-  auto recorder = recording::Recorder::begin(setup, *tape_, std::move(wanted));
+  auto recorder = recording::Recorder::begin(setup, *input_log_, std::move(wanted));
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);
   keeps_ = asked.keep_last_s > 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// A run that is recorded: its options, the tape and the recorder beside the loop.
+// A run that is recorded: its options, the input log and the recorder beside the loop.
 
 #include <memory>
 #include <optional>
@@ -49,7 +49,7 @@ public:
   explicit RunRecorder(const deform::Mesh& loaded) : loaded_(recording::sum_of(loaded.vertices)) {}
 
   /// What the next loop is to record on; null: nothing is wanted of it.
-  flow::Tape* tape_for(const RecordingOptions& options);
+  flow::InputLog* input_log_for(const RecordingOptions& options);
   /// Before the loop runs. Error: failed, if the files cannot be made; nothing is recorded then.
   Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
                      const std::vector<OpenHand>& hands, const deform::Mesh& model);
@@ -65,7 +65,7 @@ public:
 private:
   std::string next_name(const RecordingOptions& options, bool with_model);
 
-  std::unique_ptr<flow::Tape> tape_;
+  std::unique_ptr<flow::InputLog> input_log_;
   std::unique_ptr<recording::Recorder> recorder_;
   recording::ShapeSum loaded_;
   int number_ = 1; ///< of the latest recording's name

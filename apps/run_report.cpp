@@ -20,7 +20,7 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
   }
   line = text;
   std::snprintf(text, sizeof text, "  %llu ticks, %llu missed",
-                static_cast<unsigned long long>(frame.ticks),
+                static_cast<unsigned long long>(frame.ticks_run),
                 static_cast<unsigned long long>(frame.missed));
   line += text;
   for (const Side side : {Side::left, Side::right}) {

@@ -87,9 +87,9 @@ ordered_json published_json(const RunOutcome& outcome) {
 } // namespace
 
 void print_progress_json(const flow::Frame& frame, double elapsed_s) {
-  ordered_json line{{"event", "progress"},  {"elapsed_s", elapsed_s},
-                    {"ticks", frame.ticks}, {"missed", frame.missed},
-                    {"held", frame.held},   {"pairs_held_apart", frame.chain.held_pairs}};
+  ordered_json line{{"event", "progress"},      {"elapsed_s", elapsed_s},
+                    {"ticks", frame.ticks_run}, {"missed", frame.missed},
+                    {"held", frame.held},       {"pairs_held_apart", frame.chain.held_pairs}};
   for (const Side side : {Side::left, Side::right}) {
     const auto& hand = frame.hands[flow::Placement::index_of(side)];
     if (!hand.present) continue;

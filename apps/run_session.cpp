@@ -105,9 +105,9 @@ public:
   }
 
 private:
-  Result<void> begin_loop(const std::optional<Legacy>& legacy) {
-    options_.loop.tape = recorder_.tape_for(options_.recording);
-    auto placed = place_loop(options_, hands_, model_, legacy);
+  Result<void> begin_loop(const std::optional<Carryover>& carryover) {
+    options_.loop.input_log = recorder_.input_log_for(options_.recording);
+    auto placed = place_loop(options_, hands_, model_, carryover);
     if (!placed) return placed.error();
     placed_ = *std::move(placed);
     if (const auto begun = recorder_.begin(options_, placed_.setup, hands_, model_); !begun)
@@ -137,12 +137,12 @@ private:
   }
 
   void keep_what_followers_want(RunKeys& keys) {
-    flow::Keepsakes wanted;
-    for_each_follower([&](Follower& follower) { wanted.add(follower.next_keepsakes()); });
+    flow::SaveRequest wanted;
+    for_each_follower([&](Follower& follower) { wanted.add(follower.next_save_request()); });
     keep_and_tell(wanted, keys);
   }
 
-  void keep_and_tell(const flow::Keepsakes& wanted, RunKeys& keys) {
+  void keep_and_tell(const flow::SaveRequest& wanted, RunKeys& keys) {
     if (!wanted.ask_anything()) return;
     const std::string words = keys.keep(wanted, *placed_.loop);
     for_each_follower([&](Follower& follower) { follower.tell(words); });
@@ -187,8 +187,8 @@ private:
     HostTime next_report = thread.start;
     bool unreported = false;
     while (!thread.ended && !stop_requested() && !is_over(options_, thread.start)) {
-      if (!keys.obey(patience, *placed_.loop)) return false;
-      keep_and_tell(keys.next_keepsakes(), keys);
+      if (!keys.handle(patience, *placed_.loop)) return false;
+      keep_and_tell(keys.next_save_request(), keys);
       placed_.loop->refill_undo();
       const bool fresh = frames.update();
       if (fresh) {
@@ -222,7 +222,7 @@ private:
     before_s_ += elapsed_s_;
     if (options_.duration_s > 0.0)
       options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
-    const Legacy legacy = legacy_of(*placed_.loop);
+    const Carryover carryover = carryover_of(*placed_.loop);
     const flow::LoopChange change = std::exchange(wanted_, {});
     apply({}, placed_, options_);
     const RunOptions options = options_;
@@ -230,12 +230,12 @@ private:
     apply(change, placed_, options_);
     if (change.reset) model_.vertices = loaded_;
     take_newest(hands_);
-    const auto begun = begin_loop(legacy);
+    const auto begun = begin_loop(carryover);
     if (begun) return {};
     note(begun.error().message + "; the run goes on as it was");
     options_ = options;
     model_.vertices = shape;
-    return begin_loop(legacy);
+    return begin_loop(carryover);
   }
 
   RunOptions options_;

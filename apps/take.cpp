@@ -34,7 +34,7 @@ public:
   Replayed(std::filesystem::path path, deform::Mesh model)
       : path_(std::move(path)), model_(std::move(model)) {}
 
-  Result<viewer::Moment> at(double time_s) {
+  Result<viewer::SceneFrame> at(double time_s) {
     if (replay_ == nullptr || time_s < time_s_) {
       if (const auto begun = begin(); !begun) return begun.error();
     }
@@ -52,7 +52,7 @@ public:
 
 private:
   static bool is_tick_after(const recording::Entry& entry, HostTime until) {
-    const auto* const tick = std::get_if<flow::TapedTick>(&entry);
+    const auto* const tick = std::get_if<flow::LoggedTick>(&entry);
     return tick != nullptr && tick->woke > until;
   }
 
@@ -87,7 +87,7 @@ private:
   std::unique_ptr<LoopReplay> replay_;
   std::optional<recording::Entry> next_;
   viewer::HoldFollower holds_;
-  viewer::Moment moment_;
+  viewer::SceneFrame moment_;
   double time_s_ = 0.0;
   bool seen_ = false; ///< moment_ is a tick's
 };
@@ -112,7 +112,7 @@ public:
   Played(std::filesystem::path path, std::unique_ptr<TimelineFrames> frames)
       : path_(std::move(path)), frames_(std::move(frames)) {}
 
-  Result<viewer::Moment> at(double time_s) {
+  Result<viewer::SceneFrame> at(double time_s) {
     if (seen_ && time_s < frames_->time_s() && time_s < moment_.time_s) {
       auto anew = TimelineFrames::open(path_);
       if (!anew) return anew.error();
@@ -137,7 +137,7 @@ private:
   std::filesystem::path path_;
   std::unique_ptr<TimelineFrames> frames_;
   viewer::HoldFollower holds_;
-  viewer::Moment moment_;
+  viewer::SceneFrame moment_;
   bool seen_ = false;
 };
 
@@ -171,8 +171,8 @@ Result<Take> read_take(const std::filesystem::path& path) {
   if (!mesh) return mesh.error();
   Take take;
   take.rest = *std::move(mesh);
-  take.moment_at = [vertices = take.rest.vertices](double) -> Result<viewer::Moment> {
-    viewer::Moment moment;
+  take.moment_at = [vertices = take.rest.vertices](double) -> Result<viewer::SceneFrame> {
+    viewer::SceneFrame moment;
     moment.vertices = vertices;
     return moment;
   };

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include <nendo/base/result.hpp>
-#include <nendo/viewer/moment.hpp>
+#include <nendo/viewer/scene_frame.hpp>
 
 namespace nendo::app {
 
@@ -14,7 +14,7 @@ struct Take {
   double units_per_metre = 0.0; ///< from the model to the stage; 0: as the loop would put it there
   double duration_s = 0.0;      ///< 0: nothing moves
   /// The moment at a time from 0 to duration_s, in any order. May block. Errors as read_take().
-  std::function<Result<viewer::Moment>(double time_s)> moment_at;
+  std::function<Result<viewer::SceneFrame>(double time_s)> moment_at;
 };
 
 /// Of a file, by what is in it: a mesh, a recording, whose loop runs again without a clock, or, by

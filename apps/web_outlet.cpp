@@ -26,8 +26,8 @@ Result<void> WebOutlet::begin(const PlacedLoop& placed, const deform::Mesh& mode
                                       " at most; run it without --web, or thin it out"};
   hands_ = &hands;
   const FrameRoom room = room_of_frames(placed);
-  tap_ =
-      std::make_shared<web::FrameTap>(layout, options.sculptor.mode, room.fields, room.functions);
+  tap_ = std::make_shared<web::FrameStream>(layout, options.sculptor.mode, room.fields,
+                                            room.functions);
   server_->present(
       tap_, web::model_message(layout, model, placed.setup.inputs,
                                {name, options.rate_hz, placed.setup.placement.units_per_metre,

@@ -22,7 +22,7 @@ public:
   std::optional<flow::Request> next_request() override;
   std::optional<flow::WristMove> next_wrist() override { return server_->next_wrist(); }
   flow::LoopChange next_change() override { return server_->next_change(); }
-  flow::Keepsakes next_keepsakes() override { return server_->next_keepsakes(); }
+  flow::SaveRequest next_save_request() override { return server_->next_save_request(); }
   void tell(const std::string& words) override { server_->tell(words); }
 
   const web::Server& server() const noexcept { return *server_; }
@@ -30,7 +30,7 @@ public:
 
 private:
   std::unique_ptr<web::Server> server_;
-  std::shared_ptr<web::FrameTap> tap_;
+  std::shared_ptr<web::FrameStream> tap_;
   const std::vector<OpenHand>* hands_ = nullptr;
   HostTime next_look_{};
 };

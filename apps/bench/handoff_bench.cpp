@@ -15,7 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <nendo/base/latest_value.hpp>
+#include <nendo/base/triple_buffer.hpp>
 
 #include "bench/rt_bench.hpp"
 #include "bench/two_threads.hpp"
@@ -55,7 +55,7 @@ public:
   void wake() noexcept {}
 
 private:
-  LatestValue<Frame> value_;
+  TripleBuffer<Frame> value_;
 };
 
 class Notified {

@@ -16,7 +16,7 @@ struct RtOptions {
 
 /// SpscRing, one element at a time and in batches, beside other rings. Takes some 0.2 s a round.
 Result<void> measure_rings(const RtOptions& options);
-/// What publishing a frame costs its writer: LatestValue beside a mutex and a condition variable.
+/// What publishing a frame costs its writer: TripleBuffer beside a mutex and a condition variable.
 /// Takes some 0.6 s a round.
 Result<void> measure_handoff(const RtOptions& options);
 

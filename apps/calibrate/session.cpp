@@ -67,7 +67,7 @@ struct Session {
                                      begun ? undetermined : SensorMask{}};
     terminal.draw(calibration_lines(picture, terminal.size()));
   }
-  std::optional<SessionEnd> obey(char key) {
+  std::optional<SessionEnd> handle(char key) {
     if (key == 'q') return SessionEnd::quit;
     if (key == 'w') return SessionEnd::written;
     if (key == ' ') begun = true;
@@ -92,7 +92,7 @@ Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::stri
     if (guide.is_done()) break;
     session.show();
     std::optional<SessionEnd> ended;
-    if (const auto key = session.terminal.key(frame_time)) ended = session.obey(*key);
+    if (const auto key = session.terminal.key(frame_time)) ended = session.handle(*key);
     if (stop_requested() || session.terminal.is_gone()) ended = SessionEnd::quit;
     if (!ended) continue;
     end = *ended;

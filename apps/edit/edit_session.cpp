@@ -47,7 +47,7 @@ Selection EditSession::key_of(const std::optional<StripKey>& key) const {
   return KeyRef{hands[key->lane].side, key->key};
 }
 
-void EditSession::obey(const viewer::EditWishes& wishes) {
+void EditSession::handle(const viewer::EditWishes& wishes) {
   if (wishes.select) go_to_key(key_of(*wishes.select));
   if (wishes.seek_s) seek(*wishes.seek_s);
   if (wishes.speed) head_.set_speed(*wishes.speed);
@@ -61,7 +61,7 @@ void EditSession::obey(const viewer::EditWishes& wishes) {
   }
   if (wishes.retiming) retime(*wishes.retiming);
   for (const EditCommand command : wishes.commands)
-    obey(command);
+    handle(command);
   follow_history();
   // Who wanted to save before, and could not, stays.
   const bool saves = std::find(wishes.commands.begin(), wishes.commands.end(), EditCommand::save) !=
@@ -69,7 +69,7 @@ void EditSession::obey(const viewer::EditWishes& wishes) {
   ended_ = ended_ || (wishes.quit && !(saves && history_.is_modified()));
 }
 
-void EditSession::obey(EditCommand command) {
+void EditSession::handle(EditCommand command) {
   const Timeline& timeline = history_.timeline();
   const auto lane = history_.selected() ? std::optional(history_.selected()->side) : std::nullopt;
   switch (command) {
@@ -217,7 +217,7 @@ const viewer::TimelineView& EditSession::view() {
   return view_;
 }
 
-const viewer::Moment& EditSession::moment() {
+const viewer::SceneFrame& EditSession::moment() {
   const auto& hands = history_.timeline().hands;
   const auto found = shape();
   moment_.time_s = head_.time_s();

@@ -12,7 +12,7 @@
 #include <nendo/timeline/hand_curve.hpp>
 #include <nendo/timeline/play_head.hpp>
 #include <nendo/timeline/shape_cache.hpp>
-#include <nendo/viewer/moment.hpp>
+#include <nendo/viewer/scene_frame.hpp>
 #include <nendo/viewer/timeline_view.hpp>
 
 #include "edit/glb_export.hpp"
@@ -26,7 +26,7 @@ public:
   EditSession(timeline::Timeline timeline, deform::Mesh model, std::string out);
 
   /// Does all that a person wants; what cannot be is told in the view's message.
-  void obey(const viewer::EditWishes& wishes);
+  void handle(const viewer::EditWishes& wishes);
   /// So much time has passed.
   void advance(double elapsed_s);
   /// As `select` and `seek_s` of wishes.
@@ -36,7 +36,7 @@ public:
   /// Of all as it is now.
   const viewer::TimelineView& view();
   /// The hands at the play head, exactly, and where they took hold; without vertices.
-  const viewer::Moment& moment();
+  const viewer::SceneFrame& moment();
   /// The nearest to the play head that there is.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
@@ -49,7 +49,7 @@ private:
   void tell(std::string message);
   /// Of what was done; an error's message in place of it.
   void tell(const Result<void>& done, const std::string& message);
-  void obey(viewer::EditCommand command);
+  void handle(viewer::EditCommand command);
   void try_out(const viewer::KeyDrag& drag);
   void try_out(const viewer::TipDrag& drag);
   void try_out(const viewer::KeyBlend& blend);
@@ -78,7 +78,7 @@ private:
   std::vector<timeline::HandCurve> curves_; ///< by the timeline's hands
   std::optional<std::uint64_t> followed_;   ///< the history's revision of which they are
   viewer::TimelineView view_;
-  viewer::Moment moment_;
+  viewer::SceneFrame moment_;
   bool ended_ = false;
 };
 

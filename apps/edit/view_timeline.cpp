@@ -76,7 +76,7 @@ Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const
     if (found.shape) window.follow(found.shape->shape);
     const viewer::TimelineView& view = session.view();
     const bool is_settled = found.fresh && !view.computing;
-    session.obey(window.show(view, session.moment()));
+    session.handle(window.show(view, session.moment()));
     if (const auto error = session.progress().error) return *error;
     if (is_settled) ++shown;
   } while (!session.has_ended() && !stop_requested() &&

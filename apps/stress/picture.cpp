@@ -162,7 +162,7 @@ void draw_histogram(SvgDrawing& drawing, const StressOutcome& outcome) {
 }
 
 void draw_course(SvgDrawing& drawing, const StressOutcome& outcome) {
-  const Timeline& course = outcome.tally.timeline();
+  const LatenessTrace& course = outcome.tally.timeline();
   const double length_s =
       to_seconds(course.slice_length()) * static_cast<double>(course.slices().size());
   double least_us = 10.0;

@@ -138,8 +138,8 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   const auto load = Load::start(options.load);
   if (!load) return load.error();
   run.grants = process.grants();
-  Bell bell;
-  const auto hands = open_hands(run, model, bell);
+  EventCount event_count;
+  const auto hands = open_hands(run, model, event_count);
   if (!hands) return hands.error();
   for (const auto& hand : *hands) {
     outcome->gloves.push_back(hand.glove->info().source);

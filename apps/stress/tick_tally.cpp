@@ -8,7 +8,7 @@ namespace nendo::app {
 
 using std::chrono::nanoseconds;
 
-void Timeline::add(HostTime time, nanoseconds lateness) {
+void LatenessTrace::add(HostTime time, nanoseconds lateness) {
   if (slices_.empty()) start_ = time;
   auto at =
       static_cast<std::size_t>(std::max(time - start_, HostClock::duration::zero()) / length_);

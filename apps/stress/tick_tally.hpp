@@ -30,7 +30,7 @@ struct Distribution {
 };
 
 /// The lateness over time, in at most so many slices; they get longer as time goes on.
-class Timeline {
+class LatenessTrace {
 public:
   static constexpr std::size_t most_slices = 512;
   struct Slice {
@@ -80,7 +80,7 @@ public:
   const std::array<Share, cause_names.size()>& causes() const noexcept { return causes_; }
   /// Of the lateness of incidents beyond the threshold, the part whose cause is known; 1 if none.
   double explained() const noexcept;
-  const Timeline& timeline() const noexcept { return timeline_; }
+  const LatenessTrace& timeline() const noexcept { return timeline_; }
 
 private:
   void add_stages(const flow::TickRecord& record) noexcept;
@@ -101,7 +101,7 @@ private:
   std::array<flow::Histogram, phase_names.size()> busy_stages_;
   std::vector<Incident> worst_;
   std::array<Share, cause_names.size()> causes_{};
-  Timeline timeline_;
+  LatenessTrace timeline_;
 };
 
 } // namespace nendo::app

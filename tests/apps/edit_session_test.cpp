@@ -33,19 +33,19 @@ struct Edited {
   void wish(EditCommand command) {
     EditWishes wishes;
     wishes.commands = {command};
-    session.obey(wishes);
+    session.handle(wishes);
   }
   void click(StripKey key) {
     EditWishes wishes;
     wishes.select.emplace(key);
-    session.obey(wishes);
+    session.handle(wishes);
   }
   template <class Tried>
   void try_out(const Tried& tried, bool keep = false) {
     EditWishes wishes;
     wishes.tried = tried;
     wishes.keep = keep;
-    session.obey(wishes);
+    session.handle(wishes);
   }
   const Timeline& now() const { return session.history().timeline(); }
   const Key& key(std::size_t hand, std::size_t key) const { return now().hands[hand].keys[key]; }
@@ -74,7 +74,7 @@ TEST_SUITE("edit_session") {
       holds.follow((*player)->frame());
       edited.session.seek((*player)->time_s());
       CHECK_FALSE(edited.session.view().shape_is_old);
-      const viewer::Moment& moment = edited.session.moment();
+      const viewer::SceneFrame& moment = edited.session.moment();
       CHECK(moment.held == (*player)->frame().held);
       for (std::size_t slot = 0; slot < 2; ++slot) {
         REQUIRE(moment.hands[slot]);
@@ -111,7 +111,7 @@ TEST_SUITE("edit_session") {
     CHECK(edited.session.view().refused);
     EditWishes drop;
     drop.drop = true;
-    edited.session.obey(drop);
+    edited.session.handle(drop);
     CHECK(test::same_bits(edited.now(), edited.first));
   }
 
@@ -220,11 +220,11 @@ TEST_SUITE("edit_session") {
     EditWishes wishes;
     wishes.commands = {EditCommand::mirror, EditCommand::save};
     wishes.quit = true;
-    elsewhere.obey(wishes);
+    elsewhere.handle(wishes);
     CHECK(elsewhere.view().refused);
     CHECK_FALSE(elsewhere.has_ended());
     wishes.commands.clear();
-    elsewhere.obey(wishes); // without saving
+    elsewhere.handle(wishes); // without saving
     CHECK(elsewhere.has_ended());
   }
 

@@ -16,7 +16,9 @@ public:
   Result<void> start(SampleRing& /*ring*/) override { return {}; }
   void stop() noexcept override {}
   driver::GloveStats stats() const noexcept override { return {}; }
-  void give(const driver::Feedback& feedback) noexcept override { given.push_back(feedback.light); }
+  void set_feedback(const driver::Feedback& feedback) noexcept override {
+    given.push_back(feedback.light);
+  }
 
   std::vector<bool> given;
 

@@ -13,8 +13,8 @@ TEST_SUITE("place_loop") {
     const auto mesh = test::sphere(12, 24, 1.0);
     RunOptions options;
     options.right = "sim";
-    Bell bell;
-    auto hands = open_hands(options, mesh, bell);
+    EventCount event_count;
+    auto hands = open_hands(options, mesh, event_count);
     REQUIRE(hands);
     OpenHand& hand = hands->front();
     constexpr Sensor sensor = Sensor::thumb_mcp;

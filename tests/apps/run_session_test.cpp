@@ -117,7 +117,7 @@ public:
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     return fresh && ++frames_ >= 60 ? Verdict::end : Verdict::go_on;
   }
-  flow::Keepsakes next_keepsakes() override { return {frames_ >= 60 && told.empty(), false}; }
+  flow::SaveRequest next_save_request() override { return {frames_ >= 60 && told.empty(), false}; }
   void tell(const std::string& words) override { told.push_back(words); }
 
   std::vector<std::string> told;
@@ -147,7 +147,7 @@ struct Run {
   test::TemporaryFolder folder;
   deform::Mesh mesh = test::sphere(24, 48, 1.0);
   RunOptions options;
-  Bell bell;
+  EventCount event_count;
 
   Run() {
     options.left = options.right = "sim:sculpt";
@@ -157,7 +157,7 @@ struct Run {
     REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
   }
   RunOutcome follow(std::vector<Wisher*> wishers) {
-    auto hands = open_hands(options, mesh, bell);
+    auto hands = open_hands(options, mesh, event_count);
     REQUIRE(hands);
     Ender ender({wishers.begin(), wishers.end()});
     const Followers followers{[](const auto&, double) {}, &ender, {wishers.begin(), wishers.end()}};
@@ -199,8 +199,8 @@ TEST_SUITE("run_session") {
     options.left = options.right = "sim:sculpt";
     options.mesh = "ball";
     options.out = (folder.path() / "out.ply").string();
-    Bell bell;
-    auto hands = open_hands(options, mesh, bell);
+    EventCount event_count;
+    auto hands = open_hands(options, mesh, event_count);
     REQUIRE(hands);
     Renewer renewer;
     const auto outcome = run_session(options, *hands, mesh, {[](const auto&, double) {}, &renewer});
@@ -221,7 +221,7 @@ TEST_SUITE("run_session") {
 
   TEST_CASE("what is to be kept just before the end is kept, and who asked is told where") {
     Run run;
-    auto hands = open_hands(run.options, run.mesh, run.bell);
+    auto hands = open_hands(run.options, run.mesh, run.event_count);
     REQUIRE(hands);
     Keeper keeper;
     REQUIRE(run_session(run.options, *hands, run.mesh, {[](const auto&, double) {}, &keeper}));
@@ -248,8 +248,8 @@ TEST_SUITE("run_session") {
     const auto taken = folder.path() / "take-2.nendo"; // somebody else's
     std::ofstream(taken) << "kept";
     std::ofstream(folder.path() / "take.model.obj") << "of a take that is gone";
-    Bell bell;
-    auto hands = open_hands(options, mesh, bell);
+    EventCount event_count;
+    auto hands = open_hands(options, mesh, event_count);
     REQUIRE(hands);
     Renewer renewer;
     renewer.unrecorded = 1;

@@ -33,8 +33,8 @@ TEST_SUITE("touching_glove") {
     app::RunOptions options;
     options.left = "sim:touch?seed=7";
     options.right = "sim:touch?seed=7";
-    Bell bell;
-    const auto hands = app::open_hands(options, ball, bell);
+    EventCount event_count;
+    const auto hands = app::open_hands(options, ball, event_count);
     REQUIRE(hands);
     for (const auto& hand : *hands)
       hand.glove->stop(); // so that the first samples are what the loop shows

@@ -11,8 +11,8 @@
 #include <doctest/doctest.h>
 
 #include <nendo/base/frame_pool.hpp>
-#include <nendo/base/latest_value.hpp>
 #include <nendo/base/overwriting_ring.hpp>
+#include <nendo/base/triple_buffer.hpp>
 
 #include "support/parked.hpp"
 
@@ -133,7 +133,7 @@ TEST_SUITE("parked") {
   }
 
   TEST_CASE("a writer publishes beside a reader that stands still, and the other way round") {
-    nendo::LatestValue<Block> value(Block{});
+    nendo::TripleBuffer<Block> value(Block{});
     std::uint64_t number = 0;
     std::uint64_t seen = 0;
     bool forward = true;

@@ -361,7 +361,7 @@ TEST_SUITE("cyberglove_driver") {
                             "A\xFF\x01\x02\x03\x04\x05\x06S",
                             14);
     const auto is_shown = [&] { return port.control.heard().ends_with(shown); };
-    (*glove)->give(feedback);
+    (*glove)->set_feedback(feedback);
     CHECK(eventually(is_shown));
     std::uint64_t before = (*glove)->stats().records;
     CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
@@ -385,7 +385,7 @@ TEST_SUITE("cyberglove_driver") {
     REQUIRE((*glove)->start(ring));
     REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
     const std::string heard = port.control.heard();
-    (*glove)->give({true, {}, {}});
+    (*glove)->set_feedback({true, {}, {}});
     const std::uint64_t before = (*glove)->stats().records;
     CHECK(eventually([&] { return (*glove)->stats().records > before + 200; }));
     CHECK(port.control.heard() == heard);

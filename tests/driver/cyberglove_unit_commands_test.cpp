@@ -126,7 +126,7 @@ TEST_SUITE("cyberglove_commands") {
   TEST_CASE("without a glove records end in eg, and the unit says so") {
     Bench bench;
     bench.ask("u 1\r");
-    bench.unit.befall({Incident::Kind::glove_out}, bench.now);
+    bench.unit.inject({Incident::Kind::glove_out}, bench.now);
     CHECK(bench.ask("?G") == Bytes{'?', 'G', 1, 0});
     CHECK((bench.ask("?P")[2] & 1) == 0);
     const Bytes record = bench.ask("G");
@@ -138,7 +138,7 @@ TEST_SUITE("cyberglove_commands") {
     for (const Bytes& both : split(bench.after(50ms)))
       CHECK(Bytes(both.end() - 5, both.end()) == Bytes{'e', 'g', 'e', 's', 0});
     bench.ask(Bytes{0x03});
-    bench.unit.befall({Incident::Kind::glove_in}, bench.now);
+    bench.unit.inject({Incident::Kind::glove_in}, bench.now);
     CHECK(bench.ask("?G") == Bytes{'?', 'G', 3, 0});
     CHECK(bench.ask("G").size() == 1 + 22 + 1 + 1);
   }
@@ -146,8 +146,8 @@ TEST_SUITE("cyberglove_commands") {
   TEST_CASE("another glove is known only after 0x09 or a restart") {
     for (const bool restart : {false, true}) {
       Bench bench;
-      bench.unit.befall({Incident::Kind::glove_out}, bench.now);
-      bench.unit.befall({Incident::Kind::glove_in, 18, Side::left}, bench.now);
+      bench.unit.inject({Incident::Kind::glove_out}, bench.now);
+      bench.unit.inject({Incident::Kind::glove_in, 18, Side::left}, bench.now);
       CHECK(bench.ask("?S") == Bytes{'?', 'S', 22, 0});
       CHECK(bench.ask("G").size() == 24);
       CHECK(bench.ask(Bytes{static_cast<std::uint8_t>(restart ? 0x12 : 0x09)}).size() ==
@@ -164,7 +164,7 @@ TEST_SUITE("cyberglove_commands") {
     Bench bench;
     bench.ask("d 1\r");
     bench.ask("S");
-    bench.unit.befall({Incident::Kind::power_cycle}, bench.now);
+    bench.unit.inject({Incident::Kind::power_cycle}, bench.now);
     CHECK(bench.after(5s).empty());
     CHECK(bench.ask("?D") == Bytes{'?', 'D', 0, 0});
     bench.ask("d 1\r");

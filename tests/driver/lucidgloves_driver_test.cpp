@@ -175,7 +175,7 @@ TEST_SUITE("lucidgloves_driver") {
     REQUIRE((*glove)->start(ring));
     Feedback feedback;
     feedback.resistance = {1, 2, 3, 4, 5};
-    (*glove)->give(feedback);
+    (*glove)->set_feedback(feedback);
     CHECK(eventually([&] { return ring.size() > 100; }));
     (*glove)->stop();
     CHECK(port.look<Listener>(unit) == 0);
@@ -222,7 +222,7 @@ TEST_SUITE("lucidgloves_driver") {
     REQUIRE((*glove)->start(ring));
     Feedback feedback;
     feedback.resistance = {0, 1, 500, 1000, 65535};
-    (*glove)->give(feedback);
+    (*glove)->set_feedback(feedback);
     CHECK(eventually([&] { return brakes_of(port) == std::array{0, 1, 500, 1000, 1000}; }));
     (*glove)->stop();
     CHECK(eventually([&] { return brakes_of(port) == std::array{0, 0, 0, 0, 0}; }));
@@ -240,10 +240,10 @@ TEST_SUITE("lucidgloves_driver") {
     REQUIRE((*glove)->start(ring));
     Feedback feedback;
     feedback.resistance = {1, 2, 3, 4, 5};
-    (*glove)->give(feedback);
+    (*glove)->set_feedback(feedback);
     CHECK(eventually([&] { return written.last() == "A1B2C3D4E5\n"; })); // of which it takes a part
     feedback.resistance[0] = 9;
-    (*glove)->give(feedback);
+    (*glove)->set_feedback(feedback);
     CHECK(eventually([&] { return written.last() == "\nA9B2C3D4E5\n"; }));
     (*glove)->stop();
     CHECK(written.last() == "A0B0C0D0E0\n");
@@ -257,12 +257,12 @@ TEST_SUITE("lucidgloves_driver") {
     REQUIRE((*glove)->start(ring));
     Feedback feedback;
     feedback.resistance = {700, 600, 500, 400, 300};
-    (*glove)->give(feedback);
+    (*glove)->set_feedback(feedback);
     REQUIRE(eventually([&] { return brakes_of(port)[0] == 700; }));
     port.mute = true;
     REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
     feedback.resistance[0] = 650; // given while it is silent
-    (*glove)->give(feedback);
+    (*glove)->set_feedback(feedback);
     port.mute = false;
     CHECK(eventually([&] { return brakes_of(port) == std::array{650, 600, 500, 400, 300}; }));
   }

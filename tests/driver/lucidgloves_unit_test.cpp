@@ -89,7 +89,7 @@ TEST_SUITE("lucidgloves_unit") {
     CHECK(bench.unit.brakes() == std::array{0, 900, 900, 900, 900});
   }
 
-  TEST_CASE("brakes obey whole lines, cut anywhere, and never go past locked") {
+  TEST_CASE("brakes handle whole lines, cut anywhere, and never go past locked") {
     Bench bench;
     bench.ask("A1B2C3");
     CHECK(bench.unit.brakes() == std::array{0, 0, 0, 0, 0});

@@ -37,7 +37,8 @@ bool same(const GloveSample& a, const GloveSample& b) {
 } // namespace
 
 TEST_SUITE("sample_record") {
-  TEST_CASE("a tape gives samples back as they were, and passes over kinds it does not know") {
+  TEST_CASE(
+      "an input log gives samples back as they were, and passes over kinds it does not know") {
     std::mt19937_64 random(7);
     std::vector<std::byte> payload;
     ByteWriter writer(payload);
@@ -62,7 +63,7 @@ TEST_SUITE("sample_record") {
     CHECK(records.ended_well());
   }
 
-  TEST_CASE("a tape that ends in the middle of an entry says so") {
+  TEST_CASE("an input log that ends in the middle of an entry says so") {
     std::vector<std::byte> payload;
     ByteWriter writer(payload);
     put_sample(writer, {});

@@ -82,11 +82,11 @@ TEST_SUITE("proofs") {
   }
 
   TEST_CASE("the latest value keeps its laws, and needs every order that it states") {
-    prove("latest_value.hpp", latest_value_scenarios());
+    prove("triple_buffer.hpp", latest_value_scenarios());
   }
 
   TEST_CASE("the sequence lock's stage keeps its laws, and needs every order that it states") {
-    prove("sequence_stage.hpp", sequence_stage_scenarios());
+    prove("seq_lock.hpp", sequence_stage_scenarios());
   }
 
   TEST_CASE("the offer of a job keeps its laws, and needs every order that it states") {

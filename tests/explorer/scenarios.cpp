@@ -5,10 +5,10 @@
 
 #include <nendo/base/frame_pool.hpp>
 #include <nendo/base/job_offer.hpp>
-#include <nendo/base/latest_value.hpp>
 #include <nendo/base/overwriting_ring.hpp>
-#include <nendo/base/sequence_stage.hpp>
+#include <nendo/base/seq_lock.hpp>
 #include <nendo/base/spsc_ring.hpp>
+#include <nendo/base/triple_buffer.hpp>
 
 #include "explorer/atomics.hpp"
 
@@ -102,7 +102,7 @@ Program overwriting_program(Value pushed, const std::function<void(Overwriting&)
 }
 
 struct Latest {
-  LatestValue<Value, Explored> value{0};
+  TripleBuffer<Value, Explored> value{0};
   Value overwritten = 0; ///< the writer's
   Value seen = 0;        ///< the reader's
   Value last = 0;
@@ -160,7 +160,7 @@ struct Pool {
 /// Two slots of two words each, as a segment has them for its readers.
 struct Staged {
   struct Slot {
-    SequenceStage<Explored> stage;
+    SeqLock<Explored> stage;
     std::array<Explored::Atomic<Value>, 2> words;
   };
   std::array<Slot, 2> slots;

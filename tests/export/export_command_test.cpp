@@ -64,9 +64,9 @@ TEST_SUITE("export_command") {
     const RecordedRun run("type1");
     const std::string whole = contents(run.path("take.nendo"));
     std::string damaged = whole;
-    const std::size_t tape = damaged.find("TAPE");
-    REQUIRE(tape != std::string::npos);
-    damaged[tape + 40] = static_cast<char>(damaged[tape + 40] ^ 1);
+    const std::size_t input_log = damaged.find("TAPE");
+    REQUIRE(input_log != std::string::npos);
+    damaged[input_log + 40] = static_cast<char>(damaged[input_log + 40] ^ 1);
     for (const std::string out : {"a.glb", "a.pc2", "a.mdd", "hands.bvh", "a.csv", "a-%03d.obj"}) {
       CAPTURE(out);
       test::write_file(run.path("take.nendo"), whole);

@@ -160,16 +160,16 @@ TEST_SUITE("pacer") {
   TEST_CASE("paced by samples, a tick comes with each sample, and without any after a while") {
     PaceOptions options = at_1khz(OverrunPolicy::sample);
     options.longest_wait = 20ms;
-    Bell bell;
-    Pacer pacer(options, HostClock::now(), &bell);
+    EventCount event_count;
+    Pacer pacer(options, HostClock::now(), &event_count);
     const HostTime begin = HostClock::now();
     const auto silent = pacer.wait();
     CHECK(HostClock::now() >= begin + options.longest_wait);
     CHECK(silent.scheduled >= begin + options.longest_wait);
     CHECK_FALSE(pacer.end_tick(HostClock::now()));
     options.longest_wait = 1h;
-    Pacer patient(options, HostClock::now(), &bell);
-    std::thread glove([&] { bell.ring(); });
+    Pacer patient(options, HostClock::now(), &event_count);
+    std::thread glove([&] { event_count.notify(); });
     const auto due = patient.wait();
     glove.join();
     CHECK(due.number == 0);

@@ -14,8 +14,8 @@ namespace {
 
 /// One hand before a ball.
 struct OneHand {
-  Bell bell;
-  SampleRing ring{64, &bell};
+  EventCount event_count;
+  SampleRing ring{64, &event_count};
   GloveSample first = test::bent_sample(Side::right, 0, HostClock::now());
   LoopOptions options;
   deform::Mesh model = test::ball(12);
@@ -23,7 +23,7 @@ struct OneHand {
   OneHand() {
     options.rate_hz = 1000.0;
     options.sculptor.deformer.supports = deform::one_radius(0.5);
-    options.bell = &bell;
+    options.event_count = &event_count;
   }
   DeformLoop loop() {
     const hand::HandSkeleton skeleton(Side::right);
@@ -131,7 +131,7 @@ TEST_SUITE("tick_record") {
     }
     CHECK(shown == 50);
     stop = true;
-    hand.bell.ring();
+    hand.event_count.notify();
     thread.join();
     CHECK(loop.stats().ticks == 50);
     CHECK(loop.stats().missed == 0);

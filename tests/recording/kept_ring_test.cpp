@@ -44,7 +44,7 @@ Kept read(const std::filesystem::path& path) {
   CHECK(reader->setup().loop.has_value());
   Kept kept;
   while (const auto entry = reader->next()) {
-    if (const auto* tick = std::get_if<flow::TapedTick>(&*entry))
+    if (const auto* tick = std::get_if<flow::LoggedTick>(&*entry))
       kept.ticks.push_back(tick->number);
     if (const auto* gap = std::get_if<Gap>(&*entry)) {
       ++kept.gaps;
@@ -72,7 +72,7 @@ struct Filled {
     std::vector<std::byte> payload;
     ByteWriter writer(payload);
     for (std::uint64_t n = 0; n < ticks; ++n)
-      put_entry(writer, flow::TapedTick{next_tick++, now, now, 0});
+      put_entry(writer, flow::LoggedTick{next_tick++, now, now, 0});
     now += 1s;
     ring->push(payload, ticks, now);
   }

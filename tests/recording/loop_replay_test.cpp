@@ -176,10 +176,10 @@ TEST_SUITE("loop_replay") {
     CHECK(replay->loop().final_shape() == live.test.loop->final_shape());
   }
 
-  TEST_CASE("what found the tape full is counted, and the replay says that it is not exact") {
+  TEST_CASE("what found the input log full is counted, and the replay says that it is not exact") {
     RecordedLoop live(Mode::type1);
     const HostTime begin = HostClock::now();
-    // Nobody empties the tape: 3 entries a tick, and 2^14 of them fit.
+    // Nobody empties the input log: 3 entries a tick, and 2^14 of them fit.
     constexpr std::uint64_t ticks = 6000;
     for (std::uint64_t tick = 0; tick < ticks; ++tick) {
       live.test.bend(static_cast<int>(tick % 20), begin + tick * std::chrono::milliseconds(11));

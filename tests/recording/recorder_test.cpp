@@ -26,7 +26,7 @@ Counts counts_of(const std::filesystem::path& path) {
   while (const auto entry = reader->next()) {
     counts.samples += std::holds_alternative<driver::RecordedSample>(*entry);
     counts.requests += std::holds_alternative<flow::Request>(*entry);
-    counts.ticks += std::holds_alternative<flow::TapedTick>(*entry);
+    counts.ticks += std::holds_alternative<flow::LoggedTick>(*entry);
     counts.gaps += std::holds_alternative<Gap>(*entry);
   }
   counts.damages = reader->chunks().damage_count();

@@ -176,7 +176,7 @@ TEST_SUITE("take_reader") {
         CHECK(is_sample(lines[at], sample->glove, sample->sample));
       if (const auto* request = std::get_if<flow::Request>(&*entry))
         CHECK(lines[at]["request"] == static_cast<int>(*request));
-      if (const auto* tick = std::get_if<flow::TapedTick>(&*entry)) {
+      if (const auto* tick = std::get_if<flow::LoggedTick>(&*entry)) {
         CHECK(lines[at]["tick"] == tick->number);
         CHECK(lines[at]["scheduled"] == ns(tick->scheduled));
         CHECK(lines[at]["woke"] == ns(tick->woke));
@@ -217,17 +217,17 @@ TEST_SUITE("take_reader") {
     CHECK(setup.hands.size() == 2);
   }
 
-  TEST_CASE("the setup is complete with the first tape, whatever comes behind it") {
+  TEST_CASE("the setup is complete with the first input log, whatever comes behind it") {
     std::uint32_t chunks = 0;
     const auto setup = setup_bytes(unusual_setup(), chunks);
     auto source = driver::ChunkReader::of(setup, "test");
     REQUIRE(source);
     std::vector<std::byte> bytes;
     ByteWriter(bytes).bytes(driver::file_header());
-    std::vector<std::byte> tape;
-    ByteWriter writer(tape);
+    std::vector<std::byte> input_log;
+    ByteWriter writer(input_log);
     put_entry(writer, flow::Request::grab);
-    driver::append_chunk(bytes, driver::tape_chunk, 0, tape);
+    driver::append_chunk(bytes, driver::tape_chunk, 0, input_log);
     while (const auto chunk = source->next())
       driver::append_chunk(bytes, chunk->type, chunk->number + 1, chunk->payload);
     auto reader = TakeReader::of(bytes, "test");

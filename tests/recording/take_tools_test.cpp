@@ -67,7 +67,7 @@ std::vector<Entry> entries_of(const std::filesystem::path& path) {
 std::uint64_t ticks_in(const std::vector<Entry>& entries) {
   return static_cast<std::uint64_t>(
       std::count_if(entries.begin(), entries.end(), [](const Entry& entry) {
-        return std::holds_alternative<flow::TapedTick>(entry);
+        return std::holds_alternative<flow::LoggedTick>(entry);
       }));
 }
 
@@ -161,7 +161,8 @@ TEST_SUITE("take_tools") {
         CHECK(mended->damage_count == 0);
         const auto saved = entries_of(take.made);
         CHECK(saved.size() <= whole + 1);
-        // One chunk's worth at most: of the setup, which may leave the gloves unknown, or a tape's.
+        // One chunk's worth at most: of the setup, which may leave the gloves unknown, or an input
+        // log's.
         if (!cuts && summary && summary->gloves.size() == 2) CHECK(ticks_in(saved) >= 10);
       }
     }
@@ -173,7 +174,7 @@ TEST_SUITE("take_tools") {
     const auto all = entries_of(take.live.path);
     const auto tick_time = [&](std::uint64_t number) {
       for (const Entry& entry : all) {
-        const auto* tick = std::get_if<flow::TapedTick>(&entry);
+        const auto* tick = std::get_if<flow::LoggedTick>(&entry);
         if (tick != nullptr && tick->number == number) return tick->woke;
       }
       return HostTime{};

@@ -52,7 +52,8 @@ struct LoopUnderTest {
   explicit LoopUnderTest(flow::Mode mode, std::uint32_t rings_of_ball = 24, double rate_hz = 1000.0,
                          flow::SwitchAction switch_action = flow::SwitchAction::none,
                          bool gated = true, hand::FilterKind filter = hand::FilterKind::off,
-                         std::optional<CountScale> adapt = std::nullopt, flow::Tape* tape = nullptr,
+                         std::optional<CountScale> adapt = std::nullopt,
+                         flow::InputLog* input_log = nullptr,
                          std::optional<deform::InjectiveOptions> injective = std::nullopt)
       : model(ball(rings_of_ball)) {
     const HostTime now = HostClock::now();
@@ -71,7 +72,7 @@ struct LoopUnderTest {
       inputs.back().adapt = adapt;
     }
     placement = flow::place_hands(model, tips);
-    options.tape = tape;
+    options.input_log = input_log;
     options.sculptor.deformer.injective = injective;
     options.rate_hz = rate_hz;
     options.switch_action = switch_action;

@@ -35,7 +35,7 @@ private:
   void look_on(LoopUnderTest& test) {
     const viewer::SceneBuilder builder(test.model, test.placement.units_per_metre);
     viewer::HoldFollower holds;
-    viewer::Moment moment;
+    viewer::SceneFrame moment;
     viewer::Scene scene;
     for (auto next = HostClock::now(); !over_;) {
       next += std::chrono::milliseconds(1);

@@ -52,7 +52,7 @@ public:
     const std::string_view whole = input.substr(0, size);
     heard += whole;
     skip(input, size);
-    return obey(whole);
+    return handle(whole);
   }
 
   std::string record() {
@@ -99,7 +99,7 @@ private:
     return 1;
   }
 
-  std::string obey(std::string_view whole) {
+  std::string handle(std::string_view whole) {
     const char letter = whole.front();
     switch (letter) {
     case '\x09':

@@ -44,11 +44,11 @@ inline recording::Setup setup_of(const LoopUnderTest& test) {
   return setup;
 }
 
-/// A loop of two hands with a recorder at its tape.
+/// A loop of two hands with a recorder at its input log.
 struct RecordedLoop {
   TemporaryFolder folder;
   std::filesystem::path path = folder.path() / "take.nendo";
-  flow::Tape tape;
+  flow::InputLog input_log;
   LoopUnderTest test;
   recording::Setup setup;
   std::unique_ptr<recording::Recorder> recorder;
@@ -58,7 +58,7 @@ struct RecordedLoop {
                         bool adapts = false, bool injective = false,
                         flow::SwitchAction action = flow::SwitchAction::none)
       : test(mode, 16, 1000.0, action, true, filter,
-             adapts ? std::optional(CountScale{}) : std::nullopt, &tape,
+             adapts ? std::optional(CountScale{}) : std::nullopt, &input_log,
              injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt),
         setup(setup_of(test)) {}
 
@@ -66,7 +66,7 @@ struct RecordedLoop {
     if (options.file.empty() && options.keep_last == HostClock::duration::zero())
       options.file = path;
     options.tell = [this](std::string_view line) { told.emplace_back(line); };
-    auto begun = recording::Recorder::begin(setup, tape, std::move(options));
+    auto begun = recording::Recorder::begin(setup, input_log, std::move(options));
     if (!begun) throw std::runtime_error(begun.error().message);
     recorder = *std::move(begun);
   }

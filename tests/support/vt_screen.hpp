@@ -23,7 +23,7 @@ public:
       if (!sequence_.empty()) {
         sequence_ += c;
         if (sequence_.size() > 2 && c >= '@' && c <= '~') {
-          obey(sequence_.substr(2, sequence_.size() - 3), c);
+          handle(sequence_.substr(2, sequence_.size() - 3), c);
           sequence_.clear();
         } else if (sequence_.size() == 2 && c != '[') {
           fault("escape " + sequence_.substr(1));
@@ -76,7 +76,7 @@ private:
     }
   }
 
-  void obey(const std::string& parameters, char final) {
+  void handle(const std::string& parameters, char final) {
     if (parameters == "?1049" && (final == 'h' || final == 'l')) {
       on_page_ = final == 'h';
     } else if (parameters == "?25" && (final == 'h' || final == 'l')) {

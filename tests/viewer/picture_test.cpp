@@ -12,13 +12,13 @@ using namespace nendo::viewer;
 
 namespace {
 
-Moment moment_of(const deform::Mesh& mesh) {
-  Moment moment;
+SceneFrame moment_of(const deform::Mesh& mesh) {
+  SceneFrame moment;
   moment.vertices = mesh.vertices;
   return moment;
 }
 
-Scene scene_of(const deform::Mesh& mesh, const Moment& moment) {
+Scene scene_of(const deform::Mesh& mesh, const SceneFrame& moment) {
   Scene scene;
   SceneBuilder(mesh).build(moment, {}, scene);
   return scene;
@@ -74,7 +74,7 @@ TEST_SUITE("picture") {
 
   TEST_CASE("the same scene gives the same bytes, with any number of threads") {
     const auto mesh = test::sphere(20, 40, 1.0);
-    Moment moment = moment_of(mesh);
+    SceneFrame moment = moment_of(mesh);
     moment.held = true;
     moment.radius_m.fill(0.1);
     moment.hands[0] = hand_at(Side::left, {-0.5, 0.4, 0.0});
@@ -110,7 +110,7 @@ TEST_SUITE("picture") {
 
   TEST_CASE("what is nearer hides what is farther, and a veil lets it through") {
     const auto wall = test::grid(4, 1.0);
-    Moment moment = moment_of(wall);
+    SceneFrame moment = moment_of(wall);
     Scene scene = scene_of(wall, moment);
     scene.grounds.clear();
     Surface ball;
@@ -142,7 +142,7 @@ TEST_SUITE("picture") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double bad : {nan, inf, -inf, 1e308, -1e30, 1e-320}) {
       auto mesh = test::sphere(6, 12, 1.0);
-      Moment moment = moment_of(mesh);
+      SceneFrame moment = moment_of(mesh);
       moment.vertices(1, 3) = bad;
       moment.radius_m.fill(bad);
       moment.held = true;

@@ -22,7 +22,7 @@ TEST_SUITE("scene") {
     auto mesh = test::sphere(7, 9, 2.0); // quads and triangles
     mesh.vertices.colwise() += Eigen::Vector3d(10, 20, 30);
     const SceneBuilder builder(mesh);
-    Moment moment;
+    SceneFrame moment;
     moment.vertices = mesh.vertices;
     Scene scene;
     builder.build(moment, {}, scene);
@@ -52,7 +52,7 @@ TEST_SUITE("scene") {
     test.bend(25, HostClock::now());
     const flow::Frame& frame = test.frame_after_tick(1);
     holds.follow(frame);
-    Moment moment;
+    SceneFrame moment;
     moment.vertices = test.vertices_of(frame);
     see_hands(frame, holds, moment);
     REQUIRE(moment.hands[0]);
@@ -101,7 +101,7 @@ TEST_SUITE("scene") {
     REQUIRE(test.requests.try_push(flow::Request::let_go));
     for (int turn = 0; turn < 3; ++turn)
       step(15);
-    Moment moment;
+    SceneFrame moment;
     see_hands(test.loop->frames().front(), holds, moment);
     CHECK_FALSE(moment.held);
     CHECK(moment.hands[0]->starts == tips(test.loop->frames().front()));

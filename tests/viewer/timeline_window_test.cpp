@@ -26,9 +26,9 @@ struct Seat {
   test::LoopUnderTest test{flow::Mode::type1, 12};
   std::unique_ptr<TimelineWindow> window;
   TimelineView view;
-  Moment moment;
+  SceneFrame moment;
   PretendedInput input;
-  KeyStrip strip;
+  DopeSheet strip;
 
   Seat() {
     auto opened = TimelineWindow::open("test", size, "nothing else");
@@ -53,7 +53,7 @@ struct Seat {
     return {6.0 + strip.x_of(time_s), window->scene_window().scene_size().height + 6.0 + 36.0 + y};
   }
   Vector2d on_key(std::size_t lane, std::size_t key) const {
-    return on_strip(view.lanes[lane].keys_s[key], KeyStrip::middle_of(lane));
+    return on_strip(view.lanes[lane].keys_s[key], DopeSheet::middle_of(lane));
   }
   EditWishes move(const Vector2d& pointer, bool left) {
     input.pointer = pointer;
@@ -125,7 +125,7 @@ TEST_SUITE("timeline_window") {
     CHECK(*pressed.select == StripKey{1, 2});
     const auto still = seat.move(seat.input.pointer + Vector2d(1.0, 0.0), true);
     CHECK_FALSE(still.tried); // a hand trembles
-    const Vector2d there = seat.on_strip(2.81, KeyStrip::middle_of(1));
+    const Vector2d there = seat.on_strip(2.81, DopeSheet::middle_of(1));
     const auto dragged = seat.move(there, true);
     CHECK(key_drag(dragged).key == StripKey{1, 2});
     CHECK(std::abs(key_drag(dragged).to_s - 2.81) <= 0.5 / rate_hz + 0.01);
@@ -148,7 +148,7 @@ TEST_SUITE("timeline_window") {
     if (!room.seat) return;
     Seat& seat = *room.seat;
     seat.press(seat.on_key(0, 1));
-    seat.move(seat.on_strip(1.5, KeyStrip::middle_of(0)), true);
+    seat.move(seat.on_strip(1.5, DopeSheet::middle_of(0)), true);
     seat.input.key = GLFW_KEY_ESCAPE;
     const auto given_up = seat.move(seat.input.pointer, true);
     CHECK(given_up.drop);
@@ -164,7 +164,7 @@ TEST_SUITE("timeline_window") {
     const Room room;
     if (!room.seat) return;
     Seat& seat = *room.seat;
-    const auto pressed = seat.press(seat.on_strip(1.5, KeyStrip::middle_of(0)));
+    const auto pressed = seat.press(seat.on_strip(1.5, DopeSheet::middle_of(0)));
     REQUIRE(pressed.seek_s);
     CHECK(*pressed.seek_s == doctest::Approx(1.5).epsilon(0.01));
     const auto dragged = seat.move(seat.on_strip(3.0, -100.0), true);
@@ -173,7 +173,7 @@ TEST_SUITE("timeline_window") {
     CHECK_FALSE(dragged.tried);
     seat.release();
     const auto at_mark =
-        seat.press(seat.on_strip(0.8, KeyStrip::middle_of(2)) + Vector2d(2.0, 0.0));
+        seat.press(seat.on_strip(0.8, DopeSheet::middle_of(2)) + Vector2d(2.0, 0.0));
     CHECK(at_mark.seek_s == 0.8);
   }
 
@@ -181,7 +181,7 @@ TEST_SUITE("timeline_window") {
     const Room room;
     if (!room.seat) return;
     Seat& seat = *room.seat;
-    const Vector2d pointer = seat.on_strip(2.0, KeyStrip::middle_of(1));
+    const Vector2d pointer = seat.on_strip(2.0, DopeSheet::middle_of(1));
     seat.move(pointer, false);
     seat.input.wheel = 3.0;
     seat.move(pointer, false);

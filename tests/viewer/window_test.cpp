@@ -73,7 +73,7 @@ TEST_SUITE("window") {
       CHECK(window.blocks_sent() == sent);
 
       holds.follow(frame);
-      Moment moment;
+      SceneFrame moment;
       see_hands(frame, holds, moment);
       test.loop->layout().unpack(frame.shape, moment.vertices);
       Scene scene;
@@ -85,7 +85,7 @@ TEST_SUITE("window") {
     Camera other = window.camera();
     other.orbit(200.0, 0.0);
     Scene scene = window.scene();
-    Moment moment;
+    SceneFrame moment;
     moment.vertices = 0.7 * test.model.vertices;
     builder.build(moment, {}, scene);
     CHECK(intersection_over_union(silhouette(scene, other, size), window.silhouette(size)) < 0.9);
@@ -124,8 +124,8 @@ TEST_SUITE("window") {
                                        {GLFW_KEY_R, Request::redo}})
       CHECK(type(key).requests == std::vector{request});
     CHECK(type(GLFW_KEY_T).record);
-    CHECK(type(GLFW_KEY_S).keepsakes.shape);
-    CHECK(type(GLFW_KEY_K).keepsakes.recording);
+    CHECK(type(GLFW_KEY_S).save_request.shape);
+    CHECK(type(GLFW_KEY_K).save_request.recording);
     CHECK(type(GLFW_KEY_Q).quit);
 
     CHECK_FALSE(type(GLFW_KEY_ENTER).settings); // they are in force

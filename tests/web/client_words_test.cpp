@@ -38,10 +38,10 @@ TEST_SUITE("client_words") {
   }
 
   TEST_CASE("what is to be kept is the shape or the recording") {
-    const auto shape = parsed_as<flow::Keepsakes>("save");
+    const auto shape = parsed_as<flow::SaveRequest>("save");
     REQUIRE(shape);
     CHECK((shape->shape && !shape->recording));
-    const auto recording = parsed_as<flow::Keepsakes>("keep");
+    const auto recording = parsed_as<flow::SaveRequest>("keep");
     REQUIRE(recording);
     CHECK((recording->recording && !recording->shape));
   }

@@ -187,7 +187,7 @@ TEST_SUITE("server") {
       served->tapped.test.loop->frames().update();
       const auto& frame = served->tapped.test.loop->frames().front();
       const auto shape = served->tapped.test.vertices_of(frame);
-      CHECK(follow_until(client, follower, [&] { return follower.number == frame.ticks; }));
+      CHECK(follow_until(client, follower, [&] { return follower.number == frame.ticks_run; }));
       CHECK((follower.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * follower.diagonal);
       CHECK((shape - served->tapped.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
       CHECK(follower.good);

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include <nendo/web/frame_tap.hpp>
+#include <nendo/web/frame_stream.hpp>
 #include <nendo/web/model_message.hpp>
 
 #include "support/flow_fixtures.hpp"
@@ -12,7 +12,7 @@ namespace nendo::test {
 
 struct TappedLoop {
   LoopUnderTest test;
-  std::shared_ptr<web::FrameTap> tap;
+  std::shared_ptr<web::FrameStream> tap;
   std::vector<std::byte> model;
 
   explicit TappedLoop(flow::Mode mode,
@@ -28,8 +28,9 @@ struct TappedLoop {
                                       hand::HandSize{*swapped_length_m, 0.07});
     const deform::BlockLayout layout(test.model.vertices);
     make_loop(); // to ask it how many fields a frame may have
-    tap = std::make_shared<web::FrameTap>(layout, mode, test.loop->frames().front().fields.room(),
-                                          static_cast<std::size_t>(supports.functions(10)));
+    tap =
+        std::make_shared<web::FrameStream>(layout, mode, test.loop->frames().front().fields.room(),
+                                           static_cast<std::size_t>(supports.functions(10)));
     test.options.sinks = {tap.get()};
     make_loop();
     model = web::model_message(

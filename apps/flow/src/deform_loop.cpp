@@ -45,7 +45,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.skeleton.side());
-    const hand::CalibrationInForce calibration = input.in_force();
+    const hand::ActiveCalibration calibration = input.in_force();
     const hand::JointFilter filter(input.filter);
     hands_.push_back(
         {std::move(input), slot, placement.T_stage_wrist[slot], calibration, {}, filter});
@@ -73,7 +73,7 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
   std::uint8_t number = 0;
   for (auto& hand : hands_) {
     const std::size_t count = hand.input.ring->drain([&](const GloveSample& sample) noexcept {
-      if (options_.tape != nullptr) options_.tape->sample(number, sample);
+      if (options_.input_log != nullptr) options_.input_log->sample(number, sample);
       hand.follow(sample);
       if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
       ++stats_.switch_uses[hand.slot];
@@ -112,7 +112,7 @@ void DeformLoop::follow_switches() noexcept {
 void DeformLoop::take_requests() noexcept {
   if (options_.requests == nullptr) return;
   options_.requests->drain([this](Request request) noexcept {
-    if (options_.tape != nullptr) options_.tape->request(request);
+    if (options_.input_log != nullptr) options_.input_log->request(request);
     shaping_.ask(request);
   });
 }
@@ -121,7 +121,7 @@ void DeformLoop::take_wrists() noexcept {
   if (options_.wrists == nullptr) return;
   options_.wrists->drain([this](const WristMove& move) noexcept {
     if (!move.is_usable()) return;
-    if (options_.tape != nullptr) options_.tape->wrist(move);
+    if (options_.input_log != nullptr) options_.input_log->wrist(move);
     for (Hand& hand : hands_)
       if (hand.slot == Placement::index_of(move.side)) hand.T_stage_wrist = move.pose();
   });
@@ -169,7 +169,8 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   }
   record.published_ns = now_ns();
   record_latencies(record);
-  if (options_.tape != nullptr) options_.tape->tick(record.tick, record.scheduled, record.woke);
+  if (options_.input_log != nullptr)
+    options_.input_log->tick(record.tick, record.scheduled, record.woke);
   if (options_.records != nullptr) options_.records->try_push(record);
 }
 
@@ -177,7 +178,7 @@ void DeformLoop::describe(const TickRecord& record, Frame& frame) noexcept {
   ++stats_.ticks;
   if (!is_solved(frame.status)) ++stats_.failed;
   frame.tick = record.tick;
-  frame.ticks = stats_.ticks;
+  frame.ticks_run = stats_.ticks;
   frame.missed = stats_.missed;
   frame.scheduled = record.scheduled;
   frame.woke = record.woke;
@@ -206,7 +207,7 @@ void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) no
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   PaceOptions pace = options_;
   pace.spin = pace.spin && ::sched_getscheduler(0) == SCHED_FIFO;
-  Pacer pacer(pace, HostClock::now(), options_.bell);
+  Pacer pacer(pace, HostClock::now(), options_.event_count);
   while (pacer.next() < most_ticks) {
     const Pacer::Due due = pacer.wait();
     if (stop.load(std::memory_order_relaxed)) return;

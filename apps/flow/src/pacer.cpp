@@ -43,9 +43,9 @@ bool parse_policy(std::string_view text, PaceOptions& options) noexcept {
   return true;
 }
 
-Pacer::Pacer(const PaceOptions& options, HostTime start, Bell* bell) noexcept
-    : options_(options), grid_(start, options.rate_hz), bell_(bell) {
-  assert(options.policy != OverrunPolicy::sample || bell != nullptr);
+Pacer::Pacer(const PaceOptions& options, HostTime start, EventCount* event_count) noexcept
+    : options_(options), grid_(start, options.rate_hz), event_count_(event_count) {
+  assert(options.policy != OverrunPolicy::sample || event_count != nullptr);
   assert(options.most_catch_up >= 1);
   if (options.spin && options.policy != OverrunPolicy::sample)
     margin_.emplace(grid_.deadline(1) - grid_.deadline(0));
@@ -58,7 +58,7 @@ Pacer::Due Pacer::wait() noexcept {
   if (options_.policy == OverrunPolicy::sample) {
     const HostTime begin = HostClock::now();
     const HostTime end = begin + options_.longest_wait;
-    due.scheduled = bell_->wait(end) ? begin : end;
+    due.scheduled = event_count_->wait(end) ? begin : end;
     due.woke = HostClock::now();
     return due;
   }

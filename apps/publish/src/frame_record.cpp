@@ -101,7 +101,7 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
   head.number = number;
   head.generation = generation_;
   head.tick = frame.tick;
-  head.ticks = frame.ticks;
+  head.ticks = frame.ticks_run;
   head.missed = frame.missed;
   head.commits = frame.commits;
   head.undos = frame.undos;

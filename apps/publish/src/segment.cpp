@@ -147,7 +147,7 @@ void SegmentPublisher::write_setup(const LoopOutline& outline) {
   std::memcpy(words.data(), &setup, sizeof setup);
   AtomicWord* const all = memory_->words();
   AtomicWord* const place = all + plan_.setup_offset / 8;
-  auto& stage = *reinterpret_cast<SequenceStage<>*>(place);
+  auto& stage = *reinterpret_cast<SeqLock<>*>(place);
   stage.open(generation_);
   store_words(std::span(words).subspan(1), place + 1);
   store_all(deform::corners_of_triangles(*outline.model), all + plan_.triangles_offset / 8);

@@ -49,7 +49,7 @@ void ShapeRing::write(std::uint64_t number, const deform::BlockShape& shape) noe
   const Stamps& before = stamps_[(number - 1) % stamps_.size()];
   assert(layout_ != nullptr && shape.block_count() == here.size());
   AtomicWord* const slot = memory_ + number % stamps_.size() * slot_words_;
-  auto& stage = *reinterpret_cast<SequenceStage<>*>(slot);
+  auto& stage = *reinterpret_cast<SeqLock<>*>(slot);
   stage.open(number);
   bool changed = false;
   for (std::size_t block = 0; block < here.size(); ++block) {

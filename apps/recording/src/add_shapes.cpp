@@ -33,7 +33,7 @@ Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesys
   while (const auto entry = reader->next()) {
     if (const auto put = copy->put(*entry); !put) return put.error();
     if (!(*replay)->feed(*entry)) continue;
-    ended = std::get<flow::TapedTick>(*entry).woke;
+    ended = std::get<flow::LoggedTick>(*entry).woke;
     if ((loop.stats().ticks - 1) % every != 0 || !loop.frames().update()) continue;
     const flow::Frame& frame = loop.frames().front();
     loop.layout().unpack(frame.shape, vertices);

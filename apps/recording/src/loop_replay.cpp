@@ -54,7 +54,7 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     exact_ = requests_.try_push(*request) && exact_;
   } else if (const auto* move = std::get_if<flow::WristMove>(&entry)) {
     exact_ = wrists_.try_push(*move) && exact_;
-  } else if (const auto* tick = std::get_if<flow::TapedTick>(&entry)) {
+  } else if (const auto* tick = std::get_if<flow::LoggedTick>(&entry)) {
     loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);
     return true;

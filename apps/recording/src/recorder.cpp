@@ -22,7 +22,7 @@ namespace nendo::recording {
 namespace {
 
 constexpr std::size_t largest_payload = std::size_t{1} << 18;
-/// How often the tape is emptied.
+/// How often the input log is emptied.
 constexpr std::chrono::milliseconds drain_time{20};
 
 /// What the last minute may take in memory: gloves that are twice as fast as they say, or send 250
@@ -39,17 +39,18 @@ std::size_t memory_for(const Setup& setup, HostClock::duration span) {
   return static_cast<std::size_t>(std::min(most_bytes, bytes_s * (to_seconds(span) + 2.0)));
 }
 
-class TapeRecorder final : public Recorder {
+class InputLogRecorder final : public Recorder {
 public:
-  TapeRecorder(flow::Tape& tape, RecorderOptions options, std::optional<TakeFile> file,
-               std::unique_ptr<KeptRing> ring)
-      : tape_(tape), options_(std::move(options)), file_(std::move(file)), ring_(std::move(ring)) {
+  InputLogRecorder(flow::InputLog& input_log, RecorderOptions options, std::optional<TakeFile> file,
+                   std::unique_ptr<KeptRing> ring)
+      : input_log_(input_log), options_(std::move(options)), file_(std::move(file)),
+        ring_(std::move(ring)) {
     payload_.reserve(2 * largest_payload);
     if (!ring_) return;
     auto crash_path = options_.kept_stem;
     crash_.emplace(*ring_, crash_path += ".crash.nendo");
   }
-  ~TapeRecorder() override { (void)TapeRecorder::end({}); }
+  ~InputLogRecorder() override { (void)InputLogRecorder::end({}); }
 
   void start() {
     thread_ = std::jthread([this](const std::stop_token& stop) { record(stop); });
@@ -87,7 +88,7 @@ private:
   }
 
   void drain() {
-    tape_.drain([this](const flow::TapeEntry& entry) noexcept {
+    input_log_.drain([this](const flow::InputLogEntry& entry) noexcept {
       std::visit([this](const auto& taken) { add(taken); }, entry);
       if (payload_.size() >= largest_payload) write_chunk();
     });
@@ -105,7 +106,7 @@ private:
     ++recorded_.requests;
   }
   void add(const flow::WristMove& move) { put(move); }
-  void add(const flow::TapedTick& tick) {
+  void add(const flow::LoggedTick& tick) {
     tell_lost(tick.lost);
     put(tick);
     ++recorded_.ticks;
@@ -158,7 +159,7 @@ private:
 
   void finish(const std::optional<ShapeSum>& shape) {
     drain();
-    tell_lost(tape_.lost());
+    tell_lost(input_log_.lost());
     write_chunk();
     if (ring_ && keeps_.exchange(0, std::memory_order_relaxed) > 0) write_kept();
     ByteWriter writer(payload_);
@@ -176,7 +177,7 @@ private:
     if (options_.tell) options_.tell(line);
   }
 
-  flow::Tape& tape_;
+  flow::InputLog& input_log_;
   RecorderOptions options_;
   std::optional<TakeFile> file_;
   std::unique_ptr<KeptRing> ring_;
@@ -194,7 +195,7 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Recorder>> Recorder::begin(const Setup& setup, flow::Tape& tape,
+Result<std::unique_ptr<Recorder>> Recorder::begin(const Setup& setup, flow::InputLog& input_log,
                                                   RecorderOptions options) {
   std::uint32_t chunks = 0;
   auto bytes = setup_bytes(setup, chunks);
@@ -209,8 +210,8 @@ Result<std::unique_ptr<Recorder>> Recorder::begin(const Setup& setup, flow::Tape
     ring = std::make_unique<KeptRing>(std::move(bytes), chunks, options.keep_last,
                                       memory_for(setup, options.keep_last));
   }
-  auto recorder =
-      std::make_unique<TapeRecorder>(tape, std::move(options), std::move(file), std::move(ring));
+  auto recorder = std::make_unique<InputLogRecorder>(input_log, std::move(options), std::move(file),
+                                                     std::move(ring));
   try {
     recorder->start();
   } catch (const std::system_error& error) {

@@ -21,7 +21,7 @@ Result<void> TakeCopy::put(const Entry& entry) {
   ++entries_;
   if (std::holds_alternative<driver::RecordedSample>(entry)) ++ending_.samples;
   if (std::holds_alternative<flow::Request>(entry)) ++ending_.requests;
-  if (std::holds_alternative<flow::TapedTick>(entry)) ++ending_.ticks;
+  if (std::holds_alternative<flow::LoggedTick>(entry)) ++ending_.ticks;
   return payload_.size() < chunk_bytes ? Result<void>() : flush();
 }
 

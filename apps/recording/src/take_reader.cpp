@@ -25,7 +25,7 @@ struct EntryWriter {
     driver::put_record_head(writer, RecordKind::request, request_bytes);
     writer.u8(static_cast<std::uint8_t>(request));
   }
-  void operator()(const flow::TapedTick& tick) const {
+  void operator()(const flow::LoggedTick& tick) const {
     driver::put_record_head(writer, RecordKind::tick, tick_bytes);
     writer.u64_le(tick.number);
     driver::put_time(writer, tick.scheduled);
@@ -55,7 +55,7 @@ std::optional<Entry> request_of(std::uint8_t value) {
 }
 
 std::optional<Entry> tick_of(ByteReader& reader) {
-  flow::TapedTick tick;
+  flow::LoggedTick tick;
   tick.number = reader.u64_le();
   tick.scheduled = driver::read_time(reader);
   tick.woke = driver::read_time(reader);
@@ -113,7 +113,7 @@ void put_ending(ByteWriter& writer, const Ending& ending) {
 }
 
 TakeReader::TakeReader(driver::ChunkReader chunks) : chunks_(std::move(chunks)) {
-  next_chunk(); // the setup stands before the first tape
+  next_chunk(); // the setup stands before the first input log
 }
 
 Result<TakeReader> TakeReader::open(const std::filesystem::path& path) {
@@ -128,7 +128,7 @@ Result<TakeReader> TakeReader::of(std::span<const std::byte> bytes, std::string_
   return TakeReader(*std::move(chunks));
 }
 
-/// On to the next chunk of a tape; false if there is none.
+/// On to the next chunk of an input log; false if there is none.
 bool TakeReader::next_chunk() {
   while (const auto chunk = chunks_.next()) {
     gap_due_ = gap_due_ || chunks_.damage_count() > damages_told_;

@@ -30,7 +30,7 @@ public:
   }
   void operator()(flow::Request request) { ++summary_.requests[static_cast<std::size_t>(request)]; }
   void operator()(const flow::WristMove&) { ++summary_.wrist_moves; }
-  void operator()(const flow::TapedTick& tick) {
+  void operator()(const flow::LoggedTick& tick) {
     if (summary_.ticks > 0) {
       if (tick.number < next_tick_) ++summary_.ticks_out_of_order;
       if (tick.number > next_tick_ && !after_gap_) summary_.missed += tick.number - next_tick_;

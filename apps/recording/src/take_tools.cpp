@@ -19,7 +19,7 @@ public:
   std::optional<Group> next() {
     Group group;
     while (auto entry = reader_.next()) {
-      const auto* tick = std::get_if<flow::TapedTick>(&*entry);
+      const auto* tick = std::get_if<flow::LoggedTick>(&*entry);
       const auto* sample = std::get_if<driver::RecordedSample>(&*entry);
       const bool has_loop = reader_.setup().loop.has_value();
       if (tick != nullptr) group.time = tick->woke;
@@ -48,7 +48,7 @@ Result<std::uint64_t> append_all(TakeFile& file, driver::ChunkReader& reader, dr
   std::uint64_t chunks = 0;
   std::uint64_t damages = 0;
   for (std::optional<driver::Chunk> next = chunk; next; next = reader.next()) {
-    // Not among the chunks of the setup, which stand before the first tape.
+    // Not among the chunks of the setup, which stand before the first input log.
     const bool here = next->type == driver::tape_chunk || next->type == ending_chunk;
     if (here && std::exchange(damages, reader.damage_count()) != reader.damage_count()) {
       if (const auto written = file.append(driver::tape_chunk, gap); !written)

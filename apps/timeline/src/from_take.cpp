@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <nendo/hand/calibration_in_force.hpp>
+#include <nendo/hand/active_calibration.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 namespace nendo::timeline {
@@ -60,7 +60,7 @@ public:
   }
 
   /// A tick has run.
-  void see(const flow::TapedTick& tick, const flow::Frame& frame) {
+  void see(const flow::LoggedTick& tick, const flow::Frame& frame) {
     if (!first_) first_ = tick;
     const double before_s = timeline_.duration_s;
     const double time_s = std::max(before_s, time_of(tick));
@@ -76,7 +76,7 @@ public:
 
 private:
   // Ticks of the grid are frames of the timeline's, whose times are quotients as these.
-  double time_of(const flow::TapedTick& tick) const noexcept {
+  double time_of(const flow::LoggedTick& tick) const noexcept {
     const double period_s = 1.0 / timeline_.rate_hz;
     if (!on_grid_) return period_s + seconds_between(first_->scheduled, tick.scheduled);
     return static_cast<double>(tick.number - std::min(first_->number, tick.number) + 1) /
@@ -102,7 +102,7 @@ private:
   bool on_grid_;
   std::uint64_t commits_ = 0;
   std::vector<flow::Request> steps_; ///< undos and redos since the last tick
-  std::optional<flow::TapedTick> first_;
+  std::optional<flow::LoggedTick> first_;
 };
 
 // Of frames or of events; empty if nothing does.
@@ -133,7 +133,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     if (!(*replay)->feed(*entry)) continue;
     auto& frames = (*replay)->loop().frames();
     frames.update();
-    follower.see(std::get<flow::TapedTick>(*entry), frames.front());
+    follower.see(std::get<flow::LoggedTick>(*entry), frames.front());
     if (const std::string many = what_exceeds(made.timeline, most); !many.empty())
       return bad("has more than " + many + "; cut a part with `nendo recording cut`");
   }

@@ -109,7 +109,7 @@ void Player::describe(std::uint64_t number) {
   ++stats_.ticks;
   if (!is_solved(frame_.status)) ++stats_.failed;
   frame_.tick = number;
-  frame_.ticks = stats_.ticks;
+  frame_.ticks_run = stats_.ticks;
   frame_.scheduled = frame_.woke = time_at(number);
   if (number > 0) frame_.since_last = frame_.woke - time_at(number - 1);
 }

@@ -43,7 +43,7 @@ Wishes LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gaug
     window_->follow(frame.shape);
   }
   see_hands(frame, holds_, moment_);
-  window_->begin_picture(moment_, frame.ticks > 0); // before, no hand is there
+  window_->begin_picture(moment_, frame.ticks_run > 0); // before, no hand is there
   if (!move_hand(frame, wishes)) window_->move_camera();
   draw_panel(frame, gauges, wishes);
   window_->end_picture();

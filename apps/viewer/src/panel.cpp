@@ -73,7 +73,7 @@ float Strip::most() const noexcept {
 }
 
 void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
-  if (frame.ticks == 0) return;
+  if (frame.ticks_run == 0) return;
   const auto ms = [](HostClock::duration time) {
     return static_cast<float>(1e3 * to_seconds(time));
   };
@@ -97,9 +97,9 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, 
   if (ImGui::Button("Reset")) reset_asked = true;
   if (ImGui::Button(gauges.recording ? "End the recording" : "Record")) wishes.record = true;
   ImGui::SameLine();
-  if (ImGui::Button("Keep")) wishes.keepsakes.recording = true;
+  if (ImGui::Button("Keep")) wishes.save_request.recording = true;
   ImGui::SameLine();
-  if (ImGui::Button("Save")) wishes.keepsakes.shape = true;
+  if (ImGui::Button("Save")) wishes.save_request.shape = true;
   if (!gauges.told.empty()) {
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 290.0F);
     ImGui::TextUnformatted(gauges.told.c_str());
@@ -154,7 +154,7 @@ void LiveWindow::Panel::settings(Wishes& wishes) {
 
 void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) const {
   ImGui::Text("%g Hz wanted, %llu ticks, %llu missed", gauges.rate_hz,
-              static_cast<unsigned long long>(frame.ticks),
+              static_cast<unsigned long long>(frame.ticks_run),
               static_cast<unsigned long long>(frame.missed));
   chart("late", late_ms, "ms");
   chart("uneven", gap_ms, "ms");
@@ -206,8 +206,8 @@ void LiveWindow::Panel::keys(Wishes& wishes) {
     if (pressed(key)) wishes.requests.push_back(request);
   if (pressed(GLFW_KEY_X)) reset_asked = true;
   if (pressed(GLFW_KEY_T)) wishes.record = true;
-  if (pressed(GLFW_KEY_K)) wishes.keepsakes.recording = true;
-  if (pressed(GLFW_KEY_S)) wishes.keepsakes.shape = true;
+  if (pressed(GLFW_KEY_K)) wishes.save_request.recording = true;
+  if (pressed(GLFW_KEY_S)) wishes.save_request.shape = true;
   settings_keys(wishes);
   if (pressed(GLFW_KEY_Q)) wishes.quit = true;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;

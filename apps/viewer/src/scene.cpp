@@ -62,7 +62,7 @@ SceneBuilder::SceneBuilder(const deform::Mesh& rest, double units_per_metre)
   corners_ = deform::corners_of_triangles(rest);
 }
 
-void SceneBuilder::build(const Moment& moment, const SceneParts& parts, Scene& scene) const {
+void SceneBuilder::build(const SceneFrame& moment, const SceneParts& parts, Scene& scene) const {
   const auto count = static_cast<std::size_t>(moment.vertices.cols());
   scene.model.places.resize(count);
   for (std::size_t at = 0; at < count; ++at)
@@ -74,7 +74,8 @@ void SceneBuilder::build(const Moment& moment, const SceneParts& parts, Scene& s
   build_beside(moment, parts, scene);
 }
 
-void SceneBuilder::build_beside(const Moment& moment, const SceneParts& parts, Scene& scene) const {
+void SceneBuilder::build_beside(const SceneFrame& moment, const SceneParts& parts,
+                                Scene& scene) const {
   scene.model.material = clay;
   scene.solids.clear();
   scene.veils.clear();
@@ -84,7 +85,7 @@ void SceneBuilder::build_beside(const Moment& moment, const SceneParts& parts, S
   if (parts.ground) add_ground(scene);
 }
 
-void SceneBuilder::add_hand(const SeenHand& hand, std::size_t slot, const Moment& moment,
+void SceneBuilder::add_hand(const SeenHand& hand, std::size_t slot, const SceneFrame& moment,
                             const SceneParts& parts, Scene& scene) const {
   if (parts.bones) {
     scene.solids.push_back({{}, {}, {}, bone});

@@ -121,7 +121,7 @@ void SceneWindow::set_model(const deform::BlockLayout& layout, const SceneBuilde
   renderer_->set_model(layout, builder);
 }
 
-void SceneWindow::begin_picture(const Moment& moment, bool is_whole) {
+void SceneWindow::begin_picture(const SceneFrame& moment, bool is_whole) {
   begun_ = HostClock::now();
   glfwPollEvents();
   builder_->build_beside(moment, parts_, scene_);

@@ -4,12 +4,12 @@
 #include <nendo/viewer/timeline_window.hpp>
 #include <nendo/viewer/tip_mover.hpp>
 
-#include "strip_widget.hpp"
+#include "dope_sheet_widget.hpp"
 
 namespace nendo::viewer {
 
 struct TimelineWindow::Panel {
-  StripWidget strip;
+  DopeSheetWidget strip;
   TipMover tips;
   Retiming retiming{0.0, 0.0, 2.0};
   bool retiming_shown = false;

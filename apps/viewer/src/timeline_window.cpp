@@ -14,7 +14,7 @@ constexpr ImU32 pointed_colour = IM_COL32(205, 60, 15, 255);
 constexpr float ring_px = 8.0F;
 
 /// The hand whose fingers can be bent now; null: none's.
-const SeenHand* bendable_hand(const TimelineView& view, const Moment& moment) {
+const SeenHand* bendable_hand(const TimelineView& view, const SceneFrame& moment) {
   if (!view.at_selected || !view.selected) return nullptr;
   const Side side = view.lanes[view.selected->lane].side;
   const auto& hand = moment.hands[flow::Placement::index_of(side)];
@@ -35,9 +35,9 @@ Result<std::unique_ptr<TimelineWindow>> TimelineWindow::open(const std::string& 
   return std::unique_ptr<TimelineWindow>(new TimelineWindow(*std::move(window)));
 }
 
-EditWishes TimelineWindow::show(const TimelineView& view, const Moment& moment) {
+EditWishes TimelineWindow::show(const TimelineView& view, const SceneFrame& moment) {
   EditWishes wishes;
-  window_->leave_below(StripWidget::height_for(view.lanes.size()));
+  window_->leave_below(DopeSheetWidget::height_for(view.lanes.size()));
   window_->begin_picture(moment);
   if (!move_tip(view, moment, wishes)) window_->move_camera();
   mark_tips(view, moment);
@@ -52,7 +52,8 @@ EditWishes TimelineWindow::show(const TimelineView& view, const Moment& moment) 
 }
 
 /// True: the mouse holds a fingertip, and does nothing else.
-bool TimelineWindow::move_tip(const TimelineView& view, const Moment& moment, EditWishes& wishes) {
+bool TimelineWindow::move_tip(const TimelineView& view, const SceneFrame& moment,
+                              EditWishes& wishes) {
   const ImGuiIO& io = ImGui::GetIO();
   TipMover& tips = panel_->tips;
   const SeenHand* const hand = bendable_hand(view, moment);
@@ -78,7 +79,7 @@ bool TimelineWindow::move_tip(const TimelineView& view, const Moment& moment, Ed
 }
 
 /// Rings about what can be dragged, and a line to where it is to be.
-void TimelineWindow::mark_tips(const TimelineView& view, const Moment& moment) const {
+void TimelineWindow::mark_tips(const TimelineView& view, const SceneFrame& moment) const {
   const SeenHand* const hand = bendable_hand(view, moment);
   if (hand == nullptr) return;
   const ImGuiIO& io = ImGui::GetIO();

@@ -85,8 +85,8 @@ std::optional<ClientWish> parse_words(std::string_view text) noexcept {
   if (text == "reset") return flow::LoopChange{.reset = true};
   if (text == "record") return flow::LoopChange{.record = true};
   if (text == "end recording") return flow::LoopChange{.record = false};
-  if (text == "save") return flow::Keepsakes{.shape = true};
-  if (text == "keep") return flow::Keepsakes{.recording = true};
+  if (text == "save") return flow::SaveRequest{.shape = true};
+  if (text == "keep") return flow::SaveRequest{.recording = true};
   Words words(text);
   const auto first = words.next();
   if (first == "settings") return settings_in(words);

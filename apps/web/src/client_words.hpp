@@ -6,14 +6,15 @@
 #include <string_view>
 #include <variant>
 
-#include <nendo/flow/keepsakes.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
+#include <nendo/flow/save_request.hpp>
 #include <nendo/flow/wrist_move.hpp>
 
 namespace nendo::web {
 
-using ClientWish = std::variant<flow::Request, flow::LoopChange, flow::Keepsakes, flow::WristMove>;
+using ClientWish =
+    std::variant<flow::Request, flow::LoopChange, flow::SaveRequest, flow::WristMove>;
 
 /// A radius that may be asked for: far beyond what fingers shape with, and no loop's end.
 inline constexpr double least_radius_m = 0.001;

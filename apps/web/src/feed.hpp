@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <nendo/web/frame_tap.hpp>
+#include <nendo/web/frame_stream.hpp>
 
 namespace nendo::web {
 

@@ -38,7 +38,7 @@ std::string Server::url() const {
   return "http://" + work_->endpoint.authority() + "/#" + work_->token;
 }
 
-void Server::present(std::shared_ptr<FrameTap> tap, std::vector<std::byte> model) {
+void Server::present(std::shared_ptr<FrameStream> tap, std::vector<std::byte> model) {
   work_->present(std::move(tap), std::move(model));
 }
 
@@ -60,9 +60,9 @@ flow::LoopChange Server::next_change() noexcept {
   return all;
 }
 
-flow::Keepsakes Server::next_keepsakes() noexcept {
-  flow::Keepsakes all;
-  work_->keepsakes.drain([&](const flow::Keepsakes& more) noexcept { all.add(more); });
+flow::SaveRequest Server::next_save_request() noexcept {
+  flow::SaveRequest all;
+  work_->save_request.drain([&](const flow::SaveRequest& more) noexcept { all.add(more); });
   return all;
 }
 

@@ -67,11 +67,11 @@ void Server::Work::read_socket(Connection& connection, HostTime now) {
     if (event.kind == Kind::close) connection.close(CloseCode::normal, now);
     if (event.kind == Kind::fault) connection.close(event.code, now);
     if (event.kind == Kind::binary) connection.close(CloseCode::unsupported, now);
-    if (event.kind == Kind::text) obey(connection, event.payload, now);
+    if (event.kind == Kind::text) handle(connection, event.payload, now);
   }
 }
 
-void Server::Work::obey(Connection& connection, const std::string& text, HostTime now) {
+void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {
   const auto wish = connection.may_speak(now) ? parse_words(text) : std::nullopt;
   if (!wish) {
     connection.close(CloseCode::policy, now);
@@ -80,7 +80,7 @@ void Server::Work::obey(Connection& connection, const std::string& text, HostTim
   // Full: the loop stands still, and asking again is as good.
   if (const auto* request = std::get_if<flow::Request>(&*wish)) requests.try_push(*request);
   if (const auto* change = std::get_if<flow::LoopChange>(&*wish)) changes.try_push(*change);
-  if (const auto* wanted = std::get_if<flow::Keepsakes>(&*wish)) keepsakes.try_push(*wanted);
+  if (const auto* wanted = std::get_if<flow::SaveRequest>(&*wish)) save_request.try_push(*wanted);
   if (const auto* move = std::get_if<flow::WristMove>(&*wish)) {
     auto& wrist = wrists[flow::Placement::index_of(move->side)];
     wrist.back() = *move;

@@ -48,7 +48,7 @@ void Server::Work::wake() noexcept {
   [[maybe_unused]] const ssize_t written = ::write(waker_.get(), &one, sizeof one);
 }
 
-void Server::Work::present(std::shared_ptr<FrameTap> tap, std::vector<std::byte> model) {
+void Server::Work::present(std::shared_ptr<FrameStream> tap, std::vector<std::byte> model) {
   {
     const std::scoped_lock lock(show_mutex_);
     write_loop(++loops_, offsetof(ModelHead, loop), model);
@@ -195,7 +195,7 @@ void Server::Work::send_frames(HostTime now) {
   if (shape_wanted) show_.tap->ask_for_shape();
 }
 
-void Server::Work::send_frames(Connection& client, const std::optional<FrameTap::Shape>& shape,
+void Server::Work::send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,
                                const SharedBytes& bytes, HostTime now) {
   if (!client.has_room()) {
     client.feed.skip(records_);

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <thread>
 
-#include <nendo/base/latest_value.hpp>
 #include <nendo/base/spsc_ring.hpp>
+#include <nendo/base/triple_buffer.hpp>
 #include <nendo/web/server.hpp>
 
 #include "connection.hpp"
@@ -25,7 +25,7 @@ public:
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  void present(std::shared_ptr<FrameTap> tap, std::vector<std::byte> model);
+  void present(std::shared_ptr<FrameStream> tap, std::vector<std::byte> model);
   void tell(std::string words);
 
   const Endpoint endpoint;
@@ -33,11 +33,11 @@ public:
   // From this thread.
   SpscRing<flow::Request> requests{64};
   SpscRing<flow::LoopChange> changes{64};
-  SpscRing<flow::Keepsakes> keepsakes{64};
+  SpscRing<flow::SaveRequest> save_request{64};
   /// By flow::Placement::index_of(side). Only the newest counts: who moves a hand all the time
   /// fills nothing up.
-  std::array<LatestValue<flow::WristMove>, 2> wrists{LatestValue(flow::WristMove{}),
-                                                     LatestValue(flow::WristMove{})};
+  std::array<TripleBuffer<flow::WristMove>, 2> wrists{TripleBuffer(flow::WristMove{}),
+                                                      TripleBuffer(flow::WristMove{})};
   std::atomic<std::uint64_t> bad_records{0}; ///< two numbers of 32 bits
   struct Counts {
     std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
@@ -47,7 +47,7 @@ public:
 private:
   /// What is shown; the model stays while somebody is sent it.
   struct Show {
-    std::shared_ptr<FrameTap> tap;
+    std::shared_ptr<FrameStream> tap;
     SharedBytes model;
     std::uint16_t loop = 0; ///< which of a run; stands in the model and in shapes
   };
@@ -64,10 +64,10 @@ private:
   void read_head(Connection& connection, HostTime now);
   void open_socket(Connection& connection, const HttpRequest& request, HostTime now);
   void read_socket(Connection& connection, HostTime now);
-  void obey(Connection& connection, const std::string& text, HostTime now);
+  void handle(Connection& connection, const std::string& text, HostTime now);
   void refuse(Connection& connection, int status, std::string_view why, HostTime now);
   void send_frames(HostTime now);
-  void send_frames(Connection& client, const std::optional<FrameTap::Shape>& shape,
+  void send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,
                    const SharedBytes& bytes, HostTime now);
   void drop_overdue(HostTime now);
   std::size_t clients() const noexcept;

@@ -114,7 +114,7 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   head.held = frame.held ? 1 : 0;
   head.status = static_cast<std::uint8_t>(frame.status);
   head.tick = frame.tick;
-  head.ticks = frame.ticks;
+  head.ticks = frame.ticks_run;
   head.missed = frame.missed;
   head.commits = static_cast<std::uint32_t>(frame.commits);
   head.undos = static_cast<std::uint32_t>(frame.undos);

@@ -33,8 +33,8 @@ public:
   explicit CyberGloveProtocol(const Options& options)
       : options_(options), baud_(options.baud.value_or(usual_bauds.front())) {}
 
-  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion occasion,
-                             const Patience& patience) override {
+  Result<GloveInfo> identify(Transport& transport, const std::string& source,
+                             IdentifyReason occasion, const ReplyDeadline& patience) override {
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
     auto identity = ask(transport, dialogue, source, occasion);
     parser_.count_discarded(dialogue.bytes_received());
@@ -44,7 +44,7 @@ public:
     }
     identity_ = *std::move(identity);
     begin_records();
-    if (occasion == Occasion::opening) {
+    if (occasion == IdentifyReason::opening) {
       for (const std::string& note : identity_.notes)
         spdlog::warn("device: {}: {}", source, note);
     }
@@ -60,7 +60,7 @@ public:
   }
 
   Result<void> start_stream(Transport& transport, const std::string& source,
-                            const Patience& patience) override {
+                            const ReplyDeadline& patience) override {
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
     dialogue.stop_stream();
     Commands commands(dialogue, state_answer);
@@ -74,15 +74,15 @@ public:
     return answer == Answer::good ? Result<void>() : went_away(source);
   }
 
-  void end_stream(Transport& transport, const Patience& patience) noexcept override {
+  void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept override {
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
     dialogue.stop_stream();
     if (identity_.sync) Commands(dialogue, control_answer).set_sync(false);
     parser_.count_discarded(dialogue.bytes_received());
   }
 
-  void give(Transport& transport, const Feedback& feedback,
-            const Patience& patience) noexcept override {
+  void set_feedback(Transport& transport, const Feedback& feedback,
+                    const ReplyDeadline& patience) noexcept override {
     const Abilities& can = identity_.abilities;
     if (!can.light && !can.vibration) return;
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
@@ -118,8 +118,8 @@ public:
 private:
   /// Greets the unit, at another line rate if need be, asks and sets up.
   Result<Identity> ask(Transport& transport, Dialogue& dialogue, const std::string& source,
-                       Occasion occasion) {
-    if (occasion == Occasion::damaged || unplugged_ || pulled_) {
+                       IdentifyReason occasion) {
+    if (occasion == IdentifyReason::damaged || unplugged_ || pulled_) {
       transport.set_baud(baud_);
       if (dialogue.stop_stream() != Answer::gone)
         Commands(dialogue, control_answer).reread_glove(); // it may be another one

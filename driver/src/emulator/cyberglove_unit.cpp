@@ -56,10 +56,10 @@ CyberGloveUnit::CyberGloveUnit(const UnitOptions& options)
 void CyberGloveUnit::receive(std::span<const std::byte> bytes, Time now) {
   advance(now);
   for (const std::byte byte : bytes)
-    obey(std::to_integer<Byte>(byte), now);
+    handle(std::to_integer<Byte>(byte), now);
 }
 
-void CyberGloveUnit::befall(const Incident& incident, Time now) {
+void CyberGloveUnit::inject(const Incident& incident, Time now) {
   advance(now);
   switch (incident.kind) {
   case Incident::Kind::glove_out:
@@ -89,7 +89,7 @@ void CyberGloveUnit::befall(const Incident& incident, Time now) {
 
 // While an external sync drives the records the unit still listens, or nobody could switch it off:
 // a choice of ours. In a stream it is deaf to all but 0x03.
-void CyberGloveUnit::obey(Byte byte, Time now) {
+void CyberGloveUnit::handle(Byte byte, Time now) {
   if (restart_ends_) return; // the firmware is not up yet
   const bool synced = to_upper(stream_.header) == 'Y';
   if (stream_.header != 0 && !synced) {

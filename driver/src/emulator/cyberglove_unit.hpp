@@ -53,7 +53,7 @@ public:
   void receive(std::span<const std::byte> bytes, Time now) override;
   void advance(Time now) override; ///< records of a stream, the end of a restart
   std::optional<Time> next_due() const noexcept override;
-  void befall(const Incident& incident, Time now) override;
+  void inject(const Incident& incident, Time now) override;
 
 private:
   using Byte = unit::Byte;
@@ -68,7 +68,7 @@ private:
     bool too_fast = false;
   };
 
-  void obey(Byte byte, Time now);
+  void handle(Byte byte, Time now);
   void stop();
   void begin(Byte letter, Time now);
   void collect_binary(Byte byte, Time now);

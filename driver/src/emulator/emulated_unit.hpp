@@ -53,7 +53,7 @@ public:
   /// When advance() will have something to do; empty if only the host can cause it.
   virtual std::optional<Time> next_due() const noexcept = 0;
   /// Suffers an incident; a unit whose glove cannot be pulled or swapped does nothing.
-  virtual void befall(const Incident& incident, Time now) { (void)incident, (void)now; }
+  virtual void inject(const Incident& incident, Time now) { (void)incident, (void)now; }
 
   /// What waits for the host, at most output_capacity bytes.
   std::span<const std::byte> output() const noexcept { return {output_.data(), output_size_}; }

@@ -31,10 +31,10 @@ void FiveDtUnit::receive(std::span<const std::byte> bytes, Time now) {
   advance(now);
   if (options_.wireless) return;
   for (const std::byte byte : bytes)
-    obey(std::to_integer<Byte>(byte), now);
+    handle(std::to_integer<Byte>(byte), now);
 }
 
-void FiveDtUnit::obey(Byte command, Time now) {
+void FiveDtUnit::handle(Byte command, Time now) {
   const auto send_one = [&] {
     const auto bytes = sample(now);
     send_record(std::as_bytes(std::span(bytes)));

@@ -40,7 +40,7 @@ public:
 private:
   using Byte = std::uint8_t;
 
-  void obey(Byte command, Time now);
+  void handle(Byte command, Time now);
   std::vector<Byte> information() const;
   std::vector<Byte> sample(Time now) const;
   void send_bytes(const std::vector<Byte>& bytes);

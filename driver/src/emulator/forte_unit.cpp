@@ -31,11 +31,11 @@ void ForteUnit::receive(std::span<const std::byte> bytes, Time now) {
   advance(now);
   for (const std::byte byte : bytes) {
     last_ = {last_[1], last_[2], std::to_integer<Byte>(byte)};
-    obey(now);
+    handle(now);
   }
 }
 
-void ForteUnit::obey(Time now) {
+void ForteUnit::handle(Time now) {
   const bool streamed = streams();
   if (last_ == std::array<Byte, 3>{176, 115, 1}) data_on_ = true;
   if (last_ == std::array<Byte, 3>{176, 118, 1}) linked_ = !options_.bluetooth;

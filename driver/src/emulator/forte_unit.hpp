@@ -39,7 +39,7 @@ public:
 private:
   using Byte = std::uint8_t;
 
-  void obey(Time now);
+  void handle(Time now);
   bool streams() const noexcept { return data_on_ && linked_; }
   std::vector<Byte> record(Time now) const;
 

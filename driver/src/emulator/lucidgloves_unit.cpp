@@ -42,7 +42,7 @@ void LucidGlovesUnit::receive(std::span<const std::byte> bytes, Time now) {
   for (const std::byte byte : bytes) {
     const char c = std::to_integer<char>(byte);
     if (c == '\n') {
-      obey(command_);
+      handle(command_);
       command_.clear();
     } else if (command_.size() < command_room) {
       command_.push_back(c);
@@ -50,7 +50,7 @@ void LucidGlovesUnit::receive(std::span<const std::byte> bytes, Time now) {
   }
 }
 
-void LucidGlovesUnit::obey(std::string_view command) {
+void LucidGlovesUnit::handle(std::string_view command) {
   if (options_.answers && command == "Z") {
     const std::string answer =
         "(ZV)5(ZG)0(ZH)" + std::to_string(options_.side == Side::right ? 1 : 0) + "\n";

@@ -41,7 +41,7 @@ public:
   const std::array<int, 5>& brakes() const noexcept { return brakes_; }
 
 private:
-  void obey(std::string_view command);
+  void handle(std::string_view command);
   std::string line(Time now) const;
 
   const LucidGlovesUnitOptions options_;

@@ -132,16 +132,16 @@ private:
       if (!fault.value.empty()) options_.link = fault.value;
       break;
     case FaultKind::restart:
-      unit_->befall({Incident::Kind::power_cycle}, now_);
+      unit_->inject({Incident::Kind::power_cycle}, now_);
       break;
     case FaultKind::press:
-      unit_->befall({over ? Incident::Kind::switch_off : Incident::Kind::switch_on}, now_);
+      unit_->inject({over ? Incident::Kind::switch_off : Incident::Kind::switch_on}, now_);
       break;
     case FaultKind::eg:
-      unit_->befall({over ? Incident::Kind::glove_in : Incident::Kind::glove_out}, now_);
+      unit_->inject({over ? Incident::Kind::glove_in : Incident::Kind::glove_out}, now_);
       break;
     case FaultKind::swap:
-      unit_->befall(over ? other_glove(fault.value) : Incident{Incident::Kind::glove_out}, now_);
+      unit_->inject(over ? other_glove(fault.value) : Incident{Incident::Kind::glove_out}, now_);
       break;
     default:
       break; // the injector's own

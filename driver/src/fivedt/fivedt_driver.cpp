@@ -34,20 +34,20 @@ public:
   FiveDtProtocol(bool wireless, const HandWishes& hands) noexcept
       : wireless_(wireless), hands_(hands) {}
 
-  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
-                             const Patience& patience) override {
+  Result<GloveInfo> identify(Transport& transport, const std::string& source,
+                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
     return wireless_ ? recognise(transport, source, patience) : ask(transport, source, patience);
   }
 
   Result<void> start_stream(Transport& transport, const std::string& source,
-                            const Patience& /*patience*/) override {
+                            const ReplyDeadline& /*patience*/) override {
     parser_.count_discarded(drop_waiting(transport));
     parser_.reset();
     if (!wireless_ && send(transport, stream_command) == IoStatus::gone) return went_away(source);
     return {};
   }
 
-  void end_stream(Transport& transport, const Patience& patience) noexcept override {
+  void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept override {
     if (!wireless_) reset(transport, patience, quiet_time);
   }
 
@@ -82,14 +82,14 @@ private:
 
   /// Throws away what comes until nothing has come for quiet_time: timeout, as hoped. Done: it
   /// never stopped.
-  IoStatus fall_quiet(Transport& transport, const Patience& patience) noexcept {
+  IoStatus fall_quiet(Transport& transport, const ReplyDeadline& patience) noexcept {
     const HostTime until = HostClock::now() + longest_babble;
     IoStatus heard = IoStatus::done;
     while (heard == IoStatus::done && HostClock::now() < until)
       heard = hear(transport, patience, quiet_time);
     return heard;
   }
-  IoStatus hear(Transport& transport, const Patience& patience,
+  IoStatus hear(Transport& transport, const ReplyDeadline& patience,
                 std::chrono::milliseconds longest) noexcept {
     return listen(transport, patience, longest, [&](std::span<const std::byte> chunk) {
       parser_.count_discarded(chunk.size());
@@ -99,7 +99,7 @@ private:
 
   /// Ends whatever streams; waits `answer` for the first byte of the reply. Where a stream ran, the
   /// reply is somewhere among its last samples.
-  IoStatus reset(Transport& transport, const Patience& patience,
+  IoStatus reset(Transport& transport, const ReplyDeadline& patience,
                  std::chrono::milliseconds answer) noexcept {
     if (send(transport, reset_command) == IoStatus::gone) return IoStatus::gone;
     const IoStatus heard = hear(transport, patience, answer);
@@ -107,7 +107,7 @@ private:
   }
 
   /// A glove that was reset says what it is asked and no more.
-  IoStatus ask_information(Transport& transport, const Patience& patience,
+  IoStatus ask_information(Transport& transport, const ReplyDeadline& patience,
                            InformationFinder& finder) {
     finder = {};
     if (send(transport, information_command) == IoStatus::gone) return IoStatus::gone;
@@ -121,7 +121,8 @@ private:
                                                                 : IoStatus::timeout;
   }
 
-  Result<GloveInfo> ask(Transport& transport, const std::string& source, const Patience& patience) {
+  Result<GloveInfo> ask(Transport& transport, const std::string& source,
+                        const ReplyDeadline& patience) {
     const std::uint64_t before = parser_.counters().bytes;
     InformationFinder finder;
     IoStatus heard = IoStatus::timeout;
@@ -143,7 +144,7 @@ private:
 
   /// One sample may be noise; two of them, one right behind the other, are none by chance.
   Result<GloveInfo> recognise(Transport& transport, const std::string& source,
-                              const Patience& patience) {
+                              const ReplyDeadline& patience) {
     Parser parser;
     std::optional<std::uint64_t> dropped; // before the last sample
     bool proven = false;

@@ -31,8 +31,8 @@ public:
   explicit FivedtUsbProtocol(const Model& model) noexcept
       : model_(model), step_(model.five_sensors ? values_a_finger : 1) {}
 
-  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
-                             const Patience& patience) override {
+  Result<GloveInfo> identify(Transport& transport, const std::string& source,
+                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
     std::uint64_t bytes = 0;
     const auto alive = await_report(transport, source, patience, bytes,
                                     [](auto report) { return decode_report(report).has_value(); });
@@ -50,10 +50,10 @@ public:
 
   // It streams whenever somebody reads.
   Result<void> start_stream(Transport& /*transport*/, const std::string& /*source*/,
-                            const Patience& /*patience*/) override {
+                            const ReplyDeadline& /*patience*/) override {
     return {};
   }
-  void end_stream(Transport& /*transport*/, const Patience& /*patience*/) noexcept override {}
+  void end_stream(Transport& /*transport*/, const ReplyDeadline& /*patience*/) noexcept override {}
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {

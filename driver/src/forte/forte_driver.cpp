@@ -29,8 +29,8 @@ public:
       : bluetooth_(bluetooth), hand_(choose_hand(std::nullopt, hands)) {}
 
   /// A glove that streams already is told again: another program may have chosen the other link.
-  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
-                             const Patience& patience) override {
+  Result<GloveInfo> identify(Transport& transport, const std::string& source,
+                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
     Parser parser;
     std::optional<Record> record;
     const auto take = [&](std::span<const std::byte> chunk) {
@@ -50,14 +50,14 @@ public:
 
   /// It streams already; what it sent before now is old.
   Result<void> start_stream(Transport& transport, const std::string& /*source*/,
-                            const Patience& /*patience*/) override {
+                            const ReplyDeadline& /*patience*/) override {
     parser_.count_discarded(drop_waiting(transport));
     parser_.reset();
     return {};
   }
 
   /// The stream goes on: nobody knows what ends it.
-  void end_stream(Transport& /*transport*/, const Patience& /*patience*/) noexcept override {}
+  void end_stream(Transport& /*transport*/, const ReplyDeadline& /*patience*/) noexcept override {}
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {

@@ -51,8 +51,8 @@ public:
   LucidGlovesProtocol(std::uint16_t range, const HandWishes& hands) noexcept
       : range_(range), hands_(hands), parser_(range) {}
 
-  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
-                             const Patience& patience) override {
+  Result<GloveInfo> identify(Transport& transport, const std::string& source,
+                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
     Parser parser(range_);
     Acquaintance glove;
     const auto take = [&](std::span<const std::byte> chunk) {
@@ -82,7 +82,7 @@ public:
 
   /// It streams all the time; what it said before now is old.
   Result<void> start_stream(Transport& transport, const std::string& /*source*/,
-                            const Patience& /*patience*/) override {
+                            const ReplyDeadline& /*patience*/) override {
     parser_.count_discarded(drop_waiting(transport));
     parser_.reset();
     return {};
@@ -90,8 +90,8 @@ public:
 
   /// The stream goes on, since a glove that somebody stopped looks dead to programs that know no
   /// (ZA). But nobody's fingers are to stay locked.
-  void end_stream(Transport& transport, const Patience& patience) noexcept override {
-    if (braking_) give(transport, {}, patience);
+  void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept override {
+    if (braking_) set_feedback(transport, {}, patience);
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
@@ -105,8 +105,8 @@ public:
     });
   }
 
-  void give(Transport& transport, const Feedback& feedback,
-            const Patience& /*patience*/) noexcept override {
+  void set_feedback(Transport& transport, const Feedback& feedback,
+                    const ReplyDeadline& /*patience*/) noexcept override {
     if (legacy_) return;
     std::array<unsigned, fingers> brake{};
     for (std::size_t k = 0; k < fingers; ++k)

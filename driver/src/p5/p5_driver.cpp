@@ -21,8 +21,8 @@ class P5Protocol final : public GloveProtocol {
 public:
   explicit P5Protocol(Side side) noexcept : side_(side) {}
 
-  Result<GloveInfo> identify(Transport& transport, const std::string& source, Occasion /*occasion*/,
-                             const Patience& patience) override {
+  Result<GloveInfo> identify(Transport& transport, const std::string& source,
+                             IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
     std::uint64_t bytes = 0;
     const auto alive = await_report(transport, source, patience, bytes,
                                     [](auto report) { return decode_report(report).has_value(); });
@@ -39,7 +39,7 @@ public:
   }
 
   Result<void> start_stream(Transport& transport, const std::string& source,
-                            const Patience& /*patience*/) override {
+                            const ReplyDeadline& /*patience*/) override {
     std::array mouse{mouse_report, std::byte{0}};
     std::size_t received = 0;
     auto status = usb(transport).get_feature(mouse, received, control_timeout);
@@ -51,7 +51,7 @@ public:
     return status == ControlStatus::gone ? went_away(source) : Result<void>();
   }
 
-  void end_stream(Transport& transport, const Patience& /*patience*/) noexcept override {
+  void end_stream(Transport& transport, const ReplyDeadline& /*patience*/) noexcept override {
     if (std::exchange(mouse_was_on_, false)) set_mouse(transport, mouse_on);
   }
 

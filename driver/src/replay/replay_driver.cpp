@@ -96,7 +96,7 @@ public:
     return stats;
   }
 
-  void give(const Feedback& /*feedback*/) noexcept override {} // nobody wears it
+  void set_feedback(const Feedback& /*feedback*/) noexcept override {} // nobody wears it
 
 private:
   void replay(const std::stop_token& stop, SampleRing& ring) {

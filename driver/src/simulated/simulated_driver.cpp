@@ -49,7 +49,8 @@ public:
     return stats;
   }
 
-  void give(const Feedback& /*feedback*/) noexcept override {} // it has nothing to show it with
+  void set_feedback(const Feedback& /*feedback*/) noexcept override {
+  } // it has nothing to show it with
 
 private:
   void read(const std::stop_token& stop, SampleRing& ring) {

@@ -19,7 +19,7 @@ namespace nendo::driver {
 
 /// How long a dialogue may take: it ends at `deadline`, and within 0.3 s after `cancelled` is
 /// requested.
-struct Patience {
+struct ReplyDeadline {
   HostTime deadline;
   std::stop_token cancelled;
 };
@@ -30,7 +30,7 @@ inline Error went_away(const std::string& source) {
 }
 
 /// Why a glove is asked who it is.
-enum class Occasion : std::uint8_t {
+enum class IdentifyReason : std::uint8_t {
   opening,  ///< for the first time
   reviving, ///< it fell silent, or its port was opened again
   damaged,  ///< its records became unreadable: another glove may have been plugged in
@@ -47,7 +47,7 @@ protected:
 };
 
 /// Used by one thread at a time: first the one that opens, then the reader. No call waits longer
-/// than 0.1 s without looking at its Patience.
+/// than 0.1 s without looking at its ReplyDeadline.
 class GloveProtocol {
 public:
   GloveProtocol() = default;
@@ -58,11 +58,11 @@ public:
   /// Ends whatever streams, asks the device who it is and sets it up. `source` begins the messages.
   /// Error: no_device; usage, if the device cannot do what an option asks for.
   virtual Result<GloveInfo> identify(Transport& transport, const std::string& source,
-                                     Occasion occasion, const Patience& patience) = 0;
+                                     IdentifyReason occasion, const ReplyDeadline& patience) = 0;
   /// Starts the stream; whatever comes from now on is for push(). Error: no_device.
   virtual Result<void> start_stream(Transport& transport, const std::string& source,
-                                    const Patience& patience) = 0;
-  virtual void end_stream(Transport& transport, const Patience& patience) noexcept = 0;
+                                    const ReplyDeadline& patience) = 0;
+  virtual void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept = 0;
   /// Takes the next bytes of the stream, cut anywhere; the last of them arrived at `arrival`.
   virtual void push(std::span<const std::byte> chunk, HostTime arrival,
                     SampleSink& sink) noexcept = 0;
@@ -70,8 +70,8 @@ public:
   /// records can be believed.
   virtual bool is_doubtful() const noexcept { return false; }
   /// Shows `feedback`, while it streams. A device that went away shows itself at the next read.
-  virtual void give(Transport& transport, const Feedback& feedback,
-                    const Patience& patience) noexcept {
+  virtual void set_feedback(Transport& transport, const Feedback& feedback,
+                            const ReplyDeadline& patience) noexcept {
     (void)transport, (void)feedback, (void)patience;
   }
   virtual const StreamCounters& counters() const noexcept = 0;

@@ -18,8 +18,8 @@ namespace nendo::driver {
 /// Hands what arrives to `take(std::span<const std::byte>)` until that returns true (done), the
 /// device is gone, or time or patience are up (timeout). Looks at its patience every 0.1 s.
 template <class Take>
-IoStatus listen(Transport& transport, const Patience& patience, std::chrono::milliseconds longest,
-                Take&& take) {
+IoStatus listen(Transport& transport, const ReplyDeadline& patience,
+                std::chrono::milliseconds longest, Take&& take) {
   constexpr std::chrono::milliseconds slice{100};
   std::array<std::byte, 256> buffer;
   const HostTime until = std::min(patience.deadline, HostClock::now() + longest);

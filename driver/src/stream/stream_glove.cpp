@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr auto start_budget = 900ms;
 constexpr auto stop_budget = 400ms;
-constexpr auto give_budget = 400ms;
+constexpr auto feedback_budget = 400ms;
 constexpr auto read_timeout = 100ms; ///< also how soon the reader notices that it is to stop
 constexpr auto shortest_silence = 1500ms;
 constexpr auto retry_interval = 500ms;
@@ -80,7 +80,7 @@ public:
   Result<void> start(SampleRing& ring) override;
   void stop() noexcept override;
   GloveStats stats() const noexcept override { return stats_.load(); }
-  void give(const Feedback& feedback) noexcept override;
+  void set_feedback(const Feedback& feedback) noexcept override;
 
 private:
   enum class StreamEnd { stopped, silent, doubtful, gone };
@@ -92,7 +92,7 @@ private:
   void measure_rate(HostTime now);
   void revive(const std::stop_token& token);
   void reopen(const std::stop_token& token);
-  bool restart(const std::stop_token& token, Occasion occasion);
+  bool restart(const std::stop_token& token, IdentifyReason occasion);
   void wait(const std::stop_token& token, std::chrono::milliseconds time);
 
   const GloveInfo info_;
@@ -126,7 +126,7 @@ private:
 Result<void> StreamGlove::start(SampleRing& ring) {
   if (reader_.joinable()) return Error{Errc::failed, info_.source + " is streaming already"};
   if (!transport_) return Error{Errc::no_device, info_.source + " went away; open it again"};
-  const Patience patience{HostClock::now() + start_budget, {}};
+  const ReplyDeadline patience{HostClock::now() + start_budget, {}};
   if (auto ready = protocol_->start_stream(*transport_, info_.source, patience); !ready)
     return ready.error();
   at_start_ = protocol_->counters();
@@ -148,7 +148,7 @@ void StreamGlove::stop() noexcept {
   reader_.join();
 }
 
-void StreamGlove::give(const Feedback& feedback) noexcept {
+void StreamGlove::set_feedback(const Feedback& feedback) noexcept {
   const std::lock_guard lock(feedback_mutex_);
   feedback_ = feedback;
   feedback_changed_ = true;
@@ -166,7 +166,7 @@ void StreamGlove::run(const std::stop_token& token) {
       break;
     case StreamEnd::doubtful:
       outage_ = true;
-      unanswered_ = !restart(token, Occasion::damaged);
+      unanswered_ = !restart(token, IdentifyReason::damaged);
       bad_before_ = protocol_->counters().bad_records;
       break;
     case StreamEnd::gone:
@@ -220,7 +220,7 @@ void StreamGlove::show_feedback(const std::stop_token& token) noexcept {
     feedback_changed_ = false;
     feedback = feedback_;
   }
-  protocol_->give(*transport_, feedback, {HostClock::now() + give_budget, token});
+  protocol_->set_feedback(*transport_, feedback, {HostClock::now() + feedback_budget, token});
 }
 
 /// What the glove really delivers; a rate that is not the one it was set to is told once.
@@ -250,7 +250,7 @@ void StreamGlove::revive(const std::stop_token& token) {
                  info_.source, to_seconds(HostClock::now() - last_record_));
   }
   const bool damaged = protocol_->counters().bad_records != bad_before_;
-  unanswered_ = !restart(token, damaged ? Occasion::damaged : Occasion::reviving);
+  unanswered_ = !restart(token, damaged ? IdentifyReason::damaged : IdentifyReason::reviving);
 }
 
 void StreamGlove::reopen(const std::stop_token& token) {
@@ -265,7 +265,7 @@ void StreamGlove::reopen(const std::stop_token& token) {
     auto transport = open_port_();
     if (!transport) continue;
     transport_ = *std::move(transport);
-    if (restart(token, Occasion::reviving)) {
+    if (restart(token, IdentifyReason::reviving)) {
       ++stats_.reopened;
       unanswered_ = false;
       return;
@@ -275,8 +275,8 @@ void StreamGlove::reopen(const std::stop_token& token) {
 }
 
 /// Asks anew who is there, sets it up as before and starts the stream.
-bool StreamGlove::restart(const std::stop_token& token, Occasion occasion) {
-  const Patience patience{HostClock::now() + open_budget, token};
+bool StreamGlove::restart(const std::stop_token& token, IdentifyReason occasion) {
+  const ReplyDeadline patience{HostClock::now() + open_budget, token};
   const auto info = protocol_->identify(*transport_, info_.source, occasion, patience);
   Result<void> streams = info ? Result<void>() : info.error();
   if (info) {
@@ -314,7 +314,7 @@ Result<std::unique_ptr<Glove>> open_stream_glove(const std::string& source, Open
   auto transport = open_port();
   if (!transport) return transport.error();
   (*transport)->discard_input();
-  auto info = protocol->identify(**transport, source, Occasion::opening, {deadline, {}});
+  auto info = protocol->identify(**transport, source, IdentifyReason::opening, {deadline, {}});
   if (!info) return info.error();
   info->source = source;
   return std::unique_ptr<Glove>(std::make_unique<StreamGlove>(

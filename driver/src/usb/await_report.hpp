@@ -21,8 +21,8 @@ namespace nendo::driver {
 /// Reads until a report is `good(report)`, for 2 s at most, and counts its bytes in `bytes`.
 /// Error: no_device.
 template <class Good>
-Result<void> await_report(Transport& transport, const std::string& source, const Patience& patience,
-                          std::uint64_t& bytes, Good&& good) {
+Result<void> await_report(Transport& transport, const std::string& source,
+                          const ReplyDeadline& patience, std::uint64_t& bytes, Good&& good) {
   using namespace std::chrono_literals;
   std::array<std::byte, most_usb_report_bytes> buffer{};
   const HostTime deadline = std::min(patience.deadline, HostClock::now() + 2s);

@@ -88,7 +88,7 @@ public:
   /// reconnect. The reader thread sends it: within 0.2 s, without losing a record of gloves that
   /// take commands while they stream; a CyberGlove's stream pauses for it. Any thread, does not
   /// block.
-  virtual void give(const Feedback& feedback) noexcept = 0;
+  virtual void set_feedback(const Feedback& feedback) noexcept = 0;
 };
 
 } // namespace nendo::driver

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <nendo/base/bell.hpp>
+#include <nendo/base/event_count.hpp>
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/units.hpp>
 
@@ -126,22 +126,22 @@ struct GloveSample {
   }
 };
 
-/// From a glove's reader thread to whoever uses its samples; rings a bell, if it has one, for a
-/// user who sleeps until a sample comes.
+/// From a glove's reader thread to whoever uses its samples; rings an event count, if it has one,
+/// for a user who sleeps until a sample comes.
 class SampleRing : public SpscRing<GloveSample> {
 public:
-  /// `bell` may serve several rings; it must outlive them.
-  explicit SampleRing(std::size_t at_least, Bell* bell = nullptr)
-      : SpscRing(at_least), bell_(bell) {}
+  /// `event_count` may serve several rings; it must outlive them.
+  explicit SampleRing(std::size_t at_least, EventCount* event_count = nullptr)
+      : SpscRing(at_least), event_count_(event_count) {}
 
   bool try_push(const GloveSample& sample) noexcept {
     const bool taken = SpscRing::try_push(sample);
-    if (bell_ != nullptr) bell_->ring();
+    if (event_count_ != nullptr) event_count_->notify();
     return taken;
   }
 
 private:
-  Bell* const bell_;
+  EventCount* const event_count_;
 };
 
 } // namespace nendo

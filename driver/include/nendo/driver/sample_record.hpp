@@ -1,6 +1,6 @@
 #pragma once
 // What of a recording belongs to gloves (apps/recording/FORMAT.md): who they are, and their samples
-// as entries of a tape.
+// as entries of an input log.
 
 #include <cstdint>
 #include <optional>
@@ -19,7 +19,7 @@ inline constexpr ChunkType tape_chunk = chunk_type("TAPE");  ///< what happened,
 /// Kinds of entries; unknown ones are passed over.
 enum class RecordKind : std::uint8_t { sample = 1, request = 2, tick = 3, gap = 4, wrist = 5 };
 
-/// One entry of a tape: its kind and what it holds.
+/// One entry of an input log: its kind and what it holds.
 struct TapeRecord {
   std::uint8_t kind = 0;
   std::span<const std::byte> body;
@@ -27,7 +27,7 @@ struct TapeRecord {
   bool is(RecordKind wanted) const noexcept { return kind == static_cast<std::uint8_t>(wanted); }
 };
 
-/// The entries of a tape chunk's payload, one after another; pure.
+/// The entries of an input log chunk's payload, one after another; pure.
 class TapeRecords {
 public:
   explicit TapeRecords(std::span<const std::byte> payload) noexcept : reader_(payload) {}

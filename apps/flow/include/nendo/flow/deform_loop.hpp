@@ -11,13 +11,13 @@
 
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/input_log.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
 #include <nendo/flow/shaping.hpp>
-#include <nendo/flow/tape.hpp>
 #include <nendo/flow/tick_record.hpp>
 #include <nendo/flow/wrist_switch.hpp>
-#include <nendo/hand/calibration_in_force.hpp>
+#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 
@@ -42,8 +42,8 @@ struct HandInput {
   std::optional<hand::HandSkeleton> swapped_skeleton{};
 
   /// For its samples from the first one on.
-  hand::CalibrationInForce in_force() const noexcept {
-    if (adapt) return hand::CalibrationInForce(*adapt, learned);
+  hand::ActiveCalibration in_force() const noexcept {
+    if (adapt) return hand::ActiveCalibration(*adapt, learned);
     return {first.side, calibration, swapped};
   }
 };
@@ -66,12 +66,12 @@ struct LoopOptions : PaceOptions {
   /// Where its hands go while it runs. Must outlive it.
   WristRing* wrists = nullptr;
   /// What is taken goes there, too. Must outlive it.
-  Tape* tape = nullptr;
+  InputLog* input_log = nullptr;
   std::size_t undo_most_bytes = 0; ///< ShapingOptions::undo_most_bytes
   /// Each is shown every frame. Must outlive the loop.
   std::vector<FrameSink*> sinks;
   /// What the hands' rings ring: needed by OverrunPolicy::sample. Must outlive the loop.
-  Bell* bell = nullptr;
+  EventCount* event_count = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
   SwitchAction switch_action = SwitchAction::none;
 };
@@ -93,7 +93,8 @@ public:
   void tick(std::uint64_t number, HostTime scheduled) noexcept {
     tick({number, scheduled, HostClock::now()});
   }
-  /// The same of a tick that has been, as a tape tells it; what is measured of it says nothing.
+  /// The same of a tick that has been, as an input log tells it; what is measured of it says
+  /// nothing.
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {
     tick(Pacer::Due{number, scheduled, woke});
   }
@@ -134,7 +135,7 @@ private:
     HandInput input;
     std::size_t slot = 0; ///< of arrays by side
     Eigen::Isometry3d T_stage_wrist;
-    hand::CalibrationInForce calibration;
+    hand::ActiveCalibration calibration;
     hand::SensorGate gate{};
     hand::JointFilter filter;
     GloveSample latest{};

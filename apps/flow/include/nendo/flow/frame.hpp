@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include <nendo/base/latest_value.hpp>
+#include <nendo/base/triple_buffer.hpp>
 #include <nendo/deform/field_sequence.hpp>
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
@@ -27,9 +27,9 @@ struct HandFrame {
 };
 
 struct Frame {
-  std::uint64_t tick = 0;   ///< the number of the deadline on the grid; gaps were missed
-  std::uint64_t ticks = 0;  ///< how many have run
-  std::uint64_t missed = 0; ///< how many deadlines were skipped
+  std::uint64_t tick = 0;      ///< the number of the deadline on the grid; gaps were missed
+  std::uint64_t ticks_run = 0; ///< how many ticks have run
+  std::uint64_t missed = 0;    ///< how many deadlines were skipped
   /// How often the shape became the rest shape; a commit of this frame's comes after its fields.
   std::uint64_t commits = 0;
   /// How often it became an earlier one, or that one's successor again (undo, redo); one of this
@@ -54,6 +54,6 @@ struct Frame {
   deform::BlockShape shape;
 };
 
-using FrameExchange = LatestValue<Frame>;
+using FrameExchange = TripleBuffer<Frame>;
 
 } // namespace nendo::flow

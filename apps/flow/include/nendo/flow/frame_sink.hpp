@@ -1,5 +1,5 @@
 #pragma once
-// Who wants every frame, where LatestValue gives the newest one to a single reader.
+// Who wants every frame, where TripleBuffer gives the newest one to a single reader.
 
 #include <nendo/flow/frame.hpp>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include <nendo/base/bell.hpp>
+#include <nendo/base/event_count.hpp>
 #include <nendo/flow/spin_margin.hpp>
 #include <nendo/flow/tick_grid.hpp>
 
@@ -48,8 +48,9 @@ public:
     HostClock::duration spun{};
   };
 
-  /// `bell` is what samples ring; needed by OverrunPolicy::sample alone. Tick 0 is due at `start`.
-  Pacer(const PaceOptions& options, HostTime start, Bell* bell = nullptr) noexcept;
+  /// `event_count` is what samples notify; needed by OverrunPolicy::sample alone. Tick 0 is due at
+  /// `start`.
+  Pacer(const PaceOptions& options, HostTime start, EventCount* event_count = nullptr) noexcept;
 
   /// Waits until the next tick is due, not at all if it is late.
   Due wait() noexcept;
@@ -64,7 +65,7 @@ private:
 
   PaceOptions options_;
   TickGrid grid_;
-  Bell* bell_;
+  EventCount* event_count_;
   std::uint64_t next_ = 0;
   std::uint64_t first_of_grid_ = 0; ///< which tick the grid's first deadline is, after re-anchoring
   std::uint32_t missed_ = 0;

@@ -9,13 +9,13 @@
 #include <cstdint>
 #include <span>
 
-#include <nendo/base/sequence_stage.hpp>
+#include <nendo/base/seq_lock.hpp>
 
 namespace nendo::publish {
 
 using AtomicWord = std::atomic<std::uint64_t>;
 static_assert(AtomicWord::is_always_lock_free && sizeof(AtomicWord) == 8);
-static_assert(sizeof(SequenceStage<>) == 8);
+static_assert(sizeof(SeqLock<>) == 8);
 
 /// Copies without tearing a word. Wait-free.
 void store_words(std::span<const std::uint64_t> words, AtomicWord* to) noexcept;
@@ -24,7 +24,7 @@ void load_words(const AtomicWord* from, std::span<std::uint64_t> words) noexcept
 class RecordRing {
 public:
   RecordRing() = default;
-  /// Record k is in slot k mod `slots`: a SequenceStage, then its words. `memory` has slots *
+  /// Record k is in slot k mod `slots`: a SeqLock, then its words. `memory` has slots *
   /// slot_words zeros, and outlives this.
   RecordRing(AtomicWord* memory, std::size_t slots, std::size_t slot_words) noexcept
       : memory_(memory), slots_(slots), slot_words_(slot_words) {
@@ -53,8 +53,8 @@ private:
   AtomicWord* slot_of(std::uint64_t number) const noexcept {
     return memory_ + number % slots_ * slot_words_;
   }
-  SequenceStage<>& stage_of(std::uint64_t number) const noexcept {
-    return *reinterpret_cast<SequenceStage<>*>(slot_of(number));
+  SeqLock<>& stage_of(std::uint64_t number) const noexcept {
+    return *reinterpret_cast<SeqLock<>*>(slot_of(number));
   }
   AtomicWord* words_of(std::uint64_t number) const noexcept { return slot_of(number) + 1; }
 

@@ -1,7 +1,7 @@
 #pragma once
-// The last minute, in memory that is taken beforehand: chunks of a tape, the oldest of which make
-// room for new ones. It can be written at any moment, also by a signal handler in a process that is
-// about to die.
+// The last minute, in memory that is taken beforehand: chunks of an input log, the oldest of which
+// make room for new ones. It can be written at any moment, also by a signal handler in a process
+// that is about to die.
 
 #include <atomic>
 #include <chrono>
@@ -21,8 +21,8 @@ public:
   KeptRing(std::vector<std::byte> setup, std::uint32_t setup_chunks, HostClock::duration span,
            std::size_t bytes);
 
-  /// One thread: the payload of a tape chunk with so many entries, which ended at `time`. Payloads
-  /// that are larger than an eighth of the memory are dropped.
+  /// One thread: the payload of an input log chunk with so many entries, which ended at `time`.
+  /// Payloads that are larger than an eighth of the memory are dropped.
   void push(std::span<const std::byte> payload, std::uint64_t entries, HostTime time) noexcept;
 
   /// A whole recording. What was dropped stands as a gap in front. False, with errno, if the system

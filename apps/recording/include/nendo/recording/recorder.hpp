@@ -1,6 +1,6 @@
 #pragma once
-// Takes what a loop leaves on its tape to a file, or keeps the last of it in memory, on a thread of
-// its own. However slow or full the disk is, the loop does not notice.
+// Takes what a loop leaves on its input log to a file, or keeps the last of it in memory, on a
+// thread of its own. However slow or full the disk is, the loop does not notice.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include <nendo/base/result.hpp>
-#include <nendo/flow/tape.hpp>
+#include <nendo/flow/input_log.hpp>
 #include <nendo/recording/take_reader.hpp>
 
 namespace nendo::recording {
@@ -32,7 +32,7 @@ struct Recorded {
   std::uint64_t samples = 0;
   std::uint64_t requests = 0;
   std::uint64_t ticks = 0;
-  std::uint64_t lost = 0;  ///< entries that found the tape full
+  std::uint64_t lost = 0;  ///< entries that found the input log full
   std::uint64_t bytes = 0; ///< of the file
   std::uint64_t kept = 0;  ///< files that keep() made
 };
@@ -42,9 +42,9 @@ public:
   /// Makes the file, with the setup in it, and the thread. With keep_last, a crash of the process
   /// (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT) writes what is in memory, until this is destroyed;
   /// one recorder at a time does so, and not for a thread whose stack has overflowed: a handler has
-  /// no other to run on. `tape` must outlive it. Blocks for as long as the disk does.
+  /// no other to run on. `input log` must outlive it. Blocks for as long as the disk does.
   /// Error: failed (the file is there already, or cannot be made).
-  static Result<std::unique_ptr<Recorder>> begin(const Setup& setup, flow::Tape& tape,
+  static Result<std::unique_ptr<Recorder>> begin(const Setup& setup, flow::InputLog& input_log,
                                                  RecorderOptions options);
   virtual ~Recorder() = default; ///< as end()
   Recorder(const Recorder&) = delete;

@@ -12,7 +12,7 @@
 
 #include <nendo/driver/chunk_file.hpp>
 #include <nendo/driver/sample_record.hpp>
-#include <nendo/flow/tape.hpp>
+#include <nendo/flow/input_log.hpp>
 #include <nendo/recording/recorded_shape.hpp>
 #include <nendo/recording/setup.hpp>
 
@@ -25,7 +25,7 @@ struct Gap {
 };
 
 using Entry =
-    std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::TapedTick, Gap>;
+    std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoggedTick, Gap>;
 
 /// What a recorder says when it has come to its end.
 struct Ending {
@@ -33,11 +33,11 @@ struct Ending {
   std::uint64_t samples = 0;
   std::uint64_t requests = 0;
   std::uint64_t ticks = 0;
-  std::uint64_t lost = 0;        ///< entries that found the tape full
+  std::uint64_t lost = 0;        ///< entries that found the input log full
   std::optional<ShapeSum> shape; ///< the loop's, when it had ended
 };
 
-/// An entry as it stands on a tape chunk. A sample's `hand` is its glove's number.
+/// An entry as it stands on an input log chunk. A sample's `hand` is its glove's number.
 void put_entry(ByteWriter& writer, const Entry& entry);
 void put_ending(ByteWriter& writer, const Ending& ending);
 inline constexpr driver::ChunkType ending_chunk = driver::chunk_type("END ");
@@ -77,7 +77,7 @@ private:
   std::uint64_t shapes_ = 0;
   std::uint64_t damages_told_ = 0;
   std::uint64_t strange_ = 0;
-  bool setup_done_ = false; ///< at the first tape
+  bool setup_done_ = false; ///< at the first input log
   bool gap_due_ = false;
 };
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <nendo/flow/frame.hpp>
-#include <nendo/flow/keepsakes.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
+#include <nendo/flow/save_request.hpp>
 #include <nendo/viewer/hand_mover.hpp>
 #include <nendo/viewer/scene_window.hpp>
 
@@ -38,7 +38,7 @@ struct Wishes {
   std::optional<LoopSettings> settings; ///< to go on with, in place of those in force
   bool reset = false;                   ///< back to the model as it was loaded
   bool record = false;                  ///< the recording is to begin, or to end
-  flow::Keepsakes keepsakes;
+  flow::SaveRequest save_request;
   bool quit = false;
 };
 
@@ -74,7 +74,7 @@ private:
   std::unique_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;
   HoldFollower holds_;
-  Moment moment_;
+  SceneFrame moment_;
   HandMover hand_mover_;
 };
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <nendo/viewer/hand_skin.hpp>
-#include <nendo/viewer/moment.hpp>
+#include <nendo/viewer/scene_frame.hpp>
 #include <nendo/viewer/surface.hpp>
 
 namespace nendo::viewer {
@@ -37,9 +37,9 @@ public:
 
   /// Off the loop: allocates where `scene` has not had as much before. The moment's vertices are as
   /// many as the mesh's.
-  void build(const Moment& moment, const SceneParts& parts, Scene& scene) const;
+  void build(const SceneFrame& moment, const SceneParts& parts, Scene& scene) const;
   /// The parts beside the model alone; of scene.model only the material.
-  void build_beside(const Moment& moment, const SceneParts& parts, Scene& scene) const;
+  void build_beside(const SceneFrame& moment, const SceneParts& parts, Scene& scene) const;
 
   double units_per_metre() const noexcept { return units_per_metre_; }
   /// scene = vertex / units_per_metre - origin.
@@ -50,7 +50,7 @@ public:
   const Eigen::Vector3d& size_m() const noexcept { return size_m_; }
 
 private:
-  void add_hand(const SeenHand& hand, std::size_t slot, const Moment& moment,
+  void add_hand(const SeenHand& hand, std::size_t slot, const SceneFrame& moment,
                 const SceneParts& parts, Scene& scene) const;
   void add_ground(Scene& scene) const;
 

@@ -43,7 +43,7 @@ public:
 
   /// A picture begins: what has happened since the last, and what stands beside the model. The
   /// first one that is whole chooses the camera for good. Widgets may follow.
-  void begin_picture(const Moment& moment, bool is_whole = true);
+  void begin_picture(const SceneFrame& moment, bool is_whole = true);
   /// The mouse turns, shifts and zooms, unless it is over a widget.
   void move_camera();
   /// h, b, v and d show and hide the scene's parts, unless somebody writes or is asked something.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <nendo/hand/skeleton.hpp>
-#include <nendo/viewer/key_strip.hpp>
+#include <nendo/viewer/dope_sheet.hpp>
 
 namespace nendo::viewer {
 

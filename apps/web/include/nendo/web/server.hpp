@@ -12,12 +12,12 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
-#include <nendo/flow/keepsakes.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
+#include <nendo/flow/save_request.hpp>
 #include <nendo/flow/wrist_move.hpp>
 #include <nendo/web/endpoint.hpp>
-#include <nendo/web/frame_tap.hpp>
+#include <nendo/web/frame_stream.hpp>
 
 namespace nendo::web {
 
@@ -69,7 +69,7 @@ public:
 
   /// Before a loop begins: what shows its frames, and its model (model_message()). Clients of the
   /// loop before are sent away, and come again. Any thread; does not wait for the network.
-  void present(std::shared_ptr<FrameTap> tap, std::vector<std::byte> model);
+  void present(std::shared_ptr<FrameStream> tap, std::vector<std::byte> model);
   /// What clients asked of the loop, in their order. This and what follows: one thread; wait-free.
   std::optional<flow::Request> next_request() noexcept;
   /// Where a hand was moved to last, if that was since the last call; one hand after the other.
@@ -77,7 +77,7 @@ public:
   /// What only a new loop can give, of all who asked since the last call.
   flow::LoopChange next_change() noexcept;
   /// What is to be kept, of all who asked since the last call.
-  flow::Keepsakes next_keepsakes() noexcept;
+  flow::SaveRequest next_save_request() noexcept;
   /// Words for the people who look on now. Any thread; does not wait for the network.
   void tell(std::string words);
   /// Of the gloves, for who looks. Any thread, wait-free.

@@ -1,15 +1,15 @@
-#include <nendo/viewer/key_strip.hpp>
+#include <nendo/viewer/dope_sheet.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace nendo::viewer {
 
-double KeyStrip::span_px() const noexcept {
+double DopeSheet::span_px() const noexcept {
   return std::max(1.0, width_ - left - right);
 }
 
-void KeyStrip::fit(double width, double duration_s) noexcept {
+void DopeSheet::fit(double width, double duration_s) noexcept {
   const bool all = first_s_ <= 0.0 && last_s_ >= duration_s_;
   width_ = width;
   duration_s_ = std::max(0.0, duration_s);
@@ -17,27 +17,27 @@ void KeyStrip::fit(double width, double duration_s) noexcept {
 }
 
 // Within the timeline, and neither too close nor of no length.
-void KeyStrip::show(double first_s, double last_s) noexcept {
+void DopeSheet::show(double first_s, double last_s) noexcept {
   const double all_s = std::max(duration_s_, closest);
   const double length_s = std::clamp(last_s - first_s, std::min(closest, all_s), all_s);
   first_s_ = std::clamp(first_s, 0.0, all_s - length_s);
   last_s_ = first_s_ + length_s;
 }
 
-double KeyStrip::x_of(double time_s) const noexcept {
+double DopeSheet::x_of(double time_s) const noexcept {
   return left + (time_s - first_s_) / (last_s_ - first_s_) * span_px();
 }
 
-double KeyStrip::time_at(double x) const noexcept {
+double DopeSheet::time_at(double x) const noexcept {
   const double time_s = first_s_ + (x - left) / span_px() * (last_s_ - first_s_);
   return std::clamp(time_s, 0.0, duration_s_);
 }
 
-double KeyStrip::middle_of(std::size_t number) noexcept {
+double DopeSheet::middle_of(std::size_t number) noexcept {
   return ruler + lane * (static_cast<double>(number) + 0.5);
 }
 
-void KeyStrip::zoom(double x, double steps) noexcept {
+void DopeSheet::zoom(double x, double steps) noexcept {
   const double part = std::clamp((x - left) / span_px(), 0.0, 1.0);
   const double at_s = first_s_ + part * (last_s_ - first_s_);
   const double length_s = (last_s_ - first_s_) * std::pow(0.8, std::clamp(steps, -20.0, 20.0));
@@ -46,18 +46,18 @@ void KeyStrip::zoom(double x, double steps) noexcept {
   show(at_s - part * kept_s, at_s + (1.0 - part) * kept_s);
 }
 
-void KeyStrip::pan(double dx) noexcept {
+void DopeSheet::pan(double dx) noexcept {
   const double by_s = -dx / span_px() * (last_s_ - first_s_);
   show(first_s_ + by_s, last_s_ + by_s);
 }
 
-void KeyStrip::follow(double time_s) noexcept {
+void DopeSheet::follow(double time_s) noexcept {
   if (time_s >= first_s_ && time_s <= last_s_) return;
   show(time_s, time_s + (last_s_ - first_s_));
 }
 
-std::optional<StripKey> KeyStrip::key_at(std::span<const StripLane> lanes, double x,
-                                         double y) const {
+std::optional<StripKey> DopeSheet::key_at(std::span<const StripLane> lanes, double x,
+                                          double y) const {
   if (y < ruler) return std::nullopt;
   const auto number = static_cast<std::size_t>((y - ruler) / lane);
   if (number >= lanes.size()) return std::nullopt;
@@ -76,8 +76,8 @@ std::optional<StripKey> KeyStrip::key_at(std::span<const StripLane> lanes, doubl
   return found;
 }
 
-std::optional<std::size_t> KeyStrip::mark_at(std::span<const StripMark> marks, std::size_t lanes,
-                                             double x, double y) const {
+std::optional<std::size_t> DopeSheet::mark_at(std::span<const StripMark> marks, std::size_t lanes,
+                                              double x, double y) const {
   if (std::abs(y - middle_of(lanes)) > lane / 2) return std::nullopt;
   std::optional<std::size_t> found;
   double nearest = reach;
@@ -90,7 +90,7 @@ std::optional<std::size_t> KeyStrip::mark_at(std::span<const StripMark> marks, s
   return found;
 }
 
-double KeyStrip::ruler_step_s() const noexcept {
+double DopeSheet::ruler_step_s() const noexcept {
   constexpr double least_px = 64.0;
   const double least_s = least_px / span_px() * (last_s_ - first_s_);
   const double power = std::pow(10.0, std::floor(std::log10(least_s)));

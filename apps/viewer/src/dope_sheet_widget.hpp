@@ -7,7 +7,7 @@
 
 namespace nendo::viewer {
 
-class StripWidget {
+class DopeSheetWidget {
 public:
   /// Of a strip with so many lanes, controls included; pixels.
   static int height_for(std::size_t lanes) noexcept;
@@ -25,7 +25,7 @@ private:
   void press(const TimelineView& view, double x, double y, EditWishes& wishes);
   void drag(const TimelineView& view, double x, EditWishes& wishes);
 
-  KeyStrip strip_;
+  DopeSheet strip_;
   std::optional<Taken> taken_; ///< a key that the mouse holds
   bool scrubs_ = false;
   double head_s_ = 0.0; ///< at the last picture

@@ -1,4 +1,4 @@
-#include <nendo/hand/calibration_in_force.hpp>
+#include <nendo/hand/active_calibration.hpp>
 
 #include <cmath>
 
@@ -28,12 +28,12 @@ GloveSample sample_of(Side side, HostTime now, int count) {
 
 } // namespace
 
-TEST_SUITE("calibration_in_force") {
+TEST_SUITE("active_calibration") {
   TEST_CASE(
       "a sample gets the calibration of the hand whose glove sent it, as often as they swap") {
     for (const Side side : {Side::left, Side::right}) {
       const Side other = side == Side::left ? Side::right : Side::left;
-      CalibrationInForce calibration(side, with_gain(0.01), with_gain(0.02));
+      ActiveCalibration calibration(side, with_gain(0.01), with_gain(0.02));
       CHECK(calibration.adaptation() == nullptr);
       for (const Side now : {side, side, other, side, other, other}) {
         const auto& in_force = calibration.follow(sample_of(now, HostTime(1h), 100));
@@ -44,7 +44,7 @@ TEST_SUITE("calibration_in_force") {
 
   TEST_CASE("an adapting one is what adaptation makes of the same samples") {
     const CountScale counts{4095, true};
-    CalibrationInForce calibration(counts);
+    ActiveCalibration calibration(counts);
     RangeAdaptation reference(counts);
     HostTime now(1h);
     for (int n = 0; n < 2000; ++n) {

@@ -29,12 +29,12 @@ struct Record {
   std::vector<std::byte> step; ///< one step of it
 };
 
-class FrameTap final : public flow::FrameSink {
+class FrameStream final : public flow::FrameSink {
 public:
   /// Of a loop that is about to begin. Allocates for everything that show() needs.
   /// most_fields, most_functions: of a frame, and of a field.
-  FrameTap(const deform::BlockLayout& layout, flow::Mode mode, std::size_t most_fields,
-           std::size_t most_functions);
+  FrameStream(const deform::BlockLayout& layout, flow::Mode mode, std::size_t most_fields,
+              std::size_t most_functions);
 
   /// In the tick. Wait-free: a copy of the shape's changed blocks if it was asked for, and in
   /// Type-1 another one if the hands committed or undid.

@@ -1,4 +1,4 @@
-#include <nendo/base/bell.hpp>
+#include <nendo/base/event_count.hpp>
 
 #include <ctime>
 
@@ -19,7 +19,7 @@ long futex(std::atomic<std::uint32_t>& word, int what, std::uint32_t value,
 
 } // namespace
 
-bool Bell::wait(HostTime until) noexcept {
+bool EventCount::wait(HostTime until) noexcept {
   const auto whole = std::chrono::floor<std::chrono::seconds>(until.time_since_epoch());
   timespec at{};
   at.tv_sec = static_cast<std::time_t>(whole.count());
@@ -39,7 +39,7 @@ bool Bell::wait(HostTime until) noexcept {
   }
 }
 
-void Bell::wake() noexcept {
+void EventCount::wake() noexcept {
   word_.fetch_and(~sleeps, std::memory_order_acq_rel);
   futex(word_, FUTEX_WAKE, 1, nullptr);
 }

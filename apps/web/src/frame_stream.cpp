@@ -1,4 +1,4 @@
-#include <nendo/web/frame_tap.hpp>
+#include <nendo/web/frame_stream.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace nendo::web {
 
 /// In front of a record in the ring; what it tells and its step follow.
-struct FrameTap::RecordHead {
+struct FrameStream::RecordHead {
   std::uint32_t bytes = 0; ///< with this head
   std::uint32_t told_bytes = 0;
   std::uint64_t number = 0;
@@ -34,8 +34,8 @@ constexpr std::size_t least_records = 16;
 
 } // namespace
 
-FrameTap::FrameTap(const deform::BlockLayout& layout, flow::Mode mode, std::size_t most_fields,
-                   std::size_t most_functions)
+FrameStream::FrameStream(const deform::BlockLayout& layout, flow::Mode mode,
+                         std::size_t most_fields, std::size_t most_functions)
     : origin_(layout.origin()), unit_(layout.unit()), vertices_(layout.vertex_count()),
       type1_(mode == flow::Mode::type1),
       most_wear_(std::pow(most_wear * layout.diagonal() / layout.unit(), 2)), rest_(layout.pack()),
@@ -50,7 +50,7 @@ FrameTap::FrameTap(const deform::BlockLayout& layout, flow::Mode mode, std::size
     ring_.claimed(at - 1) = Chunk{};
 }
 
-void FrameTap::show(const flow::Frame& frame) noexcept {
+void FrameStream::show(const flow::Frame& frame) noexcept {
   ++number_;
   const bool undone = frame.undos != undos_;
   const bool committed = frame.commits != commits_;
@@ -63,7 +63,7 @@ void FrameTap::show(const flow::Frame& frame) noexcept {
   if (listened_to_.load(std::memory_order_relaxed)) push(frame, undone, committed);
 }
 
-void FrameTap::give_shape(const flow::Frame& frame) noexcept {
+void FrameStream::give_shape(const flow::Frame& frame) noexcept {
   if (request_.load(std::memory_order_acquire) != Request::asked) return;
   given_.follow(type1_ ? rest_ : frame.shape);
   given_number_ = number_;
@@ -71,7 +71,7 @@ void FrameTap::give_shape(const flow::Frame& frame) noexcept {
 }
 
 // Errors of many steps are as likely to be of either sign, so that squares add up.
-double FrameTap::wear_of(const flow::Frame& frame) const noexcept {
+double FrameStream::wear_of(const flow::Frame& frame) const noexcept {
   double wear = 0.0;
   for (const deform::CsrbfField& field : frame.fields.fields()) {
     const double largest = field.coefficients.cwiseAbs().maxCoeff() / unit_;
@@ -82,7 +82,7 @@ double FrameTap::wear_of(const flow::Frame& frame) const noexcept {
   return wear;
 }
 
-void FrameTap::push(const flow::Frame& frame, bool undone, bool committed) noexcept {
+void FrameStream::push(const flow::Frame& frame, bool undone, bool committed) noexcept {
   const bool bakes = !type1_ || committed;
   RecordHead head;
   UpdateHead update = head_of(frame);
@@ -109,7 +109,7 @@ void FrameTap::push(const flow::Frame& frame, bool undone, bool committed) noexc
   ring_.commit(chunks);
 }
 
-void FrameTap::take(std::vector<Record>& records) {
+void FrameStream::take(std::vector<Record>& records) {
   incoming_.clear();
   std::size_t wanted = 0; // of incoming_, for the record that is being put together
   RecordHead head;
@@ -137,7 +137,7 @@ void FrameTap::take(std::vector<Record>& records) {
   });
 }
 
-void FrameTap::ask_for_shape() noexcept {
+void FrameStream::ask_for_shape() noexcept {
   Request none = Request::none;
   request_.compare_exchange_strong(none, Request::asked, std::memory_order_release,
                                    std::memory_order_relaxed);
@@ -145,7 +145,7 @@ void FrameTap::ask_for_shape() noexcept {
 
 // A shape that was not ready after the last take() is of a later frame than all that this gave,
 // because the tick gives a frame's shape before its record. So no record after it is missed.
-std::optional<FrameTap::Shape> FrameTap::take_shape() {
+std::optional<FrameStream::Shape> FrameStream::take_shape() {
   if (request_.load(std::memory_order_acquire) != Request::ready) return std::nullopt;
   Shape shape{given_number_, std::vector<std::byte>(sizeof(ShapeHead) + 12 * vertices_)};
   ShapeHead head;

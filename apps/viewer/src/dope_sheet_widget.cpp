@@ -1,10 +1,10 @@
-#include "strip_widget.hpp"
+#include "dope_sheet_widget.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "strip_drawing.hpp"
+#include "dope_sheet_drawing.hpp"
 #include "widgets.hpp"
 
 namespace nendo::viewer {
@@ -36,7 +36,7 @@ void button(const Control& control, float width, EditWishes& wishes) {
   ImGui::SameLine();
 }
 
-void tell_what_is_at(const TimelineView& view, const KeyStrip& strip, double x, double y) {
+void tell_what_is_at(const TimelineView& view, const DopeSheet& strip, double x, double y) {
   if (const auto key = strip.key_at(view.lanes, x, y))
     ImGui::SetTooltip("key %zu, %.3f s", key->key, view.lanes[key->lane].keys_s[key->key]);
   else if (const auto mark = strip.mark_at(view.marks, view.lanes.size(), x, y))
@@ -52,13 +52,13 @@ double on_a_frame(double time_s, const TimelineView& view) {
 
 } // namespace
 
-int StripWidget::height_for(std::size_t lanes) noexcept {
-  return static_cast<int>(KeyStrip::height_for(lanes) +
+int DopeSheetWidget::height_for(std::size_t lanes) noexcept {
+  return static_cast<int>(DopeSheet::height_for(lanes) +
                           static_cast<double>(controls_height + 2.0F * margin));
 }
 
-void StripWidget::draw(const TimelineView& view, const std::optional<Retiming>& shaded,
-                       EditWishes& wishes) {
+void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retiming>& shaded,
+                           EditWishes& wishes) {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const auto height = static_cast<float>(height_for(view.lanes.size()));
   ImGui::SetNextWindowPos(ImVec2(0.0F, all.y - height));
@@ -71,7 +71,7 @@ void StripWidget::draw(const TimelineView& view, const std::optional<Retiming>& 
   controls(view, wishes);
   const ImVec2 corner(margin, all.y - height + margin + controls_height);
   const ImVec2 size(std::max(64.0F, all.x - 2.0F * margin),
-                    static_cast<float>(KeyStrip::height_for(view.lanes.size())));
+                    static_cast<float>(DopeSheet::height_for(view.lanes.size())));
   strip_.fit(static_cast<double>(size.x), view.duration_s);
   if (std::exchange(head_s_, view.head_s) != view.head_s) strip_.follow(view.head_s);
   ImGui::SetCursorScreenPos(corner);
@@ -91,7 +91,7 @@ void StripWidget::draw(const TimelineView& view, const std::optional<Retiming>& 
   ImGui::PopStyleVar(2);
 }
 
-void StripWidget::controls(const TimelineView& view, EditWishes& wishes) const {
+void DopeSheetWidget::controls(const TimelineView& view, EditWishes& wishes) const {
   constexpr float narrow = 34.0F;
   for (const Control& control : before_play)
     button(control, narrow, wishes);
@@ -115,7 +115,8 @@ void StripWidget::controls(const TimelineView& view, EditWishes& wishes) const {
     ImGui::TextDisabled("the shape is of before the last edits");
 }
 
-void StripWidget::follow_mouse(const TimelineView& view, double x, double y, EditWishes& wishes) {
+void DopeSheetWidget::follow_mouse(const TimelineView& view, double x, double y,
+                                   EditWishes& wishes) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0F)
     strip_.zoom(x, static_cast<double>(io.MouseWheel));
@@ -136,7 +137,7 @@ void StripWidget::follow_mouse(const TimelineView& view, double x, double y, Edi
   scrubs_ = false;
 }
 
-void StripWidget::press(const TimelineView& view, double x, double y, EditWishes& wishes) {
+void DopeSheetWidget::press(const TimelineView& view, double x, double y, EditWishes& wishes) {
   if (const auto key = strip_.key_at(view.lanes, x, y)) {
     wishes.select = key;
     taken_ = Taken{*key, x, false};
@@ -147,7 +148,7 @@ void StripWidget::press(const TimelineView& view, double x, double y, EditWishes
   }
 }
 
-void StripWidget::drag(const TimelineView& view, double x, EditWishes& wishes) {
+void DopeSheetWidget::drag(const TimelineView& view, double x, EditWishes& wishes) {
   if (scrubs_) wishes.seek_s = strip_.time_at(x);
   if (!taken_) return;
   if (!taken_->moved) {

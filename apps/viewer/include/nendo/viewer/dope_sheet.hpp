@@ -30,7 +30,7 @@ struct StripKey {
 };
 
 /// Which part of a timeline is seen, and where. From the top: a ruler, the lanes, the marks.
-class KeyStrip {
+class DopeSheet {
 public:
   static constexpr double left = 58.0;    ///< names stand there
   static constexpr double right = 14.0;   ///< room for half a key

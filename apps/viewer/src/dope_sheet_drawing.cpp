@@ -1,4 +1,4 @@
-#include "strip_drawing.hpp"
+#include "dope_sheet_drawing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ constexpr ImU32 shade = IM_COL32(255, 160, 40, 38);
 
 class StripDrawing {
 public:
-  StripDrawing(const KeyStrip& strip, const TimelineView& view, const StripLook& look)
+  StripDrawing(const DopeSheet& strip, const TimelineView& view, const StripLook& look)
       : strip_(strip), view_(view), look_(look), list_(*ImGui::GetWindowDrawList()) {}
 
   void draw() {
@@ -43,7 +43,7 @@ private:
     return {look_.corner.x + static_cast<float>(x), look_.corner.y + static_cast<float>(y)};
   }
   double x_of(double time_s) const { // a little beyond the strip where it is beyond
-    return std::clamp(strip_.x_of(time_s), KeyStrip::left - 20.0, width() + 20.0);
+    return std::clamp(strip_.x_of(time_s), DopeSheet::left - 20.0, width() + 20.0);
   }
   double width() const { return static_cast<double>(look_.size.x); }
   double height() const { return static_cast<double>(look_.size.y); }
@@ -56,18 +56,18 @@ private:
 
   void grounds() const {
     list_.AddRectFilled(at(0.0, 0.0), at(width(), height()), ground);
-    const double begin = std::max(KeyStrip::left, x_of(0.0));
+    const double begin = std::max(DopeSheet::left, x_of(0.0));
     const double end = std::min(width(), x_of(view_.duration_s));
     for (std::size_t lane = 0; lane <= view_.lanes.size(); ++lane) {
-      const double middle = KeyStrip::middle_of(lane);
-      constexpr double half = KeyStrip::lane / 2 - 1.0;
+      const double middle = DopeSheet::middle_of(lane);
+      constexpr double half = DopeSheet::lane / 2 - 1.0;
       list_.AddRectFilled(at(begin, middle - half), at(end, middle + half), lane_ground);
       const bool events = lane == view_.lanes.size();
       text(6.0, middle - 7.0, words,
            events ? "events" : std::string(name_of(view_.lanes[lane].side)).c_str());
     }
-    constexpr double top = KeyStrip::ruler - 5.0;
-    constexpr double bottom = KeyStrip::ruler - 1.0;
+    constexpr double top = DopeSheet::ruler - 5.0;
+    constexpr double bottom = DopeSheet::ruler - 1.0;
     list_.AddRectFilled(at(begin, top), at(end, bottom), not_computed);
     const double so_far = std::clamp(x_of(view_.computed_s), begin, end);
     list_.AddRectFilled(at(begin, top), at(so_far, bottom), computed);
@@ -99,9 +99,9 @@ private:
   }
 
   void shade_times(const Retiming& times) const {
-    const double begin = std::max(KeyStrip::left, x_of(times.from_s));
-    list_.AddRectFilled(at(begin, KeyStrip::ruler), at(std::max(begin, x_of(times.to_s)), height()),
-                        shade);
+    const double begin = std::max(DopeSheet::left, x_of(times.from_s));
+    list_.AddRectFilled(at(begin, DopeSheet::ruler),
+                        at(std::max(begin, x_of(times.to_s)), height()), shade);
   }
 
   void keys_of(std::size_t lane) const {
@@ -110,7 +110,7 @@ private:
       return std::lower_bound(keys_s.begin(), keys_s.end(), time_s);
     };
     constexpr double least_gap = 1.0; // pixels; nearer ones are one to the eye
-    const double pixel_s = strip_.time_at(KeyStrip::left + 1.0) - strip_.first_s();
+    const double pixel_s = strip_.time_at(DopeSheet::left + 1.0) - strip_.first_s();
     for (auto key = at_time(strip_.first_s() - 8.0 * pixel_s);
          key != keys_s.end() && *key <= strip_.last_s() + 8.0 * pixel_s;) {
       diamond(lane, static_cast<std::size_t>(key - keys_s.begin()), key_colour, key_edge);
@@ -126,8 +126,8 @@ private:
   void diamond(std::size_t lane, std::size_t key, ImU32 colour, ImU32 edge) const {
     constexpr double half = 7.0;
     const double x = strip_.x_of(view_.lanes[lane].keys_s[key]);
-    if (x < KeyStrip::left - half || x > width() + half) return;
-    const double y = KeyStrip::middle_of(lane);
+    if (x < DopeSheet::left - half || x > width() + half) return;
+    const double y = DopeSheet::middle_of(lane);
     const ImVec2 top = at(x, y - half);
     const ImVec2 side = at(x + half, y);
     const ImVec2 bottom = at(x, y + half);
@@ -138,11 +138,11 @@ private:
 
   // A name is written where it has room before the next.
   void marks() const {
-    const double y = KeyStrip::middle_of(view_.lanes.size());
+    const double y = DopeSheet::middle_of(view_.lanes.size());
     double free_from = 0.0;
     for (std::size_t mark = 0; mark < view_.marks.size(); ++mark) {
       const double x = strip_.x_of(view_.marks[mark].time_s);
-      if (x < KeyStrip::left || x > width()) continue;
+      if (x < DopeSheet::left || x > width()) continue;
       list_.AddRectFilled(at(x - 1.0, y - 10.0), at(x + 1.0, y + 10.0), mark_colour);
       const char* const name = view_.marks[mark].name.c_str();
       const auto long_px = static_cast<double>(ImGui::CalcTextSize(name).x);
@@ -156,12 +156,12 @@ private:
 
   void head() const {
     const double x = strip_.x_of(view_.head_s);
-    if (x < KeyStrip::left - 1.0 || x > width()) return;
+    if (x < DopeSheet::left - 1.0 || x > width()) return;
     list_.AddRectFilled(at(x - 1.0, 0.0), at(x + 1.0, height()), head_colour);
     list_.AddTriangleFilled(at(x - 6.0, 0.0), at(x + 6.0, 0.0), at(x, 9.0), head_colour);
   }
 
-  const KeyStrip& strip_;
+  const DopeSheet& strip_;
   const TimelineView& view_;
   const StripLook& look_;
   ImDrawList& list_;
@@ -169,7 +169,7 @@ private:
 
 } // namespace
 
-void draw_strip(const KeyStrip& strip, const TimelineView& view, const StripLook& look) {
+void draw_strip(const DopeSheet& strip, const TimelineView& view, const StripLook& look) {
   StripDrawing(strip, view, look).draw();
 }
 

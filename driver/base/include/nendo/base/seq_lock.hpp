@@ -1,5 +1,5 @@
 #pragma once
-// SequenceStage: the word of a sequence lock, for one writer and any number of readers, also in
+// SeqLock: the word of a sequence lock, for one writer and any number of readers, also in
 // other processes. It says which content, by number, stands beside it: 2 n + 1 while content n is
 // written, 2 n + 2 when it is whole. The writer never looks at it, and what readers do cannot
 // matter to it. Beside it, everything is read and written by relaxed atomic accesses (H.-J. Boehm,
@@ -12,7 +12,7 @@
 namespace nendo {
 
 template <class Atomics = StdAtomics>
-class SequenceStage {
+class SeqLock {
 public:
   /// Writer, wait-free: before the first word of content `number` is written. Numbers only grow.
   void open(std::uint64_t number) noexcept {

@@ -11,14 +11,14 @@
 
 namespace nendo::hand {
 
-class CalibrationInForce {
+class ActiveCalibration {
 public:
   /// `own` is for samples of that side, `swapped` for the others.
-  CalibrationInForce(Side side, const Calibration& own, const Calibration& swapped) noexcept
+  ActiveCalibration(Side side, const Calibration& own, const Calibration& swapped) noexcept
       : side_(side), own_(own), swapped_(swapped) {}
   /// Learned from the samples of a glove with such counts; goes on from `learned` if there is any.
-  explicit CalibrationInForce(CountScale counts,
-                              const std::optional<LearnedRanges>& learned = {}) noexcept
+  explicit ActiveCalibration(CountScale counts,
+                             const std::optional<LearnedRanges>& learned = {}) noexcept
       : adaptation_(learned ? RangeAdaptation(counts, *learned) : RangeAdaptation(counts)) {}
 
   /// The calibration for this sample, the next in time; valid until the next call. Wait-free, no

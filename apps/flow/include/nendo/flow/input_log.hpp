@@ -21,22 +21,22 @@ struct TakenSample {
   GloveSample sample;
 };
 
-/// All that stands before it on the tape, up to the tick before, is what this tick took.
-struct TapedTick {
+/// All that stands before it on the input log, up to the tick before, is what this tick took.
+struct LoggedTick {
   std::uint64_t number = 0; ///< Pacer::Due::number
   HostTime scheduled{};
   HostTime woke{};
-  std::uint64_t lost = 0; ///< entries that had found the tape full until then
+  std::uint64_t lost = 0; ///< entries that had found the input log full until then
 };
 
-using TapeEntry = std::variant<TakenSample, Request, WristMove, TapedTick>;
+using InputLogEntry = std::variant<TakenSample, Request, WristMove, LoggedTick>;
 
 /// From the loop to a recorder, through a ring; a full one refuses what comes, and the next tick
 /// that finds room tells how much that was. The loop's side is wait-free.
-class Tape {
+class InputLog {
 public:
   /// Allocates once, 128 bytes an entry. Two gloves and a loop at 90 Hz make 270 entries a second.
-  explicit Tape(std::size_t at_least = std::size_t{1} << 14) : ring_(at_least) {}
+  explicit InputLog(std::size_t at_least = std::size_t{1} << 14) : ring_(at_least) {}
 
   void sample(std::uint8_t hand, const GloveSample& sample) noexcept {
     ring_.try_push(TakenSample{hand, sample});
@@ -44,7 +44,7 @@ public:
   void request(Request request) noexcept { ring_.try_push(request); }
   void wrist(const WristMove& move) noexcept { ring_.try_push(move); }
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {
-    ring_.try_push(TapedTick{number, scheduled, woke, ring_.counters().refused});
+    ring_.try_push(LoggedTick{number, scheduled, woke, ring_.counters().refused});
   }
 
   /// The recorder's thread only, wait-free: hands every entry that is there to `sink`, in order.
@@ -56,7 +56,7 @@ public:
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:
-  SpscRing<TapeEntry> ring_;
+  SpscRing<InputLogEntry> ring_;
 };
 
 } // namespace nendo::flow

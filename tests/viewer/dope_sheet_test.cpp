@@ -1,4 +1,4 @@
-#include <nendo/viewer/key_strip.hpp>
+#include <nendo/viewer/dope_sheet.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double width = 800.0;
 
-KeyStrip strip_of(double duration_s) {
-  KeyStrip strip;
+DopeSheet strip_of(double duration_s) {
+  DopeSheet strip;
   strip.fit(width, duration_s);
   return strip;
 }
@@ -25,16 +25,16 @@ StripLane lane_of(std::vector<double> keys_s) {
 
 } // namespace
 
-TEST_SUITE("key_strip") {
+TEST_SUITE("dope_sheet") {
   TEST_CASE("at first all of the timeline is seen, between the names and the right margin") {
-    const KeyStrip strip = strip_of(4.0);
-    CHECK(strip.x_of(0.0) == doctest::Approx(KeyStrip::left));
-    CHECK(strip.x_of(4.0) == doctest::Approx(width - KeyStrip::right));
+    const DopeSheet strip = strip_of(4.0);
+    CHECK(strip.x_of(0.0) == doctest::Approx(DopeSheet::left));
+    CHECK(strip.x_of(4.0) == doctest::Approx(width - DopeSheet::right));
     CHECK(strip.x_of(1.0) - strip.x_of(0.0) == doctest::Approx(strip.x_of(4.0) - strip.x_of(3.0)));
   }
 
   TEST_CASE("pixels become the times that they stand for, and never one outside") {
-    KeyStrip strip = strip_of(4.0);
+    DopeSheet strip = strip_of(4.0);
     strip.zoom(300.0, 5.0);
     for (const double time_s : {strip.first_s(), 0.7 * strip.first_s() + 0.3 * strip.last_s()})
       CHECK(strip.time_at(strip.x_of(time_s)) == doctest::Approx(time_s));
@@ -46,7 +46,7 @@ TEST_SUITE("key_strip") {
 
   TEST_CASE("the time under the pointer stays there while the wheel turns") {
     for (const double x : {200.0, 400.0, 700.0}) {
-      KeyStrip strip = strip_of(4.0);
+      DopeSheet strip = strip_of(4.0);
       const double time_s = strip.time_at(x);
       for (int step = 0; step < 12; ++step) {
         strip.zoom(x, 1.0);
@@ -67,14 +67,14 @@ TEST_SUITE("key_strip") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> wild(-1e4, 1e4);
     for (const double duration_s : {0.0, 1e-9, 0.5, 3.0, 1e6}) {
-      KeyStrip strip = strip_of(duration_s);
+      DopeSheet strip = strip_of(duration_s);
       for (int step = 0; step < 200; ++step) {
         strip.zoom(wild(random), wild(random) / 1e3);
         strip.pan(wild(random));
         strip.follow(wild(random) < 0.0 ? 0.0 : duration_s);
         CHECK(strip.last_s() > strip.first_s());
         CHECK(strip.first_s() >= 0.0);
-        CHECK(strip.last_s() <= std::max(duration_s, KeyStrip::closest) * (1 + 1e-12));
+        CHECK(strip.last_s() <= std::max(duration_s, DopeSheet::closest) * (1 + 1e-12));
         CHECK(std::isfinite(strip.x_of(duration_s)));
         CHECK(strip.ruler_step_s() > 0.0);
       }
@@ -82,8 +82,8 @@ TEST_SUITE("key_strip") {
   }
 
   TEST_CASE("a play head that leaves what is seen is followed") {
-    KeyStrip strip = strip_of(10.0);
-    strip.zoom(KeyStrip::left, 8.0);
+    DopeSheet strip = strip_of(10.0);
+    strip.zoom(DopeSheet::left, 8.0);
     const double seen_s = strip.last_s() - strip.first_s();
     strip.follow(5.0);
     CHECK(strip.first_s() == doctest::Approx(5.0));
@@ -94,7 +94,7 @@ TEST_SUITE("key_strip") {
   }
 
   TEST_CASE("the key at the pointer is the nearest of its lane within reach") {
-    const KeyStrip strip = strip_of(4.0);
+    const DopeSheet strip = strip_of(4.0);
     std::mt19937 random(2);
     std::uniform_real_distribution<double> when(0.0, 4.0);
     std::vector<StripLane> lanes{lane_of({}), lane_of({}), lane_of({})};
@@ -105,35 +105,35 @@ TEST_SUITE("key_strip") {
     }
     for (double x = 0.0; x < width; x += 3.7)
       for (std::size_t lane = 0; lane < 3; ++lane) {
-        const auto found = strip.key_at(lanes, x, KeyStrip::middle_of(lane));
+        const auto found = strip.key_at(lanes, x, DopeSheet::middle_of(lane));
         double nearest = 1e300;
         for (const double time_s : lanes[lane].keys_s)
           nearest = std::min(nearest, std::abs(strip.x_of(time_s) - x));
-        REQUIRE(found.has_value() == (nearest <= KeyStrip::reach));
+        REQUIRE(found.has_value() == (nearest <= DopeSheet::reach));
         if (!found) continue;
         CHECK(found->lane == lane);
         CHECK(std::abs(strip.x_of(lanes[lane].keys_s[found->key]) - x) == nearest);
       }
     const double on_key = strip.x_of(lanes[0].keys_s[0]);
-    CHECK_FALSE(strip.key_at(lanes, on_key, KeyStrip::ruler / 2));
+    CHECK_FALSE(strip.key_at(lanes, on_key, DopeSheet::ruler / 2));
     CHECK_FALSE(strip.key_at(lanes, on_key, -5.0));
-    CHECK_FALSE(strip.key_at(lanes, on_key, KeyStrip::height_for(3) + 5.0));
+    CHECK_FALSE(strip.key_at(lanes, on_key, DopeSheet::height_for(3) + 5.0));
   }
 
   TEST_CASE("marks stand below the lanes and are found there alone") {
-    const KeyStrip strip = strip_of(4.0);
+    const DopeSheet strip = strip_of(4.0);
     const std::vector<StripMark> marks{{1.0, "grab"}, {1.01, "commit"}, {3.0, "let_go"}};
-    const double y = KeyStrip::middle_of(2);
+    const double y = DopeSheet::middle_of(2);
     CHECK(strip.mark_at(marks, 2, strip.x_of(3.0) + 5.0, y) == 2U);
     CHECK(strip.mark_at(marks, 2, strip.x_of(1.01) + 1.0, y) == 1U);
     CHECK(strip.mark_at(marks, 2, strip.x_of(1.0) - 1.0, y) == 0U);
     CHECK_FALSE(strip.mark_at(marks, 2, strip.x_of(2.0), y));
-    CHECK_FALSE(strip.mark_at(marks, 2, strip.x_of(3.0), KeyStrip::middle_of(1)));
+    CHECK_FALSE(strip.mark_at(marks, 2, strip.x_of(3.0), DopeSheet::middle_of(1)));
   }
 
   TEST_CASE("the ruler's numbers are round and have room") {
     for (const double duration_s : {0.1, 0.7, 3.0, 42.0, 999.0, 1e6}) {
-      const KeyStrip strip = strip_of(duration_s);
+      const DopeSheet strip = strip_of(duration_s);
       const double step_s = strip.ruler_step_s();
       CHECK(strip.x_of(step_s) - strip.x_of(0.0) >= 63.9);
       CHECK(strip.x_of(step_s) - strip.x_of(0.0) < 200.0);

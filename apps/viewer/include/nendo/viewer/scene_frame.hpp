@@ -18,7 +18,7 @@ struct SeenHand {
   bool silent = false; ///< its glove has stopped sending
 };
 
-struct Moment {
+struct SceneFrame {
   double time_s = 0.0;
   deform::Points vertices;                      ///< 3 by #vertices, model units
   std::array<std::optional<SeenHand>, 2> hands; ///< by flow::Placement::index_of(side)
@@ -40,7 +40,7 @@ private:
 };
 
 /// All of a frame but its vertices and its time, which are left as they are.
-void see_hands(const flow::Frame& frame, const HoldFollower& holds, Moment& moment);
+void see_hands(const flow::Frame& frame, const HoldFollower& holds, SceneFrame& moment);
 
 /// The radii of five fingers on the stage. supports: the loop's; the largest of each finger counts.
 std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre);

@@ -3,12 +3,12 @@
 
 namespace nendo::flow {
 
-struct Keepsakes {
+struct SaveRequest {
   bool shape = false;     ///< the model as it is now, in a file of its own
   bool recording = false; ///< of what was done last, if the run keeps that in memory
 
   bool ask_anything() const noexcept { return shape || recording; }
-  void add(const Keepsakes& more) noexcept {
+  void add(const SaveRequest& more) noexcept {
     shape = shape || more.shape;
     recording = recording || more.recording;
   }

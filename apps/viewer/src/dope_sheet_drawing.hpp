@@ -16,6 +16,6 @@ struct StripLook {
   std::optional<Retiming> shaded; ///< times that stand out
 };
 
-void draw_strip(const KeyStrip& strip, const TimelineView& view, const StripLook& look);
+void draw_strip(const DopeSheet& strip, const TimelineView& view, const StripLook& look);
 
 } // namespace nendo::viewer

@@ -1,4 +1,4 @@
-#include <nendo/base/latest_value.hpp>
+#include <nendo/base/triple_buffer.hpp>
 
 #include <atomic>
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 #include <doctest/doctest.h>
 
-using nendo::LatestValue;
+using nendo::TripleBuffer;
 
-TEST_SUITE("latest_value") {
+TEST_SUITE("triple_buffer") {
   TEST_CASE("a reader gets the newest value once, then learns that there is none") {
-    LatestValue<int> value(0);
+    TripleBuffer<int> value(0);
     CHECK_FALSE(value.update());
     value.back() = 1;
     CHECK_FALSE(value.publish());
@@ -24,7 +24,7 @@ TEST_SUITE("latest_value") {
   }
 
   TEST_CASE("the buffers have the size of the initial value") {
-    LatestValue<std::vector<int>> value(std::vector<int>(7));
+    TripleBuffer<std::vector<int>> value(std::vector<int>(7));
     for (int i = 0; i < 4; ++i) {
       CHECK(value.back().size() == 7);
       value.publish();
@@ -39,7 +39,7 @@ TEST_SUITE("latest_value") {
       std::uint64_t number = 0;
       std::uint64_t copies[16] = {};
     };
-    LatestValue<Frame> value(Frame{});
+    TripleBuffer<Frame> value(Frame{});
     std::atomic<std::uint64_t> overwritten{0};
     std::thread writer([&] {
       std::uint64_t lost = 0;

@@ -1,4 +1,4 @@
-#include <nendo/viewer/moment.hpp>
+#include <nendo/viewer/scene_frame.hpp>
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ void HoldFollower::follow(const flow::Frame& frame) noexcept {
     starts_[slot] = frame.hands[slot].pose.fingertip_positions();
 }
 
-void see_hands(const flow::Frame& frame, const HoldFollower& holds, Moment& moment) {
+void see_hands(const flow::Frame& frame, const HoldFollower& holds, SceneFrame& moment) {
   moment.held = frame.held;
   for (std::size_t slot = 0; slot < moment.hands.size(); ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];

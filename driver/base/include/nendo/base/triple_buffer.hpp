@@ -1,5 +1,5 @@
 #pragma once
-// LatestValue: hands the newest value from one writer thread to one reader thread through three
+// TripleBuffer: hands the newest value from one writer thread to one reader thread through three
 // buffers. The writer fills its buffer in place and publishes it with one exchange, whatever its
 // size; a reader that polls gets the newest value or learns that there is none. Both sides are
 // wait-free and never touch the same buffer. Proof, bounds and figures: RINGS.md.
@@ -12,7 +12,7 @@
 namespace nendo {
 
 template <class T, class Atomics = StdAtomics>
-class LatestValue {
+class TripleBuffer {
   using Buffer = typename Atomics::template Plain<T>;
   using Middle = typename Atomics::template Atomic<std::uint8_t>;
   static_assert(Middle::is_always_lock_free);
@@ -20,7 +20,7 @@ class LatestValue {
 public:
   /// All three buffers start as copies of `initial`, so that sizes are set before the first
   /// publish.
-  explicit LatestValue(const T& initial) : buffers_{initial, initial, initial} {}
+  explicit TripleBuffer(const T& initial) : buffers_{initial, initial, initial} {}
 
   /// Writer only: the buffer to fill. It holds some older value; fill all of it.
   Buffer& back() noexcept { return buffers_[back_]; }
