@@ -1,19 +1,41 @@
 #pragma once
-// The commands of nendo bench, one a file.
+// The commands of nendo bench, one a file and each in a namespace of its own.
 
-#include "command.hpp"
+#include "cli/command.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 
-void add_calibration_bench(Command& bench);
-void add_deform_bench(Command& bench);
-void add_latency_bench(Command& bench);
-void add_faults_bench(Command& bench);
-void add_hand_bench(Command& bench);
-void add_rt_bench(Command& bench);
-void add_scale_bench(Command& bench);
-void add_soak_bench(Command& bench);
-void add_solve_bench(Command& bench);
-void add_table1_bench(Command& bench);
+void add_bench(cli::Command& program);
 
-} // namespace nendo::app
+namespace calibration_bench {
+void add(cli::Command& bench);
+}
+namespace deform_bench {
+void add(cli::Command& bench);
+}
+namespace faults_bench {
+void add(cli::Command& bench);
+}
+namespace hand_bench {
+void add(cli::Command& bench);
+}
+namespace latency_bench {
+void add(cli::Command& bench);
+}
+namespace rt_bench {
+void add(cli::Command& bench);
+}
+namespace scale_bench {
+void add(cli::Command& bench);
+}
+namespace soak_bench {
+void add(cli::Command& bench);
+}
+namespace solve_bench {
+void add(cli::Command& bench);
+}
+namespace table1_bench {
+void add(cli::Command& bench);
+}
+
+} // namespace nendo::bench

@@ -1,25 +1,24 @@
 // nendo bench: what this machine, and this program on it, can do.
 
 #include "bench/bench.hpp"
-#include "commands.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 
-void add_bench(Command& program) {
-  Command bench = program.add_command(
+void add_bench(cli::Command& program) {
+  cli::Command bench = program.add_command(
       "bench", "Measures this program on this machine: latency, faults, load, loop, rings, hands, "
                "calibration, fields, deformation");
   bench.require_command();
-  add_calibration_bench(bench);
-  add_deform_bench(bench);
-  add_latency_bench(bench);
-  add_faults_bench(bench);
-  add_hand_bench(bench);
-  add_rt_bench(bench);
-  add_scale_bench(bench);
-  add_soak_bench(bench);
-  add_solve_bench(bench);
-  add_table1_bench(bench);
+  calibration_bench::add(bench);
+  deform_bench::add(bench);
+  latency_bench::add(bench);
+  faults_bench::add(bench);
+  hand_bench::add(bench);
+  rt_bench::add(bench);
+  scale_bench::add(bench);
+  soak_bench::add(bench);
+  solve_bench::add(bench);
+  table1_bench::add(bench);
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

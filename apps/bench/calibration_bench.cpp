@@ -15,9 +15,9 @@
 
 #include "bench/bench.hpp"
 #include "bench/calibration_trial.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::calibration_bench {
 namespace {
 
 struct Options {
@@ -126,26 +126,28 @@ void print_text(const TrialErrors& errors, std::uint64_t refused, const Options&
 
 int bench_calibration(const Options& options) {
   if (options.wearers == 0 || options.wearers > 10'000)
-    return report({Errc::usage, "--wearers: from 1 to 10000"});
-  install_stop_signals();
+    return cli::report({Errc::usage, "--wearers: from 1 to 10000"});
+  cli::install_stop_signals();
   TrialErrors errors;
   std::uint64_t refused = 0;
   for (std::uint64_t n = 0; n < options.wearers; ++n) {
-    if (stop_requested()) return report({Errc::failed, "ended before all wearers were calibrated"});
+    if (cli::stop_requested())
+      return cli::report({Errc::failed, "ended before all wearers were calibrated"});
     const auto done = try_wearer(options.seed + n, errors);
     if (done) continue;
     ++refused;
-    note("wearer " + std::to_string(options.seed + n) + ": " + done.error().message);
+    cli::note("wearer " + std::to_string(options.seed + n) + ": " + done.error().message);
   }
   options.json ? print_json(errors, refused, options) : print_text(errors, refused, options);
-  return refused < options.wearers ? 0 : report({Errc::failed, "no wearer could be calibrated"});
+  return refused < options.wearers ? 0
+                                   : cli::report({Errc::failed, "no wearer could be calibrated"});
 }
 
 } // namespace
 
-void add_calibration_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "calibration", "How well guided poses calibrate, on synthetic wearers with known joints");
   command.add_option("--wearers", options->wearers, "How many, 1 to 10000");
   command.add_option("--seed", options->seed, "The first wearer's; 1 to 60 were used for tuning");
@@ -154,4 +156,4 @@ void add_calibration_bench(Command& bench) {
   command.on_chosen([options] { return bench_calibration(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::calibration_bench

@@ -13,7 +13,7 @@
 
 #include "bench/wearers.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using hand::Calibration;
@@ -150,4 +150,4 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
   return {};
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -9,7 +9,7 @@
 
 #include <nendo/base/result.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 enum class Method : std::uint8_t {
   full,     ///< the guided takes
@@ -45,4 +45,4 @@ struct TrialErrors {
 /// capture or no fit came about.
 Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors);
 
-} // namespace nendo::app
+} // namespace nendo::bench

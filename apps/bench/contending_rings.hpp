@@ -18,7 +18,7 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #endif
 
-namespace nendo::app {
+namespace nendo::bench {
 
 using Element = std::array<std::uint64_t, 8>;
 inline constexpr std::size_t contenders_capacity = 1024;
@@ -118,4 +118,4 @@ struct BoostContender {
 };
 #endif
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 Result<Cyclictest> Cyclictest::start(unsigned cpu, unsigned seconds, unsigned interval_us) {
   // Inherited by the child on purpose, which finds it under its number.
@@ -92,4 +92,4 @@ Result<flow::Histogram> parse_cyclictest(const std::string& json) {
   return histogram;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -9,7 +9,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/flow/histogram.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// A running cyclictest: one thread, SCHED_FIFO 80, memory locked. It is ended with this.
 class Cyclictest {
@@ -34,4 +34,4 @@ private:
 /// The histogram in a report that cyclictest wrote with --json. Error: failed.
 Result<flow::Histogram> parse_cyclictest(const std::string& json);
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -13,9 +13,9 @@
 #include "bench/plane_room.hpp"
 #include "bench/simd_choice.hpp"
 #include "bench/table1.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::deform_bench {
 namespace {
 
 struct Options {
@@ -96,7 +96,7 @@ void bench_large(int cells, int repetitions, bool json) {
 }
 
 int bench_deform(const Options& options) {
-  if (const auto chosen = choose_simd(options.simd); !chosen) return report(chosen.error());
+  if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   const int repetitions = options.short_form ? 3 : 60;
   if (!options.json) {
     std::printf("microseconds a frame, the best of many; x: times as fast as the plain loop\n"
@@ -123,9 +123,9 @@ int bench_deform(const Options& options) {
 
 } // namespace
 
-void add_deform_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "deform", "Both types of deformation, beside a plain loop and the machine's floors");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
@@ -134,4 +134,4 @@ void add_deform_bench(Command& bench) {
   command.on_chosen([options] { return bench_deform(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::deform_bench

@@ -5,7 +5,7 @@
 
 #include "bench/table1.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 
 ThreadClock::time_point ThreadClock::now() noexcept {
   std::timespec time{};
@@ -42,4 +42,4 @@ Strokes::Strokes(const deform::Points& mesh, const deform::Points& starts, doubl
   deformer_.begin(starts_);
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

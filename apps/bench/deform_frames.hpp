@@ -9,7 +9,7 @@
 
 #include <nendo/deform/type2.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 inline constexpr std::size_t poses = 16; ///< different ones, so that nothing is learnt by heart
 /// A stroke that end_at() applies in one piece, however long.
@@ -89,4 +89,4 @@ private:
   deform::Type2Deformer deformer_;
 };
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -9,7 +9,7 @@
 #include "bench/plain_deformer.hpp"
 #include "bench/table1.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using namespace nendo::deform;
@@ -160,4 +160,4 @@ LargeTimes measure_large(int cells, int repetitions) {
   return times;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

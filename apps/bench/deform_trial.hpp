@@ -6,7 +6,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// Microseconds a frame, the best of many: new displacements, solving, and all vertices; for Type-2
 /// assembling and factorising, too.
@@ -39,4 +39,4 @@ struct LargeTimes {
 
 LargeTimes measure_large(int cells, int repetitions);
 
-} // namespace nendo::app
+} // namespace nendo::bench

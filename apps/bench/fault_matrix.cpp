@@ -12,15 +12,15 @@
 #include <nendo/driver/open_glove.hpp>
 
 #include "bench/test_pattern.hpp"
-#include "served_emulator.hpp"
+#include "gloves/served_emulator.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr double rate_hz = 90.0;
+constexpr double matrix_rate_hz = 90.0;
 constexpr std::uint64_t edge_records = 20; ///< sent before the first and after the last look
 
 /// A folder for the links, gone afterwards.
@@ -71,7 +71,7 @@ driver::EmulatorOptions emulator_options(const FaultCase& fault, const GloveCase
   driver::EmulatorOptions options;
   options.link = link;
   options.sensors = glove.sensors;
-  options.rate_hz = rate_hz;
+  options.rate_hz = matrix_rate_hz;
   options.cyberglove.model = glove.model;
   options.cyberglove.pattern = true;
   for (const std::string& text : fault.faults) {
@@ -116,7 +116,7 @@ Result<FaultOutcome> run_case(const FaultCase& fault, const GloveCase& glove, do
   outcome.glove = &glove;
   auto emulator = driver::GloveEmulator::open(emulator_options(fault, glove, link));
   if (!emulator) return emulator.error();
-  ServedEmulator server(**emulator);
+  gloves::ServedEmulator server(**emulator);
   SampleRing ring(4096);
   Watch watch;
   const HostTime begin = HostClock::now();
@@ -215,4 +215,4 @@ Result<std::vector<FaultOutcome>> run_fault_matrix(double seconds, unsigned at_o
   return outcomes;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

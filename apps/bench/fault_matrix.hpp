@@ -12,7 +12,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// What a fault may cost at most.
 struct FaultCase {
@@ -53,4 +53,4 @@ struct FaultOutcome {
 Result<std::vector<FaultOutcome>> run_fault_matrix(double seconds, unsigned at_once,
                                                    const std::atomic<bool>& stop);
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -10,9 +10,9 @@
 
 #include "bench/bench.hpp"
 #include "bench/fault_matrix.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::faults_bench {
 namespace {
 
 struct Options {
@@ -73,16 +73,17 @@ void print_summary(const std::vector<FaultOutcome>& outcomes, bool markdown) {
 
 int bench_faults(const Options& options) {
   if (!(options.seconds >= 6.0 && options.seconds <= 3600.0)) {
-    return report({Errc::usage, "--seconds: 6 to 3600 for each case; a fault begins after 2 s"});
+    return cli::report(
+        {Errc::usage, "--seconds: 6 to 3600 for each case; a fault begins after 2 s"});
   }
   if (options.at_once == 0 || options.at_once > 64) {
-    return report({Errc::usage, "--at-once: 1 to 64 cases at a time"});
+    return cli::report({Errc::usage, "--at-once: 1 to 64 cases at a time"});
   }
-  install_stop_signals();
+  cli::install_stop_signals();
   spdlog::set_level(spdlog::level::off); // the drivers tell of every fault
-  const auto outcomes = run_fault_matrix(options.seconds, options.at_once, stop_requested());
-  if (!outcomes) return report(outcomes.error());
-  if (stop_requested()) return report({Errc::failed, "ended before all cases were run"});
+  const auto outcomes = run_fault_matrix(options.seconds, options.at_once, cli::stop_requested());
+  if (!outcomes) return cli::report(outcomes.error());
+  if (cli::stop_requested()) return cli::report({Errc::failed, "ended before all cases were run"});
   if (!options.json) print_summary(*outcomes, options.markdown);
   std::size_t complaints = 0;
   for (const FaultOutcome& outcome : *outcomes) {
@@ -95,16 +96,16 @@ int bench_faults(const Options& options) {
     }
   }
   if (complaints == 0) return 0;
-  return report({Errc::failed, std::to_string(complaints) + " of " +
-                                   std::to_string(outcomes->size()) +
-                                   " cases were not as they should be"});
+  return cli::report({Errc::failed, std::to_string(complaints) + " of " +
+                                        std::to_string(outcomes->size()) +
+                                        " cases were not as they should be"});
 }
 
 } // namespace
 
-void add_faults_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "faults", "Every fault against every CyberGlove, through the real driver: what it costs");
   command.add_option("--seconds", options->seconds, "For each case");
   command.add_option("--at-once", options->at_once, "Cases that run at the same time");
@@ -113,4 +114,4 @@ void add_faults_bench(Command& bench) {
   command.on_chosen([options] { return bench_faults(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::faults_bench

@@ -16,9 +16,9 @@
 
 #include "bench/bench.hpp"
 #include "bench/plain_hand.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::hand_bench {
 namespace {
 
 struct Options {
@@ -202,7 +202,7 @@ void print_text(const Forward& forward, const Inverse& inverse) {
 
 int bench_hand(const Options& options) {
   const auto complain = [](const char* option) {
-    return report({Errc::usage, std::string(option) + ": from 1 to 100000000"});
+    return cli::report({Errc::usage, std::string(option) + ": from 1 to 100000000"});
   };
   if (options.poses == 0 || options.poses > most) return complain("--poses");
   if (options.solves == 0 || options.solves > most) return complain("--solves");
@@ -215,9 +215,9 @@ int bench_hand(const Options& options) {
 
 } // namespace
 
-void add_hand_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "hand", "Poses of both hands, beside plain products of matrices, and inverse kinematics");
   command.add_option("--poses", options->poses, "Pairs of hands to pose");
   command.add_option("--solves", options->solves, "Hands to find from their fingertips");
@@ -225,4 +225,4 @@ void add_hand_bench(Command& bench) {
   command.on_chosen([options] { return bench_hand(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::hand_bench

@@ -20,7 +20,7 @@
 #include "bench/rt_bench.hpp"
 #include "bench/two_threads.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -31,13 +31,13 @@ constexpr std::chrono::microseconds period{500};
 constexpr std::chrono::milliseconds poll_period{1};
 
 /// Keeps the compiler from leaving out what nobody looks at.
-std::atomic<std::uint64_t> seen{0};
+std::atomic<std::uint64_t> sum_seen{0};
 
 void read(const Frame& frame) {
   std::uint64_t sum = 0;
   for (const std::uint64_t word : frame)
     sum += word;
-  seen.store(sum, std::memory_order_relaxed);
+  sum_seen.store(sum, std::memory_order_relaxed);
 }
 
 /// The triple buffer: filled in its place, read by one who polls.
@@ -101,7 +101,7 @@ struct Times {
 };
 
 template <class Publisher>
-void measure_round(const TwoProcessors& processors, std::size_t words, Times& times) {
+void measure_round(const cli::TwoProcessors& processors, std::size_t words, Times& times) {
   Publisher publisher(words);
   PingPong ball;
   std::atomic<bool> done{false};
@@ -167,7 +167,7 @@ void print(std::size_t frame_bytes, std::size_t publishes, const Cost& exchanged
 } // namespace
 
 Result<void> measure_handoff(const RtOptions& options) {
-  const auto processors = two_processors();
+  const auto processors = cli::two_processors();
   if (!processors) return processors.error();
   // Of 778 vertices, and of 10 000.
   for (const std::size_t frame_bytes : {std::size_t{9336}, std::size_t{120'000}}) {
@@ -185,4 +185,4 @@ Result<void> measure_handoff(const RtOptions& options) {
   return {};
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

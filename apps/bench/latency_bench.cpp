@@ -11,9 +11,9 @@
 #include <nendo/flow/histogram.hpp>
 
 #include "bench/bench.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::latency_bench {
 namespace {
 
 struct DriverOptions {
@@ -76,9 +76,9 @@ void print_text(const char* line, const flow::Histogram& driver, const flow::His
 
 int bench_driver(DriverOptions& options) {
   if (options.latency.records == 0) {
-    return report({Errc::usage, "--records 0: measure at least one"});
+    return cli::report({Errc::usage, "--records 0: measure at least one"});
   }
-  install_stop_signals();
+  cli::install_stop_signals();
   constexpr std::array<std::pair<driver::Line, const char*>, 2> lines{
       {{driver::Line::pseudo_terminal, "pseudo-terminal"},
        {driver::Line::socket_pair, "socket pair"}}};
@@ -89,8 +89,8 @@ int bench_driver(DriverOptions& options) {
     const auto measured = driver::measure_latency(
         options.latency,
         {[&](auto time) { driver.record(time); }, [&](auto time) { bare.record(time); }},
-        stop_requested());
-    if (!measured) return report(measured.error());
+        cli::stop_requested());
+    if (!measured) return cli::report(measured.error());
     options.json ? print_json(name, driver, bare) : print_text(name, driver, bare);
   }
   return 0;
@@ -98,9 +98,9 @@ int bench_driver(DriverOptions& options) {
 
 } // namespace
 
-void add_latency_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<DriverOptions>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "driver", "Latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
   command.add_option("--records", options->latency.records, "Records to measure on each line");
   command.add_option("--rate", options->latency.rate_hz, "Records a second, 1 to 480");
@@ -108,4 +108,4 @@ void add_latency_bench(Command& bench) {
   command.on_chosen([options] { return bench_driver(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::latency_bench

@@ -13,10 +13,10 @@
 
 #include "bench/cyclictest.hpp"
 #include "bench/rt_bench.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 #include "stress/stress_session.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 constexpr unsigned interval_us = 1000;
@@ -51,9 +51,9 @@ deform::Mesh paper_sized_ball() {
 }
 
 /// What is measured: the wait alone, or all of a tick.
-StressArguments arguments_for(const RtOptions& options, const char* stages, const char* spin,
-                              const char* load) {
-  StressArguments arguments;
+stress::StressArguments arguments_for(const RtOptions& options, const char* stages,
+                                      const char* spin, const char* load) {
+  stress::StressArguments arguments;
   arguments.interval_us = interval_us;
   arguments.duration = std::to_string(options.seconds);
   arguments.stages = stages;
@@ -64,11 +64,12 @@ StressArguments arguments_for(const RtOptions& options, const char* stages, cons
   return arguments;
 }
 
-Result<std::unique_ptr<StressOutcome>> measure(const StressArguments& arguments,
-                                               const deform::Mesh& model) {
-  auto wanted = parse(arguments);
+Result<std::unique_ptr<stress::StressOutcome>> measure(const stress::StressArguments& arguments,
+                                                       const deform::Mesh& model) {
+  auto wanted = stress::parse(arguments);
   if (!wanted) return wanted.error();
-  auto outcome = run_stress(*std::move(wanted), model, [](const TickTally&, double) {});
+  auto outcome =
+      stress::run_stress(*std::move(wanted), model, [](const stress::TickTally&, double) {});
   if (!outcome) return outcome;
   if ((*outcome)->stopped) return Error{Errc::failed, "stopped before all was measured"};
   const auto refused = flow::refusals((*outcome)->grants);
@@ -114,7 +115,7 @@ Result<void> beside_cyclictest(const RtOptions& options, const deform::Mesh& mod
       return [&sum](auto value, std::uint64_t count) { sum.record(value, count); };
     };
     latencies->for_each(add(theirs));
-    (*outcome)->tally[Measure::lateness].raw.for_each(add(ours));
+    (*outcome)->tally[stress::Measure::lateness].raw.for_each(add(ours));
   }
   if (!options.json) {
     std::printf("  loop p50 %.1f us, p99 %.1f us; cyclictest %.0f us, %.0f us (whole microseconds "
@@ -131,7 +132,7 @@ Result<void> spinning(const RtOptions& options, const deform::Mesh& model) {
        {std::tuple{"", "spin tail, idle", 1.0}, {"cpu,mem,io", "spin tail, under load", 15.0}}) {
     const auto outcome = measure(arguments_for(options, "sleep", "on", load), model);
     if (!outcome) return outcome.error();
-    const auto& lateness = (*outcome)->tally[Measure::lateness].raw;
+    const auto& lateness = (*outcome)->tally[stress::Measure::lateness].raw;
     tell(options, name, "p50 us", us(lateness, 0.5), 0.1);
     tell(options, name, "p99 us", us(lateness, 0.99), p99_us);
     tell(options, name, "% of a CPU", 100.0 * (*outcome)->costs.cpu_s / (*outcome)->elapsed_s, 6.0);
@@ -144,9 +145,9 @@ Result<void> whole_pipeline(const RtOptions& options, const deform::Mesh& model)
   arguments.run.left = arguments.run.right = "sim?rate=1000"; // no tick without something to do
   const auto outcome = measure(arguments, model);
   if (!outcome) return outcome.error();
-  const TickTally& tally = (*outcome)->tally;
+  const stress::TickTally& tally = (*outcome)->tally;
   const std::string part = std::to_string(model.vertices.cols()) + " vertices, two hands";
-  tell(options, part, "work p99 us", us(tally[Measure::work].raw, 0.99), 300.0);
+  tell(options, part, "work p99 us", us(tally[stress::Measure::work].raw, 0.99), 300.0);
   tell(options, part, "page faults", static_cast<double>((*outcome)->costs.minor_faults), 0.0);
   return {};
 }
@@ -165,4 +166,4 @@ Result<void> measure_loop(const RtOptions& options) {
   return {};
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

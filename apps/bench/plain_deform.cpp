@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 namespace {
 
@@ -49,4 +49,4 @@ void plain_displace(const PlainCentre* centres, std::size_t centre_count, const 
   }
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 struct PlainCentre {
   float x, y, z;
@@ -24,4 +24,4 @@ struct PlainPoints {
 void plain_displace(const PlainCentre* centres, std::size_t centre_count, const PlainPoints& from,
                     const PlainPoints& to, std::size_t count) noexcept;
 
-} // namespace nendo::app
+} // namespace nendo::bench

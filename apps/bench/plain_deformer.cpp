@@ -1,6 +1,6 @@
 #include "bench/plain_deformer.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 
 bool can_run_plain() noexcept {
 #if defined(__x86_64__)
@@ -49,4 +49,4 @@ void PlainDeformer::displace(Arrays& from, Arrays& to) {
   plain_displace(centres_.data(), centres_.size(), from.view(), to.view(), from.x.size());
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -9,7 +9,7 @@
 #include "bench/deform_frames.hpp"
 #include "bench/plain_deform.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// Whether the processor has the instructions that the plain loop is compiled for.
 bool can_run_plain() noexcept;
@@ -44,4 +44,4 @@ private:
   std::vector<PlainCentre> centres_;
 };
 
-} // namespace nendo::app
+} // namespace nendo::bench

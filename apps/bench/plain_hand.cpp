@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using Eigen::Matrix4d;
@@ -80,4 +80,4 @@ PlainPose plain_pose(const hand::HandSkeleton& skeleton, const hand::JointAngles
   return pose;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

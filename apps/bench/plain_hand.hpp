@@ -6,7 +6,7 @@
 
 #include <nendo/hand/skeleton.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// T_world_joint of every joint, by index_of(Joint).
 using PlainPose = std::array<Eigen::Matrix4d, hand::joint_count>;
@@ -14,4 +14,4 @@ using PlainPose = std::array<Eigen::Matrix4d, hand::joint_count>;
 PlainPose plain_pose(const hand::HandSkeleton& skeleton, const hand::JointAngles& angles,
                      const Eigen::Isometry3d& T_world_wrist) noexcept;
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -13,7 +13,7 @@
 
 #include <nendo/base/atomics.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 template <class T>
 class PlainRing {
@@ -66,4 +66,4 @@ private:
   alignas(cache_line_bytes) std::size_t cached_write_ = 0;
 };
 
-} // namespace nendo::app
+} // namespace nendo::bench

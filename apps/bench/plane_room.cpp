@@ -6,9 +6,9 @@
 
 #include <nendo/base/usable_memory.hpp>
 
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 /// 0 if the kernel does not say.
@@ -29,8 +29,8 @@ bool has_room_for_plane(int cells, const std::string& benchmark) {
   const std::size_t vertices = side * side;
   const bool has_room = std::min(available_bytes(), usable_memory()) >= bytes_a_vertex * vertices;
   if (!has_room)
-    note(benchmark + ": too little memory left for " + std::to_string(vertices) + " vertices");
+    cli::note(benchmark + ": too little memory left for " + std::to_string(vertices) + " vertices");
   return has_room;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

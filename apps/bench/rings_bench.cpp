@@ -15,7 +15,7 @@
 #include "bench/rt_bench.hpp"
 #include "bench/two_threads.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 constexpr std::size_t batch_size = 16;
@@ -47,7 +47,7 @@ void send_all(Contender& ring) {
 }
 
 /// Keeps the compiler from leaving out what nobody looks at.
-volatile std::uint64_t seen = 0;
+volatile std::uint64_t ring_sum_seen = 0;
 
 /// Reads every byte of every element, and returns the median of the elements a second.
 template <class Contender>
@@ -73,12 +73,12 @@ double receive_all(Contender& ring) {
     begin = now;
     in_chunk = 0;
   }
-  seen = sum;
+  ring_sum_seen = sum;
   return median(std::move(rates));
 }
 
 template <class Contender>
-Sample take_sample(const TwoProcessors& processors) {
+Sample take_sample(const cli::TwoProcessors& processors) {
   const auto ring = std::make_unique<Contender>();
   PingPong ball;
   double before_ns = 0.0;
@@ -104,7 +104,7 @@ Sample take_sample(const TwoProcessors& processors) {
 
 struct Contender {
   const char* name;
-  Sample (*take_sample)(const TwoProcessors& processors);
+  Sample (*take_sample)(const cli::TwoProcessors& processors);
   std::vector<Sample> samples{};
 };
 
@@ -172,7 +172,7 @@ void print(const Row& row, const Row& plain, double round_trip_ns, bool json) {
 } // namespace
 
 Result<void> measure_rings(const RtOptions& options) {
-  const auto processors = two_processors();
+  const auto processors = cli::two_processors();
   if (!processors) return processors.error();
   auto rings = contenders();
   for (std::uint64_t round = 0; round < options.rounds; ++round) {
@@ -198,4 +198,4 @@ Result<void> measure_rings(const RtOptions& options) {
   return {};
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

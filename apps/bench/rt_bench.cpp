@@ -7,9 +7,9 @@
 #include <string>
 
 #include "bench/bench.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::rt_bench {
 namespace {
 
 struct Part {
@@ -26,23 +26,23 @@ struct Options {
 
 int bench_rt(const Options& options) {
   if (options.rt.rounds == 0 || options.rt.rounds > 10'000)
-    return report({Errc::usage, "--rounds: from 1 to 10000"});
+    return cli::report({Errc::usage, "--rounds: from 1 to 10000"});
   if (options.rt.seconds < 1 || options.rt.seconds > 3600)
-    return report({Errc::usage, "--seconds: use 1 to 3600"});
-  install_stop_signals();
+    return cli::report({Errc::usage, "--seconds: use 1 to 3600"});
+  cli::install_stop_signals();
   for (const Part& part : parts) {
     if (options.part != "all" && options.part != part.name) continue;
     const auto done = part.measure(options.rt);
-    if (!done) return report(done.error());
+    if (!done) return cli::report(done.error());
   }
   return 0;
 }
 
 } // namespace
 
-void add_rt_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command =
+  cli::Command command =
       bench.add_command("rt", "Rings, frame hand-off and the loop, beside others in the same run");
   command.add_option("--part", options->part, "What to measure")
       .one_of({"all", "rings", "handoff", "loop"});
@@ -52,4 +52,4 @@ void add_rt_bench(Command& bench) {
   command.on_chosen([options] { return bench_rt(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::rt_bench

@@ -6,7 +6,7 @@
 
 #include <nendo/base/result.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 struct RtOptions {
   std::uint64_t rounds = 20;  ///< of every contender, in an order that rotates
@@ -25,4 +25,4 @@ Result<void> measure_handoff(const RtOptions& options);
 /// refused; without cyclictest (package rt-tests); stopped by a signal.
 Result<void> measure_loop(const RtOptions& options);
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -11,9 +11,9 @@
 #include "bench/scale_trial.hpp"
 #include "bench/simd_choice.hpp"
 #include "bench/table1.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::scale_bench {
 namespace {
 
 struct Options {
@@ -108,8 +108,8 @@ void bench_growth(const Options& options, int repetitions) {
 
 int bench_scale(const Options& options) {
   if (options.repetitions == 0 || options.repetitions > 10'000)
-    return report({Errc::usage, "--repetitions: from 1 to 10000"});
-  if (const auto chosen = choose_simd(options.simd); !chosen) return report(chosen.error());
+    return cli::report({Errc::usage, "--repetitions: from 1 to 10000"});
+  if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   const auto repetitions = static_cast<int>(options.repetitions);
   bench_growth(options, repetitions);
   heading(options,
@@ -128,9 +128,9 @@ int bench_scale(const Options& options) {
 
 } // namespace
 
-void add_scale_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "scale", "How the deformation grows: ten million vertices, a thousand centres, normals");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
@@ -140,4 +140,4 @@ void add_scale_bench(Command& bench) {
   command.on_chosen([options] { return bench_scale(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::scale_bench

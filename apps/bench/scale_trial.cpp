@@ -14,7 +14,7 @@
 #include "bench/deform_frames.hpp"
 #include "bench/table1.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using namespace nendo::deform;
@@ -148,4 +148,4 @@ NormalTimes measure_normals(int cells, double radius, int repetitions) {
   return times;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// Ten supports that each reach a fifth of the model.
 struct GrowthTimes {
@@ -50,4 +50,4 @@ struct NormalTimes {
 
 NormalTimes measure_normals(int cells, double radius, int repetitions);
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -6,7 +6,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/deform/simd.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// Empty: the best there is. Error: usage, naming those that this machine has.
 inline Result<void> choose_simd(const std::string& name) {
@@ -17,4 +17,4 @@ inline Result<void> choose_simd(const std::string& name) {
   return Error{Errc::usage, "--simd " + name + ": this machine has" + names};
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

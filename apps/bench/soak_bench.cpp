@@ -16,10 +16,10 @@
 
 #include "bench/bench.hpp"
 #include "bench/test_pattern.hpp"
-#include "cli.hpp"
-#include "served_emulator.hpp"
+#include "cli/cli.hpp"
+#include "gloves/served_emulator.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::soak_bench {
 namespace {
 
 using namespace std::chrono_literals;
@@ -71,14 +71,14 @@ Result<Tally> soak(const Options& options) {
   device.faults = options.faults;
   auto emulator = driver::GloveEmulator::open(device);
   if (!emulator) return emulator.error();
-  ServedEmulator server(**emulator);
+  gloves::ServedEmulator server(**emulator);
   SampleRing ring(1U << 16U);
   Tally tally;
   auto glove = driver::open_glove("serial:" + (*emulator)->tty_path());
   auto started = glove ? (*glove)->start(ring) : Result<void>(glove.error());
   const auto begin = std::chrono::steady_clock::now();
   const std::uint64_t warm = options.records / 20;
-  while (started && !stop_requested() && (*emulator)->stats().records_sent < options.records) {
+  while (started && !cli::stop_requested() && (*emulator)->stats().records_sent < options.records) {
     take(ring, tally);
     if (tally.memory_begin_kb == 0 && tally.delivered >= warm)
       tally.memory_begin_kb = resident_kb();
@@ -150,23 +150,25 @@ void print(const Tally& tally, bool json) {
 
 int bench_soak(const Options& options) {
   if (options.records < 1000) {
-    return report({Errc::usage, "--records: at least 1000, or there is nothing to account for"});
+    return cli::report(
+        {Errc::usage, "--records: at least 1000, or there is nothing to account for"});
   }
-  install_stop_signals();
+  cli::install_stop_signals();
   spdlog::set_level(spdlog::level::off);
   const auto tally = soak(options);
-  if (!tally) return report(tally.error());
-  if (stop_requested()) return report({Errc::failed, "ended before all records were sent"});
+  if (!tally) return cli::report(tally.error());
+  if (cli::stop_requested())
+    return cli::report({Errc::failed, "ended before all records were sent"});
   print(*tally, options.json);
   const std::string complaint = complaint_about(*tally);
-  return complaint.empty() ? 0 : report({Errc::failed, complaint});
+  return complaint.empty() ? 0 : cli::report({Errc::failed, complaint});
 }
 
 } // namespace
 
-void add_soak_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "soak", "Millions of records with faults, as fast as they go: all accounted for?");
   command.add_option("--records", options->records, "How many to send");
   command.add_option("--fault", options->faults, "As for nendo emulate; together about 1 %");
@@ -174,4 +176,4 @@ void add_soak_bench(Command& bench) {
   command.on_chosen([options] { return bench_soak(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::soak_bench

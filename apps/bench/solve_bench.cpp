@@ -19,9 +19,9 @@
 
 #include "bench/bench.hpp"
 #include "bench/bumpy_sheet.hpp"
-#include "cli.hpp"
+#include "cli/cli.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::solve_bench {
 namespace {
 
 using namespace nendo::deform;
@@ -182,7 +182,7 @@ void measure_many(std::uint64_t points, const Options& options) {
 }
 
 int bench_solve(const Options& options) {
-  const auto complain = [](const char* what) { return report({Errc::usage, what}); };
+  const auto complain = [](const char* what) { return cli::report({Errc::usage, what}); };
   if (options.points > 100'000) return complain("--points: at most 100000");
   if (options.neighbours == 0 || options.neighbours > 1000)
     return complain("--neighbours: from 1 to 1000");
@@ -201,9 +201,9 @@ int bench_solve(const Options& options) {
 
 } // namespace
 
-void add_solve_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "solve", "Finding the field of ten fingertips, and of thousands of control vectors");
   command.add_option("--points", options->points,
                      "This many control vectors, instead of 1000 and then 10000");
@@ -213,4 +213,4 @@ void add_solve_bench(Command& bench) {
   command.on_chosen([options] { return bench_solve(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::solve_bench

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 deform::Mesh table1_mesh(const Table1Plane& plane) {
   deform::Mesh mesh;
@@ -39,4 +39,4 @@ std::size_t count_evaluations(const deform::Points& vertices, const deform::Poin
   return static_cast<std::size_t>(count);
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -16,10 +16,10 @@
 #include "bench/table1.hpp"
 #include "bench/table1_paper.hpp"
 #include "bench/table1_picture.hpp"
-#include "cli.hpp"
-#include "output_place.hpp"
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
 
-namespace nendo::app {
+namespace nendo::bench::table1_bench {
 namespace {
 
 struct Options {
@@ -107,26 +107,26 @@ std::vector<Table1Entry> measure_layout(const Table1Layout& layout, const Option
 int bench_table1(const Options& options) {
   constexpr double longest_s = 600.0;
   if (!(options.seconds_per_cell > 0.0 && options.seconds_per_cell <= longest_s))
-    return report({Errc::usage, "--seconds-per-cell: more than 0, at most 600"});
-  if (const auto fine = check_place("--picture", options.picture); !fine)
-    return report(fine.error());
-  if (const auto chosen = choose_simd(options.simd); !chosen) return report(chosen.error());
+    return cli::report({Errc::usage, "--seconds-per-cell: more than 0, at most 600"});
+  if (const auto fine = cli::check_place("--picture", options.picture); !fine)
+    return cli::report(fine.error());
+  if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   if (!options.json) print_heading();
   for (const Table1Layout& layout : table1_layouts) {
     if (!options.json) print_layout(layout);
     const auto entries = measure_layout(layout, options);
     if (options.picture.empty() || &layout != table1_layouts.data()) continue;
     const auto written = replace_file(options.picture, table1_picture(entries, layout.name));
-    if (!written) return report(written.error());
+    if (!written) return cli::report(written.error());
   }
   return 0;
 }
 
 } // namespace
 
-void add_table1_bench(Command& bench) {
+void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
-  Command command = bench.add_command(
+  cli::Command command = bench.add_command(
       "table1", "The paper's Table 1 on this machine, beside the paper's figures and a plain loop");
   command.add_option("--seconds-per-cell", options->seconds_per_cell,
                      "Seconds for each mesh, radius and layout, of which there are forty");
@@ -138,4 +138,4 @@ void add_table1_bench(Command& bench) {
   command.on_chosen([options] { return bench_table1(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench::table1_bench

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 template <class T>
 using Table1Figures = std::array<std::array<T, 5>, 4>;
@@ -35,4 +35,4 @@ inline constexpr Table1Figures<double> paper_type2{{
     {15.9, 13.5, 11.9, 11.4, 10.9},
 }};
 
-} // namespace nendo::app
+} // namespace nendo::bench

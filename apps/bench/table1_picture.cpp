@@ -9,9 +9,9 @@
 
 #include "bench/table1.hpp"
 #include "bench/table1_paper.hpp"
-#include "svg_drawing.hpp"
+#include "cli/svg_drawing.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 // In pixels.
@@ -46,18 +46,18 @@ double x_of(const Table1Entry& entry) {
          step * (static_cast<double>(entry.radius) + 1.0);
 }
 
-constexpr SvgText heading{14};
-constexpr SvgText small_at_end{10, "#444444", "end"};
-constexpr SvgText small_in_middle{10, "#444444", "middle"};
-constexpr SvgText finest{9, "#444444", "middle"};
+constexpr cli::SvgText title_text{14};
+constexpr cli::SvgText small_at_end{10, "#444444", "end"};
+constexpr cli::SvgText small_in_middle{10, "#444444", "middle"};
+constexpr cli::SvgText finest{9, "#444444", "middle"};
 
-void rule(SvgDrawing& drawing, double top, double frames_per_second, const char* colour,
+void rule(cli::SvgDrawing& drawing, double top, double frames_per_second, const char* colour,
           const char* dashes) {
   const double y = y_of(frames_per_second, top);
   drawing.line(panel_left, y, panel_left + panel_width, y, colour, 1.0, dashes);
 }
 
-void draw_scale(SvgDrawing& drawing, double top) {
+void draw_scale(cli::SvgDrawing& drawing, double top) {
   for (const auto& [value, label] : {std::pair{1e1, "10"},
                                      {1e2, "100"},
                                      {1e3, "1000"},
@@ -72,7 +72,7 @@ void draw_scale(SvgDrawing& drawing, double top) {
   drawing.words(panel_left + panel_width, y_of(90.0, top) - 4.0, "90 a second", small_at_end);
 }
 
-void draw_column(SvgDrawing& drawing, const Table1Entry& entry, std::size_t type, double paper,
+void draw_column(cli::SvgDrawing& drawing, const Table1Entry& entry, std::size_t type, double paper,
                  double top) {
   const Table1Cell& cell = entry.cell;
   const double x = x_of(entry);
@@ -89,14 +89,14 @@ void draw_column(SvgDrawing& drawing, const Table1Entry& entry, std::size_t type
                 small_in_middle);
 }
 
-void draw_panel(SvgDrawing& drawing, const std::vector<Table1Entry>& entries, std::size_t type,
+void draw_panel(cli::SvgDrawing& drawing, const std::vector<Table1Entry>& entries, std::size_t type,
                 double top) {
   const auto& paper = type == 0 ? paper_type1 : paper_type2;
   draw_scale(drawing, top);
   drawing.words(panel_left, top - 10.0,
                 type == 0 ? "Type-1: the fingertips stay frozen to the model"
                           : "Type-2: solved anew in every frame",
-                heading);
+                title_text);
   for (const Table1Entry& entry : entries)
     draw_column(drawing, entry, type, paper.at(entry.plane).at(entry.radius), top);
   for (std::size_t plane = 0; plane < table1_planes.size(); ++plane) {
@@ -107,7 +107,7 @@ void draw_panel(SvgDrawing& drawing, const std::vector<Table1Entry>& entries, st
   }
 }
 
-void draw_legend(SvgDrawing& drawing, double y) {
+void draw_legend(cli::SvgDrawing& drawing, double y) {
   struct Item {
     double size;
     const char *fill, *edge, *words;
@@ -127,7 +127,7 @@ void draw_legend(SvgDrawing& drawing, double y) {
 } // namespace
 
 std::string table1_picture(const std::vector<Table1Entry>& entries, const std::string& layout) {
-  SvgDrawing drawing(width, height);
+  cli::SvgDrawing drawing(width, height);
   drawing.words(panel_left, 30.0,
                 fmt::format("The paper's Table 1 in frames a second: ten fingertips on a plane "
                             "(layout {})",
@@ -139,4 +139,4 @@ std::string table1_picture(const std::vector<Table1Entry>& entries, const std::s
   return std::move(drawing).finished();
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

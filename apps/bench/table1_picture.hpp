@@ -6,7 +6,7 @@
 
 #include "bench/table1_trial.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// A cell and where in the paper's table it stands.
 struct Table1Entry {
@@ -19,4 +19,4 @@ struct Table1Entry {
 /// below, the plain loop's and ours with one thread and two above.
 std::string table1_picture(const std::vector<Table1Entry>& entries, const std::string& layout);
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -8,7 +8,7 @@
 #include "bench/plain_deformer.hpp"
 #include "bench/table1.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using namespace nendo::deform;
@@ -90,4 +90,4 @@ Table1Cell measure_table1_cell(const Points& plane, const Points& starts, double
   return cell;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -7,7 +7,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// Frames a second, the best of many; a frame takes new displacements, solves, and moves all
 /// vertices; one of Type-2 assembles and factorises, too. Nothing is drawn.
@@ -24,4 +24,4 @@ struct Table1Cell {
 Table1Cell measure_table1_cell(const deform::Points& plane, const deform::Points& starts,
                                double radius, double seconds);
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -3,7 +3,7 @@
 #include <array>
 #include <bit>
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 constexpr unsigned cycle = 255;
@@ -39,4 +39,4 @@ PatternVerdict judge_pattern(const GloveSample& sample, unsigned steps_a_count) 
   return PatternVerdict::flipped;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -6,7 +6,7 @@
 
 #include <nendo/driver/sample.hpp>
 
-namespace nendo::app {
+namespace nendo::bench {
 
 enum class PatternVerdict {
   whole, ///< every value is that of one and the same record
@@ -17,4 +17,4 @@ enum class PatternVerdict {
 
 PatternVerdict judge_pattern(const GloveSample& sample, unsigned steps_a_count) noexcept;
 
-} // namespace nendo::app
+} // namespace nendo::bench

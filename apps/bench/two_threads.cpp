@@ -6,7 +6,7 @@
 #include <sched.h>
 #include <thread>
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 constexpr std::size_t blocks = 21;
@@ -21,7 +21,7 @@ void stay_on(int processor) noexcept {
 
 } // namespace
 
-void run_on(const TwoProcessors& processors, const std::function<void()>& on_first,
+void run_on(const cli::TwoProcessors& processors, const std::function<void()>& on_first,
             const std::function<void()>& on_second) {
   std::thread first([&] {
     stay_on(processors.first);
@@ -60,4 +60,4 @@ double PingPong::measure_ns() {
   return trips_ns[blocks / 2];
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -9,12 +9,12 @@
 
 #include <nendo/base/atomics.hpp>
 
-#include "two_processors.hpp"
+#include "cli/two_processors.hpp"
 
-namespace nendo::app {
+namespace nendo::bench {
 
 /// Runs each on its processor, at the same time, and returns when both are done.
-void run_on(const TwoProcessors& processors, const std::function<void()>& on_first,
+void run_on(const cli::TwoProcessors& processors, const std::function<void()>& on_first,
             const std::function<void()>& on_second);
 
 /// One cache line that goes to and fro.
@@ -31,4 +31,4 @@ private:
   alignas(2 * cache_line_bytes) std::uint64_t measured_ = 0;
 };
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace nendo::app {
+namespace nendo::bench {
 namespace {
 
 using hand::Finger;
@@ -330,4 +330,4 @@ hand::JointAngles joints_of(const SensorAngles& angles_rad) noexcept {
   return joints;
 }
 
-} // namespace nendo::app
+} // namespace nendo::bench

@@ -11,7 +11,7 @@
 
 #include <nendo/base/files.hpp>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 namespace {
 
 using nlohmann::json;
@@ -179,4 +179,4 @@ Result<void> write_readings(const std::filesystem::path& path,
   return replace_file(path, text);
 }
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -13,7 +13,7 @@
 #include <nendo/hand/calibration_fit.hpp>
 #include <nendo/hand/range_capture.hpp>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 
 struct CaptureFile {
   std::vector<GloveSample> samples;
@@ -36,4 +36,4 @@ Result<void> write_readings(const std::filesystem::path& path,
                             std::span<const hand::PoseReading> readings,
                             const hand::CountRanges& free_motion, Side side, CountScale counts);
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

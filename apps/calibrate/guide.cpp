@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 namespace {
 
 using hand::AssumedAngle;
@@ -165,4 +165,4 @@ std::optional<Sensor> CalibrationGuide::implausible_sensor(const HeldPose& held)
   return std::nullopt;
 }
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

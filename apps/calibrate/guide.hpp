@@ -13,7 +13,7 @@
 #include <nendo/hand/pose_capture.hpp>
 #include <nendo/hand/range_capture.hpp>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 
 class CalibrationGuide {
 public:
@@ -74,4 +74,4 @@ private:
   std::optional<Sensor> doubted_;
 };
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -4,7 +4,7 @@
 
 #include "calibrate/limb_canvas.hpp"
 
-namespace nendo::app {
+namespace nendo::calibrate {
 namespace {
 
 using Eigen::Vector3d;
@@ -55,4 +55,4 @@ std::vector<std::string> draw_hand(const hand::HandPose& pose, Side side, HandVi
   return lines;
 }
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -7,7 +7,7 @@
 
 #include <nendo/hand/skeleton.hpp>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 
 /// From where a drawing shows the hand; the fingers of a flat hand point up in all of them.
 enum class HandView {
@@ -21,4 +21,4 @@ enum class HandView {
 std::vector<std::string> draw_hand(const hand::HandPose& pose, Side side, HandView view,
                                    int columns, int rows);
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

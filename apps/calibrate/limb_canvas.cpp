@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 namespace {
 
 using Eigen::Vector2d;
@@ -124,4 +124,4 @@ bool LimbCanvas::is_edge(int column, int row) const noexcept {
          part(column - 1, row) != here || part(column, row - 1) != here;
 }
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -7,7 +7,7 @@
 
 #include <nendo/hand/skeleton.hpp>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 
 /// A bone with flesh: what lies within the radius of a line, which shrinks towards its end.
 struct Limb {
@@ -50,4 +50,4 @@ private:
   std::vector<double> depths_;
 };
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

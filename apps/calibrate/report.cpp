@@ -8,7 +8,7 @@
 
 #include <nendo/base/files.hpp>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 namespace {
 
 // Of the picture, in pixels.
@@ -114,4 +114,4 @@ Result<void> write_report_picture(const std::filesystem::path& path,
           y + top / 2, range_left, counts.most, residual_left, rows));
 }
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -7,7 +7,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/hand/calibration_fit.hpp>
 
-namespace nendo::app {
+namespace nendo::calibrate {
 
 /// A line for each sensor: range, gain, how far the poses are from it, how sure its angles are, and
 /// what was kept of the default; then the poses that agree least, and the condition.
@@ -20,4 +20,4 @@ Result<void> write_report_picture(const std::filesystem::path& path,
                                   const hand::CalibrationFit& fit, SensorMask sensors,
                                   CountScale counts);
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

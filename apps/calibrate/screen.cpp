@@ -8,9 +8,9 @@
 #include <nendo/hand/joint_angles.hpp>
 
 #include "calibrate/hand_drawing.hpp"
-#include "printable.hpp"
+#include "cli/printable.hpp"
 
-namespace nendo::app {
+namespace nendo::calibrate {
 namespace {
 
 using hand::CaptureState;
@@ -136,8 +136,8 @@ std::vector<std::string> bars(const CalibrationPicture& picture, int width, int 
     const auto sensor = static_cast<Sensor>(slot);
     if (!picture.sample->present.has(sensor) || static_cast<int>(lines.size()) >= rows) continue;
     lines.push_back(fitted(std::string(name_of(sensor)), name_width) +
-                    count_bar(width - name_width, (*picture.sample)[sensor].value,
-                              (*picture.seen)[sensor], picture.info->counts.most));
+                    gloves::count_bar(width - name_width, (*picture.sample)[sensor].value,
+                                      (*picture.seen)[sensor], picture.info->counts.most));
   }
   return lines;
 }
@@ -177,13 +177,14 @@ hand::HandPose demonstrated(hand::PoseId id, Side side) {
   return skeleton.pose(angles, Eigen::Isometry3d::Identity());
 }
 
-std::vector<std::string> calibration_lines(const CalibrationPicture& picture, ScreenSize size) {
+std::vector<std::string> calibration_lines(const CalibrationPicture& picture,
+                                           cli::ScreenSize size) {
   const CalibrationGuide& guide = *picture.guide;
   const hand::CalibrationPose& pose = hand::pose_of(guide.asked());
   const std::string title =
       "Pose " + std::to_string(guide.number() + 1) + " of " + std::to_string(guide.pose_count()) +
       ": " + std::string(pose.name) + (guide.is_again() ? ", once more" : "") + "   (" +
-      std::string(name_of(picture.info->side)) + " hand of " + printable(*picture.user) + ")";
+      std::string(name_of(picture.info->side)) + " hand of " + cli::printable(*picture.user) + ")";
   std::vector<std::string> lines{title, std::string(pose.instruction), state_text(picture)};
   const std::vector<std::string> below{
       undetermined_text(picture.undetermined),
@@ -201,4 +202,4 @@ std::vector<std::string> calibration_lines(const CalibrationPicture& picture, Sc
   return lines;
 }
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -9,10 +9,10 @@
 #include <nendo/hand/skeleton.hpp>
 
 #include "calibrate/guide.hpp"
-#include "monitor_screen.hpp"
-#include "terminal.hpp"
+#include "cli/terminal.hpp"
+#include "gloves/monitor_screen.hpp"
 
-namespace nendo::app {
+namespace nendo::calibrate {
 
 /// What a picture is made of. Everything that is pointed to lives as long as the picture.
 struct CalibrationPicture {
@@ -20,7 +20,7 @@ struct CalibrationPicture {
   const std::string* user = nullptr;
   const CalibrationGuide* guide = nullptr;       ///< not done
   const GloveSample* sample = nullptr;           ///< the latest; null: none came yet
-  const SeenCounts* seen = nullptr;              ///< has seen `sample`
+  const gloves::SeenCounts* seen = nullptr;      ///< has seen `sample`
   double age_s = 0.0;                            ///< of `sample`
   const hand::HandPose* demonstration = nullptr; ///< of the pose that the guide asks for
   bool begun = false;                            ///< else the guide sees no samples yet
@@ -29,10 +29,10 @@ struct CalibrationPicture {
 
 /// Lines of printable ASCII, at most as many and as long as the screen. The drawing and then the
 /// bars go where the screen is small; the instruction and the keys stay.
-std::vector<std::string> calibration_lines(const CalibrationPicture& picture, ScreenSize size);
+std::vector<std::string> calibration_lines(const CalibrationPicture& picture, cli::ScreenSize size);
 
 /// The pose as a wearer would take it. Touching tips are brought together, by inverse kinematics:
 /// too much for every picture.
 hand::HandPose demonstrated(hand::PoseId pose, Side side);
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "calibrate/screen.hpp"
-#include "cli.hpp"
-#include "monitor_screen.hpp"
-#include "terminal.hpp"
+#include "cli/cli.hpp"
+#include "cli/terminal.hpp"
+#include "gloves/monitor_screen.hpp"
 
-namespace nendo::app {
+namespace nendo::calibrate {
 namespace {
 
 constexpr std::chrono::milliseconds frame_time{50};
@@ -21,8 +21,8 @@ struct Session {
   const hand::FitOptions& fit;
   CalibrationGuide& guide;
   SampleRing ring{1024};
-  Terminal terminal{};
-  SeenCounts seen{};
+  cli::Terminal terminal{};
+  gloves::SeenCounts seen{};
   std::optional<GloveSample> latest{};
   SensorMask undetermined{};
   bool begun = false;
@@ -93,7 +93,7 @@ Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::stri
     session.show();
     std::optional<SessionEnd> ended;
     if (const auto key = session.terminal.key(frame_time)) ended = session.handle(*key);
-    if (stop_requested() || session.terminal.is_gone()) ended = SessionEnd::quit;
+    if (cli::stop_requested() || session.terminal.is_gone()) ended = SessionEnd::quit;
     if (!ended) continue;
     end = *ended;
     break;
@@ -103,4 +103,4 @@ Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::stri
   return end;
 }
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

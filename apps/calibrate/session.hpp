@@ -7,7 +7,7 @@
 
 #include "calibrate/guide.hpp"
 
-namespace nendo::app {
+namespace nendo::calibrate {
 
 enum class SessionEnd : std::uint8_t {
   complete, ///< every pose was taken or skipped
@@ -19,4 +19,4 @@ enum class SessionEnd : std::uint8_t {
 Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::string& user,
                                            const hand::FitOptions& fit, CalibrationGuide& guide);
 
-} // namespace nendo::app
+} // namespace nendo::calibrate

@@ -7,9 +7,9 @@
 
 #include <nendo/timeline/timeline.hpp>
 
-#include "command.hpp"
+#include "cli/command.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 
 struct MakeOptions {
   std::string take;
@@ -38,6 +38,6 @@ struct PlayOptions {
 int play_timeline(const PlayOptions& options);
 
 /// `nendo edit view`, the window.
-void add_timeline_view(Command& edit);
+void add_timeline_view(cli::Command& edit);
 
-} // namespace nendo::app
+} // namespace nendo::edit

@@ -9,7 +9,7 @@
 
 #include "edit/edit_words.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 
 using namespace timeline;
 using viewer::EditCommand;
@@ -237,4 +237,4 @@ const viewer::SceneFrame& EditSession::moment() {
   return moment_;
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

@@ -17,7 +17,7 @@
 
 #include "edit/glb_export.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 
 class EditSession {
 public:
@@ -82,4 +82,4 @@ private:
   bool ended_ = false;
 };
 
-} // namespace nendo::app
+} // namespace nendo::edit

@@ -7,9 +7,9 @@
 
 #include "edit/edit_session.hpp"
 #include "edit/edit_words.hpp"
-#include "timeline_frames.hpp"
+#include "takes/timeline_frames.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 
 using namespace timeline;
 
@@ -110,7 +110,7 @@ void EditSession::mirror() {
   Selection key = history_.selected();
   if (key) key->side = key->side == Side::left ? Side::right : Side::left;
   tell(history_.apply([&](Timeline& timeline) {
-    return after(timeline::mirror(timeline, middle_plane_m(timeline, model_)), key);
+    return after(timeline::mirror(timeline, takes::middle_plane_m(timeline, model_)), key);
   }),
        "mirrored");
 }
@@ -123,4 +123,4 @@ void EditSession::retime(const viewer::Retiming& times) {
        "re-timed, " + fixed(times.scale, 3) + " times as long");
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

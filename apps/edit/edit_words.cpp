@@ -1,4 +1,4 @@
-#include "edit_words.hpp"
+#include "edit/edit_words.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include <nendo/timeline/timeline_file.hpp>
 
-#include "output_place.hpp"
+#include "cli/output_place.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 namespace {
 
 // Cuts a finite number off the front.
@@ -56,7 +56,7 @@ std::string fixed(double number, int decimals) {
 
 Result<std::string> edited_file(const std::string& file, const std::string& out) {
   if (!out.empty()) {
-    if (const auto fine = check_place("--out", out, {timeline::file_ending}); !fine)
+    if (const auto fine = cli::check_place("--out", out, {timeline::file_ending}); !fine)
       return fine.error();
     return out;
   }
@@ -83,4 +83,4 @@ Result<timeline::Tolerance> parse_tolerance(const std::string& text) {
   return tolerance;
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

@@ -6,7 +6,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/timeline/reduce.hpp>
 
-namespace nendo::app {
+namespace nendo::edit {
 
 // Errors: usage, naming the option and what it may be.
 
@@ -22,4 +22,4 @@ Result<std::string> edited_file(const std::string& file, const std::string& out)
 /// "1mm", "0.02rad" or "1deg".
 Result<timeline::Tolerance> parse_tolerance(const std::string& text);
 
-} // namespace nendo::app
+} // namespace nendo::edit

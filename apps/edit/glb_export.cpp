@@ -1,21 +1,21 @@
 #include "edit/glb_export.hpp"
 
 #include "export/gltf_export.hpp"
-#include "timeline_frames.hpp"
+#include "takes/timeline_frames.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 
 GlbExport::GlbExport(const timeline::Timeline& timeline, const deform::Mesh& model,
                      const std::string& path)
     : thread_([this, timeline, model, path] {
-        const OpenFrames open = [&]() -> Result<std::unique_ptr<FrameSource>> {
-          auto frames = TimelineFrames::make(timeline, model);
+        const exporting::OpenFrames open = [&]() -> Result<std::unique_ptr<takes::FrameSource>> {
+          auto frames = takes::TimelineFrames::make(timeline, model);
           if (!frames) return frames.error();
-          return std::unique_ptr<FrameSource>(*std::move(frames));
+          return std::unique_ptr<takes::FrameSource>(*std::move(frames));
         };
-        GltfOptions options;
+        exporting::GltfOptions options;
         options.generator = "Nendo " NENDO_VERSION;
-        result_ = export_gltf(open, Choice{.stop = &stop_}, options, path);
+        result_ = exporting::export_gltf(open, exporting::Choice{.stop = &stop_}, options, path);
         done_ = true;
       }) {}
 
@@ -24,9 +24,9 @@ GlbExport::~GlbExport() {
   thread_.join();
 }
 
-std::optional<Result<Exported>> GlbExport::result() const {
+std::optional<Result<exporting::Exported>> GlbExport::result() const {
   if (!done_) return std::nullopt;
   return result_;
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

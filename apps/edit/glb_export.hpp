@@ -10,7 +10,7 @@
 
 #include "export/exported.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 
 class GlbExport {
 public:
@@ -22,13 +22,13 @@ public:
   GlbExport& operator=(const GlbExport&) = delete;
 
   /// What became of it; nothing: it goes on. Errors: as export_gltf().
-  std::optional<Result<Exported>> result() const;
+  std::optional<Result<exporting::Exported>> result() const;
 
 private:
   std::atomic<bool> stop_ = false;
   std::atomic<bool> done_ = false;
-  std::optional<Result<Exported>> result_; ///< once done_
+  std::optional<Result<exporting::Exported>> result_; ///< once done_
   std::thread thread_;
 };
 
-} // namespace nendo::app
+} // namespace nendo::edit

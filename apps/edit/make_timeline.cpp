@@ -8,14 +8,14 @@
 #include <nendo/timeline/from_take.hpp>
 #include <nendo/timeline/timeline_file.hpp>
 
-#include "cli.hpp"
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "cli/output_place.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
-#include "json_line.hpp"
-#include "output_place.hpp"
-#include "recorded_model.hpp"
+#include "takes/recorded_model.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 namespace {
 
 void print_json(const MakeOptions& options, const timeline::MadeTimeline& made) {
@@ -32,7 +32,7 @@ void print_json(const MakeOptions& options, const timeline::MadeTimeline& made) 
                                              {"most_angle_rad", reduction.worst.angle_rad},
                                              {"most_tip_mm", 1e3 * reduction.worst.tip_m}};
   }
-  print_line(line);
+  cli::print_line(line);
 }
 
 void print(const MakeOptions& options, const timeline::MadeTimeline& made) {
@@ -53,22 +53,22 @@ void print(const MakeOptions& options, const timeline::MadeTimeline& made) {
 
 int make_timeline(const MakeOptions& options) {
   const auto tolerance = parse_tolerance(options.tolerance);
-  if (!tolerance) return report(tolerance.error());
-  if (const auto fine = check_place("--out", options.out, {timeline::file_ending}); !fine)
-    return report(fine.error());
+  if (!tolerance) return cli::report(tolerance.error());
+  if (const auto fine = cli::check_place("--out", options.out, {timeline::file_ending}); !fine)
+    return cli::report(fine.error());
   const auto reader = recording::TakeReader::open(options.take);
-  if (!reader) return report(reader.error());
-  const auto model = recorded_model(options.take, reader->setup(), options.mesh);
-  if (!model) return report(model.error());
+  if (!reader) return cli::report(reader.error());
+  const auto model = takes::recorded_model(options.take, reader->setup(), options.mesh);
+  if (!model) return cli::report(model.error());
   auto made = timeline::timeline_of_take(options.take, *model, *tolerance);
-  if (!made) return report(made.error());
+  if (!made) return cli::report(made.error());
   if (!options.mesh.empty()) {
     made->timeline.mesh = std::filesystem::absolute(options.mesh).string();
     made->timeline.mesh_sum = recording::sum_of(model->vertices);
   }
   if (const auto written = timeline::write_timeline(options.out, made->timeline); !written)
-    return report(written.error());
-  if (!made->exact) note_missing(options.take);
+    return cli::report(written.error());
+  if (!made->exact) takes::note_missing(options.take);
   if (options.json)
     print_json(options, *made);
   else
@@ -76,4 +76,4 @@ int make_timeline(const MakeOptions& options) {
   return 0;
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

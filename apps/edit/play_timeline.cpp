@@ -9,13 +9,13 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
-#include "cli.hpp"
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "cli/output_place.hpp"
 #include "edit/edit_actions.hpp"
-#include "json_line.hpp"
-#include "output_place.hpp"
-#include "timeline_frames.hpp"
+#include "takes/timeline_frames.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 
 namespace {
 
@@ -25,7 +25,7 @@ constexpr double most_speed = 1000.0;
 void wait_for(double time_s, double speed, HostTime start) {
   if (speed == 0.0) return;
   constexpr double nap_s = 0.05;
-  while (!stop_requested()) {
+  while (!cli::stop_requested()) {
     const double left_s = time_s / speed - to_seconds(HostClock::now() - start);
     if (left_s <= 0.0) return;
     std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left_s, nap_s)));
@@ -35,22 +35,23 @@ void wait_for(double time_s, double speed, HostTime start) {
 } // namespace
 
 int play_timeline(const PlayOptions& options) {
-  if (const auto fine = check_place("--out", options.out, {".obj", ".ply"}); !fine)
-    return report(fine.error());
+  if (const auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine)
+    return cli::report(fine.error());
   if (!(options.speed >= 0.0 && options.speed <= most_speed))
-    return report({Errc::usage, "--speed: use 0 to 1000 times real time"});
-  auto frames = TimelineFrames::open(options.file, options.mesh);
-  if (!frames) return report(frames.error());
+    return cli::report({Errc::usage, "--speed: use 0 to 1000 times real time"});
+  auto frames = takes::TimelineFrames::open(options.file, options.mesh);
+  if (!frames) return cli::report(frames.error());
   const double until_s = options.until_s.value_or((*frames)->duration_s());
   if (!(until_s >= 0.0 && until_s <= (*frames)->duration_s()))
-    return report({Errc::usage, "--until: the timeline lasts from 0 to " +
-                                    std::to_string((*frames)->duration_s()) + " s"});
-  install_stop_signals();
+    return cli::report({Errc::usage, "--until: the timeline lasts from 0 to " +
+                                         std::to_string((*frames)->duration_s()) + " s"});
+  cli::install_stop_signals();
   const HostTime start = HostClock::now();
   const timeline::Player& player = (*frames)->player();
   while (player.has_frame_by(until_s)) {
-    if (stop_requested())
-      return report({Errc::failed, options.file + ": stopped before the end; nothing was written"});
+    if (cli::stop_requested())
+      return cli::report(
+          {Errc::failed, options.file + ": stopped before the end; nothing was written"});
     (*frames)->next();
     wait_for((*frames)->time_s(), options.speed, start);
   }
@@ -58,7 +59,7 @@ int play_timeline(const PlayOptions& options) {
   shape.vertices = (*frames)->player().final_shape();
   if (!options.out.empty())
     if (const auto written = deform::write_mesh(options.out, shape); !written)
-      return report(written.error());
+      return cli::report(written.error());
   const auto& stats = (*frames)->player().stats();
   const auto sum = recording::sum_of(shape.vertices);
   const double elapsed_s = to_seconds(HostClock::now() - start);
@@ -68,7 +69,7 @@ int play_timeline(const PlayOptions& options) {
         {"elapsed_s", elapsed_s},   {"failed", stats.failed}, {"grabs", stats.grabs},
         {"commits", stats.commits}, {"undos", stats.undos},   {"redos", stats.redos},
         {"vertices", sum.vertices}, {"crc32c", sum.crc},      {"result", options.out}};
-    print_line(line);
+    cli::print_line(line);
     return 0;
   }
   std::printf("played %llu frames to %.3f s in %.2f s; %llu commits, %llu undone, %llu redone\n",
@@ -80,4 +81,4 @@ int play_timeline(const PlayOptions& options) {
   return 0;
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

@@ -7,12 +7,12 @@
 
 #include <nendo/timeline/timeline_file.hpp>
 
-#include "cli.hpp"
+#include "cli/cli.hpp"
+#include "cli/printable.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
-#include "printable.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 namespace {
 
 using timeline::HandTrack;
@@ -98,19 +98,19 @@ int show_timeline(const ShowOptions& options) {
   std::optional<hand::Finger> finger;
   if (!options.finger.empty()) {
     const auto parsed = parse_finger(options.finger);
-    if (!parsed) return report(parsed.error());
+    if (!parsed) return cli::report(parsed.error());
     finger = *parsed;
   }
   const auto timeline = timeline::read_timeline(options.file);
-  if (!timeline) return report(timeline.error());
+  if (!timeline) return cli::report(timeline.error());
   if (options.json) {
     print_json(options, *timeline);
     return 0;
   }
-  std::printf("%s: %.3f s at %g Hz, %s, of %s over %s\n", printable(options.file).c_str(),
+  std::printf("%s: %.3f s at %g Hz, %s, of %s over %s\n", cli::printable(options.file).c_str(),
               timeline->duration_s, timeline->rate_hz,
               std::string(flow::name_of(timeline->sculptor.mode)).c_str(),
-              printable(timeline->take).c_str(), printable(timeline->mesh).c_str());
+              cli::printable(timeline->take).c_str(), cli::printable(timeline->mesh).c_str());
   for (const HandTrack& hand : timeline->hands)
     print_hand(*timeline, hand, finger);
   for (const auto& event : timeline->events)
@@ -119,4 +119,4 @@ int show_timeline(const ShowOptions& options) {
   return 0;
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

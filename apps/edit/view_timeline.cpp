@@ -9,15 +9,15 @@
 #include <nendo/timeline/timeline_file.hpp>
 #include <nendo/viewer/timeline_window.hpp>
 
-#include "cli.hpp"
-#include "command.hpp"
+#include "cli/cli.hpp"
+#include "cli/command.hpp"
+#include "cli/output_place.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_session.hpp"
 #include "edit/edit_words.hpp"
-#include "output_place.hpp"
-#include "timeline_frames.hpp"
+#include "takes/timeline_frames.hpp"
 
-namespace nendo::app {
+namespace nendo::edit {
 namespace {
 
 struct Options {
@@ -40,7 +40,7 @@ Result<void> check(const Options& options) {
     return Error{Errc::usage, "--key: say whose with --hand left or --hand right"};
   if (!options.hand.empty() && !options.key)
     return Error{Errc::usage, "--hand: is for --key; give both"};
-  return check_place("--screenshot", options.screenshot, {".png"});
+  return cli::check_place("--screenshot", options.screenshot, {".png"});
 }
 
 /// Where the play head stands at first, and what is selected.
@@ -79,7 +79,7 @@ Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const
     session.handle(window.show(view, session.moment()));
     if (const auto error = session.progress().error) return *error;
     if (is_settled) ++shown;
-  } while (!session.has_ended() && !stop_requested() &&
+  } while (!session.has_ended() && !cli::stop_requested() &&
            (options.frames == 0 || shown < options.frames));
   if (options.screenshot.empty()) return {};
   return write_png(options.screenshot, window.scene_window().screenshot());
@@ -87,42 +87,43 @@ Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const
 
 int view_timeline(const Options& options) {
   const auto out = edited_file(options.file, options.out);
-  if (!out) return report(out.error());
-  if (const auto fine = check(options); !fine) return report(fine.error());
-  const auto frames = TimelineFrames::open(options.file, options.mesh);
-  if (!frames) return report(frames.error());
-  install_stop_signals();
+  if (!out) return cli::report(out.error());
+  if (const auto fine = check(options); !fine) return cli::report(fine.error());
+  const auto frames = takes::TimelineFrames::open(options.file, options.mesh);
+  if (!frames) return cli::report(frames.error());
+  cli::install_stop_signals();
   const timeline::Timeline& timeline = (*frames)->player().timeline();
   const deform::Mesh& model = (*frames)->model();
   EditSession session(timeline, model, *out);
-  if (const auto begun = begin_at(options, session); !begun) return report(begun.error());
+  if (const auto begun = begin_at(options, session); !begun) return cli::report(begun.error());
   auto window = viewer::TimelineWindow::open(
       "Nendo: " + std::filesystem::path(*out).filename().string(), window_size,
       "on a box without a screen `nendo picture` draws a timeline, `nendo export` animates it, and "
       "the other commands of `nendo edit` change it");
-  if (!window) return report(window.error());
+  if (!window) return cli::report(window.error());
   (*window)->set_model((*frames)->layout(), viewer::SceneBuilder(model, timeline.units_per_metre));
   const auto done = edit_in(**window, session, options);
-  if (session.history().is_modified()) note(*out + ": not saved; the changes are lost");
-  return done ? 0 : report(done.error());
+  if (session.history().is_modified()) cli::note(*out + ": not saved; the changes are lost");
+  return done ? 0 : cli::report(done.error());
 }
 
 #else
 
 int view_timeline(const Options&) {
-  return report({Errc::failed,
-                 "this nendo was built without a window; install libglfw3-dev, libimgui-dev and "
-                 "libgl-dev and build it again, or draw a timeline with `nendo picture`, animate "
-                 "it with `nendo export`, and change it with the other commands of `nendo edit`"});
+  return cli::report(
+      {Errc::failed,
+       "this nendo was built without a window; install libglfw3-dev, libimgui-dev and "
+       "libgl-dev and build it again, or draw a timeline with `nendo picture`, animate "
+       "it with `nendo export`, and change it with the other commands of `nendo edit`"});
 }
 
 #endif
 
 } // namespace
 
-void add_timeline_view(Command& edit) {
+void add_timeline_view(cli::Command& edit) {
   const auto options = std::make_shared<Options>();
-  Command command =
+  cli::Command command =
       edit.add_command("view", "All of this in a window, with the hands' keys on a strip");
   command.add_option("FILE", options->file, "A timeline").required();
   command.add_option("--mesh", options->mesh, "Another model than the timeline's");
@@ -140,4 +141,4 @@ void add_timeline_view(Command& edit) {
   command.on_chosen([options] { return view_timeline(*options); });
 }
 
-} // namespace nendo::app
+} // namespace nendo::edit

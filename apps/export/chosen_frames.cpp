@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace nendo::app {
+namespace nendo::exporting {
 namespace {
 
 constexpr double most_s = 1e7; // as long as a take may be
@@ -26,7 +26,7 @@ Result<void> check(const Choice& choice) {
   return {};
 }
 
-Result<ChosenFrames> ChosenFrames::make(FrameSource& source, const Choice& choice) {
+Result<ChosenFrames> ChosenFrames::make(takes::FrameSource& source, const Choice& choice) {
   if (const auto fine = check(choice); !fine) return fine.error();
   ChosenFrames chosen(source, choice);
   const double end_s = std::min(choice.to_s.value_or(most_s), source.duration_s());
@@ -84,4 +84,4 @@ void ChosenFrames::hold_nearest(double moment_s) {
   }
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -9,9 +9,9 @@
 
 #include <nendo/base/result.hpp>
 
-#include "frame_source.hpp"
+#include "takes/frame_source.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 struct Choice {
   double from_s = 0.0;             ///< since the take began
@@ -31,7 +31,7 @@ class ChosenFrames {
 public:
   /// Goes to the first of them; `source` has had no next() yet and must outlive this. Blocks.
   /// Errors: as check(); bad_input (no frame in that time), usage (too many frames).
-  static Result<ChosenFrames> make(FrameSource& source, const Choice& choice);
+  static Result<ChosenFrames> make(takes::FrameSource& source, const Choice& choice);
 
   /// Makes the next frame; false: there is none. Errors: failed (`stop` was set), usage (more than
   /// most_export_frames). Blocks.
@@ -45,16 +45,17 @@ public:
   double period_s() const noexcept { return 1.0 / *choice_.rate_hz; } ///< at a rate
   std::uint64_t made() const noexcept { return made_; }               ///< by next()
 
-  const FrameSource& source() const noexcept { return *source_; }
+  const takes::FrameSource& source() const noexcept { return *source_; }
   /// The latest frame's shape in the mesh's order, model units; `out` is 3 by #vertices.
   void vertices(deform::Points& out) const { source_->layout().unpack(frame().shape, out); }
 
 private:
-  ChosenFrames(FrameSource& source, const Choice& choice) : source_(&source), choice_(choice) {}
+  ChosenFrames(takes::FrameSource& source, const Choice& choice)
+      : source_(&source), choice_(choice) {}
   bool is_nearer(double moment_s) const;
   void hold_nearest(double moment_s);
 
-  FrameSource* source_;
+  takes::FrameSource* source_;
   Choice choice_;
   bool even_ = false;     ///< at a rate
   bool is_ahead_ = false; ///< the source's frame has not been shown
@@ -66,4 +67,4 @@ private:
   double held_s_ = 0.0; ///< its own time
 };
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -5,7 +5,7 @@
 
 #include <nendo/deform/csrbf.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 using deform::CsrbfField;
 using Eigen::Index;
@@ -116,4 +116,4 @@ std::vector<float> ControlMorphs::vectors() const {
   return all;
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -12,7 +12,7 @@
 
 #include <nendo/flow/frame.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 class ControlMorphs {
 public:
@@ -50,4 +50,4 @@ private:
   double greatest_error_ = 0.0;
 };
 
-} // namespace nendo::app
+} // namespace nendo::exporting

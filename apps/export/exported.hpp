@@ -10,9 +10,9 @@
 
 #include <nendo/base/result.hpp>
 
-#include "frame_source.hpp"
+#include "takes/frame_source.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 /// How a model's motion became morph targets.
 struct MorphReport {
@@ -35,6 +35,6 @@ struct Exported {
 };
 
 /// Begins the same frames anew.
-using OpenFrames = std::function<Result<std::unique_ptr<FrameSource>>()>;
+using OpenFrames = std::function<Result<std::unique_ptr<takes::FrameSource>>()>;
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -9,7 +9,7 @@
 #include <nendo/base/byte_writer.hpp>
 #include <nendo/base/file_replacement.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF's numbers are little-endian");
@@ -210,4 +210,4 @@ Result<std::uint64_t> GlbFile::write(const std::filesystem::path& path) const {
   return total;
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -16,7 +16,7 @@
 
 #include <nendo/base/result.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 class GlbFile {
 public:
@@ -66,4 +66,4 @@ private:
   std::uint64_t bytes_ = 0;                   ///< of all parts
 };
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -9,7 +9,7 @@
 #include "export/hand_rig.hpp"
 #include "export/key_shapes.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 namespace {
 
 using Json = GlbFile::Json;
@@ -111,7 +111,7 @@ Result<Exported> finish(Document& document, const GltfModel& model, const Played
 }
 
 /// Nothing, if the take is not linear in control vectors.
-Result<std::optional<Exported>> by_control_vectors(FrameSource& source, const Choice& choice,
+Result<std::optional<Exported>> by_control_vectors(takes::FrameSource& source, const Choice& choice,
                                                    const GltfOptions& options,
                                                    const std::filesystem::path& path) {
   auto frames = ChosenFrames::make(source, choice);
@@ -137,7 +137,7 @@ Result<std::optional<Exported>> by_control_vectors(FrameSource& source, const Ch
   return std::optional<Exported>(*std::move(done));
 }
 
-Result<Exported> by_key_shapes(FrameSource& source, const Choice& choice,
+Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
                                const GltfOptions& options, const std::filesystem::path& path) {
   auto frames = ChosenFrames::make(source, choice);
   if (!frames) return frames.error();
@@ -183,4 +183,4 @@ Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
   return by_key_shapes(**source, choice, options, path);
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

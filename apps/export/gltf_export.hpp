@@ -17,7 +17,7 @@
 #include "export/chosen_frames.hpp"
 #include "export/exported.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 struct GltfOptions {
   double tolerance = 1e-4; ///< of key shapes; a part of the model's diagonal
@@ -35,4 +35,4 @@ struct GltfOptions {
 Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path);
 
-} // namespace nendo::app
+} // namespace nendo::exporting

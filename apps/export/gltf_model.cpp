@@ -9,7 +9,7 @@
 
 #include <nendo/deform/triangles.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 using Eigen::Index;
 using Json = GlbFile::Json;
@@ -135,4 +135,4 @@ void GltfModel::add_to(GlbFile& file, double units_per_metre, const MorphReport&
                          {"scale", {scale, scale, scale}}};
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -11,7 +11,7 @@
 #include "export/exported.hpp"
 #include "export/glb_file.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 class GltfModel {
 public:
@@ -50,4 +50,4 @@ private:
   std::vector<std::optional<std::uint32_t>> key_targets_; ///< nothing: the rest shape
 };
 
-} // namespace nendo::app
+} // namespace nendo::exporting

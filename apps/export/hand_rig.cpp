@@ -5,7 +5,7 @@
 
 #include <nendo/viewer/hand_skin.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 using hand::Joint;
 using Json = GlbFile::Json;
@@ -171,4 +171,4 @@ void add_hand(const HandTrack& track, GlbFile::Index times, GlbFile& file, Json&
       {{"name", std::string(name_of(track.side())) + " hand"}, {"mesh", mesh}, {"skin", skin}}));
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

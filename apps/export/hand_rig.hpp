@@ -9,7 +9,7 @@
 
 #include "export/glb_file.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 /// A hand's poses, kept as each joint's place and turn in its parent's frame.
 class HandTrack {
@@ -41,4 +41,4 @@ private:
 void add_hand(const HandTrack& track, GlbFile::Index times, GlbFile& file, GlbFile::Json& animation,
               GlbFile::Json& roots);
 
-} // namespace nendo::app
+} // namespace nendo::exporting

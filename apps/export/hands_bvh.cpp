@@ -6,7 +6,7 @@
 #include <nendo/base/file_replacement.hpp>
 #include <nendo/hand/bvh.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 namespace {
 
 struct HandFile {
@@ -80,4 +80,4 @@ Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeleto
   return done;
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -8,7 +8,7 @@
 #include "export/chosen_frames.hpp"
 #include "export/exported.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 /// By flow::Placement::index_of(side); nothing: there is no such hand.
 using Skeletons = std::array<std::optional<hand::HandSkeleton>, 2>;
@@ -19,4 +19,4 @@ using Skeletons = std::array<std::optional<hand::HandSkeleton>, 2>;
 Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeletons,
                                   const std::filesystem::path& path);
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 KeyShapes::KeyShapes(double tolerance, Keep keep, std::size_t most_bytes)
     : tolerance_(tolerance), keep_(std::move(keep)), most_bytes_(most_bytes) {}
@@ -52,4 +52,4 @@ void KeyShapes::finish() {
   if (window_.size() > 1) end_at(window_.size() - 1);
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

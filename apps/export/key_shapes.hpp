@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 class KeyShapes {
 public:
@@ -46,4 +46,4 @@ private:
   double greatest_error_ = 0.0;
 };
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -5,7 +5,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 Result<NumberedName> NumberedName::parse(const std::string& pattern) {
   const Error refused{Errc::usage,
@@ -76,4 +76,4 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
   return done;
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -8,7 +8,7 @@
 #include "export/chosen_frames.hpp"
 #include "export/exported.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 /// A file name with one place for a number, as printf has it: %d, or %04d with leading zeros up to
 /// four digits (1 to 9); %% is a percent sign.
@@ -29,4 +29,4 @@ private:
 /// frames there are is told), as ChosenFrames::next().
 Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& pattern);
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -6,7 +6,7 @@
 
 #include "export/one_file.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 namespace {
 
 constexpr std::array<Side, 2> sides{Side::left, Side::right};
@@ -101,4 +101,4 @@ Result<Exported> export_motion_csv(ChosenFrames& frames, const std::filesystem::
   });
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -10,9 +10,9 @@
 #include "export/chosen_frames.hpp"
 #include "export/exported.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 /// Blocks. Errors: as ChosenFrames::next(); failed (cannot be written).
 Result<Exported> export_motion_csv(ChosenFrames& frames, const std::filesystem::path& path);
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -1,6 +1,6 @@
 #include "export/one_file.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem::path& path,
                                     const PutFrame& put) {
@@ -21,4 +21,4 @@ Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem:
   return done;
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

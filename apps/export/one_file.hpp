@@ -6,10 +6,10 @@
 
 #include <nendo/base/file_replacement.hpp>
 
-#include "chosen_frames.hpp"
-#include "exported.hpp"
+#include "export/chosen_frames.hpp"
+#include "export/exported.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 /// Writes what stands in the file for the latest of `frames`; before the first, its head too.
 using PutFrame = std::function<Result<void>(FileReplacement& file)>;
@@ -19,4 +19,4 @@ using PutFrame = std::function<Result<void>(FileReplacement& file)>;
 Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem::path& path,
                                     const PutFrame& put);
 
-} // namespace nendo::app
+} // namespace nendo::exporting

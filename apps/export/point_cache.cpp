@@ -7,7 +7,7 @@
 
 #include "export/one_file.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 namespace {
 
 /// Numbers of 32 bits in either byte order.
@@ -77,4 +77,4 @@ Result<Exported> export_point_cache(ChosenFrames& frames, PointCache format,
   });
 }
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -12,7 +12,7 @@
 #include "export/chosen_frames.hpp"
 #include "export/exported.hpp"
 
-namespace nendo::app {
+namespace nendo::exporting {
 
 enum class PointCache { pc2, mdd };
 
@@ -21,4 +21,4 @@ enum class PointCache { pc2, mdd };
 Result<Exported> export_point_cache(ChosenFrames& frames, PointCache format,
                                     const std::filesystem::path& path);
 
-} // namespace nendo::app
+} // namespace nendo::exporting

@@ -1,6 +1,6 @@
 #include "manual/completions.hpp"
 
-namespace nendo::app {
+namespace nendo::manual {
 namespace {
 
 /// What the script is made of, gathered from all commands.
@@ -21,10 +21,10 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-void gather(const CommandModel& command, const std::string& path, Cases& cases) {
+void gather(const cli::CommandModel& command, const std::string& path, Cases& cases) {
   std::vector<std::string> options;
   std::vector<std::string> others;
-  for (const OptionModel& option : command.options) {
+  for (const cli::OptionModel& option : command.options) {
     if (option.is_positional()) {
       others.insert(others.end(), option.choices.begin(), option.choices.end());
       continue;
@@ -37,7 +37,7 @@ void gather(const CommandModel& command, const std::string& path, Cases& cases) 
     if (option.value.empty()) continue;
     cases.values += "    " + patterns + ") words=" + quoted(joined(option.choices)) + " ;;\n";
   }
-  for (const CommandModel& inner : command.commands) {
+  for (const cli::CommandModel& inner : command.commands) {
     others.push_back(inner.name);
     const std::string inner_path = path + ' ' + inner.name;
     cases.paths += (cases.paths.empty() ? "" : "|") + quoted(inner_path);
@@ -49,7 +49,7 @@ void gather(const CommandModel& command, const std::string& path, Cases& cases) 
 
 } // namespace
 
-std::string bash_completion(const CommandModel& program) {
+std::string bash_completion(const cli::CommandModel& program) {
   Cases cases;
   gather(program, "nendo", cases);
   // Where nothing fits, complete -o default gives file names.
@@ -77,4 +77,4 @@ std::string bash_completion(const CommandModel& program) {
          "complete -o default -F _nendo nendo\n";
 }
 
-} // namespace nendo::app
+} // namespace nendo::manual

@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "manual/command_model.hpp"
+#include "cli/command_model.hpp"
 
-namespace nendo::app {
+namespace nendo::manual {
 
 /// Words of the commands, options and their choices; file names where any value will do.
-std::string bash_completion(const CommandModel& program);
-std::string zsh_completion(const CommandModel& program);
-std::string fish_completion(const CommandModel& program);
+std::string bash_completion(const cli::CommandModel& program);
+std::string zsh_completion(const cli::CommandModel& program);
+std::string fish_completion(const cli::CommandModel& program);
 
-} // namespace nendo::app
+} // namespace nendo::manual

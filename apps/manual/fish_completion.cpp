@@ -1,6 +1,6 @@
 #include "manual/completions.hpp"
 
-namespace nendo::app {
+namespace nendo::manual {
 namespace {
 
 std::string in_quotes(const std::string& text) {
@@ -12,7 +12,7 @@ std::string in_quotes(const std::string& text) {
   return out + '\'';
 }
 
-std::string option_line(const OptionModel& option, const std::string& where) {
+std::string option_line(const cli::OptionModel& option, const std::string& where) {
   std::string choices;
   for (const std::string& choice : option.choices)
     choices += (choices.empty() ? "" : " ") + choice;
@@ -33,30 +33,30 @@ std::string option_line(const OptionModel& option, const std::string& where) {
 }
 
 /// `seen` is a condition: the words before this command's own are there.
-void add(const CommandModel& command, const std::string& seen, std::string& text) {
+void add(const cli::CommandModel& command, const std::string& seen, std::string& text) {
   std::string inner_names;
-  for (const CommandModel& inner : command.commands)
+  for (const cli::CommandModel& inner : command.commands)
     inner_names += ' ' + inner.name;
   const std::string here =
       inner_names.empty() ? seen : seen + "; and not __fish_seen_subcommand_from" + inner_names;
-  for (const CommandModel& inner : command.commands) {
+  for (const cli::CommandModel& inner : command.commands) {
     text += "complete -c nendo -n " + in_quotes(here) + " -f -a " + inner.name + " -d " +
             in_quotes(inner.summary) + '\n';
   }
-  for (const OptionModel& option : command.options) {
+  for (const cli::OptionModel& option : command.options) {
     if (!option.is_positional() || !option.choices.empty())
       text += option_line(option, " -n " + in_quotes(here));
   }
-  for (const CommandModel& inner : command.commands)
+  for (const cli::CommandModel& inner : command.commands)
     add(inner, seen + "; and __fish_seen_subcommand_from " + inner.name, text);
 }
 
 } // namespace
 
-std::string fish_completion(const CommandModel& program) {
+std::string fish_completion(const cli::CommandModel& program) {
   std::string text = "# Completion of nendo for fish. Made by nendo from its own --help.\n";
   add(program, "true", text);
   return text;
 }
 
-} // namespace nendo::app
+} // namespace nendo::manual

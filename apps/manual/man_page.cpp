@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace nendo::app {
+namespace nendo::manual {
 namespace {
 
 std::string upper(std::string text) {
@@ -57,7 +57,7 @@ std::string prose(const std::string& text) {
   return table ? out + ".fi\n" : out;
 }
 
-std::string item(const OptionModel& option) {
+std::string item(const cli::OptionModel& option) {
   std::string text = ".TP\n";
   for (const std::string& name : option.names)
     text += (&name == &option.names.front() ? "" : ", ") +
@@ -75,16 +75,16 @@ std::string item(const OptionModel& option) {
 }
 
 /// By heading, in the order in which the headings first appear.
-std::string items(const CommandModel& command) {
+std::string items(const cli::CommandModel& command) {
   std::vector<std::string> headings;
-  for (const OptionModel& option : command.options) {
+  for (const cli::OptionModel& option : command.options) {
     if (std::find(headings.begin(), headings.end(), option.heading) == headings.end())
       headings.push_back(option.heading);
   }
   std::string text;
   for (const std::string& heading : headings) {
     if (!heading.empty()) text += ".SS " + plain(heading) + '\n';
-    for (const OptionModel& option : command.options) {
+    for (const cli::OptionModel& option : command.options) {
       if (option.heading == heading) text += item(option);
     }
   }
@@ -92,9 +92,9 @@ std::string items(const CommandModel& command) {
 }
 
 /// `path` are the words before the options: "nendo udev bind".
-std::string usage(const std::string& path, const CommandModel& command) {
+std::string usage(const std::string& path, const cli::CommandModel& command) {
   std::string text = bold(path) + " [" + italic("OPTIONS") + "]";
-  for (const OptionModel& option : command.options) {
+  for (const cli::OptionModel& option : command.options) {
     if (!option.is_positional()) continue;
     const std::string word = italic(option.names.front()) + (option.repeats ? "..." : "");
     text += option.required ? ' ' + word : " [" + word + ']';
@@ -110,7 +110,7 @@ std::string head(const std::string& page, const std::string& summary, const Page
 }
 
 /// What the program says of itself below its first line: the exit codes.
-std::string exit_status(const CommandModel& program) {
+std::string exit_status(const cli::CommandModel& program) {
   const std::size_t line = program.summary.find('\n');
   return line == std::string::npos ? std::string{}
                                    : ".SH EXIT STATUS\n" + prose(program.summary.substr(line + 1));
@@ -118,41 +118,41 @@ std::string exit_status(const CommandModel& program) {
 
 } // namespace
 
-std::string program_page(const CommandModel& program, const PageOrigin& origin) {
+std::string program_page(const cli::CommandModel& program, const PageOrigin& origin) {
   std::string summary = first_line(program.summary);
   summary.erase(0, summary.find(": ") + 2); // the name stands before it
   while (summary.ends_with('.'))
     summary.pop_back();
   std::string text = head("nendo", summary, origin) + usage("nendo", program) + ".SH COMMANDS\n";
-  for (const CommandModel& command : program.commands)
+  for (const cli::CommandModel& command : program.commands)
     text += ".TP\n" + bold("nendo-" + command.name) + "(1)\n" + plain(first_line(command.summary)) +
             ".\n";
   text += ".SH OPTIONS\n" + items(program) + exit_status(program) + ".SH SEE ALSO\n";
-  for (const CommandModel& command : program.commands) {
+  for (const cli::CommandModel& command : program.commands) {
     const bool last = &command == &program.commands.back();
     text += ".BR nendo\\-" + command.name + " (1)" + (last ? "\n" : ",\n");
   }
   return text;
 }
 
-std::string command_page(const CommandModel& program, const CommandModel& command,
+std::string command_page(const cli::CommandModel& program, const cli::CommandModel& command,
                          const PageOrigin& origin) {
   const std::string path = "nendo " + command.name;
   std::string text =
       head("nendo-" + command.name, first_line(command.summary), origin) + usage(path, command);
-  for (const CommandModel& inner : command.commands)
+  for (const cli::CommandModel& inner : command.commands)
     text += ".br\n" + usage(path + ' ' + inner.name, inner);
   if (!command.footer.empty()) text += ".SH DESCRIPTION\n" + prose(command.footer);
   text += ".SH OPTIONS\n" + items(command);
   if (!command.commands.empty()) text += ".SH COMMANDS\n";
-  for (const CommandModel& inner : command.commands) {
+  for (const cli::CommandModel& inner : command.commands) {
     text +=
         ".SS " + plain(path + ' ' + inner.name) + '\n' + plain(first_line(inner.summary)) + ".\n";
     if (inner.footer != command.footer) text += prose(inner.footer); // else inherited
-    for (const OptionModel& option : inner.options)
+    for (const cli::OptionModel& option : inner.options)
       text += item(option);
   }
   return text + exit_status(program) + ".SH SEE ALSO\n.BR nendo (1)\n";
 }
 
-} // namespace nendo::app
+} // namespace nendo::manual

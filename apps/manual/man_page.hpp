@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "manual/command_model.hpp"
+#include "cli/command_model.hpp"
 
-namespace nendo::app {
+namespace nendo::manual {
 
 /// Where a page comes from, as its head and foot say.
 struct PageOrigin {
@@ -16,9 +16,9 @@ struct PageOrigin {
 };
 
 /// nendo.1: the program and its commands.
-std::string program_page(const CommandModel& program, const PageOrigin& origin);
+std::string program_page(const cli::CommandModel& program, const PageOrigin& origin);
 /// nendo-COMMAND.1: one of its commands, with the commands that this has.
-std::string command_page(const CommandModel& program, const CommandModel& command,
+std::string command_page(const cli::CommandModel& program, const cli::CommandModel& command,
                          const PageOrigin& origin);
 
-} // namespace nendo::app
+} // namespace nendo::manual

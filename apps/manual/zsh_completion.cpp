@@ -1,6 +1,6 @@
 #include "manual/completions.hpp"
 
-namespace nendo::app {
+namespace nendo::manual {
 namespace {
 
 /// Inside '...' and, for _arguments and _describe, where : [ ] have a meaning.
@@ -18,16 +18,16 @@ std::string described(const std::string& text) {
 }
 
 /// ":TEXT:_files" or ":TEXT:(a b)".
-std::string value_of(const OptionModel& option) {
+std::string value_of(const cli::OptionModel& option) {
   std::string choices;
   for (const std::string& choice : option.choices)
     choices += (choices.empty() ? "" : " ") + choice;
   return ':' + option.value + ':' + (choices.empty() ? "_files" : '(' + choices + ')');
 }
 
-std::string arguments(const CommandModel& command) {
+std::string arguments(const cli::CommandModel& command) {
   std::string text;
-  for (const OptionModel& option : command.options) {
+  for (const cli::OptionModel& option : command.options) {
     if (option.is_positional()) {
       text += " \\\n    ':" + option.names.front() +
               value_of(option).substr(option.value.size() + 1) + '\'';
@@ -42,13 +42,13 @@ std::string arguments(const CommandModel& command) {
   return text;
 }
 
-void add_function(const CommandModel& command, const std::string& name, std::string& text) {
-  for (const CommandModel& inner : command.commands)
+void add_function(const cli::CommandModel& command, const std::string& name, std::string& text) {
+  for (const cli::CommandModel& inner : command.commands)
     add_function(inner, name + '_' + inner.name, text);
   text += name + "() {\n";
   if (!command.commands.empty()) {
     text += "  local -a commands=(\n";
-    for (const CommandModel& inner : command.commands)
+    for (const cli::CommandModel& inner : command.commands)
       text += "    '" + inner.name + ':' + described(inner.summary) + "'\n";
     text += "  )\n"
             "  if ((CURRENT > 2)) && [[ -n ${commands[(r)$words[2]:*]} ]]; then\n"
@@ -67,10 +67,10 @@ void add_function(const CommandModel& command, const std::string& name, std::str
 
 } // namespace
 
-std::string zsh_completion(const CommandModel& program) {
+std::string zsh_completion(const cli::CommandModel& program) {
   std::string text = "#compdef nendo\n# Made by nendo from its own --help.\n";
   add_function(program, "_nendo", text);
   return text + "_nendo \"$@\"\n";
 }
 
-} // namespace nendo::app
+} // namespace nendo::manual

@@ -8,7 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-namespace nendo::app {
+namespace nendo::service {
 
 ServiceNotice::ServiceNotice() {
   const char* const path = std::getenv("NOTIFY_SOCKET"); // NOLINT(concurrency-mt-unsafe): early
@@ -40,4 +40,4 @@ void ServiceNotice::send(std::string_view text) const noexcept {
            reinterpret_cast<const sockaddr*>(&address), length);
 }
 
-} // namespace nendo::app
+} // namespace nendo::service

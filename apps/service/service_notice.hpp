@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace nendo::app {
+namespace nendo::service {
 
 class ServiceNotice {
 public:
@@ -28,4 +28,4 @@ private:
   bool ready_ = false;
 };
 
-} // namespace nendo::app
+} // namespace nendo::service

@@ -12,7 +12,7 @@
 
 #include "stress/tick_tally.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 constexpr std::array<std::string_view, 7> figures{"min",   "p50",    "p90", "p99",
@@ -130,4 +130,4 @@ std::vector<std::string> fulfilled(const std::vector<Condition>& conditions,
   return lines;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -8,7 +8,7 @@
 
 #include <nendo/base/result.hpp>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 /// "p99.9>200us": a figure of the report's JSON, and what it must not be.
 struct Condition {
@@ -30,4 +30,4 @@ Result<std::vector<Condition>> parse_conditions(const std::string& text);
 std::vector<std::string> fulfilled(const std::vector<Condition>& conditions,
                                    const nlohmann::ordered_json& report);
 
-} // namespace nendo::app
+} // namespace nendo::stress

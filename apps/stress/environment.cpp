@@ -8,7 +8,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 std::string first_line(const char* path) {
@@ -67,4 +67,4 @@ std::optional<double> stolen_s() {
   return value / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 struct Environment {
   std::string kernel;      ///< "6.1.0-18-amd64"
@@ -26,4 +26,4 @@ Environment describe_environment();
 /// it.
 std::optional<double> stolen_s();
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 using std::chrono::nanoseconds;
 
@@ -39,4 +39,4 @@ Cause cause_of(const Incident& incident, const UsualTimes& usual,
   return waited ? Cause::host_gap : Cause::unexplained;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -9,7 +9,7 @@
 
 #include <nendo/flow/tick_record.hpp>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 enum class Phase : std::uint8_t { wake, input, hands, deform, publish };
 inline constexpr std::array<std::string_view, 5> phase_names{"wake", "input", "hands", "deform",
@@ -51,4 +51,4 @@ Incident incident_of(const flow::TickRecord& before, const flow::TickRecord& now
 Cause cause_of(const Incident& incident, const UsualTimes& usual,
                std::optional<std::chrono::nanoseconds> waited) noexcept;
 
-} // namespace nendo::app
+} // namespace nendo::stress

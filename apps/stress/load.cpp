@@ -17,7 +17,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 [[noreturn]] void compute() {
@@ -121,4 +121,4 @@ Load::~Load() {
   }
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

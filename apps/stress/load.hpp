@@ -9,7 +9,7 @@
 
 #include <nendo/base/result.hpp>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 /// The kinds of --load: "cpu" (arithmetic, a worker a CPU), "mem" (copies 64 MiB to and fro), "io"
 /// (writes and syncs a temporary file). Error: usage.
@@ -33,4 +33,4 @@ private:
   std::vector<pid_t> workers_;
 };
 
-} // namespace nendo::app
+} // namespace nendo::stress

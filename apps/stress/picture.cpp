@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/svg_drawing.hpp"
 #include "stress/report.hpp"
-#include "svg_drawing.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 using std::chrono::nanoseconds;
@@ -21,13 +21,9 @@ constexpr const char* ran = "#2f7fc1";       // ticks that ran
 constexpr const char* scheduled = "#e07a3f"; // ticks that were scheduled
 constexpr const char* machine = "#aab4bf";   // the platform's floor
 
-constexpr SvgText heading{14, ink, "start", true};
-constexpr SvgText at_right{12, faint, "end"};
-constexpr SvgText below{12, faint, "middle"};
-
-double microseconds(nanoseconds time) {
-  return static_cast<double>(time.count()) / 1e3;
-}
+constexpr cli::SvgText heading{14, ink, "start", true};
+constexpr cli::SvgText at_right{12, faint, "end"};
+constexpr cli::SvgText below{12, faint, "middle"};
 
 std::string time_text(double us) {
   char text[32];
@@ -69,7 +65,7 @@ constexpr std::size_t bin_count =
 std::vector<double> binned(const flow::Histogram& histogram) {
   std::vector<double> bins(bin_count, 0.0);
   histogram.for_each([&](nanoseconds value, std::uint64_t count) {
-    const double decade = std::log10(std::max(microseconds(value), 1e-9));
+    const double decade = std::log10(std::max(to_microseconds(value), 1e-9));
     const double at = std::floor((decade - least_us_decade) * bins_per_decade);
     bins[static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bin_count - 1)))] +=
         static_cast<double>(count);
@@ -89,12 +85,12 @@ std::string outline(const Axes& axes, const std::vector<double>& bins) {
   for (auto at = first; at < last; ++at) {
     const auto bin = static_cast<std::size_t>(at);
     for (const double x : {left_of(bin), left_of(bin + 1)})
-      points += svg_point(axes.x(x), axes.y(bins[bin]));
+      points += cli::svg_point(axes.x(x), axes.y(bins[bin]));
   }
   return points;
 }
 
-void draw_decades(SvgDrawing& drawing, const Axes& axes, bool times_on_y) {
+void draw_decades(cli::SvgDrawing& drawing, const Axes& axes, bool times_on_y) {
   const auto whole = [](double decade) { return static_cast<int>(std::ceil(decade)); };
   for (int decade = whole(axes.y_low); decade <= whole(axes.y_high); ++decade) {
     const double value = std::pow(10.0, decade);
@@ -111,7 +107,7 @@ void draw_decades(SvgDrawing& drawing, const Axes& axes, bool times_on_y) {
   }
 }
 
-void draw_percentiles(SvgDrawing& drawing, const Axes& axes, const flow::Histogram& lateness) {
+void draw_percentiles(cli::SvgDrawing& drawing, const Axes& axes, const flow::Histogram& lateness) {
   struct Mark {
     const char* name;
     double fraction;
@@ -120,7 +116,7 @@ void draw_percentiles(SvgDrawing& drawing, const Axes& axes, const flow::Histogr
   double last_x = -1e3;
   for (const Mark& mark : {Mark{"p50", 0.5}, Mark{"p99", 0.99}, Mark{"p99.9", 0.999},
                            Mark{"p99.99", 0.9999}, Mark{"max", 1.0}}) {
-    const double us = microseconds(lateness.percentile(mark.fraction));
+    const double us = to_microseconds(lateness.percentile(mark.fraction));
     const double x = axes.x(us);
     row = x - last_x < 110 ? row + 16 : axes.top + 12; // labels do not cover each other
     last_x = x;
@@ -131,7 +127,7 @@ void draw_percentiles(SvgDrawing& drawing, const Axes& axes, const flow::Histogr
   }
 }
 
-void draw_histogram(SvgDrawing& drawing, const StressOutcome& outcome) {
+void draw_histogram(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   const Distribution& lateness = outcome.tally[Measure::lateness];
   const auto all = binned(lateness.corrected);
   const auto those_ran = binned(lateness.raw);
@@ -161,7 +157,7 @@ void draw_histogram(SvgDrawing& drawing, const StressOutcome& outcome) {
   draw_percentiles(drawing, axes, lateness.corrected);
 }
 
-void draw_course(SvgDrawing& drawing, const StressOutcome& outcome) {
+void draw_course(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   const LatenessTrace& course = outcome.tally.timeline();
   const double length_s =
       to_seconds(course.slice_length()) * static_cast<double>(course.slices().size());
@@ -169,8 +165,8 @@ void draw_course(SvgDrawing& drawing, const StressOutcome& outcome) {
   double most_us = 100.0;
   for (const auto& slice : course.slices()) {
     if (slice.count == 0) continue;
-    least_us = std::min(least_us, microseconds(slice.sum) / static_cast<double>(slice.count));
-    most_us = std::max(most_us, microseconds(slice.max));
+    least_us = std::min(least_us, to_microseconds(slice.sum) / static_cast<double>(slice.count));
+    most_us = std::max(most_us, to_microseconds(slice.max));
   }
   const Axes axes{80,
                   450,
@@ -190,10 +186,10 @@ void draw_course(SvgDrawing& drawing, const StressOutcome& outcome) {
     const auto& slice = course.slices()[k];
     if (slice.count == 0) continue;
     const double x = axes.x(slice_s * static_cast<double>(k));
-    const double mean_us = microseconds(slice.sum) / static_cast<double>(slice.count);
-    const double top = axes.y(microseconds(slice.max));
+    const double mean_us = to_microseconds(slice.sum) / static_cast<double>(slice.count);
+    const double top = axes.y(to_microseconds(slice.max));
     drawing.box(x, top, width, std::max(1.0, axes.y(mean_us) - top), scheduled, 0.6);
-    means += svg_point(x + width / 2, axes.y(mean_us));
+    means += cli::svg_point(x + width / 2, axes.y(mean_us));
   }
   drawing.path(means, ran, 1.8);
   for (int k = 0; k <= 5; ++k) {
@@ -205,7 +201,7 @@ void draw_course(SvgDrawing& drawing, const StressOutcome& outcome) {
 }
 
 /// From the right, the last first.
-void draw_key(SvgDrawing& drawing, double y,
+void draw_key(cli::SvgDrawing& drawing, double y,
               std::initializer_list<std::pair<const char*, const char*>> entries) {
   double right = 1160;
   for (const auto& [colour, name] : entries) {
@@ -230,7 +226,7 @@ std::string summary(const StressOptions& options, const StressOutcome& outcome) 
 } // namespace
 
 std::string stress_picture(const StressOptions& options, const StressOutcome& outcome) {
-  SvgDrawing drawing(1200, 720);
+  cli::SvgDrawing drawing(1200, 720);
   drawing.words(40, 46, "nendo stress", {24, ink, "start", true});
   drawing.words(40, 72, summary(options, outcome), {14, ink});
   const Environment& about = outcome.environment;
@@ -254,4 +250,4 @@ std::string stress_picture(const StressOptions& options, const StressOutcome& ou
   return std::move(drawing).finished();
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

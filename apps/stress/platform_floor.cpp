@@ -2,7 +2,7 @@
 
 #include <thread>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 using namespace std::chrono_literals;
 
@@ -37,4 +37,4 @@ PlatformFloor measure_floor(double seconds, const flow::RealtimeOptions& realtim
   return floor;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -7,7 +7,7 @@
 #include <nendo/flow/histogram.hpp>
 #include <nendo/flow/realtime.hpp>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 struct PlatformFloor {
   /// Between two looks at the clock, as far as longer than a microsecond.
@@ -22,4 +22,4 @@ struct PlatformFloor {
 PlatformFloor measure_floor(double seconds, const flow::RealtimeOptions& realtime,
                             const std::atomic<bool>& stop);
 
-} // namespace nendo::app
+} // namespace nendo::stress

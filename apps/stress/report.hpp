@@ -7,7 +7,7 @@
 
 #include "stress/stress_session.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 
 /// Everything that was measured, with the environment. Times are in microseconds unless a key says
 /// otherwise. Keys are stable: an earlier one is what --compare reads.
@@ -27,4 +27,4 @@ std::string hgrm(const flow::Histogram& lateness);
 /// Histogram and course of the lateness, as SVG.
 std::string stress_picture(const StressOptions& options, const StressOutcome& outcome);
 
-} // namespace nendo::app
+} // namespace nendo::stress

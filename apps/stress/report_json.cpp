@@ -4,31 +4,27 @@
 
 #include <nlohmann/json.hpp>
 
-#include "loop_options.hpp"
+#include "session/loop_options.hpp"
 #include "stress/report.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 using nlohmann::ordered_json;
 using std::chrono::nanoseconds;
 
-double microseconds(nanoseconds time) {
-  return static_cast<double>(time.count()) / 1e3;
-}
-
 // Null of what was never recorded.
-ordered_json figures(const flow::Histogram& histogram) {
+ordered_json figures_json(const flow::Histogram& histogram) {
   if (histogram.count() == 0) return nullptr;
-  const auto at = [&](double fraction) { return microseconds(histogram.percentile(fraction)); };
+  const auto at = [&](double fraction) { return to_microseconds(histogram.percentile(fraction)); };
   return {{"count", histogram.count()},
-          {"min", microseconds(histogram.min())},
+          {"min", to_microseconds(histogram.min())},
           {"p50", at(0.50)},
           {"p90", at(0.90)},
           {"p99", at(0.99)},
           {"p99_9", at(0.999)},
           {"p99_99", at(0.9999)},
-          {"max", microseconds(histogram.max())}};
+          {"max", to_microseconds(histogram.max())}};
 }
 
 ordered_json environment_json(const StressOptions& options, const StressOutcome& outcome) {
@@ -55,7 +51,7 @@ ordered_json environment_json(const StressOptions& options, const StressOutcome&
                     {"gloves", outcome.gloves},
                     {"load", options.load},
                     {"pictures", outcome.pictures},
-                    {"realtime", grants_json(outcome.grants)}};
+                    {"realtime", session::grants_json(outcome.grants)}};
   if (machine.rt_runtime_us) line["rt_runtime_us"] = *machine.rt_runtime_us;
   ordered_json stages{"sleep"};
   const auto& runs = loop.stages;
@@ -90,10 +86,10 @@ ordered_json worst_json(const StressOutcome& outcome) {
     lines.push_back({{"time", wall_time(outcome, incident.due)},
                      {"since_start_s", to_seconds(incident.due - outcome.start)},
                      {"tick", incident.tick},
-                     {"lateness_us", microseconds(incident.lateness)},
+                     {"lateness_us", to_microseconds(incident.lateness)},
                      {"missed", incident.missed},
                      {"phase", phase_names[static_cast<std::size_t>(incident.phase)]},
-                     {"phase_us", microseconds(incident.phase_time)},
+                     {"phase_us", to_microseconds(incident.phase_time)},
                      {"cause", cause_names[static_cast<std::size_t>(incident.cause)]}});
   }
   return lines;
@@ -104,9 +100,9 @@ ordered_json causes_json(const TickTally& tally) {
   for (std::size_t k = 0; k < cause_names.size(); ++k) {
     const auto& share = tally.causes()[k];
     causes[std::string(cause_names[k])] = {{"incidents", share.incidents},
-                                           {"lateness_us", microseconds(share.lateness)}};
+                                           {"lateness_us", to_microseconds(share.lateness)}};
   }
-  return {{"threshold_us", microseconds(TickTally::incident_threshold)},
+  return {{"threshold_us", to_microseconds(TickTally::incident_threshold)},
           {"explained", tally.explained()},
           {"by_cause", causes}};
 }
@@ -114,7 +110,7 @@ ordered_json causes_json(const TickTally& tally) {
 ordered_json floor_json(const PlatformFloor& floor) {
   if (floor.spun_s <= 0.0) return nullptr;
   ordered_json line{{"spun_s", floor.spun_s}, {"stalled_s", floor.stalled_s}};
-  line["gaps_us"] = figures(floor.gaps);
+  line["gaps_us"] = figures_json(floor.gaps);
   return line;
 }
 
@@ -130,20 +126,20 @@ ordered_json stress_json(const StressOptions& options, const StressOutcome& outc
                     {"overruns", outcome.overruns},
                     {"failed", outcome.failed},
                     {"samples", tally.samples()},
-                    {"longest_outage_us", microseconds(tally.longest_outage())}};
+                    {"longest_outage_us", to_microseconds(tally.longest_outage())}};
   ordered_json corrected;
   for (std::size_t k = 0; k < measure_names.size(); ++k) {
     const Distribution& of = tally[static_cast<Measure>(k)];
     const std::string key = std::string(measure_names[k]) + "_us";
-    line[key] = figures(of.raw);
-    corrected[key] = figures(of.corrected);
+    line[key] = figures_json(of.raw);
+    corrected[key] = figures_json(of.corrected);
   }
   line["corrected"] = corrected;
   ordered_json stages;
   for (std::size_t k = 1; k < phase_names.size(); ++k)
-    stages[std::string(phase_names[k])] = figures(tally.stage(static_cast<Phase>(k)));
+    stages[std::string(phase_names[k])] = figures_json(tally.stage(static_cast<Phase>(k)));
   line["stages_us"] = stages;
-  line["spun_us"] = outcome.spins ? figures(tally.stage(Phase::wake)) : nullptr;
+  line["spun_us"] = outcome.spins ? figures_json(tally.stage(Phase::wake)) : nullptr;
   line["incidents"] = causes_json(tally);
   line["worst"] = worst_json(outcome);
   line["page_faults"] = outcome.costs.minor_faults + outcome.costs.major_faults;
@@ -157,4 +153,4 @@ ordered_json stress_json(const StressOptions& options, const StressOutcome& outc
   return line;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

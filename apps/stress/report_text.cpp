@@ -8,7 +8,7 @@
 
 #include "stress/report.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 using nlohmann::ordered_json;
@@ -205,4 +205,4 @@ std::string hgrm(const flow::Histogram& lateness) {
   return text + line;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <fstream>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 std::optional<std::chrono::nanoseconds> parse_run_delay(const std::string& schedstat) {
   const std::size_t space = schedstat.find(' ');
@@ -43,4 +43,4 @@ std::optional<std::chrono::nanoseconds> RunDelay::since(HostTime from) const noe
   return std::nullopt;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

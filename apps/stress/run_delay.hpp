@@ -12,7 +12,7 @@
 
 #include <nendo/base/units.hpp>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 /// The time in a line of /proc/<pid>/task/<tid>/schedstat: "time on the CPU, time waiting for it,
 /// time slices", in nanoseconds. Pure.
@@ -43,4 +43,4 @@ private:
   std::uint64_t count_ = 0;
 };
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <string_view>
 
-#include "cli.hpp"
-#include "place_loop.hpp"
+#include "cli/cli.hpp"
+#include "session/place_loop.hpp"
 #include "stress/load.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 Error usage(std::string message) {
   return {Errc::usage, std::move(message)};
 }
 
-Result<void> parse_loop(const StressArguments& arguments, RunOptions& run) {
+Result<void> parse_loop(const StressArguments& arguments, session::RunOptions& run) {
   constexpr double least_us = 1e6 / flow::TickGrid::most_rate_hz;
   constexpr double most_us = 1e6 / flow::TickGrid::least_rate_hz;
   if (!(arguments.interval_us >= least_us && arguments.interval_us <= most_us))
@@ -31,7 +31,7 @@ Result<void> parse_loop(const StressArguments& arguments, RunOptions& run) {
   if (const auto fine = arguments.loop.parse(run.loop, run.realtime); !fine) return fine.error();
   if (run.loop.policy == flow::OverrunPolicy::sample && !stages->input)
     return usage("--policy sample: needs the stage input, for samples are what it waits for");
-  return check_radius(run.radius);
+  return session::check_radius(run.radius);
 }
 
 } // namespace
@@ -60,9 +60,9 @@ Result<flow::TickStages> parse_stages(const std::string& text) {
 Result<StressOptions> parse(const StressArguments& arguments) {
   StressOptions options;
   options.run = arguments.run;
-  RunOptions& run = options.run;
+  session::RunOptions& run = options.run;
   if (const auto fine = parse_loop(arguments, run); !fine) return fine.error();
-  const auto duration = parse_duration(arguments.duration);
+  const auto duration = cli::parse_duration(arguments.duration);
   if (!duration) return duration.error();
   run.duration_s = *duration;
   auto load = parse_load(arguments.load);
@@ -83,8 +83,8 @@ Result<StressOptions> parse(const StressArguments& arguments) {
     return usage("--floor: use 0 (not measured) to 3600 seconds");
   options.floor_s = arguments.floor_s;
   if (run.left.empty() && run.right.empty()) run.left = run.right = "sim";
-  if (run.mesh.empty()) run.mesh = shipped_model("moai.obj").string();
+  if (run.mesh.empty()) run.mesh = cli::shipped_model("moai.obj").string();
   return options;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "durations.hpp"
-#include "loop_options.hpp"
-#include "run_options.hpp"
+#include "cli/durations.hpp"
+#include "session/loop_options.hpp"
+#include "session/run_options.hpp"
 #include "stress/conditions.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 
 /// As typed.
 struct StressArguments {
@@ -28,13 +28,13 @@ struct StressArguments {
   std::string compare;
   bool view = false;
   bool json = false;
-  LoopArguments loop{.priority = flow::usual_priority};
-  RunOptions run;
+  session::LoopArguments loop{.priority = flow::usual_priority};
+  session::RunOptions run;
 };
 
 /// What they mean. `run` is complete: gloves, model, loop and rights.
 struct StressOptions {
-  RunOptions run;
+  session::RunOptions run;
   std::vector<std::string> load;
   std::vector<Condition> conditions;
   std::optional<std::chrono::nanoseconds> break_at; ///< ends at a tick that is later than that
@@ -47,4 +47,4 @@ Result<StressOptions> parse(const StressArguments& arguments);
 /// The stages of a list like "sleep,input,hands": sleep is always one. Error: usage.
 Result<flow::TickStages> parse_stages(const std::string& text);
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -7,11 +7,11 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "cli.hpp"
-#include "open_hands.hpp"
+#include "cli/cli.hpp"
+#include "session/open_hands.hpp"
 #include "stress/load.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 namespace {
 
 using std::chrono::milliseconds;
@@ -66,26 +66,26 @@ private:
 };
 
 /// Waits some milliseconds, with an onlooker for as long as it looks. True: it wants the end.
-bool look_on(Onlooker* onlooker, flow::DeformLoop& loop, std::uint64_t& pictures) {
+bool look_on(session::Onlooker* onlooker, flow::DeformLoop& loop, std::uint64_t& pictures) {
   if (onlooker == nullptr) {
     std::this_thread::sleep_for(milliseconds(4));
     return false;
   }
   ++pictures;
-  return onlooker->look(loop, loop.frames().update()) == Onlooker::Verdict::end;
+  return onlooker->look(loop, loop.frames().update()) == session::Onlooker::Verdict::end;
 }
 
 void watch(const StressOptions& options, Collector& collector, const std::atomic<bool>& ended,
-           StressOutcome& outcome, const StressProgress& progress, Onlooker* onlooker,
+           StressOutcome& outcome, const StressProgress& progress, session::Onlooker* onlooker,
            flow::DeformLoop& loop) {
   HostTime next_report = outcome.start;
-  while (!ended && !is_over(options.run, outcome.start)) {
+  while (!ended && !session::is_over(options.run, outcome.start)) {
     const bool enough = look_on(onlooker, loop, outcome.pictures);
     collector.collect();
     const auto& worst = outcome.tally.worst();
     outcome.broke =
         options.break_at && !worst.empty() && worst.front().lateness > *options.break_at;
-    outcome.stopped = enough || stop_requested();
+    outcome.stopped = enough || cli::stop_requested();
     if (outcome.broke || outcome.stopped) return;
     if (HostClock::now() < next_report) continue;
     progress(outcome.tally, to_seconds(HostClock::now() - outcome.start));
@@ -94,7 +94,7 @@ void watch(const StressOptions& options, Collector& collector, const std::atomic
 }
 
 void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRing& ring,
-              StressOutcome& outcome, const StressProgress& progress, Onlooker* onlooker) {
+              StressOutcome& outcome, const StressProgress& progress, session::Onlooker* onlooker) {
   std::atomic<bool> over{false};
   std::atomic<bool> ended{false};
   std::promise<Prepared> prepared;
@@ -105,7 +105,7 @@ void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRi
     prepared.set_value({static_cast<pid_t>(::syscall(SYS_gettid)),
                         flow::make_thread_realtime(options.run.realtime)});
     const rusage before = usage_of_thread();
-    loop.run(over, ticks_for(options.run));
+    loop.run(over, session::ticks_for(options.run));
     outcome.costs = difference(before, usage_of_thread());
     ended = true;
   });
@@ -128,18 +128,18 @@ void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRi
 
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
                                                   const StressProgress& progress,
-                                                  Onlooker* onlooker) {
-  RunOptions& run = options.run;
+                                                  session::Onlooker* onlooker) {
+  session::RunOptions& run = options.run;
   auto outcome = std::make_unique<StressOutcome>(run.loop);
   const flow::RealtimeProcess process(run.realtime);
   outcome->environment = describe_environment();
   if (options.floor_s > 0.0)
-    outcome->floor = measure_floor(options.floor_s, run.realtime, stop_requested());
+    outcome->floor = measure_floor(options.floor_s, run.realtime, cli::stop_requested());
   const auto load = Load::start(options.load);
   if (!load) return load.error();
   run.grants = process.grants();
   EventCount event_count;
-  const auto hands = open_hands(run, model, event_count);
+  const auto hands = session::open_hands(run, model, event_count);
   if (!hands) return hands.error();
   for (const auto& hand : *hands) {
     outcome->gloves.push_back(hand.glove->info().source);
@@ -152,7 +152,7 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   flow::WristRing wrists(64);
   run.loop.requests = &requests;
   run.loop.wrists = &wrists;
-  const auto placed = place_loop(run, *hands, model);
+  const auto placed = session::place_loop(run, *hands, model);
   if (!placed) return placed.error();
   if (onlooker != nullptr) onlooker->begin(*placed, model, *hands, run);
   run_loop(options, *placed->loop, ring, *outcome, progress, onlooker);
@@ -167,4 +167,4 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   return outcome;
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "run_session.hpp"
+#include "session/run_session.hpp"
 #include "stress/environment.hpp"
 #include "stress/platform_floor.hpp"
 #include "stress/stress_options.hpp"
 #include "stress/tick_tally.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 
 /// What the loop's thread cost the system, its set-up not included.
 struct ThreadCosts {
@@ -57,6 +57,6 @@ using StressProgress = std::function<void(const TickTally& tally, double elapsed
 /// Load::start().
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
                                                   const StressProgress& progress,
-                                                  Onlooker* onlooker = nullptr);
+                                                  session::Onlooker* onlooker = nullptr);
 
-} // namespace nendo::app
+} // namespace nendo::stress

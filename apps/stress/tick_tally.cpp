@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace nendo::app {
+namespace nendo::stress {
 
 using std::chrono::nanoseconds;
 
@@ -122,4 +122,4 @@ double TickTally::explained() const noexcept {
              : 1.0 - static_cast<double>(unknown.count()) / static_cast<double>(all.count());
 }
 
-} // namespace nendo::app
+} // namespace nendo::stress

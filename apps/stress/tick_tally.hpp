@@ -14,7 +14,7 @@
 #include "stress/incident.hpp"
 #include "stress/run_delay.hpp"
 
-namespace nendo::app {
+namespace nendo::stress {
 
 enum class Measure : std::uint8_t { lateness, period_error, work, input_age, end_to_end };
 inline constexpr std::array<std::string_view, 5> measure_names{"lateness", "period_error", "work",
@@ -104,4 +104,4 @@ private:
   LatenessTrace timeline_;
 };
 
-} // namespace nendo::app
+} // namespace nendo::stress

@@ -15,7 +15,7 @@
 
 extern char** environ; // NOLINT(readability-redundant-declaration): POSIX has it in no header
 
-namespace nendo::app {
+namespace nendo::udev {
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,4 +133,4 @@ std::string refresh_udev() {
   return "udev could not be told; run: sudo udevadm control --reload, then plug the glove in again";
 }
 
-} // namespace nendo::app
+} // namespace nendo::udev

@@ -10,7 +10,7 @@
 
 #include <nendo/base/result.hpp>
 
-namespace nendo::app {
+namespace nendo::udev {
 
 enum class RuleState : std::uint8_t {
   missing,
@@ -47,4 +47,4 @@ Result<void> apply(const RuleChange& change);
 /// came of it, one line. Blocks while udevadm runs.
 std::string refresh_udev();
 
-} // namespace nendo::app
+} // namespace nendo::udev

@@ -15,7 +15,7 @@ namespace {
 /// most 1e-7 of the sum of the displacements.
 constexpr float least_weight = 1e-7F;
 /// Pieces: with weights they take half as long as without.
-constexpr std::size_t least_shared = 8;
+constexpr std::size_t least_shared_pieces = 8;
 
 } // namespace
 
@@ -141,7 +141,7 @@ void CardinalWeights::apply(const Points& displacements, const BlockShape& rest,
   const bool back = std::exchange(goes_back_, !goes_back_ && !one_way);
   const std::size_t blocks = cache_.block_count;
   evaluator.parts().in_pieces(
-      blocks, least_shared, [&](std::size_t begin, std::size_t end, std::size_t) {
+      blocks, least_shared_pieces, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t at = begin; at < end; at += blocks_a_piece) {
           const std::size_t until = std::min(at + blocks_a_piece, end);
           back ? apply_piece(blocks - until, blocks - at) : apply_piece(at, until);

@@ -26,14 +26,14 @@ struct Driver {
 
 constexpr std::array drivers{
     Driver{"serial", cyberglove::options_grammar, "a CyberGlove at a serial, USB or Bluetooth port",
-           open_serial},
+           cyberglove::open_serial},
     Driver{"lucidgloves", "lucidgloves:PATH[?baud=N&range=4095|1023&hand=left|right]",
            "LucidGloves, or what else speaks OpenGloves' encoding, at a serial port",
-           open_lucidgloves},
+           lucidgloves::open_lucidgloves},
     Driver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
-           "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", open_fivedt},
+           "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", fivedt::open_fivedt},
     Driver{"forte", "forte:PATH[?link=usb|bluetooth&baud=460800|115200&hand=left|right]",
-           "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth", open_forte},
+           "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth", forte::open_forte},
     Driver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
            "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", open_usb_glove},
     Driver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",

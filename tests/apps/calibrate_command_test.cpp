@@ -13,7 +13,7 @@
 
 #include "bench/wearers.hpp"
 #include "calibrate/capture_file.hpp"
-#include "sample_json.hpp"
+#include "gloves/sample_json.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/terminal_program.hpp"
@@ -28,7 +28,7 @@ constexpr int samples_between = 40; ///< from pose to pose
 constexpr int samples_held = 270;   // three seconds
 
 /// A wearer doing the poses one after another, recorded as nendo monitor --json --raw prints it.
-void record(app::Wearer& wearer, std::span<const hand::PoseId> poses,
+void record(bench::Wearer& wearer, std::span<const hand::PoseId> poses,
             const std::filesystem::path& path) {
   std::ofstream file(path);
   hand::SensorAngles from = wearer.perform(hand::PoseId::flat);
@@ -40,7 +40,7 @@ void record(app::Wearer& wearer, std::span<const hand::PoseId> poses,
         std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(time_s)));
     sample.measured = sample.arrival;
     sample.side = wearer.side();
-    file << app::sample_json(sample, nullptr) << '\n';
+    file << gloves::sample_json(sample, nullptr) << '\n';
   };
   for (const auto pose : poses) {
     const hand::SensorAngles to = wearer.perform(pose);
@@ -62,7 +62,7 @@ TEST_SUITE("calibrate") {
   TEST_CASE("a capture of all poses becomes a calibration that is this wearer's") {
     const TemporaryFolder folder;
     for (const std::uint64_t seed : {2001U, 2002U}) { // a left hand and a right one
-      app::Wearer wearer(seed);
+      bench::Wearer wearer(seed);
       const auto capture = folder.path() / "capture.jsonl";
       const auto out = folder.path() / "anna.toml";
       const auto picture = folder.path() / "anna.svg";
@@ -94,7 +94,7 @@ TEST_SUITE("calibrate") {
 
   TEST_CASE("two poses are enough for the quick way, and less is an error that names what lacks") {
     const TemporaryFolder folder;
-    app::Wearer wearer(2003);
+    bench::Wearer wearer(2003);
     const auto capture = folder.path() / "capture.jsonl";
     const auto out = folder.path() / "quick.toml";
     record(wearer, hand::quick_poses(), capture);
@@ -114,7 +114,7 @@ TEST_SUITE("calibrate") {
 
   TEST_CASE("held poses can be a capture, too, and are what was held") {
     const TemporaryFolder folder;
-    app::Wearer wearer(2004);
+    bench::Wearer wearer(2004);
     std::vector<hand::PoseReading> readings;
     for (const auto pose : hand::full_poses()) {
       const GloveSample sample = wearer.read(wearer.perform(pose));
@@ -131,8 +131,8 @@ TEST_SUITE("calibrate") {
     motion.present = sensors_22;
     motion.low_counts.fill(12.25);
     motion.high_counts.fill(201.5);
-    REQUIRE(app::write_readings(path, readings, motion, wearer.side(), {}));
-    const auto read = app::read_capture(path);
+    REQUIRE(calibrate::write_readings(path, readings, motion, wearer.side(), {}));
+    const auto read = calibrate::read_capture(path);
     REQUIRE_MESSAGE(read, read.error().message);
     CHECK(read->side == wearer.side());
     CHECK(read->free_motion.present == sensors_22);
@@ -153,7 +153,7 @@ TEST_SUITE("calibrate") {
 
   TEST_CASE("a session that goes on has the free motion of the one that was quit") {
     const TemporaryFolder folder;
-    app::Wearer wearer(2005);
+    bench::Wearer wearer(2005);
     std::vector<hand::PoseReading> readings;
     for (const auto pose : hand::full_poses()) {
       const GloveSample sample = wearer.read(wearer.perform(pose));
@@ -173,7 +173,7 @@ TEST_SUITE("calibrate") {
       motion.high_counts[slot] = bent.raw[slot].value;
     const auto gain_with = [&](const hand::CountRanges& free_motion) {
       const auto path = folder.path() / "unfinished.jsonl", out = folder.path() / "eve.toml";
-      REQUIRE(app::write_readings(path, readings, free_motion, wearer.side(), {}));
+      REQUIRE(calibrate::write_readings(path, readings, free_motion, wearer.side(), {}));
       const auto done =
           nendo::test::nendo({"calibrate", "--from", path, "--user", "eve", "--out", out});
       REQUIRE_MESSAGE(done.exit_code == 0, done.err);

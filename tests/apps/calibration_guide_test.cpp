@@ -12,7 +12,9 @@
 #include "calibrate/screen.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::bench;
+using namespace nendo::calibrate;
+using namespace nendo::gloves;
 using hand::PoseId;
 
 namespace {

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::bench;
 
 TEST_SUITE("cyclictest") {
   TEST_CASE("the histogram of a report is read, in microseconds") {

@@ -6,7 +6,7 @@
 
 #include "bench/table1.hpp"
 
-using namespace nendo::app;
+using namespace nendo::bench;
 using namespace std::chrono_literals;
 
 TEST_SUITE("deform_frames") {

@@ -3,10 +3,10 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "doctor.hpp"
+#include "doctor/doctor.hpp"
 #include "support/program.hpp"
 
-using namespace nendo::app;
+using namespace nendo::doctor;
 using nendo::driver::DeviceKind;
 using nendo::driver::GloveCandidate;
 using namespace std::chrono_literals;

@@ -6,10 +6,10 @@
 
 #include <nendo/driver/udev_rules.hpp>
 
-#include "doctor.hpp"
+#include "doctor/doctor.hpp"
 #include "support/program.hpp"
 
-using namespace nendo::app;
+using namespace nendo::doctor;
 using nendo::test::TemporaryFolder;
 namespace fs = std::filesystem;
 

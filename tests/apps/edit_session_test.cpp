@@ -13,7 +13,7 @@
 #include "support/timelines.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::edit;
 using namespace nendo::timeline;
 using viewer::EditCommand;
 using viewer::EditWishes;

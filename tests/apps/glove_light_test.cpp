@@ -1,11 +1,11 @@
-#include "glove_light.hpp"
+#include "gloves/glove_light.hpp"
 
 #include <vector>
 
 #include <doctest/doctest.h>
 
 using namespace nendo;
-using nendo::app::GloveLight;
+using nendo::gloves::GloveLight;
 
 namespace {
 

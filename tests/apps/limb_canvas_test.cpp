@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-using namespace nendo::app;
+using namespace nendo::calibrate;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "monitor_screen.hpp"
+#include "gloves/monitor_screen.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::gloves;
 
 namespace {
 

@@ -1,12 +1,13 @@
-#include "place_loop.hpp"
+#include "session/place_loop.hpp"
 
 #include <doctest/doctest.h>
 
-#include "open_hands.hpp"
+#include "session/open_hands.hpp"
 #include "support/test_meshes.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::gloves;
+using namespace nendo::session;
 
 TEST_SUITE("place_loop") {
   TEST_CASE("a loop has the calibration and the size of the glove that is there now") {

@@ -4,7 +4,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
-#include "output_place.hpp"
+#include "cli/output_place.hpp"
 #include "support/program.hpp"
 #include "support/terminal_program.hpp"
 
@@ -15,8 +15,8 @@ using nendo::test::VtScreen;
 
 TEST_SUITE("run_keys") {
   TEST_CASE("saved shapes get numbers before their ending") {
-    CHECK(app::numbered("a/shape.obj", 2) == "a/shape-2.obj");
-    CHECK(app::numbered("shape.of.clay.ply", 10) == "shape.of.clay-10.ply");
+    CHECK(cli::numbered("a/shape.obj", 2) == "a/shape-2.obj");
+    CHECK(cli::numbered("shape.of.clay.ply", 10) == "shape.of.clay-10.ply");
   }
 
   TEST_CASE("keys let go, take hold, keep, undo, save and end, and the terminal is given back") {

@@ -1,4 +1,4 @@
-#include "run_session.hpp"
+#include "session/run_session.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,14 +12,16 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
-#include "loop_change.hpp"
-#include "open_hands.hpp"
-#include "recorded_model.hpp"
+#include "session/loop_change.hpp"
+#include "session/open_hands.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
+#include "takes/recorded_model.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::gloves;
+using namespace nendo::session;
+using namespace nendo::takes;
 
 namespace {
 

@@ -9,12 +9,12 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/two_processors.hpp"
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
-#include "two_processors.hpp"
 
 using namespace nendo;
-using nendo::app::two_processors;
+using nendo::cli::two_processors;
 using nendo::test::is_one_line_about;
 using nendo::test::last_object;
 using nendo::test::lines_of;

@@ -1,4 +1,4 @@
-#include "sample_grid.hpp"
+#include "gloves/sample_grid.hpp"
 
 #include <random>
 #include <vector>
@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 using namespace nendo;
-using nendo::app::SampleGrid;
+using nendo::gloves::SampleGrid;
 using std::chrono::microseconds;
 using std::chrono::nanoseconds;
 

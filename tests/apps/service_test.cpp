@@ -80,7 +80,7 @@ TEST_SUITE("service") {
 
   TEST_CASE("abstract names are understood, and children do not inherit the socket") {
     const Supervisor supervisor(true);
-    nendo::app::ServiceNotice notice;
+    nendo::service::ServiceNotice notice;
     CHECK(std::getenv("NOTIFY_SOCKET") == nullptr);
     notice.alive();
     CHECK(supervisor.heard() == std::vector<std::string>{"READY=1\nWATCHDOG=1"});
@@ -90,12 +90,12 @@ TEST_SUITE("service") {
     for (const std::string& path : {std::string("/nonexistent/notify"), std::string("relative"),
                                     std::string(), '/' + std::string(300, 'x')}) {
       ::setenv("NOTIFY_SOCKET", path.c_str(), 1);
-      nendo::app::ServiceNotice notice;
+      nendo::service::ServiceNotice notice;
       notice.alive();
       ::unsetenv("NOTIFY_SOCKET");
     }
     const Supervisor supervisor; // who does not read
-    nendo::app::ServiceNotice notice;
+    nendo::service::ServiceNotice notice;
     for (int k = 0; k < 5000; ++k)
       notice.alive();
     CHECK(supervisor.heard().front().starts_with("READY=1"));

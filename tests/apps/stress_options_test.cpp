@@ -14,7 +14,8 @@
 #include "stress/stress_options.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::cli;
+using namespace nendo::stress;
 using nlohmann::ordered_json;
 
 namespace {

@@ -14,7 +14,7 @@
 #include "stress/tick_tally.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::stress;
 using namespace std::chrono_literals;
 using flow::TickRecord;
 

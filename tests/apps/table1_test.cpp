@@ -11,7 +11,7 @@
 
 #include "bench/table1_paper.hpp"
 
-using namespace nendo::app;
+using namespace nendo::bench;
 using nendo::deform::Mesh;
 
 TEST_SUITE("table1") {

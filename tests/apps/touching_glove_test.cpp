@@ -1,11 +1,11 @@
 // Hands that touch the model, from `--right sim:touch` to the loop's frames.
 
-#include "touching_glove.hpp"
+#include "gloves/touching_glove.hpp"
 
 #include <doctest/doctest.h>
 
-#include "open_hands.hpp"
-#include "run_session.hpp"
+#include "session/open_hands.hpp"
+#include "session/run_session.hpp"
 #include "support/program.hpp"
 #include "support/surface_distance.hpp"
 #include "support/temporary_folder.hpp"
@@ -22,23 +22,23 @@ constexpr double most_off_m = 0.008;
 
 TEST_SUITE("touching_glove") {
   TEST_CASE("a GLOVE is told from others by its kind and motion") {
-    CHECK(app::is_touching("sim:touch"));
-    CHECK(app::is_touching("sim:touch?seed=3"));
+    CHECK(gloves::is_touching("sim:touch"));
+    CHECK(gloves::is_touching("sim:touch?seed=3"));
     for (const char* other : {"sim", "sim:grasp", "sim:touching", "serial:touch", "", "?"})
-      CHECK_FALSE(app::is_touching(other));
+      CHECK_FALSE(gloves::is_touching(other));
   }
 
   TEST_CASE("the loop places both hands where they touch, and sees them there") {
     const deform::Mesh ball = test::sphere(32, 64, 10.0);
-    app::RunOptions options;
+    session::RunOptions options;
     options.left = "sim:touch?seed=7";
     options.right = "sim:touch?seed=7";
     EventCount event_count;
-    const auto hands = app::open_hands(options, ball, event_count);
+    const auto hands = session::open_hands(options, ball, event_count);
     REQUIRE(hands);
     for (const auto& hand : *hands)
       hand.glove->stop(); // so that the first samples are what the loop shows
-    const auto placed = app::place_loop(options, *hands, ball);
+    const auto placed = session::place_loop(options, *hands, ball);
     REQUIRE(placed);
     for (const auto& hand : *hands)
       hand.ring->drain([](const GloveSample&) {});

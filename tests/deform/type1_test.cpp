@@ -133,12 +133,12 @@ TEST_SUITE("type1") {
   }
 
   TEST_CASE("every cell of the paper's table, by every instruction set, is what double makes") {
-    const Points mesh = nendo::app::table1_plane(64);
-    for (const double radius : nendo::app::table1_radii)
-      for (const auto& starts : {nendo::app::table1_starts(), nendo::app::crowded_starts()})
+    const Points mesh = nendo::bench::table1_plane(64);
+    for (const double radius : nendo::bench::table1_radii)
+      for (const auto& starts : {nendo::bench::table1_starts(), nendo::bench::crowded_starts()})
         for (const std::size_t room : weight_rooms) {
           std::mt19937 random(23);
-          const Points moves = nendo::app::table1_displacements(random);
+          const Points moves = nendo::bench::table1_displacements(random);
           CsrbfSolver solver({});
           CsrbfField field;
           REQUIRE(is_solved(solver.build(starts, Eigen::VectorXd::Constant(10, radius))));
@@ -161,9 +161,9 @@ TEST_SUITE("type1") {
   }
 
   TEST_CASE("two threads make the same bits as one, frame after frame") {
-    const Points starts = nendo::app::table1_starts();
+    const Points starts = nendo::bench::table1_starts();
     for (const int cells : {88, 110}) { // 7921 vertices, too few for two with weights, and 12 321
-      const Points mesh = nendo::app::table1_plane(cells);
+      const Points mesh = nendo::bench::table1_plane(cells);
       for (const std::size_t room : weight_rooms) {
         CAPTURE(cells);
         CAPTURE(room);
@@ -175,7 +175,7 @@ TEST_SUITE("type1") {
         BlockShape by_one;
         BlockShape by_two;
         for (int frame = 0; frame < 10; ++frame) {
-          const Points ends = starts + nendo::app::table1_displacements(random);
+          const Points ends = starts + nendo::bench::table1_displacements(random);
           REQUIRE(is_solved(one.apply(ends, by_one)));
           REQUIRE(is_solved(two.apply(ends, by_two)));
           const Points places = unpacked(one, by_one);
@@ -219,9 +219,9 @@ TEST_SUITE("type1") {
   TEST_CASE("weights are a dense solve's to half a step, and 0 is 0") {
     constexpr double half_a_step = 0x1p-20;
     constexpr double in_float = 0x1p-22; // sums of a few, each about 1
-    const Points mesh = nendo::app::table1_plane(64);
-    const Points starts = nendo::app::table1_starts();
-    for (const double radius : nendo::app::table1_radii) {
+    const Points mesh = nendo::bench::table1_plane(64);
+    const Points starts = nendo::bench::table1_starts();
+    for (const double radius : nendo::bench::table1_radii) {
       const Eigen::MatrixXd weights = dense_weights(mesh, starts, radius);
       for (const auto name : simd_names()) {
         REQUIRE(use_simd(name));
@@ -245,10 +245,10 @@ TEST_SUITE("type1") {
   }
 
   TEST_CASE("weights keep to their room, and what no support reaches has none") {
-    const Points mesh = nendo::app::table1_plane(64);
+    const Points mesh = nendo::bench::table1_plane(64);
     const auto bytes = [&](double radius, std::size_t room) {
       Type1Deformer deformer(mesh, 10, radius, {}, {.weight_bytes = room});
-      deformer.grab(nendo::app::table1_starts());
+      deformer.grab(nendo::bench::table1_starts());
       return deformer.weight_bytes();
     };
     const std::size_t all = bytes(80.0, std::size_t{64} << 20);
@@ -261,7 +261,7 @@ TEST_SUITE("type1") {
 
   TEST_CASE("what a release lets go, and what a commit moves, is restored in an old picture") {
     // One picture, as a frame's buffer, sees a stroke, a grab elsewhere, a commit and another grab.
-    const Points mesh = nendo::app::table1_plane(64);
+    const Points mesh = nendo::bench::table1_plane(64);
     Points here(3, 1);
     here << 10, 10, 1;
     Points there(3, 1);

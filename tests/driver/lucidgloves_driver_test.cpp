@@ -234,7 +234,7 @@ TEST_SUITE("lucidgloves_driver") {
     const auto open_port = [&]() -> Result<std::unique_ptr<Transport>> {
       return std::unique_ptr<Transport>(std::make_unique<HalfDeafPort>(written));
     };
-    auto glove = open_lucidgloves_by("a half-deaf glove", open_port, 4095, {});
+    auto glove = lucidgloves::open_lucidgloves_by("a half-deaf glove", open_port, 4095, {});
     REQUIRE_MESSAGE(glove, glove.error().message);
     SampleRing ring(8);
     REQUIRE((*glove)->start(ring));

@@ -18,7 +18,7 @@
 
 namespace {
 
-using namespace nendo::app;
+using namespace nendo::bench;
 using nendo::deform::Points;
 
 void assign(const Points& from, vtkPoints& to) {

@@ -8,7 +8,7 @@
 #include "support/scripted_frames.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::exporting;
 using nendo::test::ScriptedFrames;
 
 namespace {

@@ -8,7 +8,7 @@
 #include "support/temporary_folder.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::exporting;
 
 namespace {
 

@@ -8,7 +8,8 @@
 #include "support/recorded_motion.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::exporting;
+using namespace nendo::takes;
 using nendo::test::Glb;
 using nendo::test::Motion;
 using nendo::test::RecordedMotion;

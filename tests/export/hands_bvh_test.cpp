@@ -8,7 +8,7 @@
 #include "support/small_disk.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::exporting;
 using nendo::test::BvhRecording;
 using nendo::test::Motion;
 using nendo::test::RecordedMotion;

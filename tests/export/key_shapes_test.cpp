@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-using nendo::app::KeyShapes;
+using nendo::exporting::KeyShapes;
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "support/scripted_frames.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::exporting;
 using nendo::test::Motion;
 using nendo::test::RecordedMotion;
 

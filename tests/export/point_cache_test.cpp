@@ -7,7 +7,7 @@
 #include "support/recorded_motion.hpp"
 
 using namespace nendo;
-using namespace nendo::app;
+using namespace nendo::exporting;
 using nendo::test::Motion;
 using nendo::test::RecordedMotion;
 

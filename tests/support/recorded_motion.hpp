@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "recorded_frames.hpp"
 #include "support/takes.hpp"
+#include "takes/recorded_frames.hpp"
 
 namespace nendo::test {
 
@@ -43,8 +43,8 @@ struct RecordedMotion {
     if (!played.end()) throw std::runtime_error("not recorded");
   }
 
-  std::unique_ptr<app::FrameSource> frames() const {
-    auto opened = app::RecordedFrames::open(played.path, played.test.model);
+  std::unique_ptr<takes::FrameSource> frames() const {
+    auto opened = takes::RecordedFrames::open(played.path, played.test.model);
     if (!opened) throw std::runtime_error(opened.error().message);
     return *std::move(opened);
   }

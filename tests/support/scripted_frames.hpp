@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "frame_source.hpp"
 #include "support/flow_fixtures.hpp"
+#include "takes/frame_source.hpp"
 
 namespace nendo::test {
 
 /// Frames at the times that a test wants; a frame's tick is its number.
-class ScriptedFrames final : public app::FrameSource {
+class ScriptedFrames final : public takes::FrameSource {
 public:
   explicit ScriptedFrames(std::vector<double> times_s, double rate_hz = 90.0)
       : model_(ball(3)), layout_(model_.vertices), times_s_(std::move(times_s)), rate_hz_(rate_hz) {

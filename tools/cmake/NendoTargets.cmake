@@ -34,9 +34,12 @@ function(nendo_settings target scope)
   endif()
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET default)
   nendo_harden(${target})
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion
     -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2
     $<$<BOOL:${NENDO_WERROR}>:-Werror>)
+  if(NOT CMAKE_UNITY_BUILD) # there, another file's names are seen, too
+    target_compile_options(${target} PRIVATE -Wshadow)
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Under two gigabytes it leaves its garbage: a tenth of the time that Eigen's templates take, for a sixth more memory.
     # Not where clang-tidy and clangd read the flags, which do not know it.
@@ -93,4 +96,23 @@ function(nendo_library name)
   install(TARGETS ${target} EXPORT nendoTargets FILE_SET HEADERS COMPONENT development
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
+endfunction()
+
+# nendo_room(<name> SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not installed. Its
+# includes are quoted and begin with the room's folder.
+function(nendo_room name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  set(target nendo_${name})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(nendo::${name} ALIAS ${target})
+  nendo_settings(${target} PRIVATE)
+  nendo_precompile(${target})
+  target_compile_definitions(${target} PRIVATE NENDO_VERSION="${PROJECT_VERSION}")
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/apps)
+  if(ARG_LIBRARIES)
+    target_link_libraries(${target} ${ARG_LIBRARIES})
+  endif()
+  if(NENDO_HARDEN AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
 endfunction()

@@ -7,7 +7,7 @@
 namespace nendo::publish {
 namespace {
 
-constexpr std::size_t head_words = sizeof(nendo_publish_shape) / 8;
+constexpr std::size_t shape_head_words = sizeof(nendo_publish_shape) / 8;
 
 std::size_t blocks_for(std::size_t vertices) noexcept {
   return (vertices + deform::block_size - 1) / deform::block_size;
@@ -16,7 +16,7 @@ std::size_t blocks_for(std::size_t vertices) noexcept {
 } // namespace
 
 std::size_t shape_slot_words(std::size_t vertices) noexcept {
-  return head_words + (3 * vertices + 1) / 2;
+  return shape_head_words + (3 * vertices + 1) / 2;
 }
 
 ShapeRing::ShapeRing(AtomicWord* memory, std::size_t slots, std::size_t slot_words,
@@ -31,7 +31,7 @@ void ShapeRing::write_block(const deform::BlockShape& shape, std::size_t block,
                             AtomicWord* slot) noexcept {
   using AtomicFloat = std::atomic<std::uint32_t>;
   static_assert(AtomicFloat::is_always_lock_free && sizeof(AtomicFloat) == sizeof(float));
-  auto* const floats = reinterpret_cast<AtomicFloat*>(slot + head_words);
+  auto* const floats = reinterpret_cast<AtomicFloat*>(slot + shape_head_words);
   const deform::VertexBlock& from = shape[block];
   const std::size_t first = block * deform::block_size;
   const std::size_t count = std::min(deform::block_size, vertices_ - first);

@@ -13,7 +13,7 @@ constexpr std::uint64_t most_memory = std::uint64_t{1} << 28;
 constexpr std::uint32_t most_links = 1024;
 constexpr std::uint32_t most_catch_up = 1000; // as parse_policy()
 constexpr double most_points = 10.0;          // two hands' fingertips
-constexpr double largest = 1e100;             // as the solver takes
+constexpr double largest_number = 1e100;      // as the solver takes
 
 /// Reads one value after another and remembers whether all of them were usable.
 class Judge {
@@ -62,7 +62,7 @@ flow::Placement read_placement(Judge& judge) {
   constexpr double least_scale = 1e-100;
   constexpr double farthest_m = 1e6;
   flow::Placement placement;
-  placement.units_per_metre = judge.number(least_scale, largest);
+  placement.units_per_metre = judge.number(least_scale, largest_number);
   for (auto& pose : placement.T_stage_wrist) {
     for (Eigen::Index row = 0; row < 3; ++row)
       for (Eigen::Index column = 0; column < 4; ++column)
@@ -77,8 +77,8 @@ void put_support(ByteWriter& writer, const deform::Support& support) {
 }
 
 deform::Support read_support(Judge& judge) {
-  const double radius = judge.number(0.0, largest);
-  return {radius, judge.number(0.0, largest)};
+  const double radius = judge.number(0.0, largest_number);
+  return {radius, judge.number(0.0, largest_number)};
 }
 
 void put_deformer(ByteWriter& writer, const deform::DeformerOptions& options) {
@@ -176,7 +176,7 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   options.silent_after = silent_after;
   options.switch_action = judge.one_of(flow::SwitchAction::keep);
   options.sculptor.mode = judge.one_of(flow::Mode::type2);
-  options.sculptor.piece_length = judge.number(least_piece, largest);
+  options.sculptor.piece_length = judge.number(least_piece, largest_number);
   read_deformer(reader, judge, options.sculptor.deformer);
   read.simd = reader.text();
   if (reader.remaining() > 0) options.undo_most_bytes = reader.u64_le(); // 1.0 had none at first

@@ -17,10 +17,9 @@
 #include "stream/device_clock.hpp"
 #include "transport/follow_port.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::cyberglove {
 namespace {
 
-using namespace cyberglove;
 using namespace std::chrono_literals;
 
 constexpr auto state_answer = 300ms; ///< of a unit that has just answered all else
@@ -224,4 +223,4 @@ Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<
   return open_serial_by(spec, HostClock::now() + open_budget);
 }
 
-} // namespace nendo::driver
+} // namespace nendo::driver::cyberglove

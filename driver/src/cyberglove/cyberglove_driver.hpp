@@ -13,7 +13,7 @@
 #include "cyberglove/cyberglove_options.hpp"
 #include "stream/stream_glove.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::cyberglove {
 
 /// The table's entry for `serial:PATH`. `side` is not needed: the glove says which hand it is.
 Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> side);
@@ -27,4 +27,4 @@ Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPo
                                                const cyberglove::Options& options,
                                                HostTime deadline);
 
-} // namespace nendo::driver
+} // namespace nendo::driver::cyberglove

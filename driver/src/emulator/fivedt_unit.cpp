@@ -14,7 +14,7 @@ constexpr std::array flexions{Sensor::thumb_mcp, Sensor::index_mcp, Sensor::midd
 constexpr std::uint8_t acknowledge = 0x55;
 constexpr std::uint8_t level = 0x7F; // the hand is held level: the middle of a tilt sensor's range
 
-std::uint8_t flexion(const JointAngles& angles, Sensor sensor) {
+std::uint8_t flexion_count(const JointAngles& angles, Sensor sensor) {
   return static_cast<std::uint8_t>(std::lround(part_of_range(angles, sensor) * 255.0));
 }
 
@@ -90,7 +90,7 @@ std::vector<FiveDtUnit::Byte> FiveDtUnit::sample(Time now) const {
   const auto angles = motion_.at(std::chrono::duration<double>(now - *motion_origin_).count());
   std::vector<Byte> bytes{0x80};
   for (const Sensor sensor : flexions)
-    bytes.push_back(flexion(angles, sensor));
+    bytes.push_back(flexion_count(angles, sensor));
   bytes.insert(bytes.end(), {level, level});
   Byte sum = 0;
   for (std::size_t k = 1; k < bytes.size(); ++k)

@@ -15,7 +15,7 @@ constexpr std::uint8_t battery = 100;
 constexpr std::array<std::uint8_t, 16> motion_frame{0xF0, 2, 12, 0, 0, 0, 0, 0,
                                                     0,    0, 0,  0, 0, 0, 0, 0xF7};
 
-std::uint8_t flexion(const JointAngles& angles, Sensor sensor) {
+std::uint8_t flexion_byte(const JointAngles& angles, Sensor sensor) {
   return static_cast<std::uint8_t>(std::lround(part_of_range(angles, sensor) * 127.0));
 }
 
@@ -67,7 +67,7 @@ std::vector<ForteUnit::Byte> ForteUnit::record(Time now) const {
   const auto angles = motion_.at(std::chrono::duration<double>(now - *motion_origin_).count());
   std::vector<Byte> bytes{240, 1, 11};
   for (const Sensor joint : joints)
-    bytes.push_back(flexion(angles, joint));
+    bytes.push_back(flexion_byte(angles, joint));
   bytes.insert(bytes.end(), {battery, 247});
   return bytes;
 }

@@ -16,7 +16,7 @@ int clamped(double part) {
   return static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * analog_most));
 }
 
-int flexion(const JointAngles& angles, Sensor sensor) {
+int curl_of(const JointAngles& angles, Sensor sensor) {
   return clamped(part_of_range(angles, sensor));
 }
 
@@ -85,9 +85,9 @@ std::optional<EmulatedUnit::Time> LucidGlovesUnit::next_due() const noexcept {
 std::string LucidGlovesUnit::line(Time now) const {
   const auto angles = motion_.at(std::chrono::duration<double>(now - *motion_origin_).count());
   const auto angle_rad = [&](Sensor sensor) { return angles[static_cast<std::size_t>(sensor)]; };
-  const std::array curls{flexion(angles, Sensor::thumb_mcp), flexion(angles, Sensor::index_mcp),
-                         flexion(angles, Sensor::middle_mcp), flexion(angles, Sensor::ring_mcp),
-                         flexion(angles, Sensor::pinky_mcp)};
+  const std::array curls{curl_of(angles, Sensor::thumb_mcp), curl_of(angles, Sensor::index_mcp),
+                         curl_of(angles, Sensor::middle_mcp), curl_of(angles, Sensor::ring_mcp),
+                         curl_of(angles, Sensor::pinky_mcp)};
   // The middle finger points straight ahead; its neighbours are as far from it as the motion says.
   const double ring_rad = -angle_rad(Sensor::middle_ring_abduction);
   const std::array splays_rad{angle_rad(Sensor::thumb_abduction) - splay_end_rad,

@@ -12,10 +12,9 @@
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::fivedt {
 namespace {
 
-using namespace fivedt;
 using namespace std::chrono_literals;
 
 constexpr auto write_timeout = 100ms;
@@ -196,4 +195,4 @@ Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<
                            HostClock::now() + open_budget);
 }
 
-} // namespace nendo::driver
+} // namespace nendo::driver::fivedt

@@ -8,7 +8,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/open_glove.hpp>
 
-namespace nendo::driver {
+namespace nendo::driver::fivedt {
 
 /// The table's entry for `5dt:PATH?baud=19200|9600&hand=left|right`. At 19200 baud the glove is
 /// asked for its hand and its name. At 9600 it is a wireless one, to which nothing is ever sent:
@@ -17,4 +17,4 @@ namespace nendo::driver {
 /// no_permission.
 Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<Side> side);
 
-} // namespace nendo::driver
+} // namespace nendo::driver::fivedt

@@ -10,10 +10,8 @@
 #include "usb/await_report.hpp"
 #include "usb/open_usb_glove.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::fivedt_usb {
 namespace {
-
-using namespace fivedt_usb;
 
 std::string_view name_of_link(Link link) noexcept {
   switch (link) {
@@ -92,4 +90,4 @@ Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbW
                            std::make_unique<FivedtUsbProtocol>(*model), deadline);
 }
 
-} // namespace nendo::driver
+} // namespace nendo::driver::fivedt_usb

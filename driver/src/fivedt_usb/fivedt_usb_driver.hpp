@@ -10,11 +10,11 @@
 
 #include "transport/usb_transport.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::fivedt_usb {
 
 /// Opens the glove that `wanted` names, by `deadline`; its product number says which it is. Errors:
 /// usage (option), those of open_usb(), no_device (it sends nothing).
 Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbWanted& wanted,
                                                HostTime deadline);
 
-} // namespace nendo::driver
+} // namespace nendo::driver::fivedt_usb

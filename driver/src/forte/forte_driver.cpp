@@ -11,10 +11,9 @@
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::forte {
 namespace {
 
-using namespace forte;
 using namespace std::chrono_literals;
 
 constexpr auto write_timeout = 100ms;
@@ -129,4 +128,4 @@ Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<S
                            HostClock::now() + open_budget);
 }
 
-} // namespace nendo::driver
+} // namespace nendo::driver::forte

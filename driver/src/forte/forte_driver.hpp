@@ -8,7 +8,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/open_glove.hpp>
 
-namespace nendo::driver {
+namespace nendo::driver::forte {
 
 /// The table's entry for `forte:PATH?link=usb|bluetooth&baud=460800|115200&hand=left|right`. The
 /// glove is told to send, by `link`, and known by its records; `hand`, else `side`, tells the hand.
@@ -16,4 +16,4 @@ namespace nendo::driver {
 /// for 4 s. Errors: usage, no_device, no_permission.
 Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<Side> side);
 
-} // namespace nendo::driver
+} // namespace nendo::driver::forte

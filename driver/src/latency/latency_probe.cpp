@@ -187,7 +187,8 @@ Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& 
     if (fd < 0) return Error{Errc::no_device, "the line was closed"};
     return transport_of(fd);
   };
-  auto glove = open_cyberglove("latency", open_port, {}, HostClock::now() + open_budget);
+  auto glove =
+      cyberglove::open_cyberglove("latency", open_port, {}, HostClock::now() + open_budget);
   const auto started = glove ? (*glove)->start(driver_ring) : Result<void>(glove.error());
   opened = true;
   dialogue.join();

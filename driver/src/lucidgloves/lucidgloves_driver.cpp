@@ -16,10 +16,9 @@
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::lucidgloves {
 namespace {
 
-using namespace lucidgloves;
 using namespace std::chrono_literals;
 
 constexpr auto write_timeout = 100ms;
@@ -183,4 +182,4 @@ Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::opti
                              static_cast<std::uint16_t>(*range), {*hand, side});
 }
 
-} // namespace nendo::driver
+} // namespace nendo::driver::lucidgloves

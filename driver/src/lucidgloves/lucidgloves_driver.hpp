@@ -14,7 +14,7 @@
 #include "glove_options.hpp"
 #include "stream/stream_glove.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::lucidgloves {
 
 /// The table's entry for `lucidgloves:PATH?baud=N&range=4095|1023&hand=left|right`. The glove
 /// streams by itself, so that its lines, and no answer, prove that it is there; boards that restart
@@ -32,4 +32,4 @@ Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::opti
 Result<std::unique_ptr<Glove>> open_lucidgloves_by(const std::string& source, OpenPort open_port,
                                                    std::uint16_t range, const HandWishes& hands);
 
-} // namespace nendo::driver
+} // namespace nendo::driver::lucidgloves

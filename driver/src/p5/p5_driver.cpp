@@ -9,10 +9,9 @@
 #include "usb/await_report.hpp"
 #include "usb/open_usb_glove.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::p5 {
 namespace {
 
-using namespace p5;
 using namespace std::chrono_literals;
 
 constexpr auto control_timeout = 100ms;
@@ -94,4 +93,4 @@ Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& w
                            std::make_unique<P5Protocol>(hand->value_or(Side::right)), deadline);
 }
 
-} // namespace nendo::driver
+} // namespace nendo::driver::p5

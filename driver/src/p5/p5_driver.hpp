@@ -10,7 +10,7 @@
 
 #include "transport/usb_transport.hpp"
 
-namespace nendo::driver {
+namespace nendo::driver::p5 {
 
 /// Opens the P5 that `wanted` names, by `deadline`. Options: `hand` (left or right), because a P5
 /// does not say; it was sold for the right hand. While it streams it does not move the mouse.
@@ -18,4 +18,4 @@ namespace nendo::driver {
 Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
                                        HostTime deadline);
 
-} // namespace nendo::driver
+} // namespace nendo::driver::p5

@@ -6,25 +6,29 @@
 namespace nendo::driver {
 namespace {
 
-constexpr NominalSensor mcp{60, 0.0125};
-constexpr NominalSensor pip{60, 0.0125};
-constexpr NominalSensor dip{50, 0.0125};
-constexpr NominalSensor pair{100, 0.0100};
-constexpr NominalSensor none{0, 0};
+constexpr NominalSensor nominal_mcp{60, 0.0125};
+constexpr NominalSensor nominal_pip{60, 0.0125};
+constexpr NominalSensor nominal_dip{50, 0.0125};
+constexpr NominalSensor nominal_pair{100, 0.0100};
+constexpr NominalSensor nominal_none{0, 0};
 
 constexpr std::array<NominalSensor, sensor_slots> nominal{{
-    {90, 0.0105},                  // thumb_roll
-    {100, 0.0125},                 // thumb_mcp
-    {85, 0.0125},                  // thumb_ip
-    {100, 0.0125},                 // thumb_abduction
-    mcp,           pip, dip, none, // index
-    mcp,           pip, dip, pair, // middle, and its gap to the index finger
-    mcp,           pip, dip, pair, // ring
-    mcp,           pip, dip, pair, // little
-    {80, 0.0100},                  // palm_arch
-    {128, 0.0125},                 // wrist_pitch
-    {128, 0.0125},                 // wrist_yaw
-    none,
+    {90, 0.0105},  // thumb_roll
+    {100, 0.0125}, // thumb_mcp
+    {85, 0.0125},  // thumb_ip
+    {100, 0.0125}, // thumb_abduction
+    nominal_mcp,   nominal_pip,
+    nominal_dip,   nominal_none, // index
+    nominal_mcp,   nominal_pip,
+    nominal_dip,   nominal_pair, // middle, and its gap to the index finger
+    nominal_mcp,   nominal_pip,
+    nominal_dip,   nominal_pair, // ring
+    nominal_mcp,   nominal_pip,
+    nominal_dip,   nominal_pair, // little
+    {80, 0.0100},                // palm_arch
+    {128, 0.0125},               // wrist_pitch
+    {128, 0.0125},               // wrist_yaw
+    nominal_none,
 }};
 
 } // namespace

@@ -24,8 +24,8 @@ struct UsbDriver {
 };
 
 constexpr std::array usb_drivers{
-    UsbDriver{p5::usb_id.vendor, open_p5},
-    UsbDriver{fivedt_usb::vendor_id, open_fivedt_usb},
+    UsbDriver{p5::usb_id.vendor, p5::open_p5},
+    UsbDriver{fivedt_usb::vendor_id, fivedt_usb::open_fivedt_usb},
 };
 
 const UsbDriver* find_driver(UsbId id) noexcept {

@@ -24,6 +24,14 @@ constexpr double to_seconds(HostClock::duration d) noexcept {
   return std::chrono::duration<double>(d).count();
 }
 
+constexpr double to_milliseconds(std::chrono::nanoseconds d) noexcept {
+  return static_cast<double>(d.count()) / 1e6;
+}
+
+constexpr double to_microseconds(std::chrono::nanoseconds d) noexcept {
+  return static_cast<double>(d.count()) / 1e3;
+}
+
 /// Defined for any two times: far apart, where their difference would overflow, it wraps instead.
 constexpr double seconds_between(HostTime from, HostTime to) noexcept {
   const auto ticks = [](HostTime time) {

@@ -1,0 +1,50 @@
+#include "cli/cli.hpp"
+
+#include <csignal>
+#include <iostream>
+
+namespace nendo::cli {
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free); // or a signal handler must not touch it
+
+void on_stop_signal(int) {
+  stop.store(true, std::memory_order_relaxed);
+}
+
+} // namespace
+
+int report(const Error& error) {
+  std::cerr << "nendo: " << error.message << std::endl;
+  return static_cast<int>(error.code);
+}
+
+void note(std::string_view text) {
+  std::cerr << "nendo: " << text << std::endl;
+}
+
+const std::atomic<bool>& stop_requested() noexcept {
+  return stop;
+}
+
+void install_stop_signals() noexcept {
+  struct sigaction action {};
+  action.sa_handler = on_stop_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND); // the second signal finds the default action
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction inherited {};
+    sigaction(signal, nullptr, &inherited);
+    if (signal == SIGHUP && inherited.sa_handler == SIG_IGN) continue; // nohup
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+std::filesystem::path shipped_model(std::string_view file_name) {
+  std::error_code failed;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
+  return program.parent_path().parent_path() / "share" / "nendo" / "models" / file_name;
+}
+
+} // namespace nendo::cli

@@ -1,0 +1,196 @@
+#include "cli/command.hpp"
+
+#include <cstdint>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::cli {
+namespace {
+
+/// Nothing that --help should show as a default.
+template <class T>
+bool is_blank(const T& value) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return value == T{};
+  } else if constexpr (requires { value.has_value(); }) {
+    return !value.has_value();
+  } else {
+    return value.empty();
+  }
+}
+
+// CLI11 reads a whole number as strtoull does, to which -3 is 18446744073709551613.
+std::string not_negative(const std::string& text) {
+  return text.find('-') == std::string::npos ? "" : text + ": use a whole number, 0 or above";
+}
+
+bool is_shown(const CLI::App* command) {
+  return !command->get_group().empty();
+}
+
+/// The words of a type like "TEXT:{left,right}", which is how CLI11 tells what one_of() said.
+std::vector<std::string> choices_in(const std::string& type) {
+  std::vector<std::string> choices;
+  const std::size_t open = type.find('{');
+  if (open == std::string::npos) return choices;
+  std::istringstream words(type.substr(open + 1, type.find('}') - open - 1));
+  for (std::string word; std::getline(words, word, ',');)
+    choices.push_back(word);
+  return choices;
+}
+
+OptionModel nameless_model_of(const CLI::Option& option) {
+  OptionModel model;
+  if (option.get_type_size() != 0) {
+    const std::string type = option.get_type_name();
+    model.value = type.substr(0, type.find(':'));
+    model.choices = choices_in(type);
+    model.default_value = option.get_default_str();
+    model.required = option.get_required();
+    model.repeats = option.get_expected_max() == CLI::detail::expected_max_vector_size;
+  }
+  model.summary = option.get_description();
+  if (option.get_group() != "Options") model.heading = option.get_group();
+  return model;
+}
+
+/// An option that may also be given by its place alone is two in the model, as it is in --help.
+void add_models_of(const CLI::Option& option, std::vector<OptionModel>& models) {
+  OptionModel model = nameless_model_of(option);
+  if (option.get_positional()) {
+    models.push_back(model);
+    models.back().names.push_back(option.get_name(true));
+  }
+  for (const std::string& name : option.get_snames())
+    model.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames())
+    model.names.push_back("--" + name);
+  if (!model.names.empty()) models.push_back(std::move(model));
+}
+
+CommandModel model_of(const CLI::App& app) {
+  CommandModel model{app.get_name(), app.get_description(), app.get_footer(), {}, {}};
+  for (const CLI::Option* option : app.get_options())
+    add_models_of(*option, model.options);
+  for (const CLI::App* command : app.get_subcommands(is_shown))
+    model.commands.push_back(model_of(*command));
+  return model;
+}
+
+int report_usage(const CLI::App& app, const std::string& first_word, const std::string& what) {
+  const auto chosen = app.get_subcommands();
+  if (!chosen.empty()) {
+    std::cerr << "nendo: " << what << " (see nendo " << chosen.front()->get_name() << " --help)\n";
+  } else if (first_word.starts_with('-')) {
+    std::cerr << "nendo: " << what << " (see nendo --help)\n";
+  } else {
+    std::string known;
+    for (const auto* command : app.get_subcommands(is_shown)) {
+      known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    std::cerr << "nendo: "
+              << (first_word.empty() ? "say what to do;" : "no command " + first_word + ";")
+              << " there are " << known << " (see nendo --help)\n";
+  }
+  return static_cast<int>(Errc::usage);
+}
+
+} // namespace
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::under(const std::string& heading) {
+  option_->group(heading);
+  return *this;
+}
+
+Option& Option::one_of(std::initializer_list<const char*> words) {
+  option_->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
+  return *this;
+}
+
+Option& Option::once_each(const std::string& type) {
+  option_->type_name(type)->allow_extra_args(false);
+  return *this;
+}
+
+Command Command::add_command(const std::string& name, const std::string& summary) {
+  return Command(*app_->add_subcommand(name, summary), *chosen_);
+}
+
+template <class T>
+Option Command::add_option(const std::string& names, T& value, const std::string& summary) {
+  CLI::Option* option = app_->add_option(names, value, summary);
+  if (!is_blank(value)) option->capture_default_str();
+  if constexpr (std::is_unsigned_v<T>) option->check(not_negative);
+  return Option(*option);
+}
+
+template Option Command::add_option(const std::string&, std::string&, const std::string&);
+template Option Command::add_option(const std::string&, double&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint32_t&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<unsigned>&,
+                                    const std::string&);
+template Option Command::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option Command::add_option(const std::string&, std::vector<std::string>&,
+                                    const std::string&);
+
+Option Command::add_flag(const std::string& names, bool& value, const std::string& summary) {
+  return Option(*app_->add_flag(names, value, summary));
+}
+
+void Command::free_short_help() {
+  app_->set_help_flag("--help", "Print this help message and exit");
+}
+
+void Command::set_footer(const std::string& text) {
+  app_->footer(text);
+}
+
+void Command::on_chosen(std::function<int()> command) {
+  app_->callback([chosen = chosen_, command = std::move(command)] { *chosen = command; });
+}
+
+void Command::hide() {
+  app_->group("");
+}
+
+CommandModel Command::model() const {
+  return model_of(*app_);
+}
+
+void Command::require_command() {
+  app_->require_subcommand(1);
+}
+
+int run_program(int argc, char** argv, const std::string& summary,
+                const std::function<void(Command&)>& add_commands) {
+  CLI::App app{summary};
+  app.set_version_flag("--version", NENDO_VERSION);
+  app.get_formatter()->column_width(34);
+  std::function<int()> chosen;
+  Command program(app, chosen);
+  program.require_command();
+  add_commands(program);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return report_usage(app, argc > 1 ? argv[1] : "", error.what());
+  }
+  return chosen();
+}
+
+} // namespace nendo::cli

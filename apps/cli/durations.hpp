@@ -1,0 +1,13 @@
+#pragma once
+// Times as people type them.
+
+#include <string>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::cli {
+
+/// Seconds of "90", "90s", "10m", "2h" or "1d", more than 0. Error: usage, naming the option.
+Result<double> parse_duration(const std::string& text, const std::string& option = "--duration");
+
+} // namespace nendo::cli

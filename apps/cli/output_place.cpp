@@ -1,0 +1,70 @@
+#include "cli/output_place.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <unistd.h>
+
+namespace nendo::cli {
+namespace {
+
+std::string either(std::initializer_list<std::string_view> endings) {
+  std::string words;
+  for (const auto ending : endings)
+    words += (words.empty() ? "" : " or ") + std::string(ending);
+  return words;
+}
+
+} // namespace
+
+Result<void> check_place(std::string_view option, const std::string& path,
+                         std::initializer_list<std::string_view> endings) {
+  if (path.empty()) return {};
+  const std::filesystem::path file(path);
+  const std::string given = std::string(option) + " " + path;
+  const auto ends_in = [&](std::string_view ending) { return path.ends_with(ending); };
+  if (endings.size() > 0 && std::none_of(endings.begin(), endings.end(), ends_in))
+    return Error{Errc::usage, given + ": end the name in " + either(endings)};
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    return Error{Errc::usage, given + ": that is a folder; name a file in it"};
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (::access(folder.c_str(), W_OK | X_OK) == 0) return {};
+  return Error{Errc::failed,
+               given + ": " + folder.string() +
+                   " is not a folder that you may write to; make it or choose another"};
+}
+
+Result<void>
+check_distinct(std::initializer_list<std::pair<std::string_view, std::string_view>> outputs) {
+  const auto place = [](std::string_view path) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(path, ignored);
+  };
+  for (auto one = outputs.begin(); one != outputs.end(); ++one)
+    for (auto other = outputs.begin(); other != one; ++other)
+      if (!one->second.empty() && !other->second.empty() &&
+          place(one->second) == place(other->second))
+        return Error{Errc::usage, std::string(other->first) + " and " + std::string(one->first) +
+                                      ": both name " + std::string(one->second) +
+                                      "; give each a file of its own"};
+  return {};
+}
+
+std::string numbered(const std::string& path, int number) {
+  const std::filesystem::path whole(path);
+  const std::string name =
+      whole.stem().string() + "-" + std::to_string(number) + whole.extension().string();
+  return (whole.parent_path() / name).string();
+}
+
+std::string next_free_name(const std::string& path, int& number) {
+  std::string name;
+  std::error_code ignored;
+  do
+    name = numbered(path, ++number);
+  while (std::filesystem::exists(name, ignored));
+  return name;
+}
+
+} // namespace nendo::cli

@@ -1,0 +1,37 @@
+#pragma once
+// A drawing as SVG, element by element. Lengths in pixels, y downwards; colours as SVG names them.
+
+#include <string>
+
+namespace nendo::cli {
+
+struct SvgText {
+  double size = 13.0;
+  const char* colour = "#000000";
+  const char* anchor = "start"; ///< start, middle or end
+  bool bold = false;
+};
+
+class SvgDrawing {
+public:
+  SvgDrawing(double width, double height);
+
+  /// Any text: what means something to XML is escaped.
+  void words(double x, double y, const std::string& words, const SvgText& style);
+  void line(double x0, double y0, double x1, double y1, const char* colour, double width = 1.0,
+            const char* dashes = "none");
+  void box(double x, double y, double width, double height, const char* colour, double opacity);
+  void dot(double x, double y, double radius, const char* fill, const char* edge);
+  /// points: of svg_point().
+  void path(const std::string& points, const char* colour, double width);
+
+  std::string finished() &&;
+
+private:
+  std::string text_;
+};
+
+/// A corner of a path.
+std::string svg_point(double x, double y);
+
+} // namespace nendo::cli

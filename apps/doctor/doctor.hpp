@@ -1,0 +1,64 @@
+#pragma once
+// What `nendo doctor` looks for. A check is a function from the machine's facts to findings; its
+// place is one of the tables of checks, by subject. A new subject is a file and a line in
+// doctor_command.cpp.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/driver/devices.hpp>
+
+#include "udev/rule_files.hpp"
+
+namespace nendo::doctor {
+
+enum class Weight : std::uint8_t {
+  warning, ///< works, but worse than it could, or only if something else does not interfere
+  failure, ///< will not work
+};
+
+struct Finding {
+  Weight weight = Weight::warning;
+  std::string_view check; ///< a stable name, e.g. "permission"
+  std::string subject;    ///< what it is about, e.g. /dev/ttyUSB0; empty: the machine
+  std::string what;
+  std::string remedy; ///< the command or deed that mends it
+};
+
+/// What the checks of ports judge.
+struct PortFacts {
+  std::vector<driver::GloveCandidate> candidates;
+  std::vector<std::string> grabbers; ///< as running_port_grabbers() names them
+};
+
+/// All findings about ports and USB devices. Pure.
+std::vector<Finding> judge_ports(const PortFacts& facts);
+/// The same for this machine, now. Blocks for less than a second.
+std::vector<Finding> check_ports();
+
+/// What the checks of the machine judge; what could not be found out is no finding.
+struct MachineFacts {
+  std::optional<std::uint64_t> priority_limit; ///< RLIMIT_RTPRIO, of this process
+  std::optional<std::uint64_t> memory_limit;   ///< RLIMIT_MEMLOCK in bytes; the largest: unlimited
+  bool has_priority = false;                   ///< CAP_SYS_NICE, for which the limit does not count
+  bool has_memory = false;                     ///< CAP_IPC_LOCK, likewise
+  bool has_limits_file = false;                ///< /etc/security/limits.d/nendo.conf is there
+  std::map<std::string, int> governors;        ///< of the CPUs' frequencies, and how many have each
+  std::optional<bool> fine_timers;             ///< the kernel's timers are better than its tick
+  bool has_udev = false;                       ///< udev runs
+  std::vector<udev::RuleFile> rules;
+};
+
+/// Reads /proc, /sys, /run and /etc below `root`. Blocks briefly.
+MachineFacts read_machine(const std::filesystem::path& root);
+/// All findings about the machine: limits, clocks, rules. Pure.
+std::vector<Finding> judge_machine(const MachineFacts& facts);
+/// The same for this machine, now.
+std::vector<Finding> check_machine();
+
+} // namespace nendo::doctor

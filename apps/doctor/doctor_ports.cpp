@@ -1,0 +1,125 @@
+// The checks of ports: may they be opened, does anybody else take them, are they fast enough.
+
+#include "doctor/doctor.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace nendo::doctor {
+namespace {
+
+using driver::DeviceKind;
+using driver::GloveCandidate;
+using namespace std::chrono_literals;
+
+using Findings = std::vector<Finding>;
+
+bool runs(const PortFacts& facts, std::string_view program) {
+  return std::find(facts.grabbers.begin(), facts.grabbers.end(), program) != facts.grabbers.end();
+}
+
+/// On-board ports and those that nothing names a glove's are often somebody else's business.
+Weight weight_for(const GloveCandidate& candidate, bool likely) {
+  return candidate.identified || likely ? Weight::failure : Weight::warning;
+}
+
+void check_presence(const PortFacts& facts, Findings& found) {
+  if (!facts.candidates.empty()) return;
+  found.push_back(
+      {Weight::warning, "presence", "", "no serial port and no USB glove is plugged in",
+       "plug the glove in (nendo devices --watch shows whether it arrives); a container "
+       "needs its device handed in"});
+}
+
+void check_permission(const PortFacts& facts, Findings& found) {
+  for (const GloveCandidate& candidate : facts.candidates) {
+    if (candidate.may_open || candidate.access.empty()) continue;
+    if (candidate.kind == DeviceKind::portless_adapter) continue; // not what would be opened
+    found.push_back({weight_for(candidate, candidate.usb.has_value()), "permission",
+                     candidate.device, "only " + candidate.access + " may open it",
+                     candidate.remedy});
+  }
+}
+
+void check_portless(const PortFacts& facts, Findings& found) {
+  for (const GloveCandidate& candidate : facts.candidates) {
+    if (candidate.kind != DeviceKind::portless_adapter) continue;
+    if (runs(facts, "brltty")) {
+      found.push_back({Weight::failure, "portless", candidate.device,
+                       "brltty, which drives Braille displays, took " + candidate.description,
+                       "sudo systemctl mask --now brltty brltty-udev, then plug it in again"});
+    } else {
+      found.push_back({Weight::failure, "portless", candidate.device,
+                       candidate.description + " has no serial port: its kernel driver is missing",
+                       candidate.remedy});
+    }
+  }
+}
+
+void check_holders(const PortFacts& facts, Findings& found) {
+  for (const GloveCandidate& candidate : facts.candidates) {
+    for (const auto& holder : candidate.holders) {
+      const std::string pid = std::to_string(holder.pid);
+      found.push_back(
+          {weight_for(candidate, false), "holder", candidate.device,
+           "held by " + holder.name + (holder.pid > 0 ? " (pid " + pid + ")" : ""),
+           holder.pid > 0 ? "close that program, or: kill " + pid : "close that program"});
+    }
+  }
+}
+
+/// They open what may be a modem or a Braille display, and talk to it, when it is plugged in.
+void check_grabbers(const PortFacts& facts, Findings& found) {
+  struct Grabber {
+    std::string_view name;
+    std::string_view harm;
+    std::string_view units;
+    bool heeds_rules; ///< our udev rules make it keep off
+  };
+  constexpr std::array grabbers{
+      Grabber{"ModemManager", "holds a new adapter for 10 to 20 s and sends modem commands to it",
+              "ModemManager", true},
+      Grabber{"brltty", "may take an adapter for a Braille display's", "brltty brltty-udev", false},
+  };
+  const auto unmarked = std::find_if(
+      facts.candidates.begin(), facts.candidates.end(), [](const GloveCandidate& candidate) {
+        return candidate.kind == DeviceKind::serial_port && candidate.usb && !candidate.left_alone;
+      });
+  if (unmarked == facts.candidates.end()) return;
+  for (const Grabber& grabber : grabbers) {
+    if (!runs(facts, grabber.name)) continue;
+    const std::string mask = "sudo systemctl mask --now " + std::string(grabber.units);
+    const std::string bind = "sudo nendo udev bind " + unmarked->device + " --as right (or left)";
+    found.push_back({Weight::warning, "grabber", unmarked->device,
+                     std::string(grabber.name) + " runs and " + std::string(grabber.harm),
+                     grabber.heeds_rules ? bind + ", or " + mask : mask});
+  }
+}
+
+void check_latency(const PortFacts& facts, Findings& found) {
+  for (const GloveCandidate& candidate : facts.candidates) {
+    if (!candidate.latency_timer || *candidate.latency_timer <= 1ms) continue;
+    found.push_back({Weight::warning, "latency_timer", candidate.device,
+                     "the adapter holds replies back for " +
+                         std::to_string(candidate.latency_timer->count()) + " ms",
+                     driver::latency_timer_remedy(candidate.device)});
+  }
+}
+
+constexpr std::array port_checks{check_presence, check_permission, check_portless,
+                                 check_holders,  check_grabbers,   check_latency};
+
+} // namespace
+
+std::vector<Finding> judge_ports(const PortFacts& facts) {
+  Findings found;
+  for (const auto check : port_checks)
+    check(facts, found);
+  return found;
+}
+
+std::vector<Finding> check_ports() {
+  return judge_ports({driver::find_gloves(), driver::running_port_grabbers()});
+}
+
+} // namespace nendo::doctor

@@ -1,0 +1,31 @@
+#pragma once
+// Which joints a glove measures, as JSON: for `nendo info`, and for the first line of each glove of
+// what streams.
+
+#include <optional>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::gloves {
+
+/// By angle, the name of its hand::AngleSource: "measured", the rule that estimates it, or "zero".
+nlohmann::ordered_json angle_sources_json(SensorMask sensors);
+
+/// Tells the first sample of each glove from the others, by its hand and sensors.
+class GloveChanges {
+public:
+  bool is_first(Side side, SensorMask sensors) noexcept {
+    const bool first = !sensors_ || side != side_ || sensors != *sensors_;
+    side_ = side;
+    sensors_ = sensors;
+    return first;
+  }
+
+private:
+  Side side_ = Side::right;
+  std::optional<SensorMask> sensors_; ///< nullopt: none came yet
+};
+
+} // namespace nendo::gloves

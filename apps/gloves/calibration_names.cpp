@@ -1,0 +1,56 @@
+#include "gloves/calibration_names.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "cli/cli.hpp"
+#include "cli/printable.hpp"
+
+namespace nendo::gloves {
+namespace {
+
+using hand::StoredCalibration;
+
+std::string stem_of(const StoredCalibration& file) {
+  return file.path.stem().string();
+}
+
+} // namespace
+
+hand::CalibrationList stored_calibrations() {
+  auto list = hand::list_calibrations(hand::calibration_folders());
+  for (const auto& error : list.unreadable)
+    cli::note(cli::printable(error.message));
+  return list;
+}
+
+Result<StoredCalibration> named_calibration(const std::string& name) {
+  if (name.find('/') != std::string::npos || name.ends_with(".toml")) {
+    auto wearer = hand::read_calibration(name);
+    if (!wearer) return wearer.error();
+    return StoredCalibration{name, false, *std::move(wearer)};
+  }
+  const auto list = stored_calibrations();
+  std::vector<const StoredCalibration*> meant;
+  for (const auto& file : list.files) {
+    if (stem_of(file) == name) return file; // an own one stands first
+    if (file.wearer.user == name && is_in_force(file, list.files)) meant.push_back(&file);
+  }
+  if (meant.size() == 1) return *meant.front();
+  if (meant.empty()) {
+    return Error{Errc::bad_input, cli::printable(name) + ": no such calibration is stored; "
+                                                         "`nendo calibration list` shows them"};
+  }
+  std::string several;
+  for (const auto* file : meant)
+    several.append(several.empty() ? "" : " or ").append(stem_of(*file));
+  return Error{Errc::usage, cli::printable(name + ": several are meant; name " + several)};
+}
+
+std::string title_of(const hand::WearerCalibration& wearer) {
+  return cli::printable(
+      wearer.user + ", " + std::string(name_of(wearer.side)) + " hand, " +
+      (wearer.glove_serial.empty() ? "any glove" : "glove " + wearer.glove_serial));
+}
+
+} // namespace nendo::gloves

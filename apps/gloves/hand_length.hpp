@@ -1,0 +1,24 @@
+#pragma once
+// The option --hand-length, by which a wearer's skeleton gets its size.
+
+#include <optional>
+
+#include <nendo/base/result.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+#include "cli/command.hpp"
+
+namespace nendo::gloves {
+
+struct HandLength {
+  std::optional<double> length_mm; ///< nullopt: not given
+
+  /// Error: usage, if no hand is that long.
+  Result<void> check() const;
+  /// The length that was given, with the proportions of `known`; otherwise `known`.
+  hand::HandSize size(const hand::HandSize& known) const noexcept;
+};
+
+void add_hand_length(cli::Command& command, HandLength& length);
+
+} // namespace nendo::gloves

@@ -1,0 +1,189 @@
+#include "gloves/monitor_screen.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+#include "cli/printable.hpp"
+
+namespace nendo::gloves {
+namespace {
+
+constexpr int name_width = 22; // index_middle_abduction
+constexpr int count_width = 6;
+constexpr int angle_width = 9; // " -123 deg"
+constexpr int least_bar = 8;
+constexpr int column_gap = 2;
+
+std::string fixed(double value, int decimals) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, std::clamp(value, -1e9, 1e9));
+  return text;
+}
+
+std::string right_aligned(const std::string& text, int width) {
+  const int blanks = std::max(0, width - static_cast<int>(text.size()));
+  return std::string(static_cast<std::size_t>(blanks), ' ') + text;
+}
+
+std::string cut(std::string text, int width) {
+  const auto most = static_cast<std::size_t>(std::max(width, 0));
+  if (text.size() <= most) return text;
+  text.resize(most);
+  if (most > 0) text.back() = '~';
+  return text;
+}
+
+// `right` stands at the line's end; `left` is cut for it, unless hardly anything would be left.
+std::string both_ends(const std::string& left, const std::string& right, int width) {
+  const int room = width - static_cast<int>(right.size()) - 2;
+  if (right.empty() || room < 20) return cut(left, width);
+  std::string line = cut(left, room);
+  line.resize(static_cast<std::size_t>(room) + 2, ' ');
+  return line + right;
+}
+
+// Counts must not push what stands behind them off the line.
+std::string short_number(std::uint64_t number) {
+  if (number < 100'000) return std::to_string(number);
+  if (number < 100'000'000) return std::to_string(number / 1000) + "k";
+  return std::to_string(number / 1'000'000) + "M";
+}
+
+std::string on_or_off(bool on) {
+  return on ? "on" : "off";
+}
+
+std::string glove_line(const MonitorPicture& picture, int width) {
+  const driver::GloveInfo& info = *picture.info;
+  const Side side = picture.sample != nullptr ? picture.sample->side : info.side;
+  const auto position =
+      picture.sample != nullptr ? picture.sample->wrist_switch : WristSwitch::unknown;
+  std::string right = std::string(name_of(side)) + " hand";
+  if (position != WristSwitch::unknown)
+    right += ", switch " + on_or_off(position == WristSwitch::on);
+  if (info.abilities.light) right += ", light " + on_or_off(picture.light);
+  return both_ends(cli::printable(info.source + ": " + info.model), right, width);
+}
+
+std::string losses(const driver::GloveStats& stats) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, std::string_view what) {
+    if (count > 0)
+      text.append(text.empty() ? "" : ", ").append(short_number(count)).append(" ").append(what);
+  };
+  add(stats.bad_records, "bad");
+  add(stats.missed, "missed");
+  add(stats.ring_refused, "refused");
+  add(stats.silences, "silences");
+  add(stats.reopened, "reopened");
+  return text.empty() ? "nothing lost" : text;
+}
+
+std::string stream_line(const MonitorPicture& picture, const std::string& keys, int width) {
+  constexpr double silent_after_s = 0.5;
+  std::string text;
+  if (picture.stats.rate_hz > 0.0) text = fixed(picture.stats.rate_hz, 1) + "/s, ";
+  if (picture.sample == nullptr) {
+    text += "no sample yet";
+  } else if (picture.age_s > silent_after_s) {
+    text += "silent for " + fixed(picture.age_s, 1) + " s";
+  } else {
+    text += fixed(1000.0 * std::max(picture.age_s, 0.0), 0) + " ms old";
+  }
+  return both_ends(text + ", " + losses(picture.stats), keys, width);
+}
+
+std::string angle_text(const MonitorPicture& picture, Sensor sensor) {
+  const hand::Calibration& calibration = *picture.calibration;
+  if (calibration[sensor].gain_rad_per_count == 0.0) return std::string(angle_width, ' ');
+  const double angle_rad =
+      calibration.angles_rad(*picture.sample)[static_cast<std::size_t>(sensor)];
+  const double angle_deg = to_degrees(angle_rad);
+  return right_aligned(fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg", angle_width);
+}
+
+std::string sensor_text(const MonitorPicture& picture, Sensor sensor, int width) {
+  const RawCount count = (*picture.sample)[sensor];
+  std::string text(name_of(sensor));
+  text.resize(name_width, ' ');
+  text += right_aligned(std::to_string(count.value), count_width);
+  int room = width - name_width - count_width - 1;
+  const bool with_angle = picture.calibration != nullptr && room - angle_width >= least_bar;
+  if (with_angle) room -= angle_width;
+  if (room >= least_bar) {
+    text += " " + count_bar(room, count.value, (*picture.seen)[sensor], picture.info->counts.most);
+  }
+  if (with_angle) text += angle_text(picture, sensor);
+  return cut(text, width);
+}
+
+void add_sensors(const MonitorPicture& picture, cli::ScreenSize size, int rows,
+                 std::vector<std::string>& lines) {
+  std::vector<Sensor> sensors;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (picture.sample->present.has(sensor)) sensors.push_back(sensor);
+  }
+  const int count = static_cast<int>(sensors.size());
+  const int half_width = (size.columns - column_gap) / 2;
+  const bool in_two = count > rows && half_width >= name_width + count_width;
+  const int wanted_rows = in_two ? (count + 1) / 2 : count;
+  const bool all_fit = wanted_rows <= rows;
+  const int shown_rows = all_fit ? wanted_rows : rows - 1;
+  for (int row = 0; row < shown_rows; ++row) {
+    std::string line = sensor_text(picture, sensors[static_cast<std::size_t>(row)],
+                                   in_two ? half_width : size.columns);
+    const int beside = row + shown_rows;
+    if (in_two && beside < count) {
+      line.resize(static_cast<std::size_t>(half_width + column_gap), ' ');
+      line += sensor_text(picture, sensors[static_cast<std::size_t>(beside)], half_width);
+    }
+    lines.push_back(std::move(line));
+  }
+  if (all_fit || rows <= 0) return;
+  const int hidden = count - shown_rows * (in_two ? 2 : 1);
+  lines.push_back(
+      cut("and " + std::to_string(hidden) + " more: make the window larger", size.columns));
+}
+
+} // namespace
+
+void SeenCounts::see(const GloveSample& sample) noexcept {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const std::uint16_t count = sample.raw[slot].value;
+    Range& range = ranges_[slot];
+    if (!present_.has(static_cast<Sensor>(slot))) range = {count, count};
+    range = {std::min(range.least, count), std::max(range.most, count)};
+  }
+  present_ = sample.present;
+}
+
+std::string count_bar(int width, std::uint16_t count, SeenCounts::Range seen, std::uint16_t most) {
+  const auto place = [&](std::uint16_t value) {
+    return std::min<int>(width - 1, int{value} * (width - 1) / std::max<int>(most, 1));
+  };
+  std::string bar(static_cast<std::size_t>(width), '.');
+  const auto fill = [&](int from, int to, char with) {
+    for (int at = from; at <= to; ++at)
+      bar[static_cast<std::size_t>(at)] = with;
+  };
+  fill(place(seen.least), place(seen.most), '-');
+  if (count > 0) fill(0, place(count), '#');
+  fill(place(seen.least), place(seen.least), '[');
+  fill(place(seen.most), place(seen.most), place(seen.most) == place(seen.least) ? '|' : ']');
+  return bar;
+}
+
+std::vector<std::string> monitor_lines(const MonitorPicture& picture, cli::ScreenSize size) {
+  std::string keys;
+  if (picture.keys)
+    keys = picture.info->abilities.light ? "q quit, r ranges, l light" : "q quit, r ranges";
+  std::vector<std::string> lines{glove_line(picture, size.columns),
+                                 stream_line(picture, keys, size.columns)};
+  if (picture.sample != nullptr) add_sensors(picture, size, size.rows - 2, lines);
+  lines.resize(std::min(lines.size(), static_cast<std::size_t>(std::max(size.rows, 0))));
+  return lines;
+}
+
+} // namespace nendo::gloves

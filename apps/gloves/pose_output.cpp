@@ -1,0 +1,101 @@
+#include "gloves/pose_output.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <cstdint>
+#include <iostream>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+#include <nendo/hand/bvh_file.hpp>
+
+#include "cli/cli.hpp"
+#include "gloves/angle_sources_json.hpp"
+#include "gloves/pose_json.hpp"
+
+namespace nendo::gloves {
+namespace {
+
+// A rate that the machine cannot keep up with must not fill its memory.
+constexpr std::size_t most_pending_bytes = 1 << 16;
+constexpr std::uint64_t most_pending_frames = 64;
+
+class JsonLines final : public PoseOutput {
+public:
+  std::optional<Side> only_side() const override { return std::nullopt; }
+  Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
+                   SensorMask sensors) override {
+    const bool first = gloves_.is_first(side, sensors);
+    lines_ += pose_json(time, side, pose, first ? std::optional(sensors) : std::nullopt);
+    lines_ += '\n';
+    return lines_.size() < most_pending_bytes ? Result<void>() : flush();
+  }
+  Result<void> flush() override {
+    // Not std::cout: a stop signal while the reader is slow would end a line in the middle.
+    std::string_view rest = lines_;
+    while (!rest.empty()) {
+      const ssize_t written = ::write(STDOUT_FILENO, rest.data(), rest.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0 && errno == EPIPE && cli::stop_requested()) break; // Ctrl-C ended both
+      if (written < 0) {
+        return Error{Errc::failed, "standard output cannot be written: " +
+                                       std::generic_category().message(errno)};
+      }
+      rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+    lines_.clear();
+    return {};
+  }
+  Result<void> finish() override { return flush(); }
+
+private:
+  std::string lines_;
+  GloveChanges gloves_;
+};
+
+class BvhRecording final : public PoseOutput {
+public:
+  BvhRecording(hand::BvhFile file, std::string path, Side side)
+      : file_(std::move(file)), path_(std::move(path)), side_(side) {}
+
+  std::optional<Side> only_side() const override { return side_; }
+  Result<void> put(HostTime, Side, const hand::HandPose& pose, SensorMask) override {
+    if (auto added = file_.add(pose); !added) return added;
+    return ++put_ % most_pending_frames != 0 ? Result<void>() : flush();
+  }
+  Result<void> flush() override { return file_.flush(); }
+  Result<void> finish() override {
+    if (auto finished = file_.finish(); !finished) return finished;
+    std::cout << path_ << ": " << file_.frames() << " poses of a " << name_of(side_) << " hand"
+              << std::endl;
+    return {};
+  }
+
+private:
+  hand::BvhFile file_;
+  std::string path_;
+  Side side_;
+  std::uint64_t put_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<PoseOutput> json_pose_output() {
+  std::signal(SIGPIPE, SIG_IGN);
+  return std::make_unique<JsonLines>();
+}
+
+Result<std::unique_ptr<PoseOutput>>
+bvh_pose_output(const std::string& path, const hand::HandSkeleton& skeleton, double rate_hz) {
+  auto file = hand::BvhFile::create(path, skeleton, rate_hz);
+  if (!file) return file.error();
+  return std::unique_ptr<PoseOutput>(
+      std::make_unique<BvhRecording>(*std::move(file), path, skeleton.side()));
+}
+
+} // namespace nendo::gloves

@@ -1,0 +1,243 @@
+// nendo calibrate: from a wearer's poses to a calibration that the other commands find.
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+#include <nendo/driver/open_glove.hpp>
+#include <nendo/hand/calibration_file.hpp>
+#include <nendo/hand/calibration_store.hpp>
+
+#include "calibrate/capture_file.hpp"
+#include "calibrate/report.hpp"
+#include "calibrate/session.hpp"
+#include "cli/cli.hpp"
+#include "cli/printable.hpp"
+#include "gloves/glove_calibration.hpp"
+#include "gloves/hand_length.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::calibrate_command {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string glove;
+  std::string user;
+  std::string from;
+  std::string out;
+  std::string picture;
+  double length_mm = 1e3 * hand::HandSize{}.length_m;
+  double breadth_mm = 1e3 * hand::HandSize{}.breadth_m;
+  bool quick = false;
+  bool fresh = false;
+};
+
+/// Whose calibration it is going to be.
+struct Wearer {
+  hand::WearerCalibration about; ///< all but the numbers
+  SensorMask sensors;
+  fs::path path; ///< of its file
+};
+
+Result<void> check(const Options& options) {
+  if (options.glove.empty() == options.from.empty())
+    return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
+  if (options.user.empty())
+    return Error{Errc::usage, "--user is missing: whose hand is it? e.g. --user anna"};
+  if (auto fine = gloves::HandLength{options.length_mm}.check(); !fine) return fine;
+  if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
+    return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
+  const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
+  if (options.from.empty() && !at_terminal)
+    return Error{Errc::usage, "the guided calibration needs a terminal; elsewhere use --from FILE"};
+  return {};
+}
+
+hand::HandSize size_of(const Options& options) {
+  return {1e-3 * options.length_mm, 1e-3 * options.breadth_mm};
+}
+
+hand::FitOptions fit_options(const Options& options, CountScale counts) {
+  hand::FitOptions fitting;
+  fitting.scale = counts;
+  fitting.mode = options.quick ? hand::FitMode::quick : hand::FitMode::full;
+  fitting.size = size_of(options);
+  return fitting;
+}
+
+std::span<const hand::PoseId> poses_for(const Options& options) {
+  return options.quick ? hand::quick_poses() : hand::full_takes();
+}
+
+Wearer describe(const Options& options, Side side, CountScale counts, SensorMask sensors) {
+  Wearer wearer;
+  wearer.about.user = options.user;
+  wearer.about.side = side;
+  wearer.about.counts = counts;
+  wearer.about.size = size_of(options);
+  wearer.about.method = options.quick ? "quick" : "full";
+  wearer.about.made = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  wearer.sensors = sensors;
+  return wearer;
+}
+
+void set_path(Wearer& wearer, const Options& options) {
+  wearer.path = options.out.empty()
+                    ? hand::calibration_folders().own /
+                          hand::calibration_file_name(options.user, wearer.about.glove_serial,
+                                                      wearer.about.side)
+                    : fs::path(options.out);
+}
+
+/// Beside the calibration: what a session that was quit has taken so far.
+fs::path unfinished_path(const Wearer& wearer) {
+  return wearer.path.string() + ".unfinished";
+}
+
+int fit_and_write(const Options& options, Wearer& wearer,
+                  const calibrate::CalibrationGuide& guide) {
+  const auto readings = guide.readings();
+  hand::FitOptions fitting = fit_options(options, wearer.about.counts);
+  fitting.free_motion = guide.free_motion();
+  const auto fit = hand::fit_calibration(readings, wearer.about.side, wearer.sensors, fitting);
+  if (!fit) return cli::report(fit.error());
+  calibrate::print_report(std::cout, *fit, readings, wearer.sensors);
+  wearer.about.calibration = fit->calibration;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const hand::SensorFit& sensor = fit->sensors[slot];
+    if (!wearer.sensors.has(static_cast<Sensor>(slot))) {
+      wearer.about.calibration.sensors[slot] = {};
+      continue;
+    }
+    const bool known = sensor.gain_determined && sensor.offset_determined;
+    wearer.about.quality[slot] = hand::SensorQuality{sensor.residual_rad, sensor.low_counts,
+                                                     sensor.high_counts, known ? 1.0 : 0.0};
+  }
+  const auto earlier = hand::write_calibration(wearer.path, wearer.about);
+  if (!earlier) return cli::report(earlier.error());
+  std::error_code ignored;
+  fs::remove(unfinished_path(wearer), ignored);
+  std::cout << "written to " << cli::printable(wearer.path.string()) << '\n';
+  if (!earlier->empty())
+    std::cout << "the one before is kept as " << cli::printable(earlier->string()) << '\n';
+  if (options.picture.empty()) return 0;
+  const auto drawn =
+      calibrate::write_report_picture(options.picture, *fit, wearer.sensors, wearer.about.counts);
+  return drawn ? 0 : cli::report(drawn.error());
+}
+
+int calibrate_from_capture(const Options& options) {
+  const auto capture = calibrate::read_capture(options.from);
+  if (!capture) return cli::report(capture.error());
+  calibrate::CalibrationGuide guide(poses_for(options), capture->counts);
+  guide.restore(capture->readings, capture->free_motion);
+  SensorMask sensors;
+  for (const auto& reading : capture->readings)
+    sensors.bits |= reading.held.present.bits;
+  bool doubted = false; // one pose that was missed shifts all that follow
+  for (const GloveSample& sample : capture->samples) {
+    sensors.bits |= sample.present.bits;
+    if (!guide.has_any()) guide.see_free_motion(sample);
+    if (guide.see(sample) == calibrate::CalibrationGuide::Event::implausible &&
+        !std::exchange(doubted, true))
+      cli::note(options.from + ": a pose that was held is not " +
+                std::string(hand::pose_of(guide.asked()).name) + ", by " +
+                std::string(name_of(*guide.doubted())) + "; such poses are left out");
+  }
+  if (!guide.is_done())
+    cli::note(options.from + ": ends before the pose " +
+              std::string(hand::pose_of(guide.asked()).name) + " was held");
+  Wearer wearer = describe(options, capture->side, capture->counts, sensors);
+  set_path(wearer, options);
+  return fit_and_write(options, wearer, guide);
+}
+
+/// Keeps what was taken, so that the same command goes on from there.
+int keep_for_later(const Wearer& wearer, const calibrate::CalibrationGuide& guide) {
+  const auto readings = guide.readings();
+  if (readings.empty()) return 0;
+  std::error_code ignored;
+  fs::create_directories(wearer.path.parent_path(), ignored);
+  const auto kept =
+      calibrate::write_readings(unfinished_path(wearer), readings, guide.free_motion(),
+                                wearer.about.side, wearer.about.counts);
+  if (!kept) return cli::report(kept.error());
+  cli::note(
+      std::to_string(readings.size()) +
+      " poses are kept; the same command goes on from there, with --fresh from the beginning");
+  return 0;
+}
+
+int calibrate_glove(const Options& options) {
+  const auto glove = driver::open_glove(options.glove);
+  if (!glove) return cli::report(glove.error());
+  const driver::GloveInfo& info = (*glove)->info();
+  Wearer wearer = describe(options, info.side, info.counts, info.sensors);
+  wearer.about.glove_model = info.model;
+  wearer.about.glove_serial = gloves::serial_of(info);
+  set_path(wearer, options);
+  calibrate::CalibrationGuide guide(poses_for(options), info.counts);
+  std::error_code error;
+  if (!options.fresh && fs::exists(unfinished_path(wearer), error)) {
+    const auto before = calibrate::read_capture(unfinished_path(wearer));
+    if (!before)
+      return cli::report(
+          {before.error().code,
+           before.error().message + "; with --fresh it is not read, and written anew"});
+    if (before->counts == info.counts && before->side == info.side)
+      guide.restore(before->readings, before->free_motion);
+  }
+  cli::install_stop_signals();
+  const auto end = calibrate::run_calibration_session(**glove, options.user,
+                                                      fit_options(options, info.counts), guide);
+  if (!end) return cli::report(end.error());
+  if (*end == calibrate::SessionEnd::quit) return keep_for_later(wearer, guide);
+  const int code = fit_and_write(options, wearer, guide);
+  return code == 0 ? 0 : (keep_for_later(wearer, guide), code);
+}
+
+int calibrate(const Options& options) {
+  if (const auto fine = check(options); !fine) return cli::report(fine.error());
+  return options.from.empty() ? calibrate_glove(options) : calibrate_from_capture(options);
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command(
+      "calibrate", "Guides a wearer through poses, so that angles are those of this hand");
+  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, auto, ...");
+  command.add_option("--user", options->user, "Whose hand it is");
+  command.add_flag("--quick", options->quick, "Two poses only: the flat hand and the fist");
+  command.add_option("--from", options->from,
+                     "A capture instead of a glove: what nendo monitor --json has printed while "
+                     "the poses were held one after another, three seconds each");
+  command.add_option("--hand-length", options->length_mm,
+                     "Millimetres from the wrist's crease to the tip of the middle finger");
+  command.add_option("--hand-breadth", options->breadth_mm, "Millimetres across the knuckles");
+  command.add_option("--out", options->out,
+                     "Where to write it; without it, where the other commands find it");
+  command.add_option("--picture", options->picture, "Also draw ranges and residuals, as FILE.svg");
+  command.add_flag("--fresh", options->fresh, "Do not go on from a session that was quit");
+  std::string footer = "The poses, in their order:\n";
+  for (const auto id : hand::full_poses())
+    footer += "  " + std::string(hand::pose_of(id).name) + ": " +
+              std::string(hand::pose_of(id).instruction) + "\n";
+  footer += "Then once more:";
+  for (const auto id : hand::full_takes().subspan(hand::full_poses().size()))
+    footer += " " + std::string(hand::pose_of(id).name);
+  command.set_footer(footer + ".\nThe other commands use the calibration by themselves; nendo "
+                              "calibration lists, compares and exports them.");
+  command.on_chosen([options] { return calibrate(*options); });
+}
+
+} // namespace nendo::app::calibrate_command

@@ -1,0 +1,271 @@
+// nendo calibration: looks after the files of nendo calibrate. What crosses to other programs is in
+// calibration_exchange.cpp.
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "cli/printable.hpp"
+#include "gloves/calibration_names.hpp"
+#include "nendo/calibration_exchange.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::calibration_command {
+namespace {
+
+using hand::StoredCalibration;
+using hand::WearerCalibration;
+using nlohmann::ordered_json;
+
+ordered_json summary_json(const StoredCalibration& file) {
+  const WearerCalibration& wearer = file.wearer;
+  return {{"user", wearer.user},
+          {"hand", name_of(wearer.side)},
+          {"glove_model", wearer.glove_model},
+          {"glove_serial", wearer.glove_serial},
+          {"made", hand::rfc3339(wearer.made)},
+          {"method", wearer.method},
+          {"path", file.path.string()}};
+}
+
+ordered_json sensors_json(const WearerCalibration& wearer) {
+  ordered_json sensors = ordered_json::object();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto& line = wearer.calibration.sensors[slot];
+    if (line.gain_rad_per_count == 0.0) continue;
+    ordered_json& sensor = sensors[std::string(sensor_names[slot])];
+    sensor = {{"gain_rad_per_count", line.gain_rad_per_count},
+              {"offset_counts", line.offset_counts}};
+    const auto& quality = wearer.quality[slot];
+    if (!quality) continue;
+    sensor["residual_rad"] = quality->residual_rad;
+    sensor["least_counts"] = quality->least_counts;
+    sensor["most_counts"] = quality->most_counts;
+    sensor["confidence"] = quality->confidence;
+  }
+  return sensors;
+}
+
+std::string fixed(double value, int decimals) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+void print_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t k = 0; k < row.size(); ++k)
+      widths[k] = std::max(widths[k], row[k].size());
+  }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      line += cli::printable(row[k]);
+      if (k + 1 < row.size()) line.append(widths[k] - row[k].size() + 2, ' ');
+    }
+    std::cout << line << '\n';
+  }
+}
+
+int list(bool json) {
+  const auto stored = gloves::stored_calibrations();
+  std::vector<std::vector<std::string>> rows{
+      {"user", "hand", "glove", "made", "method", "in force", "path"}};
+  for (const auto& file : stored.files) {
+    const bool in_force = is_in_force(file, stored.files);
+    if (json) {
+      ordered_json line = summary_json(file);
+      line["shared"] = file.shared;
+      line["in_force"] = in_force;
+      cli::print_line(line);
+      continue;
+    }
+    const WearerCalibration& wearer = file.wearer;
+    rows.push_back({wearer.user, std::string(name_of(wearer.side)),
+                    wearer.glove_serial.empty() ? "any" : wearer.glove_serial,
+                    hand::rfc3339(wearer.made), wearer.method, in_force ? "yes" : "no",
+                    file.path.string()});
+  }
+  if (json) return 0;
+  if (rows.size() > 1) {
+    print_table(rows);
+  } else {
+    cli::note(
+        "no calibration is stored; `nendo calibration import` takes one from another program");
+  }
+  return 0;
+}
+
+void show_text(const StoredCalibration& file) {
+  const WearerCalibration& wearer = file.wearer;
+  std::cout << gloves::title_of(wearer) << '\n'
+            << cli::printable("made " + hand::rfc3339(wearer.made) + " (" + wearer.method + "), " +
+                              (wearer.glove_model.empty() ? "any model" : wearer.glove_model) +
+                              ", " + file.path.string())
+            << "\n\n";
+  const double most = wearer.counts.most;
+  std::vector<std::vector<std::string>> rows{
+      {"sensor", "gain rad/count", "offset counts", "deg at 0", "deg at full", "residual deg"}};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto& line = wearer.calibration.sensors[slot];
+    if (line.gain_rad_per_count == 0.0) continue;
+    const auto at = [&](double count) {
+      return to_degrees(line.gain_rad_per_count * (count - line.offset_counts));
+    };
+    const auto& quality = wearer.quality[slot];
+    rows.push_back({std::string(sensor_names[slot]), fixed(line.gain_rad_per_count, 5),
+                    fixed(line.offset_counts, 1), fixed(at(0.0), 1), fixed(at(most), 1),
+                    quality ? fixed(to_degrees(quality->residual_rad), 1) : "-"});
+  }
+  print_table(rows);
+}
+
+int show(const std::string& name, bool json) {
+  const auto file = gloves::named_calibration(name);
+  if (!file) return cli::report(file.error());
+  if (!json) {
+    show_text(*file);
+    return 0;
+  }
+  const WearerCalibration& wearer = file->wearer;
+  ordered_json line = summary_json(*file);
+  line["counts"] = {{"most", wearer.counts.most}, {"whole_range", wearer.counts.whole_range}};
+  line["hand_length_m"] = wearer.size.length_m;
+  line["hand_breadth_m"] = wearer.size.breadth_m;
+  line["middle_bias"] = wearer.calibration.middle_bias;
+  ordered_json mixed_in = ordered_json::array();
+  for (std::size_t k = 0; k < hand::couplings.size(); ++k) {
+    const auto [of, by] = hand::couplings[k];
+    const double rad_per_rad = wearer.calibration.mixed_in[k];
+    if (rad_per_rad == 0.0) continue;
+    mixed_in.push_back({{"of", name_of(of)}, {"by", name_of(by)}, {"rad_per_rad", rad_per_rad}});
+  }
+  line["mixed_in"] = std::move(mixed_in);
+  line["sensors"] = sensors_json(wearer);
+  cli::print_line(line);
+  return 0;
+}
+
+// Of one sensor in degrees: a, b and how far b lies above a, first at no counts, then at the most.
+std::vector<double> changes_deg(const WearerCalibration& a, const WearerCalibration& b,
+                                std::size_t slot) {
+  std::vector<double> deg;
+  for (const bool full : {false, true}) {
+    for (const auto* wearer : {&a, &b}) {
+      const auto& line = wearer->calibration.sensors[slot];
+      const double count = full ? wearer->counts.most : 0.0;
+      deg.push_back(to_degrees(line.gain_rad_per_count * (count - line.offset_counts)));
+    }
+    deg.push_back(deg.back() - deg[deg.size() - 2]);
+  }
+  return deg;
+}
+
+ordered_json change_json(const std::string& sensor, const std::vector<double>& deg) {
+  return {{"sensor", sensor},
+          {"a_at_0_deg", deg[0]},
+          {"b_at_0_deg", deg[1]},
+          {"change_at_0_deg", deg[2]},
+          {"a_at_full_deg", deg[3]},
+          {"b_at_full_deg", deg[4]},
+          {"change_at_full_deg", deg[5]}};
+}
+
+int diff(const std::string& name_a, const std::string& name_b, bool json) {
+  const auto a = gloves::named_calibration(name_a);
+  if (!a) return cli::report(a.error());
+  const auto b = gloves::named_calibration(name_b);
+  if (!b) return cli::report(b.error());
+  if (a->wearer.side != b->wearer.side)
+    cli::note("these are calibrations of two hands: one left, one right");
+  std::vector<std::vector<std::string>> rows{
+      {"sensor", "a at 0", "b at 0", "change", "a at full", "b at full", "change"}};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (a->wearer.calibration.sensors[slot].gain_rad_per_count == 0.0 &&
+        b->wearer.calibration.sensors[slot].gain_rad_per_count == 0.0)
+      continue;
+    const std::string name(sensor_names[slot]);
+    const auto deg = changes_deg(a->wearer, b->wearer, slot);
+    if (json) {
+      cli::print_line(change_json(name, deg));
+      continue;
+    }
+    rows.push_back({name});
+    for (const double angle_deg : deg)
+      rows.back().push_back(fixed(angle_deg, 1));
+  }
+  if (!json) print_table(rows);
+  return 0;
+}
+
+int path(const std::string& name) {
+  if (name.empty()) {
+    std::cout << hand::calibration_folders().own.string() << '\n';
+    return 0;
+  }
+  const auto file = gloves::named_calibration(name);
+  if (!file) return cli::report(file.error());
+  std::cout << file->path.string() << '\n';
+  return 0;
+}
+
+int remove(const std::string& name) {
+  const auto file = gloves::named_calibration(name);
+  if (!file) return cli::report(file.error());
+  const auto kept = hand::retire_calibration(file->path);
+  if (!kept) return cli::report(kept.error());
+  std::cout << "removed " << cli::printable(file->path.string()) << "; it is kept as "
+            << cli::printable(kept->string()) << '\n';
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  struct Options {
+    std::string name;
+    std::string other;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  cli::Command command =
+      program.add_command("calibration", "Lists, shows, compares and exchanges calibrations");
+  command.set_footer("A NAME is a path, a stored file's name without .toml, or a wearer.");
+  command.require_command();
+
+  cli::Command listing = command.add_command("list", "What is stored, and what is in force");
+  listing.add_flag("--json", options->json, "One JSON object a line");
+  listing.on_chosen([options] { return list(options->json); });
+
+  cli::Command showing = command.add_command("show", "One calibration, sensor by sensor");
+  showing.add_option("NAME", options->name, "Path, stored name or wearer").required();
+  showing.add_flag("--json", options->json, "One JSON object");
+  showing.on_chosen([options] { return show(options->name, options->json); });
+
+  cli::Command comparing = command.add_command("diff", "Two calibrations' angles, in degrees");
+  comparing.add_option("A", options->name, "Path, stored name or wearer").required();
+  comparing.add_option("B", options->other, "Path, stored name or wearer").required();
+  comparing.add_flag("--json", options->json, "One JSON object a sensor");
+  comparing.on_chosen([options] { return diff(options->name, options->other, options->json); });
+
+  calibration_exchange::add(command);
+
+  cli::Command locating = command.add_command("path", "Where a calibration lies, or all of yours");
+  locating.add_option("NAME", options->name, "Stored name or wearer");
+  locating.on_chosen([options] { return path(options->name); });
+
+  cli::Command removing = command.add_command("remove", "Takes a calibration out of use");
+  removing.add_option("NAME", options->name, "Path, stored name or wearer").required();
+  removing.on_chosen([options] { return remove(options->name); });
+}
+
+} // namespace nendo::app::calibration_command

@@ -1,0 +1,159 @@
+#include "nendo/calibration_exchange.hpp"
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <nendo/hand/calibration_exchange.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/printable.hpp"
+#include "gloves/calibration_names.hpp"
+
+namespace nendo::app::calibration_exchange {
+namespace {
+
+using hand::WearerCalibration;
+
+struct ImportOptions {
+  std::string file;
+  std::string user;
+  std::string hand;
+  std::string glove;
+  std::string model;
+};
+
+struct ExportOptions {
+  std::string name;
+  std::string format = "toml";
+  std::string out;
+};
+
+// The user's word and the file's must not disagree: a left hand's gains on a right hand shape
+// nonsense, and nobody would look for the reason there.
+Result<Side> side_of(const ImportOptions& options, std::optional<Side> told) {
+  if (options.hand.empty()) {
+    if (told) return *told;
+    return Error{Errc::usage, options.file + ": does not tell its hand; add --hand left or right"};
+  }
+  const Side wanted = options.hand == "left" ? Side::left : Side::right;
+  if (told && *told != wanted) {
+    return Error{Errc::bad_input, options.file + ": is of a " + std::string(name_of(*told)) +
+                                      " hand; leave --hand out or choose another file"};
+  }
+  return wanted;
+}
+
+Result<WearerCalibration> converted(const ImportOptions& options, const std::string& text,
+                                    hand::CalibrationFormat format) {
+  using hand::CalibrationFormat;
+  auto read = format == CalibrationFormat::two_point ? hand::parse_two_point(text, options.file)
+              : format == CalibrationFormat::csv ? hand::parse_calibration_csv(text, options.file)
+                                                 : hand::parse_virtualhand(text, options.file);
+  if (!read) return read.error();
+  const auto side = side_of(options, read->side);
+  if (!side) return side.error();
+  if (options.user.empty())
+    return Error{Errc::usage, options.file + ": does not tell its wearer; add --user NAME"};
+  for (const auto& told : read->notes)
+    cli::note(options.file + ": " + told);
+  WearerCalibration wearer;
+  wearer.user = options.user;
+  wearer.glove_model = options.model;
+  wearer.glove_serial = options.glove;
+  wearer.side = *side;
+  wearer.made = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  wearer.method = "imported";
+  wearer.calibration = read->calibration;
+  return wearer;
+}
+
+Result<WearerCalibration> read_foreign(const ImportOptions& options) {
+  const auto text = hand::read_calibration_text(options.file);
+  if (!text) return text.error();
+  const auto format = hand::format_of(*text);
+  if (format != hand::CalibrationFormat::toml) return converted(options, *text, format);
+  auto wearer = hand::parse_calibration(*text, options.file);
+  if (!wearer) return wearer;
+  const auto side = side_of(options, wearer->side);
+  if (!side) return side.error();
+  if (!options.user.empty()) wearer->user = options.user;
+  if (!options.glove.empty()) wearer->glove_serial = options.glove;
+  if (!options.model.empty()) wearer->glove_model = options.model;
+  return wearer;
+}
+
+int import_calibration(const ImportOptions& options) {
+  const auto wearer = read_foreign(options);
+  if (!wearer) return cli::report(wearer.error());
+  const auto folder = hand::calibration_folders().own;
+  if (folder.empty())
+    return cli::report({Errc::failed, "you have no home folder; set XDG_CONFIG_HOME to a folder"});
+  const auto path =
+      folder / hand::calibration_file_name(wearer->user, wearer->glove_serial, wearer->side);
+  const auto kept = hand::write_calibration(path, *wearer);
+  if (!kept) return cli::report(kept.error());
+  if (!kept->empty()) cli::note("the earlier one is kept as " + cli::printable(kept->string()));
+  std::cout << "imported for " << gloves::title_of(*wearer) << ": " << cli::printable(path.string())
+            << '\n';
+  return 0;
+}
+
+Result<hand::ExportedCalibration> exported(const WearerCalibration& wearer,
+                                           const std::string& format) {
+  if (format == "cal") return hand::virtualhand_text(wearer.calibration, wearer.counts);
+  if (format == "csv") return hand::calibration_csv_text(wearer.calibration);
+  auto text = hand::calibration_text(wearer);
+  if (!text) return text.error();
+  return hand::ExportedCalibration{*std::move(text), {}};
+}
+
+int export_calibration(const ExportOptions& options) {
+  const auto file = gloves::named_calibration(options.name);
+  if (!file) return cli::report(file.error());
+  const auto result = exported(file->wearer, options.format);
+  if (!result) {
+    return cli::report(
+        {result.error().code, cli::printable(options.name) + ": " + result.error().message});
+  }
+  for (const auto& lost : result->notes)
+    cli::note(lost);
+  if (options.out.empty()) {
+    std::cout << result->text;
+    return 0;
+  }
+  if (const auto done = hand::write_calibration_text(options.out, result->text); !done)
+    return cli::report(done.error());
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& calibration) {
+  auto in = std::make_shared<ImportOptions>();
+  cli::Command importing =
+      calibration.add_command("import", "Stores another program's calibration");
+  importing.set_footer(
+      "Reads TOML, VirtualHand's .cal (also of the Device Configuration Utility and\n"
+      "of MotorControl), asr_cyberglove's two-point .cal, and CSV.");
+  importing.add_option("FILE", in->file, "The file to read").required();
+  importing.add_option("--user", in->user, "The wearer; TOML tells it");
+  importing.add_option("--hand", in->hand, "left or right; TOML tells it")
+      .one_of({"left", "right"});
+  importing.add_option("--glove", in->glove,
+                       "The glove's serial number; without it, for any glove");
+  importing.add_option("--model", in->model, "The glove's model as `nendo info` says it");
+  importing.on_chosen([in] { return import_calibration(*in); });
+
+  auto out = std::make_shared<ExportOptions>();
+  cli::Command exporting = calibration.add_command("export", "Writes a calibration for others");
+  exporting.add_option("NAME", out->name, "Path, stored name or wearer").required();
+  exporting.add_option("--format", out->format, "cal, csv or toml").one_of({"cal", "csv", "toml"});
+  exporting.add_option("--out", out->out, "Where to write it; without it, standard output");
+  exporting.on_chosen([out] { return export_calibration(*out); });
+} // namespace nendo::app::calibration_exchange
+
+} // namespace nendo::app::calibration_exchange

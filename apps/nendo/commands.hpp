@@ -1,0 +1,68 @@
+#pragma once
+// The commands of the program, one a file and each in a namespace of its own. add() describes the
+// command to the program.
+
+#include "cli/command.hpp"
+
+namespace nendo::app {
+
+namespace calibrate_command {
+void add(cli::Command& program);
+}
+namespace calibration_command {
+void add(cli::Command& program);
+}
+namespace deform_command {
+void add(cli::Command& program);
+}
+namespace devices_command {
+void add(cli::Command& program);
+}
+namespace doctor_command {
+void add(cli::Command& program);
+}
+namespace edit_command {
+void add(cli::Command& program);
+}
+namespace emulate_command {
+void add(cli::Command& program);
+}
+namespace export_command {
+void add(cli::Command& program);
+}
+namespace info_command {
+void add(cli::Command& program);
+}
+namespace manual_command {
+void add(cli::Command& program);
+}
+namespace monitor_command {
+void add(cli::Command& program);
+}
+namespace picture_command {
+void add(cli::Command& program);
+}
+namespace poses_command {
+void add(cli::Command& program);
+}
+namespace record_command {
+void add(cli::Command& program);
+}
+namespace recording_command {
+void add(cli::Command& program);
+}
+namespace replay_command {
+void add(cli::Command& program);
+}
+namespace run_command {
+void add(cli::Command& program);
+void add_view(cli::Command& program); ///< `nendo view`: the same run in a window
+} // namespace run_command
+namespace stress_command {
+void add(cli::Command& program);
+}
+namespace udev_command {
+void add(cli::Command& program);
+}
+
+} // namespace nendo::app

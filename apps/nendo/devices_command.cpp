@@ -1,0 +1,155 @@
+// nendo devices: what may be a glove, why, who may open it and who holds it. Opens none of them.
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/driver/device_watcher.hpp>
+#include <nendo/driver/devices.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::devices_command {
+namespace {
+
+using driver::GloveCandidate;
+using nlohmann::ordered_json;
+
+std::string hex(std::uint16_t number) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "%04x", unsigned{number});
+  return text.data();
+}
+
+ordered_json json_of(const driver::UsbIdentity& usb) {
+  return {{"vendor_id", hex(usb.vendor_id)},
+          {"product_id", hex(usb.product_id)},
+          {"manufacturer", usb.manufacturer},
+          {"product", usb.product},
+          {"serial", usb.serial},
+          {"place", usb.place},
+          {"bus", usb.bus},
+          {"address", usb.address},
+          {"interface", usb.interface_number}};
+}
+
+/// The same keys for every device; null where a device has no such thing.
+ordered_json json_of(const GloveCandidate& candidate) {
+  ordered_json holders = ordered_json::array();
+  for (const auto& holder : candidate.holders)
+    holders.push_back({{"pid", holder.pid}, {"name", holder.name}});
+  ordered_json line{
+      {"device", candidate.device},           {"kind", driver::name_of(candidate.kind)},
+      {"stable_name", candidate.stable_name}, {"glove", candidate.spec},
+      {"description", candidate.description}, {"reason", candidate.reason},
+      {"identified", candidate.identified},   {"may_open", candidate.may_open},
+      {"access", candidate.access},           {"remedy", candidate.remedy}};
+  line["usb"] = candidate.usb ? json_of(*candidate.usb) : ordered_json(nullptr);
+  line["latency_timer_ms"] =
+      candidate.latency_timer ? ordered_json(candidate.latency_timer->count()) : nullptr;
+  line["left_alone"] = candidate.left_alone;
+  line["holders"] = std::move(holders);
+  line["holders_complete"] = candidate.holders_complete;
+  return line;
+}
+
+void print_text(const GloveCandidate& candidate) {
+  std::cout << candidate.device << ": " << candidate.description << "\n  why        "
+            << candidate.reason << "\n  use it as  "
+            << (candidate.spec.empty() ? "nothing yet" : candidate.spec);
+  const std::string who = candidate.access.empty() ? "nobody, it is gone" : candidate.access;
+  std::cout << "\n  may open   " << (candidate.may_open ? "" : "only ") << who;
+  if (!candidate.remedy.empty()) std::cout << "\n  mend it    " << candidate.remedy;
+  for (const auto& holder : candidate.holders) {
+    std::cout << "\n  held by    " << holder.name;
+    if (holder.pid > 0) std::cout << " (pid " << holder.pid << ")";
+    std::cout << "; close that program first";
+  }
+  std::cout << std::endl;
+}
+
+int list_devices(bool json) {
+  const auto candidates = driver::find_gloves();
+  for (const auto& candidate : candidates)
+    json ? cli::print_line(json_of(candidate)) : print_text(candidate);
+  if (candidates.empty() && !json) {
+    std::cout << "No serial port or USB device here may be a glove. Plug one in, or try `sim`.\n";
+  }
+  return 0;
+}
+
+std::string time_of_day(std::chrono::system_clock::time_point time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
+  std::tm parts{};
+  ::localtime_r(&seconds, &parts);
+  std::array<char, 16> text{};
+  std::strftime(text.data(), text.size(), "%H:%M:%S", &parts);
+  return text.data();
+}
+
+void print_event(std::string_view event, const GloveCandidate& candidate, bool json) {
+  const auto now = std::chrono::system_clock::now();
+  if (json) {
+    const std::chrono::duration<double> since_epoch = now.time_since_epoch();
+    ordered_json line{{"event", event}, {"unix_time_s", since_epoch.count()}};
+    line.update(json_of(candidate));
+    cli::print_line(line);
+    return;
+  }
+  std::cout << time_of_day(now) << "  " << event << "  " << candidate.device << ": "
+            << candidate.description;
+  if (event != "detached") {
+    if (!candidate.spec.empty()) std::cout << "; use it as " << candidate.spec;
+    if (!candidate.remedy.empty()) std::cout << "; first: " << candidate.remedy;
+  }
+  std::cout << std::endl;
+}
+
+int watch_devices(bool json) {
+  using std::chrono::milliseconds;
+  constexpr milliseconds longest_wait{500}; // should the signal arrive just before the wait
+  const auto watcher = driver::DeviceWatcher::open();
+  if (!watcher) return cli::report(watcher.error());
+  cli::install_stop_signals();
+  for (const auto& candidate : (*watcher)->present())
+    print_event("present", candidate, json);
+  if (!(*watcher)->sees_usb()) {
+    cli::note("USB is not to be watched here, only the serial ports in /dev; "
+              "gloves without such a port go unnoticed");
+  }
+  while (!cli::stop_requested() && std::cout) {
+    if (const auto event = (*watcher)->next(longest_wait)) {
+      print_event(event->attached ? "attached" : "detached", event->candidate, json);
+    }
+  }
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  struct Options {
+    bool json = false;
+    bool watch = false;
+  };
+  auto options = std::make_shared<Options>();
+  cli::Command command =
+      program.add_command("devices", "Lists ports and USB devices that may be gloves, and why");
+  command.add_flag("--json", options->json, "One JSON object a line");
+  command.add_flag("--watch", options->watch,
+                   "Then a line whenever one is plugged in or pulled out; Ctrl-C ends");
+  command.on_chosen([options] {
+    return options->watch ? watch_devices(options->json) : list_devices(options->json);
+  });
+}
+
+} // namespace nendo::app::devices_command

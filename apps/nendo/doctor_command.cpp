@@ -1,0 +1,68 @@
+// nendo doctor: what keeps gloves from working on this machine, and the command that mends it.
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "doctor/doctor.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::doctor_command {
+namespace {
+
+/// A subject each.
+constexpr std::array subjects{doctor::check_ports, doctor::check_machine};
+
+std::string_view name_of(doctor::Weight weight) {
+  return weight == doctor::Weight::failure ? "failure" : "warning";
+}
+
+void print_json(const doctor::Finding& finding) {
+  const nlohmann::ordered_json line{{"weight", name_of(finding.weight)},
+                                    {"check", finding.check},
+                                    {"subject", finding.subject},
+                                    {"what", finding.what},
+                                    {"remedy", finding.remedy}};
+  cli::print_line(line);
+}
+
+void print_text(const doctor::Finding& finding) {
+  std::cout << name_of(finding.weight) << ": " << finding.subject
+            << (finding.subject.empty() ? "" : ": ") << finding.what
+            << ". Mend it: " << finding.remedy << '\n';
+}
+
+int examine(bool json) {
+  std::vector<doctor::Finding> findings;
+  for (const auto check : subjects) {
+    for (doctor::Finding& finding : check())
+      findings.push_back(std::move(finding));
+  }
+  std::stable_sort(
+      findings.begin(), findings.end(), [](const doctor::Finding& a, const doctor::Finding& b) {
+        return a.weight == doctor::Weight::failure && b.weight == doctor::Weight::warning;
+      });
+  for (const doctor::Finding& finding : findings)
+    json ? print_json(finding) : print_text(finding);
+  if (findings.empty() && !json) std::cout << "Nothing here keeps gloves from working.\n";
+  const bool well = findings.empty() || findings.front().weight == doctor::Weight::warning;
+  return well ? 0 : static_cast<int>(Errc::failed);
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto json = std::make_shared<bool>(false);
+  cli::Command command = program.add_command(
+      "doctor", "Says what keeps gloves from working on this machine, and what mends it");
+  command.add_flag("--json", *json, "One JSON object a finding");
+  command.set_footer("Exit code 1 if something will not work, 0 if there are warnings only.");
+  command.on_chosen([json] { return examine(*json); });
+}
+
+} // namespace nendo::app::doctor_command

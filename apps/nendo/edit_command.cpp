@@ -1,0 +1,240 @@
+// nendo edit: a recorded run as key poses, which can be changed and played.
+
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include <nendo/timeline/edit.hpp>
+#include <nendo/timeline/timeline_file.hpp>
+
+#include "cli/cli.hpp"
+#include "edit/edit_actions.hpp"
+#include "edit/edit_words.hpp"
+#include "nendo/commands.hpp"
+#include "takes/timeline_frames.hpp"
+
+namespace nendo::app::edit_command {
+namespace {
+
+using timeline::Timeline;
+
+struct Options {
+  edit::MakeOptions make;
+  edit::ShowOptions show;
+  edit::PlayOptions play;
+  std::string file;
+  std::string out;
+  std::string hand;
+  std::string finger;
+  std::string place;
+  std::string with;
+  std::uint32_t key = 0;
+  std::optional<unsigned> blended_key;
+  double time_s = 0.0;
+  double from_s = 0.0;
+  std::optional<double> to_s;
+  double scale = 1.0;
+  double factor = 0.5;
+  double within_mm = 1.0;
+  std::optional<double> plane;
+};
+
+using Change = std::function<Result<void>(Timeline& timeline)>;
+
+// Reads the file, changes what is in it and writes it back, or to --out.
+int edit(const Options& options, const Change& change) {
+  const auto out = edit::edited_file(options.file, options.out);
+  if (!out) return cli::report(out.error());
+  auto timeline = timeline::read_timeline(options.file);
+  if (!timeline) return cli::report(timeline.error());
+  if (const auto changed = change(*timeline); !changed)
+    return cli::report({changed.error().code, options.file + ": " + changed.error().message});
+  if (const auto written = timeline::write_timeline(*out, *timeline); !written)
+    return cli::report(written.error());
+  std::printf("%s: %zu keys, %.3f s\n", out->c_str(), timeline->key_count(), timeline->duration_s);
+  std::fflush(stdout);
+  return 0;
+}
+
+// One that is about a key of a hand, or a hand.
+int edit_hand(const Options& options,
+              const std::function<Result<void>(Timeline& timeline, Side side)>& change) {
+  const auto side = edit::parse_hand(options.hand);
+  if (!side) return cli::report(side.error());
+  return edit(options, [&](Timeline& timeline) { return change(timeline, *side); });
+}
+
+int blend(const Options& options) {
+  if (options.with.empty() == !options.blended_key)
+    return cli::report({Errc::usage,
+                        "--with, --key: give one of them: another timeline, or with --hand "
+                        "a key that is blended with its neighbours"});
+  if (options.blended_key)
+    return edit_hand(options, [&](Timeline& timeline, Side side) {
+      return timeline::blend_key(timeline, side, *options.blended_key, options.factor);
+    });
+  const auto other = timeline::read_timeline(options.with);
+  if (!other) return cli::report(other.error());
+  return edit(options, [&](Timeline& timeline) {
+    return timeline::blend(timeline, *other, options.factor);
+  });
+}
+
+int mirror(const Options& options) {
+  return edit(options, [&](Timeline& timeline) -> Result<void> {
+    if (options.plane) return timeline::mirror(timeline, *options.plane / timeline.units_per_metre);
+    const auto model = takes::timeline_model(timeline);
+    if (!model) return model.error();
+    return timeline::mirror(timeline, takes::middle_plane_m(timeline, *model));
+  });
+}
+
+int set_tip(const Options& options) {
+  const auto finger = edit::parse_finger(options.finger);
+  if (!finger) return cli::report(finger.error());
+  const auto place = edit::parse_place(options.place);
+  if (!place) return cli::report(place.error());
+  if (!(options.within_mm > 0.0))
+    return cli::report({Errc::usage, "--within: use millimetres above 0"});
+  timeline::TipSet done;
+  const int code = edit_hand(options, [&](Timeline& timeline, Side side) -> Result<void> {
+    const Eigen::Vector3d target_m = *place / timeline.units_per_metre;
+    const auto set = timeline::set_tip(timeline, side, options.key, *finger, target_m,
+                                       options.within_mm / 1000.0);
+    if (!set) return set.error();
+    done = *set;
+    return {};
+  });
+  if (code == 0)
+    std::printf("the %s's tip is %.3f mm off\n", options.finger.c_str(), 1e3 * done.off_m);
+  return code;
+}
+
+// The options that an edit has, whatever it does.
+cli::Command add_edit_of(cli::Command& edit, const char* name, const char* summary,
+                         const std::shared_ptr<Options>& options) {
+  cli::Command command = edit.add_command(name, summary);
+  command.add_option("FILE", options->file, "A timeline").required();
+  command.add_option("--out", options->out,
+                     "Where the changed one goes, .timeline.toml; without it, into FILE");
+  return command;
+}
+
+cli::Command add_edit_of_key(cli::Command& edit, const char* name, const char* summary,
+                             const std::shared_ptr<Options>& options) {
+  cli::Command command = add_edit_of(edit, name, summary, options);
+  command.add_option("--hand", options->hand, "left or right").required();
+  command.add_option("--key", options->key, "Number of the key, as `nendo edit show` has it")
+      .required();
+  return command;
+}
+
+void add_reading(cli::Command& edit, const std::shared_ptr<Options>& options) {
+  cli::Command making = edit.add_command("make", "Makes a timeline of key poses of a recorded run");
+  making.add_option("TAKE", options->make.take, "What `nendo run --record` recorded").required();
+  making.add_option("--out", options->make.out, "The new file, .timeline.toml").required();
+  making.add_option("--tolerance", options->make.tolerance,
+                    "How far the hands between the keys may be off: at the fingertips, as 1mm, or "
+                    "at the joints, as 0.02rad or 1deg; 0mm keeps every frame");
+  making.add_option("--mesh", options->make.mesh, "The model, if it is no longer where it was");
+  making.add_flag("--json", options->make.json, "A summary as JSON");
+  making.on_chosen([options] { return edit::make_timeline(options->make); });
+
+  cli::Command showing =
+      edit.add_command("show", "The keys as a table, and what is asked of the model");
+  showing.add_option("FILE", options->show.file, "A timeline").required();
+  showing.add_option("--finger", options->show.finger, "Shows where this finger's tip is, too");
+  showing.add_flag("--json", options->show.json, "All of every key, as one JSON object");
+  showing.on_chosen([options] { return edit::show_timeline(options->show); });
+
+  cli::Command playing = edit.add_command("play", "Makes the shape of a timeline, without a clock");
+  playing.add_option("FILE", options->play.file, "A timeline").required();
+  playing.add_option("--until", options->play.until_s, "Seconds at which it stops; else the end");
+  playing.add_option("--mesh", options->play.mesh, "Another model than the timeline's");
+  playing.add_option("--out", options->play.out, "Where to write the shape, .obj or .ply");
+  playing.add_flag("--json", options->play.json, "A summary as JSON");
+  playing.add_option("--speed", options->play.speed,
+                     "Times real time; 0 or without it: as fast as it can");
+  playing.on_chosen([options] { return edit::play_timeline(options->play); });
+}
+
+void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) {
+  cli::Command moving = add_edit_of_key(edit, "move", "Moves a key to another time", options);
+  moving.add_option("--to", options->time_s, "Seconds").required();
+  moving.on_chosen([options] {
+    return edit_hand(*options, [&](Timeline& timeline, Side side) {
+      return timeline::move_key(timeline, side, options->key, options->time_s);
+    });
+  });
+  cli::Command copying = add_edit_of_key(edit, "copy", "Copies a key to another time", options);
+  copying.add_option("--to", options->time_s, "Seconds").required();
+  copying.on_chosen([options] {
+    return edit_hand(*options, [&](Timeline& timeline, Side side) {
+      return timeline::copy_key(timeline, side, options->key, options->time_s);
+    });
+  });
+  cli::Command deleting = add_edit_of_key(edit, "delete", "Deletes a key", options);
+  deleting.on_chosen([options] {
+    return edit_hand(*options, [&](Timeline& timeline, Side side) {
+      return timeline::delete_key(timeline, side, options->key);
+    });
+  });
+  cli::Command adding = add_edit_of(edit, "add", "Adds a key where the hand is then", options);
+  adding.add_option("--hand", options->hand, "left or right").required();
+  adding.add_option("--at", options->time_s, "Seconds").required();
+  adding.on_chosen([options] {
+    return edit_hand(*options, [&](Timeline& timeline, Side side) {
+      return timeline::add_key(timeline, side, options->time_s);
+    });
+  });
+  cli::Command setting = add_edit_of_key(
+      edit, "set-tip", "Bends a finger so that its tip comes to a place (inverse kinematics)",
+      options);
+  setting.add_option("--finger", options->finger, "thumb, index, middle, ring or little")
+      .required();
+  setting.add_option("--to", options->place, "X,Y,Z in the model's units").required();
+  setting.add_option("--within", options->within_mm, "Millimetres that it may miss it by");
+  setting.on_chosen([options] { return set_tip(*options); });
+}
+
+void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
+  cli::Command retiming = add_edit_of(edit_command, "retime", "Slower or faster", options);
+  retiming.add_option("--scale", options->scale, "2: everything takes twice the time").required();
+  retiming.add_option("--from", options->from_s, "Seconds where that begins");
+  retiming.add_option("--to", options->to_s, "Seconds where it ends; what follows is moved");
+  retiming.on_chosen([options] {
+    return edit(*options, [&](Timeline& timeline) {
+      return timeline::retime(timeline, options->scale, options->from_s,
+                              options->to_s.value_or(std::numeric_limits<double>::infinity()));
+    });
+  });
+  cli::Command blending = add_edit_of(
+      edit_command, "blend", "Blends two timelines, or a key with its neighbours", options);
+  blending.add_option("--with", options->with, "Another timeline");
+  blending.add_option("--hand", options->hand, "left or right, for --key");
+  blending.add_option("--key", options->blended_key, "Number of the key");
+  blending.add_option("--factor", options->factor, "0: as it is, to 1: as the others are");
+  blending.on_chosen([options] { return blend(*options); });
+  cli::Command mirroring =
+      add_edit_of(edit_command, "mirror",
+                  "The left hand does what the right one did, and the other way round", options);
+  mirroring.add_option("--plane", options->plane,
+                       "The mirror's x in the model's units; without it, the model's middle");
+  mirroring.on_chosen([options] { return mirror(*options); });
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command =
+      program.add_command("edit", "Key poses of a recorded run: make, change, play");
+  command.require_command();
+  add_reading(command, options);
+  edit::add_timeline_view(command);
+  add_key_edits(command, options);
+  add_whole_edits(command, options);
+}
+
+} // namespace nendo::app::edit_command

@@ -1,0 +1,191 @@
+// nendo emulate: a data glove's electronics on a pseudo-terminal, with chosen faults.
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include <nendo/driver/emulator.hpp>
+
+#include "cli/cli.hpp"
+#include "gloves/served_emulator.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::emulate_command {
+namespace {
+
+struct Options {
+  driver::EmulatorOptions emulator;
+  std::string hand = "right";
+  std::string mask;
+  std::string pace = "clock";
+  std::string period_order = "msb";
+  std::string stamp_bit7 = "on";
+  double duration_s = 0.0;
+};
+
+std::string list_of(const std::vector<std::string_view>& names) {
+  std::string list;
+  for (const auto name : names)
+    list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
+}
+
+std::string faults_explained() {
+  std::string text = "Faults (--fault, as often as you like; times in s or ms since the start):\n";
+  for (const driver::FaultForm& fault : driver::fault_forms()) {
+    std::string form(fault.form);
+    form.resize(std::max<std::size_t>(form.size() + 1, 24), ' ');
+    text += "  " + form + std::string(fault.effect) + "\n";
+  }
+  return text + "Example: nendo emulate --link /tmp/glove --fault flip=0.1% --fault unplug@5s+2s";
+}
+
+// 1 to 24 bits; anything else is no mask of a glove.
+std::optional<std::uint32_t> parse_mask(std::string_view text) {
+  if (text.starts_with("0x")) text.remove_prefix(2);
+  std::uint32_t mask = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), mask, 16);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  if (!whole || mask == 0 || mask > 0xFFFFFF) return std::nullopt;
+  return mask;
+}
+
+Result<void> complete(Options& options) {
+  if (options.hand != "left" && options.hand != "right") {
+    return Error{Errc::usage, "--hand " + options.hand + ": use left or right"};
+  }
+  if (!std::isfinite(options.duration_s) || options.duration_s < 0.0) {
+    return Error{Errc::usage, "--duration: use a number of seconds, 0 for no end"};
+  }
+  driver::EmulatorOptions& emulator = options.emulator;
+  emulator.side = options.hand == "left" ? Side::left : Side::right;
+  emulator.pace = options.pace == "host" ? driver::EmulatorPace::host : driver::EmulatorPace::clock;
+  emulator.cyberglove.period_low_first = options.period_order == "lsb";
+  emulator.cyberglove.stamp_bit7 = options.stamp_bit7 == "on";
+  if (options.mask.empty()) return {};
+  const auto mask = parse_mask(options.mask);
+  if (!mask) {
+    return Error{Errc::usage, "--mask " + options.mask +
+                                  ": use up to 24 bits in hexadecimal, e.g. 7fff7f for 22 sensors"};
+  }
+  emulator.cyberglove.hardware_mask = *mask;
+  return {};
+}
+
+void print(const driver::EmulatorStats& stats) {
+  std::cout << stats.records_sent << " records sent, " << stats.bytes_received
+            << " bytes received from the host\n";
+  if (stats.bytes_refused > 0) {
+    std::cout << stats.bytes_refused << " bytes not sent, as no host read them\n";
+  }
+  if (stats.faults.empty()) return;
+  std::cout << "faults:";
+  for (const driver::FaultCount& fault : stats.faults)
+    std::cout << ' ' << fault.name << ' ' << fault.done << ',';
+  std::cout << " which touched " << stats.records_faulted << " records\n";
+}
+
+int emulate(Options& options) {
+  if (const auto completed = complete(options); !completed) return cli::report(completed.error());
+  const auto emulator = driver::GloveEmulator::open(options.emulator);
+  if (!emulator) return cli::report(emulator.error());
+
+  cli::install_stop_signals();
+  std::cout << "emulating a " << options.hand << "-hand " << options.emulator.glove << " at "
+            << (options.emulator.link.empty() ? (*emulator)->tty_path() : options.emulator.link)
+            << "; Ctrl-C ends it" << std::endl;
+
+  gloves::ServedEmulator server(**emulator);
+  const auto start = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> duration(options.duration_s);
+  while (!cli::stop_requested() && !server.is_over()) {
+    if (options.duration_s > 0.0 && std::chrono::steady_clock::now() - start >= duration) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const auto served = server.finish();
+  print((*emulator)->stats());
+  return served ? 0 : cli::report(served.error());
+}
+
+void add_glove_options(cli::Command& command, Options& options) {
+  driver::EmulatorOptions& emulator = options.emulator;
+  const std::string heading = "The glove";
+  command
+      .add_option("--glove", emulator.glove, "Its kind: " + list_of(driver::emulated_glove_names()))
+      .under(heading);
+  command.add_option("--hand", options.hand, "left or right").under(heading);
+  command.add_option("--sensors", emulator.sensors, "How many; a CyberGlove has 22 (default) or 18")
+      .under(heading);
+  command
+      .add_option("--motion", emulator.motion,
+                  "What the hand does: " + list_of(driver::motion_names()))
+      .under(heading);
+  command.add_option("--rate", emulator.rate_hz, "Records a second until the host sets its own")
+      .under(heading);
+  command.add_option("--seed", emulator.seed, "Varies motion, noise and faults").under(heading);
+  command.add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
+      .one_of({"clock", "host"})
+      .under(heading);
+}
+
+void add_cyberglove_options(cli::Command& command, Options& options) {
+  driver::EmulatedCyberGlove& glove = options.emulator.cyberglove;
+  const std::string heading = "CyberGlove only";
+  command.add_option("--model", glove.model, "1, 2 or 3").under(heading);
+  command.add_option("--mask", options.mask, "The sensors it has, in hexadecimal, e.g. 6b3b3f")
+      .under(heading);
+  command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch").under(heading);
+  command
+      .add_option("--reply-bytes", glove.reply_bytes,
+                  "Of the reply to a setting: 2, or 3 as one library expects")
+      .under(heading);
+  command
+      .add_option("--period-order", options.period_order,
+                  "Bytes of the words of T: msb or lsb first")
+      .one_of({"msb", "lsb"})
+      .under(heading);
+  command
+      .add_option("--stamp-bit7", options.stamp_bit7,
+                  "Bit 7 of a time stamp's first byte: on always, off if it may")
+      .one_of({"on", "off"})
+      .under(heading);
+  command
+      .add_flag("--streaming", glove.streaming, "It streams at the start, as a dead host left it")
+      .under(heading);
+  command
+      .add_flag("--pattern", glove.pattern,
+                "No motion: in record n, slot k counts 1 + (n + 29 k) mod 255")
+      .under(heading);
+  command
+      .add_option("--replay", glove.replay,
+                  "Send the records of this file of received bytes, again and again")
+      .under(heading);
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command(
+      "emulate", "Emulates a glove's electronics on a pseudo-terminal, to test with");
+  command
+      .add_option("--link", options->emulator.link,
+                  "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
+      .required();
+  command.add_option("--duration", options->duration_s, "Seconds to run; without it, until Ctrl-C");
+  command.add_option("--fault", options->emulator.faults, "What goes wrong, see below")
+      .once_each("FAULT");
+  command.add_option("--log", options->emulator.log,
+                     "Write all traffic to this file, a line a message");
+  add_glove_options(command, *options);
+  add_cyberglove_options(command, *options);
+  command.set_footer(faults_explained());
+  command.on_chosen([options] { return emulate(*options); });
+}
+
+} // namespace nendo::app::emulate_command

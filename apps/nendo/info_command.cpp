@@ -1,0 +1,172 @@
+// nendo info: asks a glove who it is.
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/driver/open_glove.hpp>
+#include <nendo/hand/angle_sources.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "cli/printable.hpp"
+#include "gloves/angle_sources_json.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::info_command {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::vector<std::string> names_of(SensorMask mask) {
+  std::vector<std::string> names;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (mask.has(sensor)) names.emplace_back(name_of(sensor));
+  }
+  return names;
+}
+
+void print_json(const driver::GloveInfo& info) {
+  ordered_json facts = ordered_json::object();
+  for (const auto& [name, value] : info.facts)
+    facts[name] = value;
+  const driver::Abilities& can = info.abilities;
+  const ordered_json line{
+      {"source", info.source},
+      {"model", info.model},
+      {"hand", name_of(info.side)},
+      {"sensors", names_of(info.sensors)},
+      {"angles", gloves::angle_sources_json(info.sensors)},
+      {"rate_hz", info.rate_hz},
+      {"counts", {{"most", info.counts.most}, {"whole_range", info.counts.whole_range}}},
+      {"abilities",
+       {{"wrist_switch", can.wrist_switch},
+        {"light", can.light},
+        {"vibration", can.vibration},
+        {"resistance", can.resistance}}},
+      {"facts", std::move(facts)}};
+  // A device's text need not be UTF-8.
+  cli::print_line(line);
+}
+
+// "a, b, c" in lines of at most `width` characters.
+std::vector<std::string> wrapped(const std::vector<std::string>& words, std::size_t width) {
+  std::vector<std::string> lines{""};
+  for (std::size_t at = 0; at < words.size(); ++at) {
+    const std::string word = words[at] + (at + 1 < words.size() ? "," : "");
+    std::string& line = lines.back();
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      lines.push_back(word);
+    } else {
+      line.append(line.empty() ? "" : " ").append(word);
+    }
+  }
+  return lines;
+}
+
+std::string abilities_text(const driver::Abilities& can) {
+  std::string text;
+  const auto add = [&](bool ability, const char* what) {
+    if (ability) text.append(text.empty() ? "" : ", ").append(what);
+  };
+  add(can.wrist_switch, "wrist switch");
+  add(can.light, "light");
+  add(can.vibration, "vibration");
+  add(can.resistance, "resistance");
+  return text.empty() ? "measures only" : text;
+}
+
+std::vector<std::string> angles_from(const hand::AngleSources& sources, hand::AngleSource source) {
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < hand::angle_count; ++n) {
+    if (sources[n] == source) names.emplace_back(hand::angle_names[n]);
+  }
+  return names;
+}
+
+/// Two columns, names and values, that fit 80 characters.
+class Columns {
+public:
+  explicit Columns(const driver::GloveInfo& info) {
+    for (const auto& fact : info.facts)
+      name_width_ = std::max(name_width_, fact.name.size());
+  }
+  void print(const std::string& name, const std::string& value) const {
+    std::string line = cli::printable(name);
+    line.resize(name_width_ + 2, ' ');
+    std::cout << line << cli::printable(value) << '\n';
+  }
+  void print_list(std::string name, const std::vector<std::string>& words) const {
+    for (const auto& line : wrapped(words, 80 - name_width_ - 2))
+      print(std::exchange(name, ""), line);
+  }
+
+private:
+  std::size_t name_width_ = 10;
+};
+
+// Which angles of the hand the glove measures; the others by the rule that makes them.
+void print_angles(const Columns& columns, SensorMask sensors) {
+  const hand::AngleSources sources = hand::angle_sources(sensors);
+  const auto measured = angles_from(sources, hand::AngleSource::measured).size();
+  columns.print("angles", std::to_string(measured) + " of " + std::to_string(hand::angle_count) +
+                              " measured" + (measured < hand::angle_count ? "; the others" : ""));
+  for (std::size_t n = 0; n < hand::angle_source_count; ++n) {
+    const auto source = static_cast<hand::AngleSource>(n);
+    const auto names = angles_from(sources, source);
+    if (source != hand::AngleSource::measured && !names.empty())
+      columns.print_list(std::string(name_of(source)), names);
+  }
+}
+
+void print_text(const driver::GloveInfo& info) {
+  const Columns columns(info);
+  char rate[32];
+  std::snprintf(rate, sizeof rate, "%.6g Hz", info.rate_hz);
+  const auto sensors = names_of(info.sensors);
+
+  columns.print("source", info.source);
+  columns.print("model", info.model);
+  columns.print("hand", std::string(name_of(info.side)));
+  columns.print("rate", info.rate_hz > 0.0 ? rate : "unknown");
+  columns.print("counts",
+                "0 to " + std::to_string(info.counts.most) +
+                    (info.counts.whole_range ? ", straight to fully bent" : ", uncalibrated"));
+  columns.print("abilities", abilities_text(info.abilities));
+  columns.print("sensors", std::to_string(sensors.size()));
+  columns.print_list("", sensors);
+  print_angles(columns, info.sensors);
+  if (!info.facts.empty()) std::cout << "\nin its own words\n";
+  for (const auto& [name, value] : info.facts)
+    columns.print(name, value);
+}
+
+int info(const std::string& spec, bool json) {
+  const auto glove = driver::open_glove(spec);
+  if (!glove) return cli::report(glove.error());
+  json ? print_json((*glove)->info()) : print_text((*glove)->info());
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  struct Options {
+    std::string glove;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command("info", "Asks a glove who it is and what it can do");
+  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
+  command.add_flag("--json", options->json, "One JSON object");
+  command.on_chosen([options] { return info(options->glove, options->json); });
+}
+
+} // namespace nendo::app::info_command

@@ -1,0 +1,149 @@
+// nendo monitor: what a glove sends, as live bars in a terminal or as JSON lines.
+
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include <unistd.h>
+
+#include <nendo/driver/open_glove.hpp>
+#include <nendo/hand/active_calibration.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/terminal.hpp"
+#include "gloves/angle_sources_json.hpp"
+#include "gloves/glove_calibration.hpp"
+#include "gloves/glove_light.hpp"
+#include "gloves/monitor_screen.hpp"
+#include "gloves/sample_json.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::monitor_command {
+namespace {
+
+struct Options {
+  std::string glove;
+  bool json = false;
+  bool raw = false;
+  std::uint64_t count = 0;
+  gloves::CalibrationOptions calibration;
+};
+
+/// Samples on their way from a glove to what is shown of them.
+struct Monitored {
+  driver::Glove& glove;
+  SampleRing& ring;
+  hand::ActiveCalibration* calibrations;       ///< null: counts only
+  std::uint64_t most;                          ///< samples to show; 0: no end
+  const hand::Calibration* in_force = nullptr; ///< of the sample that came last; null: none
+  std::uint64_t shown = 0;
+
+  bool wanted() const { return !cli::stop_requested() && (most == 0 || shown < most); }
+  bool next(GloveSample& sample) {
+    if (!wanted() || !ring.try_pop(sample)) return false;
+    if (calibrations != nullptr) in_force = &calibrations->follow(sample);
+    ++shown;
+    return true;
+  }
+};
+
+void show_lines(Monitored& monitored) {
+  GloveSample sample;
+  gloves::GloveChanges gloves;
+  while (monitored.wanted() && std::cout) {
+    bool any = false;
+    for (; monitored.next(sample); any = true) {
+      const bool first = gloves.is_first(sample.side, sample.present);
+      std::cout << gloves::sample_json(sample, monitored.in_force, first) << '\n';
+    }
+    if (any) std::cout.flush();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+/// False: the user wants to end it.
+bool handle(char key, gloves::SeenCounts& seen, gloves::GloveLight& light) {
+  if (key == 'r') seen.forget();
+  if (key == 'l') light.show(!light.is_lit());
+  return key != 'q';
+}
+
+void show_screen(Monitored& monitored) {
+  constexpr std::chrono::milliseconds frame_time{34}; // at most 30 pictures a second
+  cli::Terminal terminal;
+  gloves::GloveLight light(monitored.glove);
+  gloves::SeenCounts seen;
+  GloveSample sample;
+  bool any = false;
+  std::vector<std::string> lines;
+  bool goes_on = true;
+  while (goes_on && monitored.wanted() && !terminal.is_gone()) {
+    for (; monitored.next(sample); any = true)
+      seen.see(sample);
+    const HostTime now = HostClock::now();
+    const gloves::MonitorPicture picture{&monitored.glove.info(), monitored.glove.stats(),
+                                         any ? &sample : nullptr, &seen,
+                                         monitored.in_force,      to_seconds(now - sample.arrival),
+                                         light.is_lit(),          terminal.has_keys()};
+    lines = gloves::monitor_lines(picture, terminal.size());
+    terminal.draw(lines);
+    while (goes_on && !cli::stop_requested() && !terminal.is_gone() &&
+           HostClock::now() < now + frame_time) {
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(now + frame_time - HostClock::now());
+      if (const auto key = terminal.key(left)) goes_on = handle(*key, seen, light);
+    }
+  }
+  terminal.leave();
+  for (const auto& line : lines) // the last picture stays
+    std::cout << line << '\n';
+  std::cout << std::flush;
+  light.put_out();
+}
+
+int monitor(const Options& options) {
+  if (const auto fine = gloves::check(options.calibration); !fine) return cli::report(fine.error());
+  const auto glove = driver::open_glove(options.glove);
+  if (!glove) return cli::report(glove.error());
+  std::optional<hand::ActiveCalibration> calibrations;
+  if (!options.raw) {
+    const auto known =
+        gloves::known_hands((*glove)->info(), (*glove)->info().side, options.calibration);
+    if (!known) return cli::report(known.error());
+    calibrations = known->in_force();
+  }
+  SampleRing ring(1024);
+  cli::install_stop_signals();
+  if (const auto started = (*glove)->start(ring); !started) return cli::report(started.error());
+
+  Monitored monitored{**glove, ring, calibrations ? &*calibrations : nullptr, options.count};
+  if (options.json || isatty(STDOUT_FILENO) == 0) {
+    show_lines(monitored);
+  } else {
+    show_screen(monitored);
+  }
+  (*glove)->stop();
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command(
+      "monitor",
+      "Shows what a glove sends: bars in a terminal, JSON lines when piped or asked for");
+  command.set_footer(
+      "In a bar, # shows the count, and [ ] the least and the greatest seen so far.\n"
+      "Keys: q quit, r forget the ranges seen, l light on and off.");
+  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
+  command.add_flag("--json", options->json, "One JSON object a line, also in a terminal");
+  command.add_flag("--raw", options->raw, "Raw counts only, no angles");
+  gloves::add_calibration_options(command, options->calibration);
+  command.add_option("--count", options->count, "End after so many samples");
+  command.on_chosen([options] { return monitor(*options); });
+}
+
+} // namespace nendo::app::monitor_command

@@ -1,0 +1,200 @@
+// nendo picture: a PNG of a model, without a screen.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <nendo/viewer/picture.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+#include "nendo/commands.hpp"
+#include "takes/take.hpp"
+
+namespace nendo::app::picture_command {
+namespace {
+
+using namespace nendo::viewer;
+
+struct Options {
+  std::string file;
+  std::string out;
+  std::string view = "30,12";
+  std::string size = "960x720";
+  std::uint32_t turntable = 0;
+  std::uint32_t strip = 0;
+  std::optional<double> time_s;
+  bool numbered = false;
+};
+
+constexpr std::uint32_t most_panels = 64;
+
+struct Wanted {
+  View view;
+  Size size;
+};
+
+Error bad(const std::string& option, const std::string& what) {
+  return {Errc::usage, option + ": " + what};
+}
+
+Result<Wanted> check(const Options& options) {
+  const auto view = view_named(options.view);
+  if (!view)
+    return bad("--view " + options.view,
+               "use front, back, left, right, side, top or AZIMUTH,ELEVATION in degrees");
+  const auto size = size_named(options.size);
+  if (!size) return bad("--size " + options.size, "use WIDTHxHEIGHT in pixels, 16 to 8192 each");
+  const std::uint32_t panels = std::max({1U, options.turntable, options.strip});
+  for (const auto& [name, count] :
+       {std::pair{"--turntable", options.turntable}, {"--strip", options.strip}})
+    if (count != 0 && (count < 2 || count > most_panels))
+      return bad(name, "use 2 to " + std::to_string(most_panels) + " pictures");
+  if (options.turntable > 0 && options.strip > 0)
+    return bad("--turntable and --strip", "give one of them");
+  if (options.numbered && panels == 1)
+    return bad("--numbered", "is for --turntable and --strip; leave it out");
+  const double pixels = 1.0 * size->width * size->height * panels;
+  if (!options.numbered && pixels > 6e7)
+    return bad("--size " + options.size, "too large for " + std::to_string(panels) +
+                                             " pictures on one sheet; use less, or --numbered");
+  if (const auto fine = cli::check_place("--out", options.out, {".png"}); !fine)
+    return fine.error();
+  return Wanted{*view, *size};
+}
+
+// Of the take's times, those that are asked for.
+Result<std::vector<double>> times_of(const Options& options, const takes::Take& take) {
+  if ((options.time_s || options.strip > 0) && !(take.duration_s > 0.0))
+    return bad(options.file, "a mesh has no times; leave --time and --strip out");
+  if (options.strip > 0) {
+    std::vector<double> times;
+    for (std::uint32_t at = 0; at < options.strip; ++at)
+      times.push_back(take.duration_s * at / (options.strip - 1));
+    return times;
+  }
+  const double time = options.time_s.value_or(0.0);
+  if (!(time >= 0.0 && time <= take.duration_s)) {
+    return bad("--time", "use 0 to " + std::to_string(take.duration_s) + " s, which is how long " +
+                             options.file + " lasts");
+  }
+  return std::vector<double>{time};
+}
+
+std::string seconds_text(double time_s) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", time_s);
+  return text;
+}
+
+// All scenes in one frame, so that a strip does not jump.
+Camera camera_for(const std::vector<Scene>& scenes, View view, Size size) {
+  std::vector<Eigen::Vector3f> points;
+  for (const Scene& scene : scenes) {
+    const auto outline = scene.outline();
+    points.insert(points.end(), outline.begin(), outline.end());
+  }
+  return framing(points, view, 1.0 * size.width / size.height);
+}
+
+std::vector<Panel> draw_strip(const std::vector<Scene>& scenes, const std::vector<double>& times,
+                              const Wanted& wanted) {
+  const Camera camera = camera_for(scenes, wanted.view, wanted.size);
+  std::vector<Panel> panels;
+  for (std::size_t at = 0; at < scenes.size(); ++at) {
+    const Lighting lighting(scenes[at], wanted.view.azimuth_deg);
+    panels.push_back({draw(lighting, camera, wanted.size),
+                      times.size() > 1 ? seconds_text(times[at]) : std::string()});
+  }
+  return panels;
+}
+
+// From one distance, so that the model keeps its size as it turns.
+std::vector<Panel> draw_turntable(const std::vector<Scene>& scenes, std::uint32_t count,
+                                  const Wanted& wanted) {
+  std::vector<Camera> cameras;
+  for (std::uint32_t at = 0; at < count; ++at) {
+    View view = wanted.view;
+    view.azimuth_deg += 360.0 * at / count;
+    cameras.push_back(camera_for(scenes, view, wanted.size));
+  }
+  const auto farthest =
+      std::max_element(cameras.begin(), cameras.end(), [](const Camera& a, const Camera& b) {
+        return a.distance_m < b.distance_m;
+      })->distance_m;
+  std::vector<Panel> panels;
+  for (Camera& camera : cameras) {
+    camera.distance_m = farthest;
+    camera.target = cameras.front().target;
+    const Lighting lighting(scenes.front(), camera.view.azimuth_deg);
+    const long shown = std::lround(std::remainder(camera.view.azimuth_deg, 360.0));
+    panels.push_back(
+        {draw(lighting, camera, wanted.size), "azimuth " + std::to_string(shown) + " degrees"});
+  }
+  return panels;
+}
+
+Result<void> write_panels(const Options& options, const std::vector<Panel>& panels) {
+  if (panels.size() == 1) return write_png(options.out, panels.front().image);
+  if (!options.numbered) return write_png(options.out, contact_sheet(panels));
+  const std::filesystem::path out(options.out);
+  for (std::size_t at = 0; at < panels.size(); ++at) {
+    char number[32];
+    std::snprintf(number, sizeof number, "-%02zu.png", at);
+    auto name = out.parent_path() / out.stem();
+    name += number;
+    if (auto done = write_png(name, panels[at].image); !done) return done;
+  }
+  return {};
+}
+
+Result<void> make_picture(const Options& options) {
+  const auto wanted = check(options);
+  if (!wanted) return wanted.error();
+  const auto take = takes::read_take(options.file);
+  if (!take) return take.error();
+  const auto times = times_of(options, *take);
+  if (!times) return times.error();
+  const SceneBuilder builder(take->rest, take->units_per_metre);
+  std::vector<Scene> scenes;
+  for (const double time : *times) {
+    const auto moment = take->moment_at(time);
+    if (!moment) return moment.error();
+    builder.build(*moment, {}, scenes.emplace_back());
+  }
+  return write_panels(options, options.turntable > 0
+                                   ? draw_turntable(scenes, options.turntable, *wanted)
+                                   : draw_strip(scenes, *times, *wanted));
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command =
+      program.add_command("picture", "Draws a model or a recording as a PNG, without a screen");
+  command
+      .add_option("FILE", options->file, "OBJ or PLY file, or what `nendo run --record` recorded")
+      .required();
+  command.add_option("--out", options->out, "Where to write the picture, .png").required();
+  command.add_option("--view", options->view,
+                     "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
+  command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
+  command.add_option("--turntable", options->turntable, "So many pictures all round, on one sheet");
+  command.add_option("--time", options->time_s, "Of a recording: the moment, in seconds");
+  command.add_option("--strip", options->strip,
+                     "Of a recording: so many moments from its begin to its end, on one sheet");
+  command.add_flag("--numbered", options->numbered,
+                   "In place of a sheet: files of their own, FILE-00.png and so on");
+  command.on_chosen([options] {
+    const auto done = make_picture(*options);
+    return done ? 0 : cli::report(done.error());
+  });
+}
+
+} // namespace nendo::app::picture_command

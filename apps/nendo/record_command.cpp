@@ -1,0 +1,162 @@
+// nendo record: what gloves send, as a recording.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/durations.hpp"
+#include "cli/json_line.hpp"
+#include "gloves/hand_length.hpp"
+#include "nendo/commands.hpp"
+#include "session/run_recording.hpp"
+
+namespace nendo::app::record_command {
+namespace {
+
+struct Options {
+  std::vector<std::string> gloves;
+  std::string out;
+  std::string duration;
+  double duration_s = 0.0; ///< 0: until a stop signal
+  gloves::CalibrationOptions calibration;
+  gloves::HandLength length;
+  bool json = false;
+};
+
+Result<void> check(Options& options) {
+  if (options.gloves.size() > 2) return Error{Errc::usage, "name one glove, or one for each hand"};
+  if (!options.duration.empty()) {
+    const auto seconds = cli::parse_duration(options.duration);
+    if (!seconds) return seconds.error();
+    options.duration_s = *seconds;
+  }
+  if (auto fine = options.length.check(); !fine) return fine;
+  if (auto fine = check(options.calibration); !fine) return fine;
+  std::error_code ignored;
+  if (std::filesystem::exists(options.out, ignored)) {
+    return Error{Errc::failed, "--out " + options.out +
+                                   ": is there already, and no recording is written over; name "
+                                   "another file or move it away"};
+  }
+  return {};
+}
+
+Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
+  std::vector<gloves::OpenHand> hands;
+  for (const auto& spec : options.gloves) {
+    auto hand = gloves::open_hand(spec);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  if (hands.size() == 2 && hands[0].side == hands[1].side) {
+    return Error{Errc::usage,
+                 options.gloves[0] + " and " + options.gloves[1] + " are both " +
+                     std::string(name_of(hands[0].side)) +
+                     "-hand gloves; where that is wrong, add ?hand=left or ?hand=right"};
+  }
+  for (auto& hand : hands) {
+    if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
+  }
+  for (auto& hand : hands) {
+    if (const auto came = gloves::wait_for_first_sample(hand); !came) return came.error();
+    if (const auto known = gloves::calibrate(hand, options.calibration); !known)
+      return known.error();
+  }
+  return hands;
+}
+
+recording::Setup setup_for(const std::vector<gloves::OpenHand>& hands, const Options& options) {
+  recording::Setup setup = session::begin_setup(hands, options.calibration.user);
+  for (const auto& hand : hands) {
+    recording::HandSetup of_hand;
+    of_hand.side = hand.side;
+    of_hand.size = options.length.size(hand.known.own.size);
+    of_hand.first = hand.first;
+    of_hand.adapt = hand.known.adapt;
+    of_hand.calibration = hand.known.own.calibration;
+    of_hand.swapped = hand.known.swapped.calibration;
+    of_hand.swapped_size = options.length.size(hand.known.swapped.size);
+    setup.hands.push_back(of_hand);
+  }
+  return setup;
+}
+
+/// From the gloves' rings to the input log, until it is over.
+void copy_samples(const std::vector<gloves::OpenHand>& hands, flow::InputLog& input_log,
+                  double duration_s) {
+  const HostTime start = HostClock::now();
+  const auto drain = [&] {
+    for (std::size_t at = 0; at < hands.size(); ++at) {
+      hands[at].ring->drain([&](const GloveSample& sample) noexcept {
+        input_log.sample(static_cast<std::uint8_t>(at), sample);
+      });
+    }
+  };
+  for (std::size_t at = 0; at < hands.size(); ++at)
+    input_log.sample(static_cast<std::uint8_t>(at), hands[at].first);
+  while (!cli::stop_requested() &&
+         (duration_s <= 0.0 || to_seconds(HostClock::now() - start) < duration_s)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    drain();
+  }
+  for (const auto& hand : hands)
+    hand.glove->stop();
+  drain();
+}
+
+int record(Options& options) {
+  if (const auto fine = check(options); !fine) return cli::report(fine.error());
+  cli::install_stop_signals();
+  const auto hands = open_gloves(options);
+  if (!hands) return cli::report(hands.error());
+  flow::InputLog input_log;
+  recording::RecorderOptions wanted;
+  wanted.file = options.out;
+  wanted.tell = cli::note;
+  const HostTime start = HostClock::now();
+  auto recorder =
+      recording::Recorder::begin(setup_for(*hands, options), input_log, std::move(wanted));
+  if (!recorder) return cli::report(recorder.error());
+  copy_samples(*hands, input_log, options.duration_s);
+  const auto recorded = (*recorder)->end();
+  if (!recorded) return static_cast<int>(recorded.error().code); // it was told at once
+  const double elapsed_s = to_seconds(HostClock::now() - start);
+  if (options.json) {
+    cli::print_line(nlohmann::ordered_json{{"event", "recorded"},
+                                           {"elapsed_s", elapsed_s},
+                                           {"samples", recorded->samples},
+                                           {"lost", recorded->lost},
+                                           {"bytes", recorded->bytes}});
+  } else {
+    std::printf("recorded %llu samples in %.1f s, %llu lost; %llu bytes in %s\n",
+                static_cast<unsigned long long>(recorded->samples), elapsed_s,
+                static_cast<unsigned long long>(recorded->lost),
+                static_cast<unsigned long long>(recorded->bytes), options.out.c_str());
+  }
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command("record", "Records what gloves send");
+  command.set_footer("The recording is a glove itself: replay:FILE. `nendo run --record` records "
+                     "all of a run, so that it can be replayed to the same shape.");
+  command
+      .add_option("GLOVE", options->gloves, "One, or one for each hand: serial:/dev/ttyUSB0, sim")
+      .required();
+  command.add_option("--out", options->out, "The recording, a new file").required();
+  command.add_option("--duration", options->duration,
+                     "How long, e.g. 30s or 10m; without it, until Ctrl-C");
+  gloves::add_calibration_options(command, options->calibration);
+  gloves::add_hand_length(command, options->length);
+  command.add_flag("--json", options->json, "A summary as one JSON object");
+  command.on_chosen([options] { return record(*options); });
+}
+
+} // namespace nendo::app::record_command

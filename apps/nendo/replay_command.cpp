@@ -1,0 +1,206 @@
+// nendo replay: a recorded run once more, at any speed or without a clock.
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/simd.hpp>
+#include <nendo/recording/loop_replay.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "cli/output_place.hpp"
+#include "cli/printable.hpp"
+#include "nendo/commands.hpp"
+#include "takes/recorded_model.hpp"
+
+namespace nendo::app::replay_command {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string mesh;
+  std::string out;
+  double speed = 1.0;
+  double from_s = 0.0;
+  std::optional<double> to_s;
+  bool loops = false;
+  bool no_clock = false;
+  bool json = false;
+};
+
+/// How a replay went.
+struct Replayed {
+  std::uint64_t ticks = 0;
+  bool to_the_end = false;
+  bool exact = false;           ///< nothing was missing
+  std::optional<bool> the_same; ///< as the live run's shape; nothing: it does not tell
+  std::uint64_t shapes = 0;     ///< recorded ones that were compared
+  double farthest = 0.0;        ///< of a vertex from where they have it, model units
+  double elapsed_s = 0.0;
+  deform::Points shape;
+};
+
+Result<void> check(const Options& options) {
+  constexpr double least_speed = 0.01;
+  constexpr double most_speed = 100.0;
+  constexpr double most_s = 1e7;
+  if (!(options.speed >= least_speed && options.speed <= most_speed))
+    return Error{Errc::usage, "--speed: use a number from 0.01 to 100"};
+  const double to_s = options.to_s.value_or(most_s);
+  if (!(options.from_s >= 0.0 && options.from_s < to_s && to_s <= most_s))
+    return Error{Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"};
+  if (options.loops && options.no_clock)
+    return Error{Errc::usage, "--loop and --no-clock: give one of them"};
+  return cli::check_place("--out", options.out, {".obj", ".ply"});
+}
+
+HostTime host_time(const recording::Setup& setup, double seconds) {
+  return setup.begun_host +
+         std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
+}
+
+/// Sleeps until this tick's turn has come, in small pieces, so that a signal ends it.
+class Pace {
+public:
+  Pace(const Options& options, HostTime first) : options_(options), first_(first) {}
+
+  void wait_for(HostTime tick) {
+    if (options_.no_clock || tick < first_) return;
+    if (!begun_) begun_ = HostClock::now();
+    const double due_s = to_seconds(tick - first_) / options_.speed;
+    double left_s = 0.0;
+    while (!cli::stop_requested() &&
+           (left_s = due_s - to_seconds(HostClock::now() - *begun_)) > 0.0)
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left_s, 0.05)));
+  }
+
+private:
+  const Options& options_;
+  HostTime first_;
+  std::optional<HostTime> begun_;
+};
+
+// With the shape that is recorded behind the latest tick, if one is.
+void compare_shapes(recording::TakeReader& reader, flow::DeformLoop& loop, Replayed& done) {
+  const auto recorded = reader.take_shape();
+  if (!recorded) return;
+  loop.frames().update();
+  loop.layout().unpack(loop.frames().front().shape, done.shape);
+  const auto distance = recording::distance_between(*recorded, done.shape);
+  if (!distance) return;
+  ++done.shapes;
+  done.farthest = std::max(done.farthest, *distance);
+}
+
+Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) {
+  auto reader = recording::TakeReader::open(options.file);
+  if (!reader) return reader.error();
+  auto replay = recording::LoopReplay::make(reader->setup(), model);
+  if (!replay) return Error{replay.error().code, options.file + ": " + replay.error().message};
+  constexpr double no_end_s = 1e8;
+  const HostTime last = host_time(reader->setup(), options.to_s.value_or(no_end_s));
+  Pace pace(options, host_time(reader->setup(), options.from_s));
+  const HostTime start = HostClock::now();
+  Replayed done;
+  done.to_the_end = true;
+  while (const auto entry = reader->next()) {
+    compare_shapes(*reader, (*replay)->loop(), done);
+    if (const auto* tick = std::get_if<flow::LoggedTick>(&*entry)) {
+      if (tick->woke >= last) done.to_the_end = false;
+      pace.wait_for(tick->woke);
+      if (cli::stop_requested()) done.to_the_end = false;
+      if (!done.to_the_end) break;
+    }
+    if ((*replay)->feed(*entry)) ++done.ticks;
+  }
+  if (done.to_the_end) compare_shapes(*reader, (*replay)->loop(), done);
+  done.exact = (*replay)->is_exact() && reader->chunks().damage_count() == 0;
+  done.elapsed_s = to_seconds(HostClock::now() - start);
+  done.shape = (*replay)->loop().final_shape();
+  const auto& ending = reader->ending();
+  const bool of_this_model = recording::sum_of(model.vertices) == reader->setup().loop->mesh_sum;
+  if (done.to_the_end && done.exact && of_this_model && ending && ending->shape)
+    done.the_same = *ending->shape == recording::sum_of(done.shape);
+  return done;
+}
+
+void print(const Options& options, const Replayed& done) {
+  const auto sum = recording::sum_of(done.shape);
+  if (options.json) {
+    nlohmann::ordered_json line{
+        {"event", "replayed"},           {"ticks", done.ticks}, {"elapsed_s", done.elapsed_s},
+        {"to_the_end", done.to_the_end}, {"exact", done.exact}, {"same_shape", nullptr},
+        {"vertices", sum.vertices},      {"crc32c", sum.crc},   {"result", options.out}};
+    if (done.the_same) line["same_shape"] = *done.the_same;
+    line["shapes"] = done.shapes;
+    line["farthest_from_shapes"] = done.farthest;
+    cli::print_line(line);
+    return;
+  }
+  std::printf("replayed %llu ticks in %.2f s; ", static_cast<unsigned long long>(done.ticks),
+              done.elapsed_s);
+  if (done.the_same) {
+    std::printf(*done.the_same ? "the shape is the live run's, bit for bit\n"
+                               : "the shape is NOT the live run's\n");
+  } else {
+    std::printf(done.exact
+                    ? "nothing is missing\n"
+                    : "something is missing in the recording, so the shape may be another\n");
+  }
+  if (done.shapes > 0)
+    std::printf("%llu recorded shapes; no vertex is farther than %.3g from where they have it\n",
+                static_cast<unsigned long long>(done.shapes), done.farthest);
+  std::fflush(stdout);
+}
+
+int replay(const Options& options) {
+  if (const auto fine = check(options); !fine) return cli::report(fine.error());
+  const auto reader = recording::TakeReader::open(options.file);
+  if (!reader) return cli::report(reader.error());
+  auto model = takes::recorded_model(options.file, reader->setup(), options.mesh);
+  if (!model) return cli::report(model.error());
+  const std::string simd(deform::simd_names().front());
+  if (reader->setup().loop->simd != simd) {
+    cli::note("recorded with the instructions " + cli::printable(reader->setup().loop->simd) +
+              ", replayed with " + simd + ", which round another way");
+  }
+  cli::install_stop_signals();
+  for (;;) {
+    auto done = replay_once(options, *model);
+    if (!done) return cli::report(done.error());
+    print(options, *done);
+    if (options.loops && !cli::stop_requested()) continue;
+    if (!options.out.empty()) {
+      model->vertices = std::move(done->shape);
+      if (const auto written = deform::write_mesh(options.out, *model); !written)
+        return cli::report(written.error());
+    }
+    return done->the_same.value_or(true) ? 0 : static_cast<int>(Errc::failed);
+  }
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command =
+      program.add_command("replay", "Replays a recorded run: the same shape, bit for bit");
+  command.add_option("FILE", options->file, "What `nendo run --record` recorded").required();
+  command.add_option("--speed", options->speed, "0.01 to 100 times as fast");
+  command.add_flag("--no-clock", options->no_clock, "As fast as the machine can");
+  command.add_flag("--loop", options->loops, "Again and again, until Ctrl-C");
+  command.add_option("--from", options->from_s,
+                     "Seconds from the beginning; what was before is made without a clock");
+  command.add_option("--to", options->to_s, "Seconds from the beginning where it ends");
+  command.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
+  command.add_option("--out", options->out, "Where to write the shape, .obj or .ply");
+  command.add_flag("--json", options->json, "A summary as JSON");
+  command.on_chosen([options] { return replay(*options); });
+}
+
+} // namespace nendo::app::replay_command

@@ -1,0 +1,232 @@
+// nendo run: the main job, from gloves to a deformed model.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/flow/tick_grid.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+#include "nendo/commands.hpp"
+#include "service/service_notice.hpp"
+#include "session/filter_options.hpp"
+#include "session/kernel_options.hpp"
+#include "session/live_view.hpp"
+#include "session/loop_options.hpp"
+#include "session/open_hands.hpp"
+#include "session/run_publishing.hpp"
+#include "session/run_report.hpp"
+#include "session/web_outlet.hpp"
+
+namespace nendo::app::run_command {
+namespace {
+
+struct CommandOptions {
+  session::RunOptions run;
+  std::string mode = "type1";
+  std::string switch_action = "none";
+  session::FilterArguments filter;
+  session::KernelOptions kernel;
+  session::LoopArguments loop;
+  session::ViewOptions view;
+  std::vector<std::string> publish;
+  std::string web; ///< [ADDR:]PORT; empty: none
+  bool injective = false;
+  bool not_injective = false;
+};
+
+// Up to this size a tick of 64 links takes less than a tick at 90 Hz has.
+constexpr Eigen::Index most_injective_unasked = 100'000;
+
+std::string dated_name() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char name[64];
+  std::strftime(name, sizeof name, "nendo-%Y%m%d-%H%M%S.obj", &local);
+  return name;
+}
+
+Result<void> check_outputs(const CommandOptions& options) {
+  const session::RunOptions& run = options.run;
+  const session::ViewOptions& view = options.view;
+  if (!view.window && (view.frames > 0 || !view.screenshot.empty()))
+    return Error{Errc::usage, "--frames and --screenshot are the window's; add --view"};
+  if (auto fine = cli::check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
+  if (auto fine = cli::check_place("--picture", run.picture, {".png"}); !fine) return fine;
+  if (auto fine = cli::check_place("--record", run.recording.file); !fine) return fine;
+  if (auto fine = cli::check_place("--screenshot", view.screenshot, {".png"}); !fine) return fine;
+  return cli::check_distinct({{"--out", run.out},
+                              {"--picture", run.picture},
+                              {"--record", run.recording.file},
+                              {"--screenshot", view.screenshot}});
+}
+
+Result<void> check(CommandOptions& options) {
+  auto& run = options.run;
+  const auto mode = flow::mode_named(options.mode);
+  if (!mode) return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
+  run.loop.sculptor.mode = *mode;
+  const auto action = flow::switch_action_named(options.switch_action);
+  if (!action) {
+    return Error{Errc::usage, "--switch " + options.switch_action +
+                                  ": unknown; use none, grab, commit, toggle or keep"};
+  }
+  run.loop.switch_action = *action;
+  const auto filter = options.filter.parse();
+  if (!filter) return filter.error();
+  run.filter = *filter;
+  const auto csrbf = options.kernel.parse();
+  if (!csrbf) return csrbf.error();
+  run.loop.sculptor.deformer.csrbf = *csrbf;
+  if (options.injective && options.not_injective)
+    return Error{Errc::usage, "--injective and --no-injective: give one of them"};
+  if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
+        run.loop.rate_hz <= flow::TickGrid::most_rate_hz)) {
+    return Error{Errc::usage, "--rate: use 1 to 10000 ticks a second"};
+  }
+  if (auto fine = options.loop.parse(run.loop, run.realtime); !fine) return fine;
+  if (!std::isfinite(run.duration_s) || run.duration_s < 0.0 || run.duration_s > 1e7) {
+    return Error{Errc::usage, "--duration: use a number of seconds up to 10000000, 0 for no end"};
+  }
+  if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
+    return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
+  if (auto fine = session::check_radius(run.radius); !fine) return fine;
+  if (auto fine = run.length.check(); !fine) return fine;
+  if (auto fine = check(run.calibration); !fine) return fine;
+  if (run.out.empty()) run.out = dated_name();
+  if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
+  if (run.mesh.empty()) run.mesh = cli::shipped_model("moai.obj").string();
+  return check_outputs(options);
+}
+
+int run(CommandOptions& options) {
+  if (const auto fine = check(options); !fine) return cli::report(fine.error());
+  auto published = session::publish_to(options.publish);
+  if (!published) return cli::report(published.error());
+  auto model = deform::read_mesh(options.run.mesh);
+  if (!model) return cli::report(model.error());
+  if (options.injective ||
+      (!options.not_injective && model->vertices.cols() <= most_injective_unasked))
+    options.run.loop.sculptor.deformer.injective.emplace();
+  cli::install_stop_signals();
+  session::RunOptions& wanted = options.run;
+  const flow::RealtimeProcess process(wanted.realtime);
+  wanted.grants = process.grants();
+  std::unique_ptr<session::Onlooker> window;
+  if (options.view.window) {
+    auto opened = session::open_live_view(options.view, wanted);
+    if (!opened) return cli::report(opened.error());
+    window = *std::move(opened);
+  }
+  std::unique_ptr<session::WebOutlet> browser;
+  if (!options.web.empty()) {
+    auto opened = session::open_web(options.web, wanted.mesh);
+    if (!opened) return cli::report(opened.error());
+    browser = *std::move(opened);
+  }
+  EventCount event_count;
+  auto hands = session::open_hands(wanted, *model, event_count);
+  if (!hands) return cli::report(hands.error());
+  service::ServiceNotice service;
+  session::Followers followers;
+  followers.progress = [&service, shown = session::progress_for(wanted)](const flow::Frame& frame,
+                                                                         double elapsed_s) {
+    service.alive();
+    shown(frame, elapsed_s);
+  };
+  followers.onlooker = window.get();
+  for (const auto& outlet : *published)
+    followers.outlets.push_back(outlet.get());
+  if (browser) followers.outlets.push_back(browser.get());
+  auto outcome = session::run_session(wanted, *hands, *std::move(model), followers);
+  if (!outcome) return cli::report(outcome.error());
+  for (const auto& outlet : *published)
+    outcome->published.push_back(outlet->end());
+  session::print_summary(wanted, *hands, *outcome);
+  const bool recorded =
+      std::all_of(outcome->recordings.begin(), outcome->recordings.end(),
+                  [](const auto& of_loop) { return of_loop.recorded.has_value(); });
+  return recorded ? 0 : static_cast<int>(Errc::failed);
+}
+
+void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions>& options) {
+  session::RunOptions& run_options = options->run;
+  std::string gloves;
+  for (const auto& [grammar, summary] : driver::driver_summaries()) {
+    gloves += "\n  " + std::string(grammar) + "\n      " + std::string(summary);
+  }
+  command.set_footer(
+      "A GLOVE is one of" + gloves +
+      "\nWithout --left and --right every identified glove is used, or simulated hands.");
+  command.add_option("--left", run_options.left, "GLOVE on the left hand");
+  command.add_option("--right", run_options.right, "GLOVE on the right hand");
+  command.add_option("MODEL,--mesh", run_options.mesh,
+                     "OBJ or PLY file to shape; without it, the shipped Moai");
+  command.add_option(
+      "--mode", options->mode,
+      "type1: the rest shape follows the fingertips; type2: strokes along their paths");
+  command.add_option(
+      "--radius", run_options.radius,
+      "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
+      "or five with commas between, thumb to little finger; 10+40:0.5 is a mix");
+  gloves::add_calibration_options(command, run_options.calibration);
+  gloves::add_hand_length(command, run_options.length);
+  session::add_kernel_options(command, options->kernel);
+  command.add_flag("--injective", options->injective,
+                   "Never fold: in links that each stay injective; fingertips whose ways cross are "
+                   "held apart. By default with models of up to " +
+                       std::to_string(most_injective_unasked) + " vertices");
+  command.add_flag("--no-injective", options->not_injective, "Whatever the fingertips ask for");
+  command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
+  options->loop.add_to(command);
+  command.add_option("--switch", options->switch_action,
+                     "What the wrist switch does. grab: the hands hold the model while it is on; "
+                     "commit: keeps the shape so far; toggle: lets go, takes hold again; keep: "
+                     "keeps what was just "
+                     "done (--keep-last)");
+  session::add_recording_options(command, run_options.recording);
+  session::add_filter_options(command, options->filter);
+  session::add_publish_option(command, options->publish);
+  command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
+  command.add_option("--undo-memory", run_options.undo_memory_mb,
+                     "Megabytes that undo and redo may take at most; without it, half of what the "
+                     "program may use. Then the oldest steps go");
+  command.add_option("--out", run_options.out,
+                     "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
+  command.add_option("--picture", run_options.picture,
+                     "Where to draw the model and the hands before and after, .png");
+  command.add_flag("--json", run_options.json, "Progress and summary as JSON, an object a line");
+  command.add_option("--web", options->web,
+                     "[ADDR:]PORT at which a browser shows the run, with buttons; without ADDR, a "
+                     "browser on this machine");
+  command.add_option("--screenshot", options->view.screenshot,
+                     "Where the window's last picture goes, .png");
+  command.add_option("--frames", options->view.frames,
+                     "The window's pictures after which it ends; 0: when it is closed");
+  command.on_chosen([options] { return run(*options); });
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<CommandOptions>();
+  cli::Command command = program.add_command("run", "Shapes a model with one or two gloves");
+  command.add_flag("--view", options->view.window, "Opens the live window, as `nendo view` does");
+  add_run_options(command, options);
+}
+
+void add_view(cli::Command& program) {
+  auto options = std::make_shared<CommandOptions>();
+  options->view.window = true;
+  cli::Command command = program.add_command(
+      "view", "As `nendo run`, in a window with the model, the hands and a panel");
+  add_run_options(command, options);
+}
+
+} // namespace nendo::app::run_command

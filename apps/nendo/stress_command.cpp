@@ -1,0 +1,160 @@
+// nendo stress: how punctual the loop is on this machine, and why not.
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <nendo/base/files.hpp>
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/json_line.hpp"
+#include "cli/output_place.hpp"
+#include "nendo/commands.hpp"
+#include "session/live_view.hpp"
+#include "stress/report.hpp"
+
+namespace nendo::app::stress_command {
+namespace {
+
+using nlohmann::ordered_json;
+
+Result<ordered_json> read_earlier(const std::string& path) {
+  if (path.empty()) return ordered_json(nullptr);
+  constexpr std::uint64_t most_bytes = 1U << 20U;
+  const auto text = read_file(path, most_bytes, "report of nendo stress");
+  if (!text) return text.error();
+  auto report = ordered_json::parse(*text, nullptr, false);
+  if (!report.is_object() || report.value("event", ordered_json()) != "stress") {
+    return Error{Errc::bad_input,
+                 path + ": not a report of nendo stress; `nendo stress --json >FILE` writes one"};
+  }
+  return report;
+}
+
+stress::StressProgress progress_for(const stress::StressOptions& options) {
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  return [terminal, next_s = 2.0, duration_s = options.run.duration_s](
+             const stress::TickTally& tally, double elapsed_s) mutable {
+    if (!terminal && elapsed_s < next_s) return;
+    next_s += 2.0;
+    char line[160];
+    const auto& lateness = tally[stress::Measure::lateness].raw;
+    std::snprintf(line, sizeof line,
+                  "%5.1f of %.1f s  %llu ticks, lateness p50 %.1f us, p99 %.1f us, max %.1f us",
+                  elapsed_s, duration_s, static_cast<unsigned long long>(tally.ticks()),
+                  static_cast<double>(lateness.percentile(0.5).count()) / 1e3,
+                  static_cast<double>(lateness.percentile(0.99).count()) / 1e3,
+                  static_cast<double>(lateness.max().count()) / 1e3);
+    std::cerr << (terminal ? "\r" : "") << line << (terminal ? "\x1b[K" : "\n") << std::flush;
+  };
+}
+
+Result<void> write_files(const stress::StressArguments& arguments,
+                         const stress::StressOptions& options,
+                         const stress::StressOutcome& outcome) {
+  if (!arguments.hgrm.empty()) {
+    const auto& lateness = outcome.tally[stress::Measure::lateness].corrected;
+    if (const auto done = replace_file(arguments.hgrm, stress::hgrm(lateness)); !done)
+      return done.error();
+  }
+  if (arguments.picture.empty()) return {};
+  return replace_file(arguments.picture, stress::stress_picture(options, outcome));
+}
+
+Result<void> check_files(const stress::StressArguments& arguments) {
+  if (auto fine = cli::check_place("--hgrm", arguments.hgrm); !fine) return fine;
+  return cli::check_place("--picture", arguments.picture);
+}
+
+int run(const stress::StressArguments& arguments) {
+  const auto options = stress::parse(arguments);
+  if (!options) return cli::report(options.error());
+  if (const auto fine = check_files(arguments); !fine) return cli::report(fine.error());
+  const auto earlier = read_earlier(arguments.compare);
+  if (!earlier) return cli::report(earlier.error());
+  const auto model = deform::read_mesh(options->run.mesh);
+  if (!model) return cli::report(model.error());
+  cli::install_stop_signals();
+  std::unique_ptr<session::Onlooker> window;
+  if (arguments.view) {
+    auto opened = session::open_live_view({}, options->run);
+    if (!opened) return cli::report(opened.error());
+    window = *std::move(opened);
+  }
+  const auto outcome = stress::run_stress(*options, *model, progress_for(*options), window.get());
+  if (isatty(STDERR_FILENO) != 0) std::cerr << "\r\x1b[K";
+  if (!outcome) return cli::report(outcome.error());
+  const ordered_json results = stress::stress_json(*options, **outcome);
+  if (arguments.json) {
+    cli::print_line(results);
+  } else {
+    stress::print_stress(**outcome, results, *earlier);
+  }
+  if (arguments.histogram_us && !arguments.json)
+    stress::print_histogram((*outcome)->tally[stress::Measure::lateness].raw,
+                            *arguments.histogram_us);
+  if (const auto done = write_files(arguments, *options, **outcome); !done)
+    return cli::report(done.error());
+  const auto bad = stress::fulfilled(options->conditions, results);
+  for (const auto& line : bad)
+    cli::note("--fail-if " + line);
+  if ((*outcome)->broke) cli::note("--break: a tick was later than that");
+  return bad.empty() ? 0 : static_cast<int>(Errc::failed);
+}
+
+void add_reports(cli::Command& command, stress::StressArguments& arguments) {
+  command.add_flag("--json", arguments.json, "The report as one JSON object").under("Report");
+  command
+      .add_option("-h,--histogram", arguments.histogram_us,
+                  "Print the lateness, a line a microsecond, up to this many microseconds")
+      .under("Report");
+  command.add_option("--hgrm", arguments.hgrm, "Write an HdrHistogram percentile file")
+      .under("Report");
+  command.add_option("--picture", arguments.picture, "Draw the lateness, as SVG").under("Report");
+  command
+      .add_option("--compare", arguments.compare, "Show an earlier report (--json) beside this one")
+      .under("Report");
+  command
+      .add_option("--fail-if", arguments.fail_if,
+                  "Exit with 1 if a figure is so, like 'p99.9>200us,missed>0'")
+      .under("Report");
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto arguments = std::make_shared<stress::StressArguments>();
+  cli::Command command = program.add_command(
+      "stress", "Tests how punctual the loop is on this machine, and says what made it late");
+  command.free_short_help();
+  command.set_footer("It asks for real-time rights and says which were refused; without any it "
+                     "measures what an ordinary thread gets.");
+  command.add_option("-i,--interval", arguments->interval_us,
+                     "Microseconds from tick to tick, 100 to 1000000");
+  command.add_option("-D,--duration", arguments->duration, "How long: seconds, or 10m, 2h, 1d");
+  command.add_option("--stages", arguments->stages,
+                     "What a tick does: sleep, input, hands, deform, publish, with commas");
+  command.add_option("--load", arguments->load,
+                     "Work beside it, by processes of its own: cpu, mem, io, with commas");
+  command.add_option("-b,--break", arguments->break_us,
+                     "End at a tick that is later than this many microseconds");
+  command.add_option("--floor", arguments->floor_s,
+                     "Seconds to look at the machine alone before; 0: do not");
+  command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");
+  command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
+  command.add_option("MODEL,--mesh", arguments->run.mesh,
+                     "OBJ or PLY file; without it, the shipped Moai");
+  command.add_option("--mode", arguments->mode, "type1 or type2");
+  command.add_option("--radius", arguments->run.radius, "As of nendo run");
+  command.add_flag("--view", arguments->view,
+                   "Looks on with the live window, to see what that costs the loop");
+  arguments->loop.add_to(command, true);
+  add_reports(command, *arguments);
+  command.on_chosen([arguments] { return run(*arguments); });
+}
+
+} // namespace nendo::app::stress_command

@@ -1,0 +1,191 @@
+// nendo udev: the rules that make gloves usable without root, and gloves bound to their adapters.
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nendo/driver/devices.hpp>
+#include <nendo/driver/udev_rules.hpp>
+
+#include "cli/cli.hpp"
+#include "nendo/commands.hpp"
+#include "udev/rule_files.hpp"
+
+namespace nendo::app::udev_command {
+namespace {
+
+struct Options {
+  std::string root = "/";
+  bool dry_run = false;
+  std::string file; ///< show
+  std::string port; ///< bind
+  std::string hand; ///< bind, unbind
+  bool by_place = false;
+};
+
+Side side_of(const Options& options) {
+  return options.hand == name_of(Side::left) ? Side::left : Side::right;
+}
+
+/// Makes the changes and says what each came to. An empty list: nothing but what was said before.
+int carry_out(const std::vector<udev::RuleChange>& changes, const Options& options) {
+  for (const udev::RuleChange& change : changes) {
+    const std::string path = change.path.string();
+    if (options.dry_run) {
+      std::cout << (change.contents ? "would write " : "would remove ") << path << '\n';
+      continue;
+    }
+    if (const auto done = udev::apply(change); !done) return cli::report(done.error());
+    std::cout << (change.contents ? "wrote " : "removed ") << path << '\n';
+  }
+  if (!changes.empty() && !options.dry_run && std::filesystem::path(options.root) == "/")
+    std::cout << udev::refresh_udev() << '\n';
+  return 0;
+}
+
+Error foreign(const udev::RuleFile& file) {
+  return {Errc::failed, file.path.string() + ": not made by nendo, so it is left alone; move it "
+                                             "away if you want nendo's"};
+}
+
+int install(const Options& options) {
+  std::vector<udev::RuleChange> changes;
+  const auto texts = driver::udev_files();
+  const auto in_force = udev::rules_in_force(options.root);
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    const udev::RuleFile& file = in_force[k];
+    if (file.state == udev::RuleState::foreign) return cli::report(foreign(file));
+    if (file.state == udev::RuleState::current) {
+      std::cout << "unchanged " << file.path.string() << '\n';
+    } else {
+      changes.push_back({udev::etc_rules(options.root) / file.name, texts[k].text});
+    }
+  }
+  return carry_out(changes, options);
+}
+
+/// Bindings stay: they are the user's own, and harmless without the rest.
+int uninstall(const Options& options) {
+  std::vector<udev::RuleChange> changes;
+  for (const udev::RuleFile& file : udev::rules_in_etc(options.root)) {
+    if (file.state == udev::RuleState::foreign) {
+      cli::note(foreign(file).message);
+    } else if (file.state == udev::RuleState::missing) {
+      std::cout << "not there " << file.path.string() << '\n';
+    } else {
+      changes.push_back({file.path, std::nullopt});
+    }
+  }
+  const int code = carry_out(changes, options);
+  for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
+    if (file.state != udev::RuleState::missing &&
+        !file.path.string().starts_with(udev::etc_rules(options.root).string()))
+      std::cout << "left " << file.path.string() << ", which belongs to a package\n";
+  }
+  return code;
+}
+
+int show(const Options& options) {
+  for (const driver::UdevFile& file : driver::udev_files()) {
+    if (file.name != options.file) continue;
+    std::cout << file.text;
+    return 0;
+  }
+  if (!options.file.empty()) {
+    return cli::report({Errc::usage, options.file +
+                                         ": no such file of rules; there are 60-nendo.rules "
+                                         "and 61-nendo-uaccess.rules"});
+  }
+  for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
+    constexpr std::string_view words[]{"not installed; sudo nendo udev install", "current",
+                                       "of another version; sudo nendo udev install",
+                                       "not nendo's"};
+    std::cout << file.path.string() << ": " << words[static_cast<std::size_t>(file.state)] << '\n';
+  }
+  const auto bindings = udev::read_bindings(options.root);
+  if (!bindings) return cli::report(bindings.error());
+  for (const Side side : {Side::left, Side::right}) {
+    std::cout << name_of(side) << ": " << driver::binding_in(*bindings, side).value_or("not bound")
+              << '\n';
+  }
+  return 0;
+}
+
+int change_bindings(const std::string& before, const std::string& after, const Options& options) {
+  const auto path = udev::etc_rules(options.root) / driver::binding_file_name;
+  std::vector<udev::RuleChange> changes;
+  if (after == before) {
+    std::cout << "unchanged " << path.string() << '\n';
+  } else {
+    changes.push_back({path, after.empty() ? std::nullopt : std::optional(after)});
+  }
+  return carry_out(changes, options);
+}
+
+int bind(const Options& options) {
+  const auto binding =
+      driver::make_binding(options.port, driver::find_gloves(), side_of(options), options.by_place);
+  if (!binding) return cli::report(binding.error());
+  const auto rule = driver::rule_of(*binding);
+  if (!rule) return cli::report(rule.error());
+  const auto bindings = udev::read_bindings(options.root);
+  if (!bindings) return cli::report(bindings.error());
+  std::cout << *rule << std::endl;
+  if (!options.by_place && binding->adapter.serial == "0001") // the CP2102's default
+    cli::note("many adapters have the serial number 0001; --by-place tells them apart");
+  const int code =
+      change_bindings(*bindings, driver::with_binding(*bindings, side_of(options), *rule), options);
+  for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
+    if (code == 0 && file.state == udev::RuleState::missing)
+      cli::note(file.name + " is not installed, and the binding needs it: sudo nendo udev install");
+  }
+  return code;
+}
+
+int unbind(const Options& options) {
+  const auto bindings = udev::read_bindings(options.root);
+  if (!bindings) return cli::report(bindings.error());
+  return change_bindings(*bindings, driver::without_binding(*bindings, side_of(options)), options);
+}
+
+using Action = int (*)(const Options& options);
+
+cli::Command add(cli::Command& udev, const std::shared_ptr<Options>& options,
+                 const std::string& name, const std::string& summary, Action action) {
+  cli::Command command = udev.add_command(name, summary);
+  command.add_option("--root", options->root, "The folder that stands for /, e.g. of an image");
+  if (action != show)
+    command.add_flag("--dry-run", options->dry_run,
+                     "Says what would be changed, and changes nothing");
+  command.on_chosen([options, action] { return action(*options); });
+  return command;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command udev = program.add_command(
+      "udev", "Makes gloves usable without root, and gives them names that stay");
+  udev.require_command();
+  udev.set_footer("Rules go to /etc/udev/rules.d, for which changes need sudo.");
+  add(udev, options, "install", "Installs the rules that identify gloves and grant them", install);
+  add(udev, options, "uninstall", "Removes what install wrote; bindings stay", uninstall);
+  cli::Command shown =
+      add(udev, options, "show", "Says which rules and bindings are in force", show);
+  shown.add_option("FILE", options->file, "Prints this file of rules, as install would write it");
+  cli::Command bound =
+      add(udev, options, "bind", "Calls an adapter a glove's, known by its serial number", bind);
+  bound.add_option("PORT", options->port, "The glove's port, e.g. /dev/ttyUSB0").required();
+  bound.add_option("--as", options->hand, "Which hand's glove it is")
+      .required()
+      .one_of({"left", "right"});
+  bound.add_flag("--by-place", options->by_place,
+                 "Known by the socket that it is plugged into, for adapters without serial number");
+  cli::Command unbound = add(udev, options, "unbind", "Takes a hand's binding back", unbind);
+  unbound.add_option("HAND", options->hand, "left or right").required().one_of({"left", "right"});
+}
+
+} // namespace nendo::app::udev_command

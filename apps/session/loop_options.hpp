@@ -1,0 +1,38 @@
+#pragma once
+// The options of the commands that run the loop: how it is paced, what it asks of the system, and
+// whether a second thread helps.
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/realtime.hpp>
+
+#include "cli/command.hpp"
+
+namespace nendo::session {
+
+struct LoopArguments {
+  std::uint32_t priority = 0;
+  std::string affinity{};
+  bool lock_memory = false;
+  std::string policy = "skip";
+  std::string spin = "auto";
+  std::uint32_t threads = 1;
+
+  /// Names as cyclictest has them. `short_names`: -p, -a and -m, too.
+  void add_to(cli::Command& command, bool short_names = false);
+  /// Reads them into `loop` and `realtime`. Errors: usage, naming the option and what it may be;
+  /// failed (no processor for a second thread).
+  Result<void> parse(flow::LoopOptions& loop, flow::RealtimeOptions& realtime) const;
+
+private:
+  Result<void> check_threads() const;
+};
+
+/// An object for each right that was asked for: name, wanted, granted, why, remedy.
+nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants);
+
+} // namespace nendo::session

@@ -1,0 +1,106 @@
+#include "session/open_hands.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <nendo/driver/devices.hpp>
+
+#include "cli/cli.hpp"
+#include "gloves/touching_glove.hpp"
+
+namespace nendo::session {
+namespace {
+
+// Both hands that the machine has, or simulated ones. A glove that is there but may not be used is
+// an error; one that does not answer is told of, and the other hand goes on alone.
+Result<std::vector<gloves::OpenHand>> open_any(EventCount* event_count) {
+  std::vector<gloves::OpenHand> hands;
+  std::vector<std::string> why;
+  for (const Side side : {Side::left, Side::right}) {
+    auto hand = gloves::open_hand("auto:" + std::string(name_of(side)), side, event_count);
+    if (hand) {
+      hands.push_back(*std::move(hand));
+    } else if (hand.error().code != Errc::no_device) {
+      return hand.error();
+    } else {
+      why.push_back(hand.error().message);
+    }
+  }
+  const auto candidates = driver::find_gloves();
+  const auto plugged_in = std::count_if(candidates.begin(), candidates.end(),
+                                        [](const auto& c) { return c.identified; });
+  if (static_cast<std::size_t>(plugged_in) > hands.size())
+    for (const auto& reason : why)
+      cli::note(reason);
+  if (!hands.empty()) return hands;
+  cli::note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
+            "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
+  for (const Side side : {Side::left, Side::right}) {
+    auto hand = gloves::open_hand("sim", side, event_count);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  return hands;
+}
+
+Result<gloves::OpenHand> open_touching(const RunOptions& options, const deform::Mesh& model,
+                                       const std::string& spec, Side side,
+                                       EventCount* event_count) {
+  auto touching = gloves::open_touching_glove(spec, side, model, options.length.size({}));
+  if (!touching) return touching.error();
+  gloves::OpenHand hand = gloves::hand_of(std::move(touching->glove), side, event_count);
+  hand.T_stage_wrist = touching->T_stage_wrist;
+  return hand;
+}
+
+Result<std::vector<gloves::OpenHand>>
+open_named(const RunOptions& options, const deform::Mesh& model, EventCount* event_count) {
+  std::vector<gloves::OpenHand> hands;
+  for (const auto& [spec, side] :
+       {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
+    if (spec->empty()) continue;
+    auto hand = gloves::is_touching(*spec) ? open_touching(options, model, *spec, side, event_count)
+                                           : gloves::open_hand(*spec, side, event_count);
+    if (!hand) return hand.error();
+    hands.push_back(*std::move(hand));
+  }
+  return hands;
+}
+
+Result<void> check_switch(flow::SwitchAction action, const std::vector<gloves::OpenHand>& hands) {
+  const bool any = std::any_of(hands.begin(), hands.end(), [](const gloves::OpenHand& hand) {
+    return hand.glove->info().abilities.wrist_switch;
+  });
+  if (any || action == flow::SwitchAction::none) return {};
+  return Error{Errc::usage, "--switch " + std::string(name_of(action)) + ": " +
+                                hands.front().glove->info().source +
+                                (hands.size() > 1 ? " and the other glove have" : " has") +
+                                " no wrist switch that nendo can read; leave --switch out"};
+}
+
+} // namespace
+
+Result<std::vector<gloves::OpenHand>> open_hands(RunOptions& options, const deform::Mesh& model,
+                                                 EventCount& event_count) {
+  if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.event_count = &event_count;
+  const bool named = !options.left.empty() || !options.right.empty();
+  EventCount* const rung = options.loop.event_count;
+  auto hands = named ? open_named(options, model, rung) : open_any(rung);
+  if (!hands) return hands;
+  if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
+    return fine.error();
+  {
+    const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
+    if (readers.grant()) options.grants.push_back(*readers.grant());
+    for (auto& hand : *hands) {
+      if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
+    }
+  }
+  for (auto& hand : *hands) {
+    if (const auto came = gloves::wait_for_first_sample(hand); !came) return came.error();
+    if (const auto done = gloves::calibrate(hand, options.calibration); !done) return done.error();
+  }
+  return hands;
+}
+
+} // namespace nendo::session

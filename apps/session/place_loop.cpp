@@ -1,0 +1,133 @@
+#include "session/place_loop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace nendo::session {
+namespace {
+
+// Of the model's longest side. On the stage that is 16 cm: a finger shapes what is about it, and
+// its neighbours' supports overlap with it enough that no ridge is left between two fingers that
+// press together.
+constexpr double default_radius_fraction = 0.2;
+// A cut of type 2, of the radius: far below the step at which a single finger would fold the
+// surface (0.47).
+constexpr double piece_fraction = 0.05;
+
+std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hands,
+                                       const RunOptions& options,
+                                       const std::optional<Carryover>& carryover) {
+  std::vector<flow::HandInput> inputs;
+  inputs.reserve(hands.size());
+  for (const auto& hand : hands) {
+    // The glove may be another one by now than when the hand was opened.
+    const gloves::KnownHand& now = hand.known.of(hand.first.side);
+    const gloves::KnownHand& swapped = hand.known.not_of(hand.first.side);
+    const hand::HandSkeleton skeleton(hand.side, options.length.size(now.size));
+    inputs.push_back({hand.ring.get(), skeleton, now.calibration, hand.first});
+    inputs.back().filter = options.filter;
+    inputs.back().swapped = swapped.calibration;
+    inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(swapped.size));
+    inputs.back().adapt = hand.known.adapt;
+    if (carryover) inputs.back().learned = carryover->learned[flow::Placement::index_of(hand.side)];
+  }
+  return inputs;
+}
+
+flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
+                              const std::vector<flow::HandInput>& inputs,
+                              const deform::Mesh& model) {
+  std::array<std::optional<flow::Fingertips>, 2> tips;
+  for (const auto& hand : inputs) {
+    const auto angles = hand::joint_angles(hand.first, hand.calibration);
+    tips[flow::Placement::index_of(hand.skeleton.side())] =
+        hand.skeleton.pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
+  }
+  flow::Placement placement = flow::place_hands(model, tips);
+  for (const auto& hand : open) {
+    if (hand.T_stage_wrist)
+      placement.T_stage_wrist[flow::Placement::index_of(hand.side)] = *hand.T_stage_wrist;
+  }
+  return placement;
+}
+
+double longest_side(const deform::Mesh& model) {
+  return (model.vertices.rowwise().maxCoeff() - model.vertices.rowwise().minCoeff()).maxCoeff();
+}
+
+Error bad_radius(const std::string& text, const std::string& why) {
+  return {Errc::usage, "--radius " + text + ": " + why +
+                           "; use a length > 0 in the mesh's units, five with commas between (or "
+                           "ten, left hand first), or leave it out"};
+}
+
+Result<deform::Supports> supports_for(const std::string& radius, Eigen::Index fingertips,
+                                      double model_size) {
+  if (radius.empty())
+    return deform::one_radius(default_radius_fraction * (model_size > 0.0 ? model_size : 1.0));
+  auto supports = deform::parse_supports_by_point(radius, fingertips);
+  if (!supports)
+    return bad_radius(radius, "does not fit " + std::to_string(fingertips) + " fingertips");
+  return *std::move(supports);
+}
+
+std::pair<double, double> least_and_largest(const deform::Supports& supports) {
+  double least = supports.shared.front().radius;
+  double largest = least;
+  const auto count = [&](const deform::Support& support) {
+    least = std::min(least, support.radius);
+    largest = std::max(largest, support.radius);
+  };
+  for (const auto& support : supports.shared)
+    count(support);
+  for (const auto& own : supports.own)
+    count(own.support);
+  return {least, largest};
+}
+
+} // namespace
+
+Carryover carryover_of(const flow::DeformLoop& ended) {
+  return {ended.placement(), ended.learned()};
+}
+
+Result<void> check_radius(const std::string& text) {
+  if (text.empty() || deform::parse_supports_by_point(text, 10)) return {};
+  return bad_radius(text, "is none");
+}
+
+Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                              const deform::Mesh& model,
+                              const std::optional<Carryover>& carryover) {
+  const double size = longest_side(model);
+  flow::LoopOptions loop_options = options.loop;
+  auto& sculptor = loop_options.sculptor;
+  auto inputs = inputs_of(hands, options, carryover);
+  auto supports = supports_for(options.radius, 5 * static_cast<Eigen::Index>(inputs.size()), size);
+  if (!supports) return supports.error();
+  const auto [least_radius, largest_radius] = least_and_largest(*supports);
+  sculptor.deformer.supports = *std::move(supports);
+  sculptor.piece_length = piece_fraction * least_radius;
+  // Live fingertips meet; the exact solution for two that nearly touch would tear the surface
+  // between them.
+  sculptor.deformer.csrbf.merge_fraction = 0.05;
+
+  const auto placement = carryover ? carryover->placement : placement_for(hands, inputs, model);
+  PlacedSetup setup{inputs, placement, loop_options};
+  auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
+  if (!is_solved(loop->grab_status())) {
+    return Error{Errc::failed, "the hands cannot take hold of the model: " +
+                                   std::string(deform::describe(loop->grab_status()))};
+  }
+  return PlacedLoop{std::move(loop), largest_radius, std::move(setup), options.recording.on};
+}
+
+FrameRoom room_of_frames(const PlacedLoop& placed) {
+  const auto points = 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
+  const auto& supports = placed.setup.options.sculptor.deformer.supports;
+  return {placed.loop->frames().front().fields.room(),
+          static_cast<std::size_t>(supports.functions(points))};
+}
+
+} // namespace nendo::session

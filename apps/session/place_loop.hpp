@@ -1,0 +1,53 @@
+#pragma once
+// A loop over the hands that are open, placed so that they hold the model between them.
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gloves/open_hand.hpp"
+#include "session/run_options.hpp"
+
+namespace nendo::session {
+
+/// What a loop was made of, besides its hands' sizes and its model's file.
+struct PlacedSetup {
+  std::vector<flow::HandInput> inputs;
+  flow::Placement placement;
+  flow::LoopOptions options; ///< with the supports in model units
+};
+
+struct PlacedLoop {
+  std::unique_ptr<flow::DeformLoop> loop;
+  double radius = 0.0; ///< the largest
+  PlacedSetup setup;
+  bool recorded = false; ///< to a file, as long as it runs
+};
+
+/// What a loop leaves to the next one of the same hands.
+struct Carryover {
+  flow::Placement placement;
+  std::array<std::optional<hand::LearnedRanges>, 2> learned; ///< DeformLoop::learned()
+};
+Carryover carryover_of(const flow::DeformLoop& ended);
+
+/// As options.loop says, with the supports that options.radius says. Without a carryover the hands
+/// are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
+Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                              const deform::Mesh& model,
+                              const std::optional<Carryover>& carryover = {});
+
+/// What a frame of that loop may hold, for whoever keeps room for it.
+struct FrameRoom {
+  std::size_t fields = 0;
+  std::size_t functions = 0; ///< of a field
+};
+FrameRoom room_of_frames(const PlacedLoop& placed);
+
+/// Whether a --radius is one, for hands at all. Error: usage.
+Result<void> check_radius(const std::string& text);
+
+} // namespace nendo::session

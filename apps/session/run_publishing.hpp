@@ -1,0 +1,40 @@
+#pragma once
+// What a run shows to other programs: --publish, once for each place.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "session/outlet.hpp"
+
+namespace nendo::session {
+
+/// What became of one --publish. `lost` are records that were overwritten before they were sent, or
+/// datagrams that the system refused.
+struct PublishedTo {
+  std::string target; ///< as it was asked for
+  std::uint64_t records = 0;
+  std::uint64_t shape_changes = 0; ///< of a segment
+  std::uint64_t bytes = 0;         ///< of a segment, or sent
+  bool is_segment = false;
+  bool is_locked = false; ///< of a segment: no page of it can be swapped out
+  std::uint64_t datagrams = 0;
+  std::uint64_t lost_records = 0;
+  std::uint64_t refused_datagrams = 0;
+};
+
+/// One place, with what it has counted once the run is over.
+class PublishingOutlet : public Outlet {
+public:
+  /// Ends it, if it has not ended.
+  virtual PublishedTo end() = 0;
+};
+
+void add_publish_option(cli::Command& command, std::vector<std::string>& targets);
+
+/// One outlet for each target; none publishes before its begin(). Error: usage.
+Result<std::vector<std::unique_ptr<PublishingOutlet>>>
+publish_to(const std::vector<std::string>& targets);
+
+} // namespace nendo::session

@@ -1,0 +1,76 @@
+#pragma once
+// A run that is recorded: its options, the input log and the recorder beside the loop.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nendo/recording/recorder.hpp>
+
+#include "cli/command.hpp"
+#include "gloves/open_hand.hpp"
+
+namespace nendo::session {
+
+struct PlacedSetup;
+struct RunOptions;
+
+struct RecordingOptions {
+  bool on = false;       ///< a file is recorded
+  std::string file;      ///< its name, or what the names of later ones are made of
+  std::string keep_last; ///< as parse_duration(); empty: nothing is kept in memory
+  double keep_last_s = 0.0;
+  std::string kept_stem; ///< what kept files are called by
+
+  bool wanted() const noexcept { return on || keep_last_s > 0.0; }
+  /// Reads `keep_last`; what has no name stands beside `out`. Errors: usage; failed (the file is
+  /// there).
+  Result<void> check(const std::string& out, flow::SwitchAction action);
+};
+
+/// --record and --keep-last.
+void add_recording_options(cli::Command& command, RecordingOptions& options);
+
+/// Of one loop.
+struct RecordingOutcome {
+  std::string file;                            ///< empty: only kept in memory
+  std::optional<recording::Recorded> recorded; ///< nothing: not all was
+};
+
+/// Who, when and with what: the beginning of every recording's setup. By the hands' order.
+recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const std::string& wearer);
+
+/// Each loop of a run is a recording of its own, numbered after the first, with the model that it
+/// began with beside it unless that is the one that was loaded.
+class RunRecorder {
+public:
+  /// `loaded`: the model as it is in the run's file.
+  explicit RunRecorder(const deform::Mesh& loaded) : loaded_(recording::sum_of(loaded.vertices)) {}
+
+  /// What the next loop is to record on; null: nothing is wanted of it.
+  flow::InputLog* input_log_for(const RecordingOptions& options);
+  /// Before the loop runs. Error: failed, if the files cannot be made; nothing is recorded then.
+  Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
+                     const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model);
+  /// Whether keep() does anything: with --keep-last, from begin() to end().
+  bool keeps() const noexcept { return keeps_; }
+  /// What was done last becomes a file. Wait-free.
+  void keep() noexcept;
+  /// After the loop's last tick.
+  void end(const deform::Mesh& shape);
+  /// Of every loop that was to be recorded and has ended, or has not begun.
+  const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }
+
+private:
+  std::string next_name(const RecordingOptions& options, bool with_model);
+
+  std::unique_ptr<flow::InputLog> input_log_;
+  std::unique_ptr<recording::Recorder> recorder_;
+  recording::ShapeSum loaded_;
+  int number_ = 1; ///< of the latest recording's name
+  std::vector<RecordingOutcome> outcomes_;
+  bool keeps_ = false;
+};
+
+} // namespace nendo::session

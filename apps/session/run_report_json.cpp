@@ -1,0 +1,156 @@
+#include "session/run_report_parts.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "cli/json_line.hpp"
+#include "session/loop_options.hpp"
+#include "session/range_report.hpp"
+
+namespace nendo::session {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json percentiles(const flow::Histogram& histogram) {
+  ordered_json line;
+  line["count"] = histogram.count();
+  line["min"] = to_milliseconds(histogram.min());
+  line["p50"] = to_milliseconds(histogram.percentile(0.50));
+  line["p90"] = to_milliseconds(histogram.percentile(0.90));
+  line["p99"] = to_milliseconds(histogram.percentile(0.99));
+  line["max"] = to_milliseconds(histogram.max());
+  return line;
+}
+
+// Only the sensors that had any.
+ordered_json spikes_json(const std::array<std::uint64_t, sensor_slots>& spikes) {
+  ordered_json by_sensor = ordered_json::object();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (spikes[slot] > 0) by_sensor[std::string(sensor_names[slot])] = spikes[slot];
+  }
+  return by_sensor;
+}
+
+// What the filter was and how late it made the hands; its lag comes on top of end to end.
+ordered_json filter_json(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
+  ordered_json line{{"kind", hand::name_of(filter.kind)}};
+  if (filter.kind == hand::FilterKind::off) return line;
+  line["min_cutoff_hz"] = filter.min_cutoff_hz;
+  line["beta_hz_per_rad_s"] = filter.beta_hz_per_rad_s;
+  line["derivative_cutoff_hz"] = filter.derivative_cutoff_hz;
+  line["moving_latency_ms"] = percentiles(stats.filter_moving);
+  line["worst_latency_ms"] = percentiles(stats.filter_worst);
+  return line;
+}
+
+ordered_json injective_json(const RunOptions& options, const flow::LoopStats& stats) {
+  if (!options.loop.sculptor.deformer.injective) return nullptr;
+  return {{"most_links", stats.most_links},
+          {"most_bound", stats.most_bound},
+          {"least_determinant", stats.least_determinant},
+          {"held_apart_ticks", stats.held_apart_ticks}};
+}
+
+ordered_json recordings_json(const std::vector<RecordingOutcome>& recordings) {
+  auto lines = ordered_json::array();
+  for (const auto& [file, recorded] : recordings) {
+    ordered_json line{{"file", file}, {"failed", !recorded}};
+    if (recorded) {
+      line["samples"] = recorded->samples;
+      line["ticks"] = recorded->ticks;
+      line["lost"] = recorded->lost;
+      line["bytes"] = recorded->bytes;
+      line["kept"] = recorded->kept;
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+ordered_json published_json(const RunOutcome& outcome) {
+  auto list = ordered_json::array();
+  for (const auto& to : outcome.published) {
+    ordered_json line{{"target", to.target}, {"records", to.records}, {"bytes", to.bytes}};
+    if (to.is_segment) {
+      line["shape_changes"] = to.shape_changes;
+      line["locked"] = to.is_locked;
+    } else {
+      line["datagrams"] = to.datagrams;
+      line["lost_records"] = to.lost_records;
+      line["refused_datagrams"] = to.refused_datagrams;
+    }
+    list.push_back(std::move(line));
+  }
+  return list;
+}
+
+} // namespace
+
+void print_progress_json(const flow::Frame& frame, double elapsed_s) {
+  ordered_json line{{"event", "progress"},      {"elapsed_s", elapsed_s},
+                    {"ticks", frame.ticks_run}, {"missed", frame.missed},
+                    {"held", frame.held},       {"pairs_held_apart", frame.chain.held_pairs}};
+  for (const Side side : {Side::left, Side::right}) {
+    const auto& hand = frame.hands[flow::Placement::index_of(side)];
+    if (!hand.present) continue;
+    line[std::string(name_of(side))] = {{"samples", hand.samples}, {"silent", hand.silent}};
+  }
+  cli::print_line(line);
+}
+
+void print_summary_json(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                        const RunOutcome& outcome) {
+  const auto& stats = outcome.stats;
+  ordered_json line{{"event", "summary"},
+                    {"elapsed_s", outcome.elapsed_s},
+                    {"mode", flow::name_of(options.loop.sculptor.mode)},
+                    {"kernel", deform::name_of(options.loop.sculptor.deformer.csrbf.kernel)},
+                    {"radius", outcome.radius},
+                    {"rate_hz", options.loop.rate_hz},
+                    {"policy", flow::describe_policy(options.loop)},
+                    {"threads", options.loop.sculptor.deformer.evaluation.threads},
+                    {"realtime", grants_json(outcome.grants)},
+                    {"ticks", stats.ticks},
+                    {"overruns", stats.overruns},
+                    {"missed", stats.missed},
+                    {"failed", stats.failed},
+                    {"switch", flow::name_of(options.loop.switch_action)},
+                    {"grabs", stats.grabs},
+                    {"commits", stats.commits},
+                    {"undos", stats.undos},
+                    {"redos", stats.redos},
+                    {"undo_steps", stats.undo_steps},
+                    {"forgotten_steps", stats.forgotten_steps}};
+  for (const auto& hand : hands) {
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const auto glove = hand.glove->stats();
+    ordered_json& of_hand = line[std::string(name_of(hand.side))];
+    of_hand = {{"glove", hand.glove->info().source},
+               {"model", hand.glove->info().model},
+               {"hand_length_mm", 1e3 * options.length.size(hand.known.own.size).length_m},
+               {"samples", stats.samples[slot]},
+               {"samples_per_s", static_cast<double>(stats.samples[slot]) / outcome.elapsed_s},
+               {"silences", stats.silences[slot]},
+               {"spikes", spikes_json(stats.spikes[slot])},
+               {"switch_uses", stats.switch_uses[slot]},
+               {"bad_records", glove.bad_records},
+               {"ring_refused", glove.ring_refused},
+               {"reopened", glove.reopened}};
+    if (hand.known.adapt)
+      of_hand["ranges"] = ranges_json(stats.ranges[slot], hand.glove->info().sensors);
+  }
+  line["injective"] = injective_json(options, stats);
+  line["filter"] = filter_json(options.filter, stats);
+  line["end_to_end_ms"] = percentiles(stats.end_to_end);
+  line["wake_latency_ms"] = percentiles(stats.wake_latency);
+  line["work_ms"] = percentiles(stats.work);
+  line["vertices"] = outcome.vertices;
+  line["vertices_per_s"] =
+      static_cast<double>(outcome.vertices) * static_cast<double>(stats.ticks) / outcome.elapsed_s;
+  line["recordings"] = recordings_json(outcome.recordings);
+  line["published"] = published_json(outcome);
+  line["result"] = outcome.result;
+  cli::print_line(line);
+}
+
+} // namespace nendo::session

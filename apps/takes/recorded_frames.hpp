@@ -1,0 +1,46 @@
+#pragma once
+// A recording's frames: its loop runs again, tick by tick.
+
+#include <filesystem>
+#include <memory>
+
+#include <nendo/base/result.hpp>
+#include <nendo/recording/loop_replay.hpp>
+
+#include "takes/frame_source.hpp"
+
+namespace nendo::takes {
+
+class RecordedFrames final : public FrameSource {
+public:
+  /// model: as recorded_model() gives it. Reads the recording through once, for its duration.
+  /// Blocks. Errors: bad_input (as TakeReader::open() and LoopReplay::make(); no tick in it).
+  static Result<std::unique_ptr<RecordedFrames>> open(const std::filesystem::path& path,
+                                                      deform::Mesh model);
+
+  const deform::Mesh& model() const override { return model_; }
+  const deform::BlockLayout& layout() const override { return replay_->loop().layout(); }
+  double rate_hz() const override { return rate_hz_; }
+  double duration_s() const override { return duration_s_; }
+  bool next() override;
+  const flow::Frame& frame() const override { return replay_->loop().frames().front(); }
+  double time_s() const override { return time_s_; }
+  bool is_exact() const override {
+    return replay_->is_exact() && reader_.chunks().damage_count() == 0;
+  }
+
+  const recording::Setup& setup() const noexcept { return reader_.setup(); }
+
+private:
+  RecordedFrames(recording::TakeReader reader, deform::Mesh model)
+      : reader_(std::move(reader)), model_(std::move(model)) {}
+
+  recording::TakeReader reader_;
+  deform::Mesh model_;
+  std::unique_ptr<recording::LoopReplay> replay_;
+  double rate_hz_ = 0.0;
+  double duration_s_ = 0.0;
+  double time_s_ = 0.0;
+};
+
+} // namespace nendo::takes

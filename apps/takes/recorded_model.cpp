@@ -1,0 +1,39 @@
+#include "takes/recorded_model.hpp"
+
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/recording/loop_replay.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/printable.hpp"
+
+namespace nendo::takes {
+
+Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
+  auto model = deform::read_mesh(named.empty() ? loop.mesh : named);
+  if (!model) {
+    if (!named.empty()) return model.error();
+    return Error{Errc::bad_input, cli::printable(model.error().message) +
+                                      "; that is the model that was recorded, name it with --mesh"};
+  }
+  if (recording::sum_of(model->vertices) == loop.mesh_sum) return model;
+  if (named.empty()) {
+    return Error{Errc::bad_input, cli::printable(loop.mesh) +
+                                      ": is not as it was when it was recorded; name the model of "
+                                      "then with --mesh, or another"};
+  }
+  cli::note(named + ": another model than was recorded; its shape will be another, too");
+  return model;
+}
+
+Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,
+                                    const std::string& named) {
+  if (!setup.loop)
+    return Error{Errc::bad_input, file + ": " + std::string(recording::without_loop)};
+  return recorded_model(*setup.loop, named);
+}
+
+void note_missing(const std::string& file) {
+  cli::note(file + ": something is missing in it, so the shape may be another");
+}
+
+} // namespace nendo::takes

@@ -1,0 +1,140 @@
+#include "takes/recording_report.hpp"
+
+#include <chrono>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/hand/calibration_file.hpp>
+
+#include "cli/json_line.hpp"
+#include "cli/printable.hpp"
+
+namespace nendo::takes {
+namespace {
+
+using nlohmann::ordered_json;
+using recording::GloveSummary;
+using recording::TakeSummary;
+
+unsigned long long number(std::uint64_t value) {
+  return value;
+}
+
+std::string begun_of(const TakeSummary& summary) {
+  return hand::rfc3339(std::chrono::floor<std::chrono::seconds>(summary.setup.begun));
+}
+
+double pause_s(const GloveSummary& glove) {
+  return to_seconds(glove.longest_pause);
+}
+
+void print_glove(const driver::GloveInfo& info, const GloveSummary& glove) {
+  std::printf("  %-12s %s, %s; %llu samples (%.1f/s), %llu lost, longest pause %.3f s\n",
+              (std::string(name_of(info.side)) + " glove").c_str(), info.source.c_str(),
+              info.model.c_str(), number(glove.samples), glove.rate_hz(), number(glove.lost),
+              pause_s(glove));
+}
+
+void print_loop(const TakeSummary& summary) {
+  const recording::LoopSetup& loop = *summary.setup.loop;
+  std::printf("  %-12s %s, %g Hz, %s; %llu ticks, %llu missed;", "loop",
+              std::string(flow::name_of(loop.options.sculptor.mode)).c_str(), loop.options.rate_hz,
+              cli::printable(loop.mesh).c_str(), number(summary.ticks), number(summary.missed));
+  for (const flow::Request request : flow::requests) {
+    std::printf(" %llu %s%s", number(summary.requests[static_cast<std::size_t>(request)]),
+                std::string(flow::name_of(request)).c_str(),
+                request == flow::requests.back() ? "" : ",");
+  }
+  if (summary.wrist_moves > 0) std::printf(", %llu wrist moves", number(summary.wrist_moves));
+  if (summary.shapes > 0) std::printf(", %llu shapes", number(summary.shapes));
+  std::printf("\n");
+}
+
+ordered_json gloves_json(const TakeSummary& summary) {
+  ordered_json gloves = ordered_json::array();
+  for (std::size_t at = 0; at < summary.gloves.size(); ++at) {
+    const driver::GloveInfo& info = summary.setup.gloves[at];
+    const GloveSummary& glove = summary.gloves[at];
+    gloves.push_back({{"hand", name_of(info.side)},
+                      {"source", info.source},
+                      {"model", info.model},
+                      {"samples", glove.samples},
+                      {"rate_hz", glove.rate_hz()},
+                      {"lost", glove.lost},
+                      {"longest_pause_s", pause_s(glove)}});
+  }
+  return gloves;
+}
+
+ordered_json loop_json(const TakeSummary& summary) {
+  if (!summary.setup.loop) return nullptr;
+  const recording::LoopSetup& loop = *summary.setup.loop;
+  ordered_json line{{"mode", flow::name_of(loop.options.sculptor.mode)},
+                    {"rate_hz", loop.options.rate_hz},
+                    {"mesh", loop.mesh},
+                    {"vertices", loop.mesh_sum.vertices},
+                    {"ticks", summary.ticks},
+                    {"missed", summary.missed}};
+  for (const flow::Request request : flow::requests)
+    line["requests"][std::string(flow::name_of(request))] =
+        summary.requests[static_cast<std::size_t>(request)];
+  line["wrist_moves"] = summary.wrist_moves;
+  line["shapes"] = summary.shapes;
+  return line;
+}
+
+} // namespace
+
+void print_take(const std::string& file, const TakeSummary& summary) {
+  const recording::Setup& setup = summary.setup;
+  std::printf("%s: begun %s, %.1f s, by %s%s%s; %llu bytes\n", file.c_str(),
+              begun_of(summary).c_str(), to_seconds(summary.duration()),
+              cli::printable(setup.program).c_str(), setup.wearer.empty() ? "" : ", worn by ",
+              cli::printable(setup.wearer).c_str(), number(summary.bytes));
+  for (std::size_t at = 0; at < summary.gloves.size(); ++at)
+    print_glove(setup.gloves[at], summary.gloves[at]);
+  if (setup.loop) print_loop(summary);
+  if (summary.gaps > 0)
+    std::printf("  %-12s %llu, of %llu entries that are counted\n", "gaps", number(summary.gaps),
+                number(summary.missing));
+  if (!summary.ending) std::printf("  %-12s it was cut off; what there is counts\n", "end");
+  if (!summary.is_whole()) std::printf("  %-12s `nendo recording check` tells where\n", "damage");
+  std::fflush(stdout);
+}
+
+void print_take_json(const std::string& file, const TakeSummary& summary) {
+  const ordered_json line{{"file", file},
+                          {"begun", begun_of(summary)},
+                          {"duration_s", to_seconds(summary.duration())},
+                          {"program", summary.setup.program},
+                          {"wearer", summary.setup.wearer},
+                          {"bytes", summary.bytes},
+                          {"gloves", gloves_json(summary)},
+                          {"loop", loop_json(summary)},
+                          {"gaps", summary.gaps},
+                          {"missing_entries", summary.missing},
+                          {"ended", summary.ending.has_value()},
+                          {"whole", summary.is_whole()}};
+  cli::print_line(line);
+}
+
+void print_damages(const TakeSummary& summary) {
+  for (const auto& damage : summary.damages) {
+    std::printf("  at byte %llu: %s", number(damage.offset), damage.what.c_str());
+    if (damage.bytes > 0) std::printf(", %llu bytes of no use", number(damage.bytes));
+    std::printf("\n");
+  }
+  if (summary.damage_count > summary.damages.size())
+    std::printf("  and %llu more\n", number(summary.damage_count - summary.damages.size()));
+  if (summary.strange > 0)
+    std::printf("  %llu chunks or entries that no nendo writes\n", number(summary.strange));
+  std::uint64_t turned = summary.ticks_out_of_order;
+  for (const auto& glove : summary.gloves)
+    turned += glove.out_of_order;
+  if (turned > 0) std::printf("  %llu numbers of ticks or samples do not grow\n", number(turned));
+  if (!summary.counts_agree) std::printf("  there is not what its end says that there is\n");
+  std::fflush(stdout);
+}
+
+} // namespace nendo::takes

@@ -1,0 +1,51 @@
+#pragma once
+// Frames of a timeline, and the model that it is over.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <nendo/base/result.hpp>
+#include <nendo/timeline/player.hpp>
+
+#include "takes/frame_source.hpp"
+
+namespace nendo::takes {
+
+class TimelineFrames final : public FrameSource {
+public:
+  /// The model is read from the file that the timeline names, or from `mesh` unless that is empty.
+  /// Blocks. Errors: as timeline::read_timeline(), recorded_model(), timeline::Player::make().
+  static Result<std::unique_ptr<TimelineFrames>> open(const std::filesystem::path& path,
+                                                      const std::string& mesh = {});
+
+  /// Of a timeline that is no file. Errors: as timeline::Player::make().
+  static Result<std::unique_ptr<TimelineFrames>> make(timeline::Timeline timeline,
+                                                      deform::Mesh model);
+
+  const deform::Mesh& model() const override { return model_; }
+  const deform::BlockLayout& layout() const override { return player_->layout(); }
+  double rate_hz() const override { return player_->timeline().rate_hz; }
+  double duration_s() const override { return player_->last_time_s(); }
+  bool next() override { return player_->next(); }
+  const flow::Frame& frame() const override { return player_->frame(); }
+  double time_s() const override { return player_->time_s(); }
+
+  timeline::Player& player() noexcept { return *player_; }
+
+private:
+  TimelineFrames(deform::Mesh model, std::unique_ptr<timeline::Player> player)
+      : model_(std::move(model)), player_(std::move(player)) {}
+
+  deform::Mesh model_;
+  std::unique_ptr<timeline::Player> player_;
+};
+
+/// As TimelineFrames::open().
+Result<deform::Mesh> timeline_model(const timeline::Timeline& timeline,
+                                    const std::string& mesh = {});
+
+/// Where mirror() puts its plane if nobody says: the model's middle. On the stage.
+double middle_plane_m(const timeline::Timeline& timeline, const deform::Mesh& model);
+
+} // namespace nendo::takes
