@@ -79,7 +79,7 @@ Points reference(const Points& vertices, const Points& starts, const Points& mov
   return out;
 }
 
-std::string csv(const Points& starts, const Points& moves) {
+std::string csv_of(const Points& starts, const Points& moves) {
   std::ostringstream text;
   text.precision(17);
   text << "x,y,z,dx,dy,dz\n";
@@ -115,7 +115,7 @@ TEST_SUITE("deform") {
           moves.col(i) << push(random), push(random), push(random);
         }
         const auto vectors = folder.path() / "vectors.csv";
-        nendo::test::write_file(vectors, csv(starts, moves));
+        nendo::test::write_file(vectors, csv_of(starts, moves));
         const auto out = folder.path() / (++round % 2 == 0 ? "out.obj" : "out.ply");
         const auto done =
             nendo::test::nendo({"deform", in.string(), "--vectors", vectors.string(), "--radius",
@@ -261,7 +261,7 @@ TEST_SUITE("deform") {
     const Points moves = Points::Random(3, 5000);
     const auto vectors = folder.path() / "vectors.csv";
     const auto out = folder.path() / "out.ply";
-    nendo::test::write_file(vectors, csv(starts, moves));
+    nendo::test::write_file(vectors, csv_of(starts, moves));
     const auto done = nendo::test::nendo({"deform", in.string(), "--vectors", vectors.string(),
                                           "--radius", "1.5", "--out", out.string()});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);

@@ -20,7 +20,7 @@ using flow::TickRecord;
 
 namespace {
 
-constexpr HostTime start(1000s);
+constexpr HostTime first_tick(1000s);
 constexpr auto period = 1ms;
 
 flow::PaceOptions at_1khz() {
@@ -35,7 +35,7 @@ TickRecord record(std::uint64_t tick, HostClock::duration late, std::uint32_t wo
                   std::uint32_t missed = 0) {
   TickRecord made;
   made.tick = tick;
-  made.scheduled = start + tick * period;
+  made.scheduled = first_tick + tick * period;
   made.woke = made.scheduled + late;
   made.drained_ns = work_ns / 10;
   made.posed_ns = work_ns / 5;
@@ -139,7 +139,7 @@ TEST_SUITE("stress tally") {
     // The tick before worked for 4.5 ms; its deformation, 70 % of that, went on beyond deadline 5.
     incident = incident_of(record(4, 0us, 4'500'000), record(9, 0us, 100'000, 4), period);
     CHECK(incident.phase == Phase::deform);
-    CHECK(incident.due == start + 5 * period);
+    CHECK(incident.due == first_tick + 5 * period);
     CHECK(incident.lateness == 4ms);
     CHECK(incident.missed == 4);
     CHECK(incident.phase_time == 4'050us - 1ms);
@@ -181,12 +181,12 @@ TEST_SUITE("stress tally") {
   }
 
   TEST_CASE("a course over time has at most so many slices, and loses nothing") {
-    Timeline course;
+    LatenessTrace course;
     std::uint64_t count = 0;
     for (int n = 0; n < 100'000; ++n, ++count)
-      course.add(start + n * 7ms, n == 77'777 ? 50ms : 1us);
-    CHECK(course.slices().size() <= Timeline::most_slices);
-    CHECK(course.slices().size() > Timeline::most_slices / 4);
+      course.add(first_tick + n * 7ms, n == 77'777 ? 50ms : 1us);
+    CHECK(course.slices().size() <= LatenessTrace::most_slices);
+    CHECK(course.slices().size() > LatenessTrace::most_slices / 4);
     std::uint64_t counted = 0;
     std::chrono::nanoseconds sum{};
     std::size_t latest = 0;

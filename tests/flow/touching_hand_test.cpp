@@ -24,8 +24,8 @@ using hand::Finger;
 
 namespace {
 
-constexpr std::array fingers{Finger::thumb, Finger::index, Finger::middle, Finger::ring,
-                             Finger::little};
+constexpr std::array touch_fingers{Finger::thumb, Finger::index, Finger::middle, Finger::ring,
+                                   Finger::little};
 
 TouchingHand hand_on(const deform::Mesh& model, Side side, const TouchOptions& options = {}) {
   auto made = TouchingHand::make(model, hand::HandSkeleton(side), options);
@@ -59,8 +59,8 @@ void check_touch(const TouchingHand& hand, Side side, const deform::Mesh& stage)
   int on_it = 0;
   for (double t = 0.0; t < hand.period_s(); t += 0.613) {
     const Fingertips tips = tips_at(hand, side, t);
-    for (std::size_t k = 0; k < fingers.size(); ++k) {
-      const TouchTarget target = hand.target(fingers[k], t);
+    for (std::size_t k = 0; k < touch_fingers.size(); ++k) {
+      const TouchTarget target = hand.target(touch_fingers[k], t);
       const Eigen::Vector3d tip = tips.col(static_cast<Eigen::Index>(k));
       CHECK((tip - (target.contact_m - target.depth_m * target.normal)).norm() < 1e-4);
       const auto contact = test::nearest_triangle(stage, target.contact_m);
@@ -76,7 +76,7 @@ void check_touch(const TouchingHand& hand, Side side, const deform::Mesh& stage)
 }
 
 void check_reach(const TouchingHand& hand) {
-  for (const Finger finger : fingers) {
+  for (const Finger finger : touch_fingers) {
     CHECK(hand.touches(finger));
     const Eigen::Vector3d first = hand.target(finger, 0.0).contact_m;
     double in_m = 0.0;
@@ -113,10 +113,10 @@ void check_motion(const TouchingHand& hand, Side side) {
       fastest_rad_s = std::max(fastest_rad_s, std::abs(now[angle] - before[angle]) / step_s);
     }
     const Fingertips tips = tips_at(hand, side, t);
-    for (std::size_t k = 0; k < fingers.size(); ++k)
-      off_m = std::max(
-          off_m,
-          (tips.col(static_cast<Eigen::Index>(k)) - hand.target(fingers[k], t).place_m()).norm());
+    for (std::size_t k = 0; k < touch_fingers.size(); ++k)
+      off_m = std::max(off_m, (tips.col(static_cast<Eigen::Index>(k)) -
+                               hand.target(touch_fingers[k], t).place_m())
+                                  .norm());
     before = now;
   }
   CHECK(beyond_rad < from_degrees(0.1));
@@ -154,9 +154,9 @@ TEST_SUITE("touching_hand") {
     check_hands_on(test::sphere(32, 64, 5.0), [](const TouchingHand& hand, Side side) {
       for (double t = 0.0; t < hand.period_s(); t += 0.1) {
         const Fingertips tips = tips_at(hand, side, t);
-        for (std::size_t k = 0; k < fingers.size(); ++k) {
+        for (std::size_t k = 0; k < touch_fingers.size(); ++k) {
           const double radius_m = tips.col(static_cast<Eigen::Index>(k)).norm();
-          const double depth_m = hand.target(fingers[k], t).depth_m;
+          const double depth_m = hand.target(touch_fingers[k], t).depth_m;
           // Of 0.4 m; the faces' middles lie up to 1 mm under the ball.
           CHECK(std::abs(radius_m - (0.4 - depth_m)) < 0.0015);
         }
@@ -217,9 +217,9 @@ TEST_SUITE("touching_hand") {
         const Fingertips tips =
             hand::HandSkeleton(Side::right).pose(angles, hand.wrist_pose()).fingertip_positions();
         const double time_s = speed * to_seconds(sample.device_time);
-        for (std::size_t k = 0; k < fingers.size(); ++k)
+        for (std::size_t k = 0; k < touch_fingers.size(); ++k)
           off_mm.push_back(1e3 * (tips.col(static_cast<Eigen::Index>(k)) -
-                                  hand.target(fingers[k], time_s).place_m())
+                                  hand.target(touch_fingers[k], time_s).place_m())
                                      .norm());
       });
     }
