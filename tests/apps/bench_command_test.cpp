@@ -11,6 +11,8 @@
 
 #include "support/program.hpp"
 
+namespace bench_command_test {
+
 using nendo::test::is_one_line_about;
 using nendo::test::lines_of;
 
@@ -365,3 +367,5 @@ TEST_SUITE("bench") {
     CHECK(is_one_line_about(few.err, "--records"));
   }
 }
+
+} // namespace bench_command_test

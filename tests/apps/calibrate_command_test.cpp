@@ -18,6 +18,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/terminal_program.hpp"
 
+namespace calibrate_command_test {
+
 using namespace nendo;
 using namespace nendo::test;
 
@@ -257,3 +259,5 @@ TEST_SUITE("calibrate") {
     CHECK_FALSE(program.screen().on_page());
   }
 }
+
+} // namespace calibrate_command_test

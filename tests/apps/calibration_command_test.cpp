@@ -13,6 +13,8 @@
 #include "support/bvh_reader.hpp"
 #include "support/program.hpp"
 
+namespace calibration_command_test {
+
 using nendo::Side;
 using nendo::test::contents;
 using nendo::test::Finished;
@@ -389,3 +391,5 @@ TEST_SUITE("calibration command") {
     }
   }
 }
+
+} // namespace calibration_command_test

@@ -11,6 +11,8 @@
 #include "calibrate/hand_drawing.hpp"
 #include "calibrate/screen.hpp"
 
+namespace calibration_guide_test {
+
 using namespace nendo;
 using namespace nendo::bench;
 using namespace nendo::calibrate;
@@ -251,3 +253,5 @@ TEST_SUITE("calibration_guide") {
       }
   }
 }
+
+} // namespace calibration_guide_test

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace cyclictest_test {
+
 using namespace nendo;
 using namespace nendo::bench;
 
@@ -26,3 +28,5 @@ TEST_SUITE("cyclictest") {
       CHECK_FALSE(parse_cyclictest(text));
   }
 }
+
+} // namespace cyclictest_test

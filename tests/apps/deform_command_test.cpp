@@ -8,6 +8,8 @@
 
 #include "support/program.hpp"
 
+namespace deform_command_test {
+
 using namespace nendo;
 using deform::Mesh;
 using deform::Points;
@@ -357,3 +359,5 @@ TEST_SUITE("deform") {
     CHECK(with({"--out", out, "--radius", "1"}).exit_code == 0);
   }
 }
+
+} // namespace deform_command_test

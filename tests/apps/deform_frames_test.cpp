@@ -6,6 +6,8 @@
 
 #include "bench/table1.hpp"
 
+namespace deform_frames_test {
+
 using namespace nendo::bench;
 using namespace std::chrono_literals;
 
@@ -64,3 +66,5 @@ TEST_SUITE("deform_frames") {
     }
   }
 }
+
+} // namespace deform_frames_test

@@ -5,6 +5,8 @@
 
 #include "support/program.hpp"
 
+namespace devices_command_test {
+
 using nendo::test::is_one_line_about;
 
 namespace {
@@ -106,3 +108,5 @@ TEST_SUITE("devices") {
     CHECK(nendo::test::nendo({"--version"}).out.starts_with("0."));
   }
 }
+
+} // namespace devices_command_test

@@ -6,6 +6,8 @@
 #include "doctor/doctor.hpp"
 #include "support/program.hpp"
 
+namespace doctor_command_test {
+
 using namespace nendo::doctor;
 using nendo::driver::DeviceKind;
 using nendo::driver::GloveCandidate;
@@ -140,3 +142,5 @@ TEST_SUITE("doctor") {
     CHECK_FALSE(text.out.empty());
   }
 }
+
+} // namespace doctor_command_test

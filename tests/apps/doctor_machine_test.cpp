@@ -4,10 +4,12 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/udev_rules.hpp>
+#include <nendo/udev/rules.hpp>
 
 #include "doctor/doctor.hpp"
 #include "support/program.hpp"
+
+namespace doctor_machine_test {
 
 using namespace nendo::doctor;
 using nendo::test::TemporaryFolder;
@@ -25,7 +27,7 @@ public:
     for (const char* const cpu : {"cpu0", "cpu1"})
       governor(cpu, "performance");
     fs::create_directories(folder_.path() / "run/udev");
-    for (const auto& file : nendo::driver::udev_files())
+    for (const auto& file : nendo::udev::rule_texts())
       write("usr/lib/udev/rules.d/" + std::string(file.name), file.text);
   }
   void write(const std::string& name, const std::string& text) const {
@@ -132,3 +134,5 @@ TEST_SUITE("doctor") {
     CHECK(machine.examine().empty());
   }
 }
+
+} // namespace doctor_machine_test

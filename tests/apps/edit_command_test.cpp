@@ -12,6 +12,8 @@
 #include "support/program.hpp"
 #include "support/restraint.hpp"
 
+namespace edit_command_test {
+
 using namespace nendo;
 using nendo::test::contents;
 using nendo::test::is_one_line_about;
@@ -250,3 +252,5 @@ TEST_SUITE("edit_command") {
   }
 #endif
 }
+
+} // namespace edit_command_test

@@ -12,6 +12,8 @@
 #include "support/test_meshes.hpp"
 #include "support/timelines.hpp"
 
+namespace edit_session_test {
+
 using namespace nendo;
 using namespace nendo::edit;
 using namespace nendo::timeline;
@@ -244,3 +246,5 @@ TEST_SUITE("edit_session") {
     edited.wish(EditCommand::export_glb);  // and is stopped by leaving
   }
 }
+
+} // namespace edit_session_test

@@ -7,6 +7,8 @@
 
 #include "support/program.hpp"
 
+namespace emulate_command_test {
+
 using nendo::test::is_one_line_about;
 
 TEST_SUITE("emulate") {
@@ -73,3 +75,5 @@ TEST_SUITE("emulate") {
     CHECK(is_one_line_about(without.err, "--link"));
   }
 }
+
+} // namespace emulate_command_test

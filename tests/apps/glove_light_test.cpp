@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace glove_light_test {
+
 using namespace nendo;
 using nendo::gloves::GloveLight;
 
@@ -49,3 +51,5 @@ TEST_SUITE("glove_light") {
     CHECK(glove.given.empty());
   }
 }
+
+} // namespace glove_light_test

@@ -5,6 +5,8 @@
 
 #include "support/program.hpp"
 
+namespace info_command_test {
+
 using nendo::test::EmulatedGlove;
 using nendo::test::is_one_line_about;
 using nendo::test::lines_of;
@@ -72,3 +74,5 @@ TEST_SUITE("info") {
     CHECK(unknown.out.empty());
   }
 }
+
+} // namespace info_command_test

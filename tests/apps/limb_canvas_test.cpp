@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace limb_canvas_test {
+
 using namespace nendo::calibrate;
 
 namespace {
@@ -112,3 +114,5 @@ TEST_SUITE("limb_canvas") {
         CHECK(canvas.character(column, row) == ' ');
   }
 }
+
+} // namespace limb_canvas_test

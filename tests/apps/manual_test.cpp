@@ -8,6 +8,8 @@
 #include "support/program.hpp"
 #include "support/shell.hpp"
 
+namespace manual_test {
+
 using namespace nendo::test;
 
 namespace {
@@ -178,3 +180,5 @@ TEST_SUITE("manual") {
     CHECK_MESSAGE(zsh.out.empty(), zsh.out);
   }
 }
+
+} // namespace manual_test

@@ -10,6 +10,8 @@
 #include "support/program.hpp"
 #include "support/terminal_program.hpp"
 
+namespace monitor_command_test {
+
 using nendo::test::EmulatedGlove;
 using nendo::test::is_one_line_about;
 using nendo::test::lines_of;
@@ -250,3 +252,5 @@ TEST_SUITE("monitor") {
     }
   }
 }
+
+} // namespace monitor_command_test

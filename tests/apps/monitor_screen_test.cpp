@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace monitor_screen_test {
+
 using namespace nendo;
 using namespace nendo::gloves;
 
@@ -148,3 +150,5 @@ TEST_SUITE("monitor_screen") {
     CHECK(glove.lines()[2].find("deg") == std::string::npos);
   }
 }
+
+} // namespace monitor_screen_test

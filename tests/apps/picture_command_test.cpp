@@ -6,6 +6,8 @@
 #include "support/program.hpp"
 #include "support/test_meshes.hpp"
 
+namespace picture_command_test {
+
 using namespace nendo;
 using nendo::test::is_one_line_about;
 using nendo::test::TemporaryFolder;
@@ -133,3 +135,5 @@ TEST_SUITE("picture") {
     CHECK(is_one_line_about(blind.err, "nendo picture"));
   }
 }
+
+} // namespace picture_command_test

@@ -5,6 +5,8 @@
 #include "session/open_hands.hpp"
 #include "support/test_meshes.hpp"
 
+namespace place_loop_test {
+
 using namespace nendo;
 using namespace nendo::gloves;
 using namespace nendo::session;
@@ -39,3 +41,5 @@ TEST_SUITE("place_loop") {
     }
   }
 }
+
+} // namespace place_loop_test

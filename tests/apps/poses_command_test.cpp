@@ -12,6 +12,8 @@
 #include "support/bvh_reader.hpp"
 #include "support/program.hpp"
 
+namespace poses_command_test {
+
 using nendo::hand::Joint;
 using nendo::test::BvhRecording;
 using nendo::test::contents;
@@ -354,3 +356,5 @@ TEST_SUITE("poses") {
     CHECK(nendo::test::nendo({"poses"}).exit_code == 2);
   }
 }
+
+} // namespace poses_command_test

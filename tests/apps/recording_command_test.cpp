@@ -7,6 +7,8 @@
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
 
+namespace recording_command_test {
+
 using namespace nendo;
 using nendo::test::contents;
 using nendo::test::is_one_line_about;
@@ -247,3 +249,5 @@ TEST_SUITE("recording_command") {
     }
   }
 }
+
+} // namespace recording_command_test

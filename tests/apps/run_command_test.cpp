@@ -15,6 +15,8 @@
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
 
+namespace run_command_test {
+
 using namespace nendo;
 using nendo::test::EmulatedGlove;
 using nendo::test::is_one_line_about;
@@ -348,3 +350,5 @@ TEST_SUITE("run") {
     CHECK_FALSE(std::filesystem::exists(out));
   }
 }
+
+} // namespace run_command_test

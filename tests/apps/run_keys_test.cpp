@@ -8,6 +8,8 @@
 #include "support/program.hpp"
 #include "support/terminal_program.hpp"
 
+namespace run_keys_test {
+
 using namespace nendo;
 using nendo::test::TemporaryFolder;
 using nendo::test::TerminalProgram;
@@ -59,3 +61,5 @@ TEST_SUITE("run_keys") {
     CHECK(done.err.find("keys") == std::string::npos);
   }
 }
+
+} // namespace run_keys_test

@@ -5,6 +5,8 @@
 #include "support/program.hpp"
 #include "support/restraint.hpp"
 
+namespace run_outputs_test {
+
 using namespace nendo;
 using nendo::test::is_one_line_about;
 using nendo::test::TemporaryFolder;
@@ -58,3 +60,5 @@ TEST_SUITE("run_outputs") {
     CHECK(std::filesystem::exists(out));
   }
 }
+
+} // namespace run_outputs_test

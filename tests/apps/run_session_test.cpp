@@ -18,6 +18,8 @@
 #include "support/test_meshes.hpp"
 #include "takes/recorded_model.hpp"
 
+namespace run_session_test {
+
 using namespace nendo;
 using namespace nendo::gloves;
 using namespace nendo::session;
@@ -382,3 +384,5 @@ TEST_SUITE("run_session") {
     CHECK(wisher.wrists[0] != wisher.wrists[1]);
   }
 }
+
+} // namespace run_session_test

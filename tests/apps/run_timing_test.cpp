@@ -13,6 +13,8 @@
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
 
+namespace run_timing_test {
+
 using namespace nendo;
 using nendo::cli::two_processors;
 using nendo::test::is_one_line_about;
@@ -129,3 +131,5 @@ TEST_SUITE("run_timing") {
     CHECK(is_one_line_about(alone.err, "--threads 2"));
   }
 }
+
+} // namespace run_timing_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace sample_grid_test {
+
 using namespace nendo;
 using nendo::gloves::SampleGrid;
 using std::chrono::microseconds;
@@ -110,3 +112,5 @@ TEST_SUITE("sample grid") {
     }));
   }
 }
+
+} // namespace sample_grid_test

@@ -14,6 +14,8 @@
 #include "support/program.hpp"
 #include "support/shell.hpp"
 
+namespace service_test {
+
 using namespace nendo::test;
 
 namespace {
@@ -122,3 +124,5 @@ TEST_SUITE("service") {
           0);
   }
 }
+
+} // namespace service_test

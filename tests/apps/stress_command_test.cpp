@@ -11,6 +11,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace stress_command_test {
+
 using nendo::test::is_one_line_about;
 using nendo::test::lines_of;
 using nendo::test::Program;
@@ -249,3 +251,5 @@ TEST_SUITE("stress") {
     CHECK(is_one_line_about(unseen.err, "window"));
   }
 }
+
+} // namespace stress_command_test

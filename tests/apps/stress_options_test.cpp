@@ -13,6 +13,8 @@
 #include "stress/load.hpp"
 #include "stress/stress_options.hpp"
 
+namespace stress_options_test {
+
 using namespace nendo;
 using namespace nendo::cli;
 using namespace nendo::stress;
@@ -177,3 +179,5 @@ TEST_SUITE("stress options") {
     }
   }
 }
+
+} // namespace stress_options_test

@@ -13,6 +13,8 @@
 #include "stress/report.hpp"
 #include "stress/tick_tally.hpp"
 
+namespace stress_tally_test {
+
 using namespace nendo;
 using namespace nendo::stress;
 using namespace std::chrono_literals;
@@ -223,3 +225,5 @@ TEST_SUITE("stress tally") {
     CHECK(value == 1000.0);
   }
 }
+
+} // namespace stress_tally_test

@@ -11,6 +11,8 @@
 
 #include "bench/table1_paper.hpp"
 
+namespace table1_test {
+
 using namespace nendo::bench;
 using nendo::deform::Mesh;
 
@@ -59,3 +61,5 @@ TEST_SUITE("table1") {
     CHECK(count_evaluations(vertices, starts, 7.0) == 6);
   }
 }
+
+} // namespace table1_test

@@ -11,6 +11,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 
+namespace touching_glove_test {
+
 using namespace nendo;
 
 namespace {
@@ -85,3 +87,5 @@ TEST_SUITE("touching_glove") {
     CHECK(std::filesystem::exists(out));
   }
 }
+
+} // namespace touching_glove_test

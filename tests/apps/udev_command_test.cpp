@@ -3,9 +3,11 @@
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include <nendo/driver/udev_rules.hpp>
+#include <nendo/udev/rules.hpp>
 
 #include "support/program.hpp"
+
+namespace udev_command_test {
 
 using namespace nendo::test;
 namespace fs = std::filesystem;
@@ -57,7 +59,7 @@ TEST_SUITE("udev command") {
     ::umask(022);
     CHECK(first.exit_code == 0);
     CHECK(lines_of(first.out).size() == 2); // no word of udev: this is not its root
-    for (const auto& file : nendo::driver::udev_files()) {
+    for (const auto& file : nendo::udev::rule_texts()) {
       const auto path = root.etc(std::string(file.name));
       CHECK(contents(path) == file.text);
       CHECK(root.udev({"show", std::string(file.name)}).out == file.text);
@@ -86,7 +88,7 @@ TEST_SUITE("udev command") {
 
   TEST_CASE("a package's rules are enough, and are not touched") {
     const FakeRoot root;
-    for (const auto& file : nendo::driver::udev_files())
+    for (const auto& file : nendo::udev::rule_texts())
       write_file(root.package(std::string(file.name)), file.text);
     CHECK(says(root.udev({"install"}), "unchanged"));
     CHECK(root.files() == 2);
@@ -150,3 +152,5 @@ TEST_SUITE("udev command") {
     CHECK(root.files() == 0);
   }
 }
+
+} // namespace udev_command_test

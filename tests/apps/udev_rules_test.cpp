@@ -4,6 +4,8 @@
 
 #include "support/udev_sandbox.hpp"
 
+namespace udev_rules_test {
+
 using namespace nendo::test;
 
 namespace {
@@ -142,3 +144,5 @@ TEST_SUITE("udev") {
     CHECK(verdict->complains());
   }
 }
+
+} // namespace udev_rules_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace byte_reader_test {
+
 using nendo::ByteReader;
 
 namespace {
@@ -39,3 +41,5 @@ TEST_SUITE("byte_reader") {
     CHECK(reader.overrun());
   }
 }
+
+} // namespace byte_reader_test

@@ -8,6 +8,8 @@
 
 #include <nendo/base/byte_reader.hpp>
 
+namespace byte_writer_test {
+
 using nendo::ByteReader;
 using nendo::ByteWriter;
 
@@ -55,3 +57,5 @@ TEST_SUITE("byte_writer") {
     CHECK(reader.overrun());
   }
 }
+
+} // namespace byte_writer_test

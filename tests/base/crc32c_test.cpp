@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace crc32c_test {
+
 using nendo::crc32c;
 
 namespace {
@@ -41,3 +43,5 @@ TEST_SUITE("crc32c") {
       CHECK(crc32c(bytes.subspan(cut), crc32c(bytes.first(cut))) == sum_of(whole));
   }
 }
+
+} // namespace crc32c_test

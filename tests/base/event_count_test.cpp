@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace event_count_test {
+
 using namespace nendo;
 using namespace std::chrono_literals;
 
@@ -60,3 +62,5 @@ TEST_SUITE("event count") {
       sender.join();
   }
 }
+
+} // namespace event_count_test

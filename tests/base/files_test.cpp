@@ -12,6 +12,8 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace files_test {
+
 using namespace nendo;
 namespace fs = std::filesystem;
 
@@ -165,3 +167,5 @@ TEST_SUITE("files") {
     ::umask(before);
   }
 }
+
+} // namespace files_test

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace frame_pool_test {
+
 using nendo::FramePool;
 
 TEST_SUITE("frame_pool") {
@@ -142,3 +144,5 @@ TEST_SUITE("frame_pool") {
     CHECK(counters.offered == counters.taken + counters.dropped);
   }
 }
+
+} // namespace frame_pool_test

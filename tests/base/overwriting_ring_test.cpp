@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace overwriting_ring_test {
+
 using nendo::OverwritingRing;
 
 TEST_SUITE("overwriting_ring") {
@@ -104,3 +106,5 @@ TEST_SUITE("overwriting_ring") {
     CHECK(counters.got + counters.lost == rounds);
   }
 }
+
+} // namespace overwriting_ring_test

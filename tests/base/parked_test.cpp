@@ -16,6 +16,8 @@
 
 #include "support/parked.hpp"
 
+namespace parked_test {
+
 namespace {
 
 constexpr int parkings = 300;
@@ -182,3 +184,5 @@ TEST_SUITE("parked") {
     CHECK(counters.offered == counters.taken + counters.dropped);
   }
 }
+
+} // namespace parked_test

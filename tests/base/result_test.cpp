@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace result_test {
+
 using nendo::Errc;
 using nendo::Error;
 using nendo::Result;
@@ -39,3 +41,5 @@ TEST_SUITE("result") {
     CHECK(bad.error().code == Errc::no_permission);
   }
 }
+
+} // namespace result_test

@@ -11,6 +11,8 @@
 
 #include <doctest/doctest.h>
 
+namespace spsc_ring_test {
+
 using nendo::SpscRing;
 
 TEST_SUITE("spsc_ring") {
@@ -162,3 +164,5 @@ TEST_SUITE("spsc_ring") {
     CHECK(counters.offered == counters.consumed + counters.refused + ring.size());
   }
 }
+
+} // namespace spsc_ring_test

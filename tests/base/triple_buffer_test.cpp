@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace triple_buffer_test {
+
 using nendo::TripleBuffer;
 
 TEST_SUITE("triple_buffer") {
@@ -70,3 +72,5 @@ TEST_SUITE("triple_buffer") {
     CHECK(seen + overwritten == rounds);
   }
 }
+
+} // namespace triple_buffer_test

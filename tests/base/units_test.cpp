@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace units_test {
+
 using namespace nendo;
 using namespace std::chrono_literals;
 
@@ -31,3 +33,5 @@ TEST_SUITE("units") {
     CHECK(std::isfinite(seconds_between(last, first)));
   }
 }
+
+} // namespace units_test

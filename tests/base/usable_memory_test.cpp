@@ -7,6 +7,8 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace usable_memory_test {
+
 using namespace nendo;
 namespace fs = std::filesystem;
 
@@ -43,3 +45,5 @@ TEST_SUITE("usable_memory") {
     CHECK(usable_memory() < std::size_t{1} << 60);
   }
 }
+
+} // namespace usable_memory_test

@@ -15,6 +15,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace block_evaluator_test {
+
 using namespace nendo::deform;
 using nendo::test::random_points;
 
@@ -349,3 +351,5 @@ TEST_SUITE("block_evaluator") {
     use_simd("");
   }
 }
+
+} // namespace block_evaluator_test

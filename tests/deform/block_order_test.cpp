@@ -14,6 +14,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace block_order_test {
+
 using namespace nendo::deform;
 
 namespace {
@@ -104,3 +106,5 @@ TEST_SUITE("block_order") {
     CHECK(BlockLayout(Points(3, 0)).order().empty());
   }
 }
+
+} // namespace block_order_test

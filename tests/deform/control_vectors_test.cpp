@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace control_vectors_test {
+
 using nendo::Errc;
 using nendo::deform::parse_control_vectors;
 using nendo::deform::read_control_vectors;
@@ -98,3 +100,5 @@ TEST_SUITE("control_vectors") {
     CHECK(vectors.error().message.starts_with("/nowhere/at/all.csv: cannot be opened"));
   }
 }
+
+} // namespace control_vectors_test

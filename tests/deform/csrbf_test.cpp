@@ -12,6 +12,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace csrbf_test {
+
 using namespace nendo::deform;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -284,3 +286,5 @@ TEST_SUITE("csrbf") {
       CHECK_FALSE(describe(status).empty());
   }
 }
+
+} // namespace csrbf_test

@@ -15,6 +15,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace deformers_options_test {
+
 using namespace nendo::deform;
 using Eigen::Vector3d;
 using nendo::test::largest;
@@ -279,3 +281,5 @@ TEST_SUITE("deformers") {
     }
   }
 }
+
+} // namespace deformers_options_test

@@ -8,6 +8,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace field_test {
+
 using namespace nendo::deform;
 using nendo::test::random_points;
 
@@ -98,3 +100,5 @@ TEST_SUITE("field") {
     CHECK(points == copy);
   }
 }
+
+} // namespace field_test

@@ -9,6 +9,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace fingertip_curve_test {
+
 using namespace nendo::deform;
 using Eigen::Vector3d;
 
@@ -168,3 +170,5 @@ TEST_SUITE("fingertip_curve") {
     }
   }
 }
+
+} // namespace fingertip_curve_test

@@ -10,6 +10,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace injective_chain_test {
+
 using namespace nendo::deform;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -381,3 +383,5 @@ TEST_SUITE("injective chain") {
     }
   }
 }
+
+} // namespace injective_chain_test

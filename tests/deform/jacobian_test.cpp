@@ -13,6 +13,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace jacobian_test {
+
 using namespace nendo::deform;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -245,3 +247,5 @@ TEST_SUITE("jacobian") {
     }
   }
 }
+
+} // namespace jacobian_test

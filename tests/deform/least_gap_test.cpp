@@ -8,6 +8,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace least_gap_test {
+
 using namespace nendo::deform;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -179,3 +181,5 @@ TEST_SUITE("least gap") {
     }
   }
 }
+
+} // namespace least_gap_test

@@ -17,6 +17,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 
+namespace mesh_file_test {
+
 using namespace nendo::deform;
 using nendo::Errc;
 using nendo::test::TemporaryFolder;
@@ -356,3 +358,5 @@ TEST_SUITE("mesh_file") {
     CHECK(mesh->vertices.cols() == 9);
   }
 }
+
+} // namespace mesh_file_test

@@ -4,6 +4,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace mesh_test {
+
 using namespace nendo::deform;
 
 TEST_SUITE("mesh") {
@@ -44,3 +46,5 @@ TEST_SUITE("mesh") {
     CHECK(vertex_normals(Mesh{}).cols() == 0);
   }
 }
+
+} // namespace mesh_test

@@ -15,6 +15,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace normals_test {
+
 using namespace nendo::deform;
 using nendo::test::largest;
 using nendo::test::random_points;
@@ -373,3 +375,5 @@ TEST_SUITE("normals") {
     CHECK(largest(unpacked(deformer.layout(), deformer.normals()) - normals) < 1e-4);
   }
 }
+
+} // namespace normals_test

@@ -9,6 +9,8 @@
 
 #include <nendo/deform/octree_order.hpp>
 
+namespace octree_order_test {
+
 namespace {
 
 using nendo::deform::octree_order;
@@ -77,3 +79,5 @@ TEST_SUITE("octree_order") {
     CHECK(octree_order(points) == std::vector<std::uint32_t>{1, 2, 3, 0});
   }
 }
+
+} // namespace octree_order_test

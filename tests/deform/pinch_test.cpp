@@ -9,6 +9,8 @@
 #include "support/fields.hpp"
 #include "support/test_meshes.hpp"
 
+namespace pinch_test {
+
 using namespace nendo::deform;
 using Eigen::VectorXd;
 using nendo::test::largest;
@@ -159,3 +161,5 @@ TEST_SUITE("pinch") {
       }
   }
 }
+
+} // namespace pinch_test

@@ -10,6 +10,8 @@
 #include "support/fields.hpp"
 #include "support/test_meshes.hpp"
 
+namespace several_radii_test {
+
 using namespace nendo::deform;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -291,3 +293,5 @@ TEST_SUITE("several radii") {
       }
   }
 }
+
+} // namespace several_radii_test

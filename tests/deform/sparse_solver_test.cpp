@@ -10,6 +10,8 @@
 #include "support/fields.hpp"
 #include "support/test_meshes.hpp"
 
+namespace sparse_solver_test {
+
 using namespace nendo::deform;
 using Eigen::VectorXd;
 using nendo::test::largest;
@@ -160,3 +162,5 @@ TEST_SUITE("sparse solver") {
     CHECK(field.centres.cols() == 400);
   }
 }
+
+} // namespace sparse_solver_test

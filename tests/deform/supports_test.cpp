@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace supports_test {
+
 using namespace nendo::deform;
 
 TEST_SUITE("supports") {
@@ -74,3 +76,5 @@ TEST_SUITE("supports") {
     }
   }
 }
+
+} // namespace supports_test

@@ -8,6 +8,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace triangles_test {
+
 using namespace nendo::deform;
 
 TEST_SUITE("triangles") {
@@ -49,3 +51,5 @@ TEST_SUITE("triangles") {
     CHECK(corners_of_triangles(Mesh{}).empty());
   }
 }
+
+} // namespace triangles_test

@@ -17,6 +17,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace type1_test {
+
 using namespace nendo::deform;
 using nendo::test::largest;
 using nendo::test::random_points;
@@ -367,3 +369,5 @@ TEST_SUITE("type1") {
     CHECK(counts.allocations == 0);
   }
 }
+
+} // namespace type1_test

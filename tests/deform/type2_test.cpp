@@ -12,6 +12,8 @@
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
+namespace type2_test {
+
 using namespace nendo::deform;
 using Eigen::Vector3d;
 using nendo::test::largest;
@@ -274,3 +276,5 @@ TEST_SUITE("type2") {
     CHECK(counts.allocations == 0);
   }
 }
+
+} // namespace type2_test

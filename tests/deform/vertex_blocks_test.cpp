@@ -11,6 +11,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace vertex_blocks_test {
+
 using namespace nendo::deform;
 using nendo::test::random_points;
 
@@ -145,3 +147,5 @@ TEST_SUITE("vertex_blocks") {
     CHECK((out - normals).cwiseAbs().maxCoeff() < 1e-7);
   }
 }
+
+} // namespace vertex_blocks_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace wendland_test {
+
 using nendo::deform::Wendland;
 using nendo::deform::wendland;
 
@@ -69,3 +71,5 @@ TEST_SUITE("wendland") {
     CHECK_FALSE(wendland_named(""));
   }
 }
+
+} // namespace wendland_test

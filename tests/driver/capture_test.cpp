@@ -10,6 +10,8 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace capture_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace std::string_view_literals;
@@ -52,3 +54,5 @@ TEST_SUITE("capture") {
     }
   }
 }
+
+} // namespace capture_test

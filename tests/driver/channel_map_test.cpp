@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace channel_map_test {
+
 using namespace nendo;
 using nendo::driver::cyberglove::make_channel_map;
 
@@ -53,3 +55,5 @@ TEST_SUITE("channel_map") {
     }
   }
 }
+
+} // namespace channel_map_test

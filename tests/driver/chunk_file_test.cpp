@@ -11,6 +11,8 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace chunk_file_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 
@@ -228,3 +230,5 @@ TEST_SUITE("chunk_file") {
     CHECK_FALSE(ChunkReader::open_damaged(folder.path() / "take"));
   }
 }
+
+} // namespace chunk_file_test

@@ -10,6 +10,8 @@
 
 #include "support/canned_transport.hpp"
 
+namespace cyberglove_commands_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::driver::cyberglove;
@@ -252,3 +254,5 @@ TEST_SUITE("cyberglove_commands") {
     CHECK(HostClock::now() - start < 1s);
   }
 }
+
+} // namespace cyberglove_commands_test

@@ -10,6 +10,8 @@
 
 #include "support/canned_transport.hpp"
 
+namespace cyberglove_dialogue_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::driver::cyberglove;
@@ -174,3 +176,5 @@ TEST_SUITE("cyberglove_dialogue") {
     CHECK(HostClock::now() - start < 1s);
   }
 }
+
+} // namespace cyberglove_dialogue_test

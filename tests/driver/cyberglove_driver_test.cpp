@@ -13,6 +13,8 @@
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace cyberglove_driver_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -431,3 +433,5 @@ TEST_SUITE("cyberglove_driver") {
     }));
   }
 }
+
+} // namespace cyberglove_driver_test

@@ -7,6 +7,8 @@
 #include "cyberglove/cyberglove_greeting.hpp"
 #include "support/canned_transport.hpp"
 
+namespace cyberglove_identity_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::driver::cyberglove;
@@ -303,3 +305,5 @@ TEST_SUITE("cyberglove_identity") {
     }
   }
 }
+
+} // namespace cyberglove_identity_test

@@ -10,6 +10,8 @@
 #include "cyberglove/cyberglove_line.hpp"
 #include "cyberglove/cyberglove_period.hpp"
 
+namespace cyberglove_options_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::driver::cyberglove;
@@ -223,3 +225,5 @@ TEST_SUITE("cyberglove_options") {
     CHECK(plan_hires(with_rate(90), 38400).error().message.find("at most 62") != std::string::npos);
   }
 }
+
+} // namespace cyberglove_options_test

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace cyberglove_parser_test {
+
 using namespace nendo::driver::cyberglove;
 
 namespace {
@@ -373,3 +375,5 @@ TEST_SUITE("cyberglove_parser") {
     CHECK(parser.counters().bytes == 17 + 20);
   }
 }
+
+} // namespace cyberglove_parser_test

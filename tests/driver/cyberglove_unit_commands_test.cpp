@@ -9,6 +9,8 @@
 
 #include "support/unit_bench.hpp"
 
+namespace cyberglove_unit_commands_test {
+
 using namespace std::chrono_literals;
 using nendo::Side;
 using nendo::driver::Incident;
@@ -296,3 +298,5 @@ TEST_SUITE("cyberglove_commands") {
     CHECK(bench.after(1s).empty()); // its USB side is off
   }
 }
+
+} // namespace cyberglove_unit_commands_test

@@ -14,6 +14,8 @@
 
 #include "support/unit_bench.hpp"
 
+namespace cyberglove_unit_test {
+
 using namespace std::chrono_literals;
 using nendo::Side;
 using nendo::driver::CyberGloveUnit;
@@ -331,3 +333,5 @@ TEST_SUITE("cyberglove_unit") {
     }
   }
 }
+
+} // namespace cyberglove_unit_test

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace device_clock_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace std::chrono_literals;
@@ -267,3 +269,5 @@ TEST_SUITE("device_clock") {
     }
   }
 }
+
+} // namespace device_clock_test

@@ -10,6 +10,8 @@
 
 #include "support/mocked_machine.hpp"
 
+namespace device_watcher_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -145,3 +147,5 @@ TEST_SUITE("device_watcher") {
     CHECK(HostClock::now() - begin >= 100ms);
   }
 }
+
+} // namespace device_watcher_test

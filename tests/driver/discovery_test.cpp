@@ -11,6 +11,8 @@
 #include "support/mocked_machine.hpp"
 #include "transport/ftdi_latency.hpp"
 
+namespace discovery_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -239,3 +241,5 @@ TEST_SUITE("discovery") {
     CHECK_FALSE(ftdi_latency_timer("/dev/ttyUSB0"));
   }
 }
+
+} // namespace discovery_test

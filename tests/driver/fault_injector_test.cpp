@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace fault_injector_test {
+
 using namespace std::chrono_literals;
 using namespace nendo::driver;
 
@@ -188,3 +190,5 @@ TEST_SUITE("fault_injector") {
     CHECK(intact(wire, 3) == 1);
   }
 }
+
+} // namespace fault_injector_test

@@ -7,6 +7,8 @@
 
 #include <nendo/driver/emulator.hpp>
 
+namespace fault_test {
+
 using namespace std::chrono_literals;
 using namespace nendo::driver;
 
@@ -97,3 +99,5 @@ TEST_SUITE("fault") {
     CHECK_FALSE(parse_faults({"drop=1%", "nonsense"}));
   }
 }
+
+} // namespace fault_test

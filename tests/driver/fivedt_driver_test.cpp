@@ -9,6 +9,8 @@
 #include "emulator/fivedt_unit.hpp"
 #include "support/stream_laws.hpp"
 
+namespace fivedt_driver_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -176,3 +178,5 @@ TEST_SUITE("fivedt_driver") {
     a_glove_that_vanishes_is_found_again(wireless(), false);
   }
 }
+
+} // namespace fivedt_driver_test

@@ -9,6 +9,8 @@
 #include "fivedt/fivedt_information.hpp"
 #include "support/captures.hpp"
 
+namespace fivedt_parser_test {
+
 using namespace nendo;
 using namespace nendo::driver::fivedt;
 
@@ -282,3 +284,5 @@ TEST_SUITE("fivedt_information") {
     }
   }
 }
+
+} // namespace fivedt_parser_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace fivedt_unit_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::driver;
@@ -110,3 +112,5 @@ TEST_SUITE("fivedt_unit") {
     CHECK(bench.unit.counters().bytes_refused == 9 * (360'000 - EmulatedUnit::output_capacity / 9));
   }
 }
+
+} // namespace fivedt_unit_test

@@ -11,6 +11,8 @@
 #include "support/eventually.hpp"
 #include "support/mocked_usb.hpp"
 
+namespace fivedt_usb_driver_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -100,3 +102,5 @@ TEST_SUITE("fivedt_usb_driver") {
     CHECK(silent.error().message.find("switched on") != std::string::npos);
   }
 }
+
+} // namespace fivedt_usb_driver_test

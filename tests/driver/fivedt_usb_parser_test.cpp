@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace fivedt_usb_parser_test {
+
 using namespace nendo;
 using namespace nendo::driver::fivedt_usb;
 
@@ -105,3 +107,5 @@ TEST_SUITE("fivedt_usb_parser") {
     CHECK(found == list.size());
   }
 }
+
+} // namespace fivedt_usb_parser_test

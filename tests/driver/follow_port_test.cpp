@@ -11,6 +11,8 @@
 #include "transport/follow_port.hpp"
 #include "transport/ftdi_latency.hpp"
 
+namespace follow_port_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -157,3 +159,5 @@ TEST_SUITE("follow_port") {
     CHECK(ftdi_latency_timer("/dev/ttyUSB1") == 1ms);
   }
 }
+
+} // namespace follow_port_test

@@ -9,6 +9,8 @@
 #include "emulator/forte_unit.hpp"
 #include "support/stream_laws.hpp"
 
+namespace forte_driver_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -164,3 +166,5 @@ TEST_SUITE("forte_driver") {
       a_glove_that_vanishes_is_found_again(kind, false);
   }
 }
+
+} // namespace forte_driver_test

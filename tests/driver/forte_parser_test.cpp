@@ -8,6 +8,8 @@
 
 #include "support/captures.hpp"
 
+namespace forte_parser_test {
+
 using namespace nendo;
 using namespace nendo::driver::forte;
 
@@ -252,3 +254,5 @@ TEST_SUITE("forte_parser") {
     CHECK(output == test::read_capture("forte_stream.expected"));
   }
 }
+
+} // namespace forte_parser_test

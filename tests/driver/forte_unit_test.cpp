@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace forte_unit_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::driver;
@@ -106,3 +108,5 @@ TEST_SUITE("forte_unit") {
     CHECK(sent + bench.unit.counters().bytes_refused == 360'000ULL * 31);
   }
 }
+
+} // namespace forte_unit_test

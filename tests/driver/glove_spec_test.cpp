@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace glove_spec_test {
+
 using nendo::Errc;
 using nendo::driver::driver_summaries;
 using nendo::driver::open_glove;
@@ -78,3 +80,5 @@ TEST_SUITE("glove_spec") {
     }
   }
 }
+
+} // namespace glove_spec_test

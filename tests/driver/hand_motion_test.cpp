@@ -13,6 +13,8 @@
 
 #include "simulated/typical_wearer.hpp"
 
+namespace hand_motion_test {
+
 using nendo::Sensor;
 using nendo::sensor_slots;
 using nendo::Side;
@@ -278,3 +280,5 @@ TEST_SUITE("typical_wearer") {
           doctest::Approx(std::sqrt(0.25 + 1.0 / 12.0)).epsilon(0.1));
   }
 }
+
+} // namespace hand_motion_test

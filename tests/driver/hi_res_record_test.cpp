@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace hi_res_record_test {
+
 using namespace nendo::driver::cyberglove;
 using namespace std::chrono_literals;
 
@@ -236,3 +238,5 @@ TEST_SUITE("hi_res_record") {
     CHECK(parser.counters().discarded_bytes == 40);
   }
 }
+
+} // namespace hi_res_record_test

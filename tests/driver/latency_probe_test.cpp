@@ -4,6 +4,8 @@
 
 #include <vector>
 
+namespace latency_probe_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 
@@ -53,3 +55,5 @@ TEST_SUITE("latency probe") {
     CHECK(stopped.driver.empty());
   }
 }
+
+} // namespace latency_probe_test

@@ -15,6 +15,8 @@
 #include "lucidgloves/lucidgloves_driver.hpp"
 #include "support/stream_laws.hpp"
 
+namespace lucidgloves_driver_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -318,3 +320,5 @@ TEST_SUITE("lucidgloves_driver") {
     a_glove_that_vanishes_is_found_again(lucidgloves(), true);
   }
 }
+
+} // namespace lucidgloves_driver_test

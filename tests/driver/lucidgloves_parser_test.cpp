@@ -11,6 +11,8 @@
 #include "lucidgloves/lucidgloves_slots.hpp"
 #include "support/captures.hpp"
 
+namespace lucidgloves_parser_test {
+
 using namespace nendo;
 using namespace nendo::driver::lucidgloves;
 
@@ -325,3 +327,5 @@ TEST_SUITE("lucidgloves_parser") {
     }
   }
 }
+
+} // namespace lucidgloves_parser_test

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace lucidgloves_unit_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::driver;
@@ -111,3 +113,5 @@ TEST_SUITE("lucidgloves_unit") {
     CHECK(counters.bytes_refused > 300'000u * 20);
   }
 }
+
+} // namespace lucidgloves_unit_test

@@ -10,6 +10,8 @@
 #include "support/eventually.hpp"
 #include "support/mocked_usb.hpp"
 
+namespace p5_driver_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -268,3 +270,5 @@ TEST_SUITE("p5_driver") {
     CHECK(Clock::now() - start < 1s);
   }
 }
+
+} // namespace p5_driver_test

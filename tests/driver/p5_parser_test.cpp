@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace p5_parser_test {
+
 using namespace nendo::driver::p5;
 
 namespace {
@@ -165,3 +167,5 @@ TEST_SUITE("p5_parser") {
     CHECK(parser.counters().bytes == bytes + 7);
   }
 }
+
+} // namespace p5_parser_test

@@ -7,7 +7,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "discovery/device_table.hpp"
+#include <nendo/udev/device_table.hpp>
+
 #include "discovery/programs.hpp"
 #include "discovery/udev_records.hpp"
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
@@ -16,6 +17,8 @@
 #include "transport/port_access.hpp"
 #include "transport/sysfs.hpp"
 #include "usb/open_usb_glove.hpp"
+
+namespace programs_test {
 
 using namespace nendo;
 using namespace nendo::driver;
@@ -91,20 +94,21 @@ TEST_SUITE("programs") {
   }
 
   TEST_CASE("USB numbers tell gloves and adapters") {
-    CHECK(usb_glove_name({0x0D7F, 0x0100}) == "Essential Reality P5");
-    CHECK(usb_glove_name({0x0D7F, 0x0101}).empty());
+    CHECK(udev::usb_glove_name({0x0D7F, 0x0100}) == "Essential Reality P5");
+    CHECK(udev::usb_glove_name({0x0D7F, 0x0101}).empty());
     // The table has the numbers that the driver can read a model from, and no others.
     for (unsigned product = 0; product <= 0xFFFF; ++product) {
       const auto number = static_cast<std::uint16_t>(product);
-      if (usb_glove_name({0x5D70, number}).empty() == fivedt_usb::model_of(number).has_value())
+      if (udev::usb_glove_name({0x5D70, number}).empty() ==
+          fivedt_usb::model_of(number).has_value())
         FAIL("5d70:" << product);
     }
-    CHECK(usb_glove_name({0x5D70, 0x0017}) == "5DT Data Glove Ultra");
-    CHECK(usb_glove_name({0x0403, 0x6001}).empty());
-    REQUIRE(find_usb_adapter({0x0403, 0x6001}) != nullptr);
-    CHECK(find_usb_adapter({0x0403, 0x6001})->module == "ftdi_sio");
-    CHECK(find_usb_adapter({0x0403, 0x6002}) == nullptr);
-    CHECK(to_string(UsbId{0x0D7F, 0x0100}) == "0d7f:0100");
+    CHECK(udev::usb_glove_name({0x5D70, 0x0017}) == "5DT Data Glove Ultra");
+    CHECK(udev::usb_glove_name({0x0403, 0x6001}).empty());
+    REQUIRE(udev::find_usb_adapter({0x0403, 0x6001}) != nullptr);
+    CHECK(udev::find_usb_adapter({0x0403, 0x6001})->module == "ftdi_sio");
+    CHECK(udev::find_usb_adapter({0x0403, 0x6002}) == nullptr);
+    CHECK(to_string(udev::UsbId{0x0D7F, 0x0100}) == "0d7f:0100");
   }
 
   TEST_CASE("files of /sys that are missing, long or no numbers give nothing") {
@@ -140,3 +144,5 @@ TEST_SUITE("programs") {
     CHECK(port_access(file).remedy.empty());
   }
 }
+
+} // namespace programs_test

@@ -17,6 +17,8 @@
 #include "support/pty_host.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace pty_emulator_test {
+
 using namespace std::chrono_literals;
 using nendo::Errc;
 using nendo::driver::EmulatorOptions;
@@ -182,3 +184,5 @@ TEST_SUITE("pty_emulator") {
     CHECK(code(options) == Errc::usage);
   }
 }
+
+} // namespace pty_emulator_test

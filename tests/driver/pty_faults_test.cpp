@@ -17,6 +17,8 @@
 #include "support/pty_host.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace pty_faults_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::driver;
@@ -175,3 +177,5 @@ TEST_SUITE("pty_faults") {
     CHECK(error(options).message.find("22") != std::string::npos);
   }
 }
+
+} // namespace pty_faults_test

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace record_check_test {
+
 using namespace nendo::driver::cyberglove;
 
 namespace {
@@ -339,3 +341,5 @@ TEST_SUITE("record_check") {
     }
   }
 }
+
+} // namespace record_check_test

@@ -9,6 +9,8 @@
 #include "support/eventually.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace replay_driver_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::driver;
@@ -151,3 +153,5 @@ TEST_SUITE("replay_driver") {
     CHECK(code_of(Take(0).spec(""), Side::right) == Errc::bad_input);
   }
 }
+
+} // namespace replay_driver_test

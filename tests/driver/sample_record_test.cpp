@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace sample_record_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 
@@ -128,3 +130,5 @@ TEST_SUITE("sample_record") {
       CHECK_FALSE(glove_of(std::span(payload).first(size)).has_value());
   }
 }
+
+} // namespace sample_record_test

@@ -17,6 +17,8 @@
 #include "support/scripted_port.hpp"
 #include "transport/open_transport.hpp"
 
+namespace serialport_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -164,3 +166,5 @@ TEST_SUITE("serialport") {
     CHECK((*glove)->info().source == "serial:/dev/nendo/right");
   }
 }
+
+} // namespace serialport_test

@@ -17,6 +17,8 @@
 #include "simulated/typical_wearer.hpp"
 #include "support/eventually.hpp"
 
+namespace simulated_driver_test {
+
 using namespace std::chrono_literals;
 using nendo::Errc;
 using nendo::GloveSample;
@@ -180,3 +182,5 @@ TEST_SUITE("simulated_driver") {
     CHECK(least < 500ms);
   }
 }
+
+} // namespace simulated_driver_test

@@ -14,6 +14,8 @@
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace transport_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -157,3 +159,5 @@ TEST_SUITE("transport") {
           std::string::npos);
   }
 }
+
+} // namespace transport_test

@@ -13,6 +13,8 @@
 
 #include "support/mocked_usb.hpp"
 
+namespace usb_transport_test {
+
 using namespace nendo;
 using namespace nendo::driver;
 using namespace nendo::test;
@@ -264,3 +266,5 @@ TEST_SUITE("usb_transport") {
     CHECK(MockedUsb::log_of(device).detached == 0);
   }
 }
+
+} // namespace usb_transport_test

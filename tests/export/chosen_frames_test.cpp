@@ -7,6 +7,8 @@
 
 #include "support/scripted_frames.hpp"
 
+namespace chosen_frames_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 using nendo::test::ScriptedFrames;
@@ -154,3 +156,5 @@ TEST_SUITE("chosen_frames") {
     CHECK(too_many.error().code == Errc::usage);
   }
 }
+
+} // namespace chosen_frames_test

@@ -6,6 +6,8 @@
 #include "support/glb_reader.hpp"
 #include "support/program.hpp"
 
+namespace export_command_test {
+
 using namespace nendo;
 using nendo::test::contents;
 using nendo::test::is_one_line_about;
@@ -123,3 +125,5 @@ TEST_SUITE("export_command") {
     }
   }
 }
+
+} // namespace export_command_test

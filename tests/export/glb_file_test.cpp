@@ -7,6 +7,8 @@
 #include "support/takes.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace glb_file_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 
@@ -54,3 +56,5 @@ TEST_SUITE("glb_file") {
     CHECK_FALSE(std::filesystem::exists(folder.path() / "a.glb"));
   }
 }
+
+} // namespace glb_file_test

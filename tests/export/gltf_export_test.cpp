@@ -7,6 +7,8 @@
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"
 
+namespace gltf_export_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 using namespace nendo::takes;
@@ -207,3 +209,5 @@ TEST_SUITE("gltf_export") {
     CHECK(test::file_bytes(motion.path("take.glb")) == "old");
   }
 }
+
+} // namespace gltf_export_test

@@ -6,6 +6,8 @@
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"
 
+namespace gltf_model_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 using nendo::test::Glb;
@@ -63,3 +65,5 @@ TEST_SUITE("gltf_model") {
     CHECK(worst == 0.0);
   }
 }
+
+} // namespace gltf_model_test

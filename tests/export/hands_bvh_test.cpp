@@ -7,6 +7,8 @@
 #include "support/scripted_frames.hpp"
 #include "support/small_disk.hpp"
 
+namespace hands_bvh_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 using nendo::test::BvhRecording;
@@ -105,3 +107,5 @@ TEST_SUITE("hands_bvh") {
     CHECK_FALSE(export_hands_bvh(*others, {}, motion.path("none.bvh")));
   }
 }
+
+} // namespace hands_bvh_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace key_shapes_test {
+
 using nendo::exporting::KeyShapes;
 
 namespace {
@@ -111,3 +113,5 @@ TEST_SUITE("key_shapes") {
     CHECK(keep({KeyShapes::Shape::Ones(3, 2)}, {0.0F}, 1e-4).times_s.size() == 1);
   }
 }
+
+} // namespace key_shapes_test

@@ -6,6 +6,8 @@
 
 #include "support/recorded_motion.hpp"
 
+namespace mesh_sequence_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 using nendo::test::Motion;
@@ -74,3 +76,5 @@ TEST_SUITE("mesh_sequence") {
     CHECK(done.error().message.find("2 frames before it are whole") != std::string::npos);
   }
 }
+
+} // namespace mesh_sequence_test

@@ -9,6 +9,8 @@
 #include "support/recorded_motion.hpp"
 #include "support/scripted_frames.hpp"
 
+namespace motion_csv_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 using nendo::test::Motion;
@@ -104,3 +106,5 @@ TEST_SUITE("motion_csv") {
                                             "right_ring_mcp_flexion_deg"});
   }
 }
+
+} // namespace motion_csv_test

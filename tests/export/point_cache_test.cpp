@@ -6,6 +6,8 @@
 
 #include "support/recorded_motion.hpp"
 
+namespace point_cache_test {
+
 using namespace nendo;
 using namespace nendo::exporting;
 using nendo::test::Motion;
@@ -101,3 +103,5 @@ TEST_SUITE("point_cache") {
     CHECK(device.error().message.find("regular file") != std::string::npos);
   }
 }
+
+} // namespace point_cache_test

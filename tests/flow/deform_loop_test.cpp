@@ -6,6 +6,8 @@
 
 #include "support/flow_fixtures.hpp"
 
+namespace deform_loop_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using nendo::test::LoopUnderTest;
@@ -353,3 +355,5 @@ TEST_SUITE("deform_loop") {
     }
   }
 }
+
+} // namespace deform_loop_test

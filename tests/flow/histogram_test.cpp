@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace histogram_test {
+
 using namespace nendo::flow;
 using namespace std::chrono_literals;
 
@@ -90,3 +92,5 @@ TEST_SUITE("histogram") {
     CHECK(together.max() == one_by_one.max());
   }
 }
+
+} // namespace histogram_test

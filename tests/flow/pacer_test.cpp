@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace pacer_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using namespace std::chrono_literals;
@@ -194,3 +196,5 @@ TEST_SUITE("pacer") {
     }
   }
 }
+
+} // namespace pacer_test

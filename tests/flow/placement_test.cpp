@@ -4,6 +4,8 @@
 
 #include "support/flow_fixtures.hpp"
 
+namespace placement_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using nendo::test::ball;
@@ -82,3 +84,5 @@ TEST_SUITE("placement") {
     CHECK(placement.T_stage_wrist[1].matrix().allFinite());
   }
 }
+
+} // namespace placement_test

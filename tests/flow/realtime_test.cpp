@@ -11,6 +11,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+namespace realtime_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 
@@ -146,3 +148,5 @@ TEST_SUITE("realtime") {
     }).join();
   }
 }
+
+} // namespace realtime_test

@@ -8,6 +8,8 @@
 #include "support/flow_fixtures.hpp"
 #include "support/restraint.hpp"
 
+namespace request_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using deform::Points;
@@ -38,7 +40,7 @@ struct Person {
     return bend(to, position);
   }
   const Frame& ask(Request request, int counts) {
-    REQUIRE(test.requests.try_push(request));
+    REQUIRE(test.commands.try_push(request));
     return bend(counts);
   }
   Points shape() { return test.vertices_of(test.loop->frames().front()); }
@@ -160,11 +162,11 @@ TEST_SUITE("request") {
       person.ask(Request::let_go, 15);
       const Points shaped = person.shape();
       for (const Request request : {Request::redo, Request::undo, Request::redo})
-        person.test.requests.try_push(request);
+        person.test.commands.try_push(request);
       person.bend(15);
       CHECK(person.shape() == shaped);
       for (const Request request : {Request::redo, Request::undo})
-        person.test.requests.try_push(request);
+        person.test.commands.try_push(request);
       person.bend(15);
       CHECK(person.shape() == person.test.model.vertices);
     }
@@ -201,7 +203,7 @@ TEST_SUITE("request") {
         const auto ask = [&](Request request, int bent) {
           if (refills) person.test.loop->refill_undo();
           const test::Restraint restraint;
-          person.test.requests.try_push(request);
+          person.test.commands.try_push(request);
           person.bend(bent);
           counts.allocations += restraint.counts().allocations;
           counts.frees += restraint.counts().frees;
@@ -290,7 +292,7 @@ TEST_SUITE("request") {
         const test::Restraint restraint;
         for (int round = 0; round < 20; ++round) {
           for (const Request request : requests) {
-            person.test.requests.try_push(request);
+            person.test.commands.try_push(request);
             person.bend(round % 7);
             person.bend(round % 5);
           }
@@ -303,3 +305,5 @@ TEST_SUITE("request") {
     }
   }
 }
+
+} // namespace request_test

@@ -11,6 +11,8 @@
 #include "support/restraint.hpp"
 #include "support/takes.hpp"
 
+namespace restraint_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::flow;
@@ -115,3 +117,5 @@ TEST_SUITE("restraint") {
     }
   }
 }
+
+} // namespace restraint_test

@@ -4,6 +4,8 @@
 
 #include "support/flow_fixtures.hpp"
 
+namespace sculptor_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using deform::FieldStatus;
@@ -91,3 +93,5 @@ TEST_SUITE("sculptor") {
     }
   }
 }
+
+} // namespace sculptor_test

@@ -18,6 +18,8 @@
 #include "support/sleep_only.hpp"
 #include "support/takes.hpp"
 
+namespace sleep_only_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using nendo::test::LoopUnderTest;
@@ -150,3 +152,5 @@ TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
     }
   }
 }
+
+} // namespace sleep_only_test

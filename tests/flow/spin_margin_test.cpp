@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace spin_margin_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using namespace std::chrono_literals;
@@ -89,3 +91,5 @@ TEST_SUITE("spin_margin") {
     CHECK(margin_after(-5us, 0, 0us) == margin_after(0us, 0, 0us));
   }
 }
+
+} // namespace spin_margin_test

@@ -8,6 +8,8 @@
 #include "support/surface_distance.hpp"
 #include "support/test_meshes.hpp"
 
+namespace surface_walk_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using Eigen::Vector3d;
@@ -95,3 +97,5 @@ TEST_SUITE("surface_walk") {
     CHECK(walk(whole(mesh), Vector3d::Zero(), Vector3d::UnitX(), 1.0, 0.1).empty());
   }
 }
+
+} // namespace surface_walk_test

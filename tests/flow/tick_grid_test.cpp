@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace tick_grid_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using namespace std::chrono_literals;
@@ -52,3 +54,5 @@ TEST_SUITE("tick_grid") {
     CHECK(HostClock::now() < before + 10s);
   }
 }
+
+} // namespace tick_grid_test

@@ -6,6 +6,8 @@
 
 #include "support/flow_fixtures.hpp"
 
+namespace tick_record_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using namespace std::chrono_literals;
@@ -141,3 +143,5 @@ TEST_SUITE("tick_record") {
     });
   }
 }
+
+} // namespace tick_record_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace touch_score_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using hand::Finger;
@@ -106,3 +108,5 @@ TEST_SUITE("touch_score") {
     CHECK(score.extremes_s() != TouchScore(Side::right, 4).extremes_s());
   }
 }
+
+} // namespace touch_score_test

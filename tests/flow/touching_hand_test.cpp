@@ -18,6 +18,8 @@
 #include "support/surface_distance.hpp"
 #include "support/test_meshes.hpp"
 
+namespace touching_hand_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using hand::Finger;
@@ -280,3 +282,5 @@ TEST_SUITE("touching_hand") {
     }
   }
 }
+
+} // namespace touching_hand_test

@@ -7,6 +7,8 @@
 
 #include "support/flow_fixtures.hpp"
 
+namespace wrist_move_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using Eigen::Isometry3d;
@@ -49,7 +51,7 @@ TEST_SUITE("wrist_move") {
       const Frame before = test.frame_after_tick(0);
       Isometry3d wrist = test.placement.T_stage_wrist[0];
       wrist.pretranslate(Vector3d(0.0, 0.02, 0.01));
-      REQUIRE(test.wrists.try_push(WristMove::to(Side::left, wrist)));
+      REQUIRE(test.commands.try_push(WristMove::to(Side::left, wrist)));
       const Frame& after = test.frame_after_tick(1);
       const Fingertips way =
           after.hands[0].pose.fingertip_positions() - before.hands[0].pose.fingertip_positions();
@@ -68,14 +70,16 @@ TEST_SUITE("wrist_move") {
     test::LoopUnderTest test(Mode::type1);
     const Isometry3d wrist = test.placement.T_stage_wrist[1];
     for (const double up : {0.5, 0.1, 0.03})
-      REQUIRE(test.wrists.try_push(
+      REQUIRE(test.commands.try_push(
           WristMove::to(Side::right, Eigen::Translation3d(0.0, up, 0.0) * wrist)));
     WristMove hostile = WristMove::to(Side::right, wrist);
     hostile.turn_xyzw[2] = std::numeric_limits<double>::quiet_NaN();
-    REQUIRE(test.wrists.try_push(hostile));
+    REQUIRE(test.commands.try_push(hostile));
     const Frame& frame = test.frame_after_tick(0);
     const Vector3d way = frame.hands[1].T_stage_wrist.translation() - wrist.translation();
     CHECK((way - Vector3d(0.0, 0.03, 0.0)).norm() < 1e-12);
     CHECK(test.vertices_of(frame).allFinite());
   }
 }
+
+} // namespace wrist_move_test

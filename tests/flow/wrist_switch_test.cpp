@@ -5,6 +5,8 @@
 #include "support/flow_fixtures.hpp"
 #include "support/restraint.hpp"
 
+namespace wrist_switch_test {
+
 using namespace nendo;
 using namespace nendo::flow;
 using nendo::test::LoopUnderTest;
@@ -201,3 +203,5 @@ TEST_SUITE("wrist_switch") {
     }
   }
 }
+
+} // namespace wrist_switch_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace active_calibration_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace std::chrono_literals;
@@ -62,3 +64,5 @@ TEST_SUITE("active_calibration") {
     CHECK(reference.ranges()[0].turns > 10);
   }
 }
+
+} // namespace active_calibration_test

@@ -9,6 +9,8 @@
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
+namespace angle_sources_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -143,3 +145,5 @@ TEST_SUITE("angle_sources") {
     }
   }
 }
+
+} // namespace angle_sources_test

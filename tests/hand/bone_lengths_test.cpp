@@ -8,6 +8,8 @@
 
 #include <nendo/hand/skeleton.hpp>
 
+namespace bone_lengths_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -91,3 +93,5 @@ TEST_SUITE("bone_lengths") {
     CHECK(ends.check());
   }
 }
+
+} // namespace bone_lengths_test

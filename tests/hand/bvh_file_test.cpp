@@ -15,6 +15,8 @@
 #include "support/random_poses.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace bvh_file_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using nendo::test::BvhRecording;
@@ -217,3 +219,5 @@ TEST_SUITE("bvh file") {
     CHECK(BvhRecording(contents(folder.path() / "real.bvh")).frames.size() == 1);
   }
 }
+
+} // namespace bvh_file_test

@@ -8,6 +8,8 @@
 #include "support/bvh_reader.hpp"
 #include "support/random_poses.hpp"
 
+namespace bvh_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using Eigen::Isometry3d;
@@ -174,3 +176,5 @@ TEST_SUITE("bvh") {
     CHECK(recording.channel(0, "wrist_R", "Xposition") == doctest::Approx(1e302));
   }
 }
+
+} // namespace bvh_test

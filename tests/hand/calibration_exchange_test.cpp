@@ -16,6 +16,8 @@
 #include "support/random_calibration.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace calibration_exchange_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -410,3 +412,5 @@ TEST_SUITE("calibration exchange") {
     CHECK_FALSE(write_calibration_text(folder.path() / "none" / "x.csv", "three"));
   }
 }
+
+} // namespace calibration_exchange_test

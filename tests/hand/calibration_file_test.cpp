@@ -17,6 +17,8 @@
 #include <fstream>
 #include <iterator>
 
+namespace calibration_file_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using nendo::test::random_calibration;
@@ -351,3 +353,5 @@ TEST_SUITE("calibration file") {
     CHECK(same_bits(other_kind, default_calibration({255, true})));
   }
 }
+
+} // namespace calibration_file_test

@@ -11,6 +11,8 @@
 
 #include "support/held_poses.hpp"
 
+namespace calibration_fit_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace nendo::test;
@@ -348,3 +350,5 @@ TEST_SUITE("calibration_fit") {
     CHECK(fits > 0);
   }
 }
+
+} // namespace calibration_fit_test

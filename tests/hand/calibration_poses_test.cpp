@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace calibration_poses_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -102,3 +104,5 @@ TEST_SUITE("calibration_poses") {
     }
   }
 }
+
+} // namespace calibration_poses_test

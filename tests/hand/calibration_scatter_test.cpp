@@ -10,6 +10,8 @@
 
 #include "support/held_poses.hpp"
 
+namespace calibration_scatter_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace nendo::test;
@@ -95,3 +97,5 @@ TEST_SUITE("calibration_scatter") {
           0.6 * largest_difference_rad(fitted(without), truth, bent));
   }
 }
+
+} // namespace calibration_scatter_test

@@ -11,6 +11,8 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace calibration_store_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using nendo::test::TemporaryFolder;
@@ -214,3 +216,5 @@ TEST_SUITE("calibration store") {
     }
   }
 }
+
+} // namespace calibration_store_test

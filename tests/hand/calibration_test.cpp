@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace calibration_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -119,3 +121,5 @@ TEST_SUITE("calibration") {
     }
   }
 }
+
+} // namespace calibration_test

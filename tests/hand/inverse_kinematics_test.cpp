@@ -11,6 +11,8 @@
 #include "support/hand_targets.hpp"
 #include "support/restraint.hpp"
 
+namespace inverse_kinematics_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace nendo::test;
@@ -360,3 +362,5 @@ TEST_SUITE("inverse_kinematics") {
     }
   }
 }
+
+} // namespace inverse_kinematics_test

@@ -11,6 +11,8 @@
 
 #include <nendo/hand/skeleton.hpp>
 
+namespace joint_angles_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -320,3 +322,5 @@ TEST_SUITE("joint_angles") {
     }
   }
 }
+
+} // namespace joint_angles_test

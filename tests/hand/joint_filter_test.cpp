@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace joint_filter_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace std::chrono_literals;
@@ -310,3 +312,5 @@ TEST_SUITE("joint_filter") {
     CHECK_FALSE(filter_named(""));
   }
 }
+
+} // namespace joint_filter_test

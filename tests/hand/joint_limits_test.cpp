@@ -11,6 +11,8 @@
 
 #include <nendo/hand/joint_angles.hpp>
 
+namespace joint_limits_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -186,3 +188,5 @@ TEST_SUITE("joint_limits") {
     CHECK(name_of(Angle::wrist_yaw) == "wrist_yaw");
   }
 }
+
+} // namespace joint_limits_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace joints_test {
+
 using namespace nendo::hand;
 
 TEST_SUITE("joints") {
@@ -82,3 +84,5 @@ TEST_SUITE("joints") {
     CHECK_FALSE(joint_of({PaperNode::Kind::palm_joint, 5}).has_value());
   }
 }
+
+} // namespace joints_test

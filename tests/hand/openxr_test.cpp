@@ -15,6 +15,8 @@
 
 #include "support/random_poses.hpp"
 
+namespace openxr_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using Eigen::Isometry3d;
@@ -216,3 +218,5 @@ TEST_SUITE("openxr") {
     });
   }
 }
+
+} // namespace openxr_test

@@ -11,6 +11,8 @@
 #include <nendo/hand/inverse_kinematics.hpp>
 #include <nendo/hand/joint_limits.hpp>
 
+namespace opposition_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using Eigen::Isometry3d;
@@ -169,3 +171,5 @@ TEST_SUITE("opposition") {
     CHECK(pad_direction(80, 35).z() < 0.05);
   }
 }
+
+} // namespace opposition_test

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace pose_capture_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace std::chrono_literals;
@@ -197,3 +199,5 @@ TEST_SUITE("pose_capture") {
     }
   }
 }
+
+} // namespace pose_capture_test

@@ -12,6 +12,8 @@
 
 #include "support/restraint.hpp"
 
+namespace range_adaptation_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace std::chrono_literals;
@@ -386,3 +388,5 @@ TEST_SUITE("range_adaptation") {
     CHECK(counts.allocations + counts.frees + counts.locks == 0);
   }
 }
+
+} // namespace range_adaptation_test

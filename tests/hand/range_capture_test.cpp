@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace range_capture_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 
@@ -70,3 +72,5 @@ TEST_SUITE("range_capture") {
     CHECK(capture.seen().low_counts[slot] == 200.0);
   }
 }
+
+} // namespace range_capture_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace sensor_gate_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using namespace std::chrono_literals;
@@ -187,3 +189,5 @@ TEST_SUITE("sensor_gate") {
     }
   }
 }
+
+} // namespace sensor_gate_test

@@ -11,6 +11,8 @@
 
 #include "support/random_poses.hpp"
 
+namespace skeleton_test {
+
 using namespace nendo;
 using namespace nendo::hand;
 using Eigen::Isometry3d;
@@ -307,3 +309,5 @@ TEST_SUITE("skeleton") {
     CHECK(nearest < 0.010);
   }
 }
+
+} // namespace skeleton_test

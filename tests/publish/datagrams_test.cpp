@@ -7,6 +7,8 @@
 
 #include "publish/publish_fixtures.hpp"
 
+namespace datagrams_test {
+
 using namespace nendo;
 using namespace nendo::publish;
 using test::LoopUnderTest;
@@ -187,3 +189,5 @@ TEST_SUITE("datagrams") {
     CHECK(why.ends_with("; see ip route"));
   }
 }
+
+} // namespace datagrams_test

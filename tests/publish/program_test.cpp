@@ -11,6 +11,8 @@
 #include "support/program.hpp"
 #include "support/shell.hpp"
 
+namespace program_test {
+
 using namespace nendo::test;
 using nlohmann::json;
 
@@ -322,3 +324,5 @@ TEST_SUITE("publish_program") {
                             "udp:255.255.255.255:9000: no way to that address: "));
   }
 }
+
+} // namespace program_test

@@ -9,6 +9,8 @@
 
 #include "support/parked.hpp"
 
+namespace record_ring_test {
+
 using namespace nendo::publish;
 
 namespace {
@@ -103,3 +105,5 @@ TEST_SUITE("record_ring") {
     }
   }
 }
+
+} // namespace record_ring_test

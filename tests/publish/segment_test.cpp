@@ -8,6 +8,8 @@
 
 #include "publish/publish_fixtures.hpp"
 
+namespace segment_test {
+
 using namespace nendo;
 using namespace nendo::publish;
 using deform::Points;
@@ -203,3 +205,5 @@ TEST_SUITE("segment") {
     }
   }
 }
+
+} // namespace segment_test

@@ -18,6 +18,8 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace shared_memory_test {
+
 using namespace nendo;
 using namespace nendo::publish;
 
@@ -238,3 +240,5 @@ TEST_SUITE("shared_memory") {
     CHECK(contents(path_of(name)) == "another's");
   }
 }
+
+} // namespace shared_memory_test

@@ -7,6 +7,8 @@
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 
+namespace target_test {
+
 using namespace nendo;
 using namespace nendo::publish;
 
@@ -107,3 +109,5 @@ TEST_SUITE("target") {
     CHECK_FALSE(parse_target("udp:" + std::string(5000, '9')));
   }
 }
+
+} // namespace target_test

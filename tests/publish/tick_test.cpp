@@ -12,6 +12,8 @@
 #include "support/restraint.hpp"
 #include "support/sleep_only.hpp"
 
+namespace tick_test {
+
 using namespace nendo;
 using namespace nendo::publish;
 using test::LoopUnderTest;
@@ -97,3 +99,5 @@ TEST_SUITE("publishing_tick") {
     }
   }
 }
+
+} // namespace tick_test

@@ -5,6 +5,8 @@
 
 #include "publish/publish_fixtures.hpp"
 
+namespace updates_test {
+
 using namespace nendo;
 using namespace nendo::publish;
 using deform::Points;
@@ -148,3 +150,5 @@ TEST_SUITE("updates") {
     }
   }
 }
+
+} // namespace updates_test

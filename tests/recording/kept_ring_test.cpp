@@ -13,6 +13,8 @@
 #include "support/eventually.hpp"
 #include "support/takes.hpp"
 
+namespace kept_ring_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::recording;
@@ -254,3 +256,5 @@ TEST_SUITE("kept_ring") {
     CHECK_FALSE(std::filesystem::exists(stem.string() + ".crash.nendo"));
   }
 }
+
+} // namespace kept_ring_test

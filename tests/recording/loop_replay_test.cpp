@@ -8,6 +8,8 @@
 
 #include "support/takes.hpp"
 
+namespace loop_replay_test {
+
 using namespace nendo;
 using namespace nendo::recording;
 using flow::Mode;
@@ -105,7 +107,7 @@ TEST_SUITE("loop_replay") {
     const HostTime begin = HostClock::now();
     for (std::uint64_t tick = 0; tick < 60; ++tick) {
       live.test.bend(static_cast<int>(tick % 25), begin + tick * std::chrono::milliseconds(11));
-      if (tick == 30) live.test.requests.try_push(flow::Request::commit);
+      if (tick == 30) live.test.commands.try_push(flow::Request::commit);
       shapes.push_back(live.test.vertices_of(live.test.frame_after_tick(tick)));
     }
     REQUIRE(live.end());
@@ -136,7 +138,7 @@ TEST_SUITE("loop_replay") {
       const HostTime begin = HostClock::now();
       const auto ask = [&](flow::Request request) {
         live.test.loop->refill_undo();
-        live.test.requests.try_push(request);
+        live.test.commands.try_push(request);
         live.test.bend(static_cast<int>(7 * tick % 25),
                        begin + tick * std::chrono::milliseconds(11));
         live.test.frame_after_tick(tick++);
@@ -209,3 +211,5 @@ TEST_SUITE("loop_replay") {
     CHECK_FALSE(LoopReplay::make(setup, live.test.model));
   }
 }
+
+} // namespace loop_replay_test

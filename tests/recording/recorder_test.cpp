@@ -6,6 +6,8 @@
 #include "support/small_disk.hpp"
 #include "support/takes.hpp"
 
+namespace recorder_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::recording;
@@ -150,3 +152,5 @@ TEST_SUITE("recorder") {
     CHECK(live.told.size() == 1);
   }
 }
+
+} // namespace recorder_test

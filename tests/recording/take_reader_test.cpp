@@ -16,6 +16,8 @@
 
 #include "support/takes.hpp"
 
+namespace take_reader_test {
+
 using namespace nendo;
 using namespace nendo::recording;
 using flow::Mode;
@@ -311,3 +313,5 @@ TEST_SUITE("take_reader") {
     CHECK(farthest < 1e-6);
   }
 }
+
+} // namespace take_reader_test

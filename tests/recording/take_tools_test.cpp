@@ -11,6 +11,8 @@
 #include "support/small_disk.hpp"
 #include "support/takes.hpp"
 
+namespace take_tools_test {
+
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::recording;
@@ -113,7 +115,7 @@ TEST_SUITE("take_tools") {
       }
       live.test.loop->tick(2 * at, begin + at * 10ms, begin + at * 10ms); // each other is missed
     }
-    live.test.requests.try_push(flow::Request::undo);
+    live.test.commands.try_push(flow::Request::undo);
     live.test.loop->tick(200, begin + 1s, begin + 1s);
     REQUIRE(live.end());
     const auto summary = summarise(live.path);
@@ -330,3 +332,5 @@ TEST_SUITE("take_tools") {
     CHECK_FALSE(read_shape(nan));
   }
 }
+
+} // namespace take_tools_test

@@ -7,6 +7,8 @@
 
 #include "support/timelines.hpp"
 
+namespace edit_history_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 
@@ -187,3 +189,5 @@ TEST_SUITE("edit_history") {
     CHECK(history.selected() == KeyRef{Side::left, 5});
   }
 }
+
+} // namespace edit_history_test

@@ -9,6 +9,8 @@
 
 #include "support/timelines.hpp"
 
+namespace edit_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 
@@ -328,3 +330,5 @@ TEST_SUITE("edit") {
     CHECK_FALSE(delete_key(edited, Side::right, 0));
   }
 }
+
+} // namespace edit_test

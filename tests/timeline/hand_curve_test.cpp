@@ -4,6 +4,8 @@
 
 #include "support/timelines.hpp"
 
+namespace hand_curve_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 
@@ -79,3 +81,5 @@ TEST_SUITE("hand_curve") {
     }
   }
 }
+
+} // namespace hand_curve_test

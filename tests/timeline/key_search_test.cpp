@@ -4,6 +4,8 @@
 
 #include "support/timelines.hpp"
 
+namespace key_search_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 
@@ -47,3 +49,5 @@ TEST_SUITE("key_search") {
     CHECK_FALSE(key_after(made, 0.0, Side::left));
   }
 }
+
+} // namespace key_search_test

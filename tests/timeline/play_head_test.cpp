@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace play_head_test {
+
 using nendo::timeline::PlayHead;
 
 TEST_SUITE("play_head") {
@@ -57,3 +59,5 @@ TEST_SUITE("play_head") {
     }
   }
 }
+
+} // namespace play_head_test

@@ -9,6 +9,8 @@
 
 #include "support/takes.hpp"
 
+namespace player_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 using deform::Points;
@@ -145,7 +147,7 @@ TEST_SUITE("player") {
     Taken taken(Mode::type1);
     for (std::uint64_t tick = 0; tick < 10; ++tick) {
       for (int times = 0; times < 4; ++times)
-        taken.live.test.requests.try_push(flow::Request::undo);
+        taken.live.test.commands.try_push(flow::Request::undo);
       taken.live.test.frame_after_tick(tick);
     }
     const std::size_t events = taken.made(none).timeline.events.size();
@@ -256,3 +258,5 @@ TEST_SUITE("player") {
     CHECK_FALSE(timeline_of_take(taken.live.folder.path() / "no.nendo", model, none));
   }
 }
+
+} // namespace player_test

@@ -6,6 +6,8 @@
 
 #include "support/timelines.hpp"
 
+namespace reduce_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 
@@ -93,3 +95,5 @@ TEST_SUITE("reduce") {
     CHECK(reduce_keys(skeleton, {}, {}).keys.empty());
   }
 }
+
+} // namespace reduce_test

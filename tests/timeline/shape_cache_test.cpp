@@ -10,6 +10,8 @@
 #include "support/test_meshes.hpp"
 #include "support/timelines.hpp"
 
+namespace shape_cache_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 using deform::BlockShape;
@@ -198,3 +200,5 @@ TEST_SUITE("shape_cache") {
     cache.follow(timeline); // and goes while it works
   }
 }
+
+} // namespace shape_cache_test

@@ -8,6 +8,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/timelines.hpp"
 
+namespace timeline_file_test {
+
 using namespace nendo;
 using namespace nendo::timeline;
 
@@ -136,3 +138,5 @@ TEST_SUITE("timeline_file") {
     }
   }
 }
+
+} // namespace timeline_file_test

@@ -9,6 +9,8 @@
 #include <Eigen/LU>
 #include <doctest/doctest.h>
 
+namespace camera_test {
+
 using namespace nendo::viewer;
 
 TEST_SUITE("camera") {
@@ -89,3 +91,5 @@ TEST_SUITE("camera") {
     }
   }
 }
+
+} // namespace camera_test

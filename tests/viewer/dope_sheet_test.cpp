@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace dope_sheet_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 
@@ -147,3 +149,5 @@ TEST_SUITE("dope_sheet") {
     }
   }
 }
+
+} // namespace dope_sheet_test

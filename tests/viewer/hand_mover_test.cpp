@@ -6,6 +6,8 @@
 
 #include "support/flow_fixtures.hpp"
 
+namespace hand_mover_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 using Eigen::Vector2d;
@@ -110,3 +112,5 @@ TEST_SUITE("hand_mover") {
     }
   }
 }
+
+} // namespace hand_mover_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace hand_skin_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 
@@ -100,3 +102,5 @@ TEST_SUITE("hand_skin") {
     CHECK(worst < 0.0035); // a cell of the net
   }
 }
+
+} // namespace hand_skin_test

@@ -8,6 +8,8 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace image_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 
@@ -110,3 +112,5 @@ TEST_SUITE("image") {
     }
   }
 }
+
+} // namespace image_test

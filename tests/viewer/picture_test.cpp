@@ -7,6 +7,8 @@
 
 #include "support/test_meshes.hpp"
 
+namespace picture_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 
@@ -197,3 +199,5 @@ TEST_SUITE("picture") {
     CHECK(contact_sheet({}).size().width > 0);
   }
 }
+
+} // namespace picture_test

@@ -7,6 +7,8 @@
 #include "support/polling_viewer.hpp"
 #include "support/restraint.hpp"
 
+namespace polled_loop_test {
+
 using namespace nendo;
 using nendo::test::LoopUnderTest;
 using nendo::test::PollingViewer;
@@ -40,3 +42,5 @@ TEST_SUITE("polled_loop") {
     }
   }
 }
+
+} // namespace polled_loop_test

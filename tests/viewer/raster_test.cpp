@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace raster_test {
+
 using namespace nendo::viewer;
 
 TEST_SUITE("raster") {
@@ -59,3 +61,5 @@ TEST_SUITE("raster") {
     CHECK(covered == 0);
   }
 }
+
+} // namespace raster_test

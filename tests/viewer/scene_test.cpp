@@ -4,6 +4,8 @@
 
 #include "support/flow_fixtures.hpp"
 
+namespace scene_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 using nendo::test::LoopUnderTest;
@@ -94,18 +96,18 @@ TEST_SUITE("scene") {
     step(0);
     CHECK(holds.starts(0) != tips(step(20)));
     for (const auto request : {flow::Request::commit, flow::Request::undo}) {
-      REQUIRE(test.requests.try_push(request));
+      REQUIRE(test.commands.try_push(request));
       CHECK(holds.starts(0) == tips(step(request == flow::Request::commit ? 25 : 5)));
       CHECK(holds.starts(0) != tips(step(12)));
     }
-    REQUIRE(test.requests.try_push(flow::Request::let_go));
+    REQUIRE(test.commands.try_push(flow::Request::let_go));
     for (int turn = 0; turn < 3; ++turn)
       step(15);
     SceneFrame moment;
     see_hands(test.loop->frames().front(), holds, moment);
     CHECK_FALSE(moment.held);
     CHECK(moment.hands[0]->starts == tips(test.loop->frames().front()));
-    REQUIRE(test.requests.try_push(flow::Request::grab));
+    REQUIRE(test.commands.try_push(flow::Request::grab));
     const TipPlaces grabbed = tips(step(30));
     CHECK(holds.starts(0) == grabbed);
   }
@@ -119,3 +121,5 @@ TEST_SUITE("scene") {
     CHECK(own[4] == doctest::Approx(25.0));
   }
 }
+
+} // namespace scene_test

@@ -11,6 +11,8 @@
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
 
+namespace timeline_window_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 using Eigen::Vector2d;
@@ -302,3 +304,5 @@ TEST_SUITE("timeline_window") {
     CHECK(colour(before) != colour(after));
   }
 }
+
+} // namespace timeline_window_test

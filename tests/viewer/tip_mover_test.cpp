@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+namespace tip_mover_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 using Eigen::Vector2d;
@@ -76,3 +78,5 @@ TEST_SUITE("tip_mover") {
     CHECK_FALSE(mover.finger());
   }
 }
+
+} // namespace tip_mover_test

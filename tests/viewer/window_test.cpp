@@ -13,6 +13,8 @@
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
 
+namespace window_test {
+
 using namespace nendo;
 using namespace nendo::viewer;
 
@@ -194,3 +196,5 @@ TEST_SUITE("window") {
     CHECK(moved->pose().translation().y() > frame.hands[1].T_stage_wrist.translation().y());
   }
 }
+
+} // namespace window_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace admission_test {
+
 using namespace nendo::web;
 
 namespace {
@@ -92,10 +94,12 @@ TEST_SUITE("admission") {
   }
 
   TEST_CASE("secrets are the same or not") {
-    CHECK(same_secret("", ""));
-    CHECK(same_secret("ab", "ab"));
-    CHECK_FALSE(same_secret("ab", "aB"));
-    CHECK_FALSE(same_secret("ab", "abc"));
-    CHECK_FALSE(same_secret("b", "a"));
+    CHECK(equal_in_constant_time("", ""));
+    CHECK(equal_in_constant_time("ab", "ab"));
+    CHECK_FALSE(equal_in_constant_time("ab", "aB"));
+    CHECK_FALSE(equal_in_constant_time("ab", "abc"));
+    CHECK_FALSE(equal_in_constant_time("b", "a"));
   }
 }
+
+} // namespace admission_test

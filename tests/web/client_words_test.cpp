@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace client_words_test {
+
 using namespace nendo;
 using namespace nendo::web;
 
@@ -12,9 +14,9 @@ namespace {
 
 template <class T>
 std::optional<T> parsed_as(std::string_view text) {
-  const auto wish = parse_words(text);
-  if (!wish || !std::holds_alternative<T>(*wish)) return std::nullopt;
-  return std::get<T>(*wish);
+  const auto command = parse_words(text);
+  if (!command || !std::holds_alternative<T>(*command)) return std::nullopt;
+  return std::get<T>(*command);
 }
 
 } // namespace
@@ -25,37 +27,23 @@ TEST_SUITE("client_words") {
       CHECK(parsed_as<flow::Request>(flow::name_of(request)) == request);
   }
 
-  TEST_CASE("reset and recordings want a new loop, with nothing else of it changed") {
-    const auto reset = parsed_as<flow::LoopChange>("reset");
-    REQUIRE(reset);
-    CHECK((reset->reset && !reset->settings && !reset->record));
-    const auto begin = parsed_as<flow::LoopChange>("record");
-    REQUIRE(begin);
-    CHECK((!begin->reset && !begin->settings && begin->record == true));
-    const auto end = parsed_as<flow::LoopChange>("end recording");
-    REQUIRE(end);
-    CHECK((!end->reset && !end->settings && end->record == false));
-  }
-
-  TEST_CASE("what is to be kept is the shape or the recording") {
-    const auto shape = parsed_as<flow::SaveRequest>("save");
-    REQUIRE(shape);
-    CHECK((shape->shape && !shape->recording));
-    const auto recording = parsed_as<flow::SaveRequest>("keep");
-    REQUIRE(recording);
-    CHECK((recording->recording && !recording->shape));
+  TEST_CASE("a reset, a recording's begin and end, and what is to be saved are commands") {
+    CHECK(parsed_as<flow::ResetModel>("reset"));
+    CHECK(parsed_as<flow::SetRecording>("record") == flow::SetRecording{true});
+    CHECK(parsed_as<flow::SetRecording>("end recording") == flow::SetRecording{false});
+    CHECK(parsed_as<flow::SaveShape>("save"));
+    CHECK(parsed_as<flow::SaveRecording>("keep"));
   }
 
   TEST_CASE("settings are mode, kernel and five radii in metres") {
-    const auto change = parsed_as<flow::LoopChange>("settings type2 c4 0.1 0.125 0.08 1e-2 10");
+    const auto change = parsed_as<flow::ChangeSettings>("settings type2 c4 0.1 0.125 0.08 1e-2 10");
     REQUIRE(change);
-    REQUIRE(change->settings);
-    CHECK(change->settings->mode == flow::Mode::type2);
-    CHECK(change->settings->kernel == deform::Wendland::c4);
-    CHECK(change->settings->radius_m == std::array{0.1, 0.125, 0.08, 0.01, 10.0});
-    CHECK((!change->reset && !change->record));
+    CHECK(change->settings.mode == flow::Mode::type2);
+    CHECK(change->settings.kernel == deform::Wendland::c4);
+    CHECK(change->settings.radius_m == std::array{0.1, 0.125, 0.08, 0.01, 10.0});
     for (const auto* kernel : {"c0", "c2", "c6"})
-      CHECK(parsed_as<flow::LoopChange>("settings type1 " + std::string(kernel) + " 1 1 1 1 1"));
+      CHECK(
+          parsed_as<flow::ChangeSettings>("settings type1 " + std::string(kernel) + " 1 1 1 1 1"));
   }
 
   TEST_CASE("a wrist's place and turn are taken as they are, but for the quaternion's length") {
@@ -125,3 +113,5 @@ TEST_SUITE("client_words") {
     }
   }
 }
+
+} // namespace client_words_test

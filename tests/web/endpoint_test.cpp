@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace endpoint_test {
+
 using namespace nendo;
 using namespace nendo::web;
 
@@ -43,3 +45,5 @@ TEST_SUITE("endpoint") {
     }
   }
 }
+
+} // namespace endpoint_test

@@ -9,38 +9,40 @@
 #include "following_client.hpp"
 #include "tapped_loop.hpp"
 
+namespace follow_test {
+
 using namespace nendo;
 using namespace nendo::web;
 using nendo::test::FollowingClient;
-using nendo::test::TappedLoop;
+using nendo::test::StreamedLoop;
 
 namespace {
 
 /// As the server's thread does: records and shapes, over a feed, to one client.
 struct Followed {
-  TappedLoop& tapped;
+  StreamedLoop& streamed;
   Feed feed;
   FollowingClient client;
 
-  explicit Followed(TappedLoop& loop) : tapped(loop), client(loop.model) {
-    tapped.tap->listen(true);
+  explicit Followed(StreamedLoop& loop) : streamed(loop), client(loop.model) {
+    streamed.stream->set_active(true);
   }
 
   void pass(bool room = true) {
     std::vector<Record> records;
-    tapped.tap->take(records);
-    const auto shape = tapped.tap->take_shape();
+    streamed.stream->take(records);
+    const auto shape = streamed.stream->take_shape();
     if (!room) {
       feed.skip(records);
       return;
     }
     if (shape && feed.wants_shape()) {
       CHECK(client.take(shape->message));
-      feed.got_shape(shape->number);
+      feed.shape_sent(shape->number);
     }
-    if (const auto update = feed.update(records, {tapped.tap->lost(), {}}))
+    if (const auto update = feed.update(records, {streamed.stream->lost(), {}}))
       CHECK(client.take(*update));
-    if (feed.wants_shape()) tapped.tap->ask_for_shape();
+    if (feed.wants_shape()) streamed.stream->request_shape();
   }
   /// As a share of the diagonal.
   double gap(const deform::Points& shape) const {
@@ -54,9 +56,9 @@ const std::array<std::pair<flow::Mode, bool>, 4> ways{{{flow::Mode::type1, false
                                                        {flow::Mode::type2, false},
                                                        {flow::Mode::type2, true}}};
 
-TappedLoop loop_of(const std::pair<flow::Mode, bool>& way) {
-  if (way.second) return TappedLoop(way.first, deform::InjectiveOptions{});
-  return TappedLoop(way.first);
+StreamedLoop loop_of(const std::pair<flow::Mode, bool>& way) {
+  if (way.second) return StreamedLoop(way.first, deform::InjectiveOptions{});
+  return StreamedLoop(way.first);
 }
 
 } // namespace
@@ -67,8 +69,8 @@ TEST_SUITE("follow") {
     for (const auto& way : ways) {
       CAPTURE(name_of(way.first));
       CAPTURE(way.second);
-      TappedLoop tapped = loop_of(way);
-      Followed followed(tapped);
+      StreamedLoop streamed = loop_of(way);
+      Followed followed(streamed);
       REQUIRE(followed.client.good);
       std::mt19937 random(11);
       int bent = 0;
@@ -78,9 +80,9 @@ TEST_SUITE("follow") {
       for (int tick = 0; tick < 600; ++tick) {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
         if (random() % 25 == 0)
-          tapped.test.requests.try_push(flow::requests[random() % flow::requests.size()]);
-        const auto shape = tapped.tick(bent);
-        moved = std::max(moved, (shape - tapped.test.model.vertices).cwiseAbs().maxCoeff());
+          streamed.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
+        const auto shape = streamed.tick(bent);
+        moved = std::max(moved, (shape - streamed.test.model.vertices).cwiseAbs().maxCoeff());
         followed.pass();
         if (!followed.is_up_to_date()) continue;
         worst = std::max(worst, followed.gap(shape));
@@ -101,8 +103,8 @@ TEST_SUITE("follow") {
     for (const auto& way : ways) {
       CAPTURE(name_of(way.first));
       CAPTURE(way.second);
-      TappedLoop tapped = loop_of(way);
-      Followed followed(tapped);
+      StreamedLoop streamed = loop_of(way);
+      Followed followed(streamed);
       std::mt19937 random(5);
       int bent = 0;
       int compared = 0;
@@ -111,12 +113,13 @@ TEST_SUITE("follow") {
         for (auto ticks = 1 + random() % 8; ticks > 0; --ticks) {
           bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
           if (random() % 40 == 0)
-            tapped.test.requests.try_push(flow::requests[random() % flow::requests.size()]);
-          shape = tapped.tick(bent);
+            streamed.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
+          shape = streamed.tick(bent);
         }
         followed.pass(random() % 4 != 0);
         if (!followed.is_up_to_date() || followed.client.number != followed.client.newest) continue;
-        if (followed.client.tick + 1 != tapped.test.loop->stats().ticks) continue; // it missed this
+        if (followed.client.tick + 1 != streamed.test.loop->stats().ticks)
+          continue; // it missed this
         CHECK(followed.gap(shape) < 1e-5);
         ++compared;
       }
@@ -127,24 +130,24 @@ TEST_SUITE("follow") {
 
   TEST_CASE(
       "when nobody empties the ring, frames are lost and counted, and a fresh shape mends it") {
-    TappedLoop tapped(flow::Mode::type2);
-    Followed followed(tapped);
-    tapped.tick(0);
+    StreamedLoop streamed(flow::Mode::type2);
+    Followed followed(streamed);
+    streamed.tick(0);
     followed.pass();
-    tapped.tick(1);
+    streamed.tick(1);
     followed.pass();
     REQUIRE(followed.is_up_to_date());
     const int shapes = followed.client.shapes;
     for (int tick = 0; tick < 3000; ++tick)
-      tapped.tick(tick % 30);
-    CHECK(tapped.tap->lost() > 0);
+      streamed.tick(tick % 30);
+    CHECK(streamed.stream->lost() > 0);
     for (int tick = 0; tick < 4; ++tick) { // what is in the ring, what says that some is not
-      const auto shape = tapped.tick(5 * tick);
+      const auto shape = streamed.tick(5 * tick);
       followed.pass();
       if (tick == 3) CHECK(followed.gap(shape) < 1e-5);
     }
     CHECK(followed.client.shapes == shapes + 1);
-    CHECK(followed.client.lost == tapped.tap->lost());
+    CHECK(followed.client.lost == streamed.stream->lost());
     CHECK(followed.is_up_to_date());
   }
 
@@ -152,10 +155,10 @@ TEST_SUITE("follow") {
     std::vector<deform::OwnSupport> own;
     for (Eigen::Index point = 0; point < 10; ++point)
       own.push_back({point, {0.2 + 0.05 * static_cast<double>(point), 1.0}});
-    TappedLoop tapped(flow::Mode::type1, std::nullopt, deform::with_common(own));
-    Followed followed(tapped);
+    StreamedLoop streamed(flow::Mode::type1, std::nullopt, deform::with_common(own));
+    Followed followed(streamed);
     for (int tick = 0; tick < 40; ++tick) {
-      const auto shape = tapped.tick(tick);
+      const auto shape = streamed.tick(tick);
       followed.pass();
       if (followed.is_up_to_date()) CHECK(followed.gap(shape) < 1e-5);
     }
@@ -163,8 +166,8 @@ TEST_SUITE("follow") {
   }
 
   TEST_CASE("the hands' joints are told to 0.03 mm and a hundredth of a degree, whatever bends") {
-    TappedLoop tapped(flow::Mode::type1);
-    Followed followed(tapped);
+    StreamedLoop streamed(flow::Mode::type1);
+    Followed followed(streamed);
     std::mt19937 random(3);
     double most_m = 0.0;
     double most_rad = 0.0;
@@ -173,13 +176,13 @@ TEST_SUITE("follow") {
         auto sample = test::bent_sample(side, 0, HostClock::now());
         for (auto& sensor : sample.raw)
           sensor.value = static_cast<std::uint16_t>(40 + random() % 160);
-        tapped.test.rings[flow::Placement::index_of(side)]->try_push(sample);
+        streamed.test.rings[flow::Placement::index_of(side)]->try_push(sample);
       }
-      Eigen::Isometry3d wrist = tapped.test.placement.T_stage_wrist[0];
+      Eigen::Isometry3d wrist = streamed.test.placement.T_stage_wrist[0];
       wrist.rotate(Eigen::AngleAxisd(0.03 * tick, Eigen::Vector3d(1, 2, 3).normalized()));
       wrist.translation().x() += 0.01 * tick;
-      tapped.test.wrists.try_push(flow::WristMove::to(Side::left, wrist));
-      const auto& frame = tapped.test.frame_after_tick(static_cast<std::uint64_t>(tick));
+      streamed.test.commands.try_push(flow::WristMove::to(Side::left, wrist));
+      const auto& frame = streamed.test.frame_after_tick(static_cast<std::uint64_t>(tick));
       followed.pass();
       for (std::size_t slot = 0; slot < 2; ++slot) {
         REQUIRE(followed.client.present[slot]);
@@ -201,11 +204,11 @@ TEST_SUITE("follow") {
   }
 
   TEST_CASE("a glove of another hand size, in place of the first, is told with its own bones") {
-    TappedLoop tapped(flow::Mode::type1, std::nullopt, deform::one_radius(0.5), 0.15);
-    Followed followed(tapped);
+    StreamedLoop streamed(flow::Mode::type1, std::nullopt, deform::one_radius(0.5), 0.15);
+    Followed followed(streamed);
     for (const Side worn : {Side::right, Side::left}) { // on the right hand
-      tapped.test.rings[1]->try_push(test::bent_sample(worn, 10, HostClock::now()));
-      const auto& frame = tapped.test.frame_after_tick(worn == Side::right ? 0 : 1);
+      streamed.test.rings[1]->try_push(test::bent_sample(worn, 10, HostClock::now()));
+      const auto& frame = streamed.test.frame_after_tick(worn == Side::right ? 0 : 1);
       followed.pass();
       CHECK(followed.client.other_bones[1] == (worn == Side::left));
       for (std::size_t joint = 0; joint < 26; ++joint) {
@@ -218,17 +221,17 @@ TEST_SUITE("follow") {
   TEST_CASE("an ordinary frame of two hands takes hundreds of bytes, of several links, too") {
     for (const auto& way : ways) {
       CAPTURE(name_of(way.first));
-      TappedLoop tapped = loop_of(way);
-      Followed followed(tapped);
+      StreamedLoop streamed = loop_of(way);
+      Followed followed(streamed);
       std::size_t most = 0;
       for (int tick = 0; tick < 60; ++tick) {
-        tapped.tick(tick / 3);
+        streamed.tick(tick / 3);
         followed.pass();
         most = std::max(most, followed.client.update_bytes);
       }
       CHECK(most > 88 + 2 * 126);
       CHECK(most < 1000);
-      const auto& chain = tapped.test.loop->frames().front().chain;
+      const auto& chain = streamed.test.loop->frames().front().chain;
       const bool in_links = way.second && way.first == flow::Mode::type1;
       if (in_links) CHECK(chain.links > 1);
       if (in_links) CHECK(followed.client.implied_centres > 100);
@@ -236,10 +239,10 @@ TEST_SUITE("follow") {
   }
 
   TEST_CASE("the model's message has the mesh: its places, order and triangles") {
-    const TappedLoop tapped(flow::Mode::type1);
-    const FollowingClient client(tapped.model);
+    const StreamedLoop streamed(flow::Mode::type1);
+    const FollowingClient client(streamed.model);
     REQUIRE(client.good);
-    const deform::Mesh& mesh = tapped.test.model;
+    const deform::Mesh& mesh = streamed.test.model;
     CHECK(client.name == "ball");
     CHECK(client.mode == 1);
     REQUIRE(client.order.size() == static_cast<std::size_t>(mesh.vertices.cols()));
@@ -262,3 +265,5 @@ TEST_SUITE("follow") {
     CHECK(volume < 4.19);
   }
 }
+
+} // namespace follow_test

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace handshake_test {
+
 using namespace nendo::web;
 
 namespace {
@@ -62,3 +64,5 @@ TEST_SUITE("handshake") {
       CHECK_FALSE(is_socket_key(wrong));
   }
 }
+
+} // namespace handshake_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace http_request_test {
+
 using namespace nendo::web;
 
 namespace {
@@ -66,12 +68,14 @@ TEST_SUITE("http_request") {
 
   TEST_CASE("length and number of headers have limits") {
     std::string many = "GET / HTTP/1.1\r\n";
-    for (std::size_t n = 0; n < most_headers; ++n)
+    for (std::size_t n = 0; n < max_headers; ++n)
       many += "a: b\r\n";
     CHECK(status_of(many + "\r\n") == 200);
     CHECK(status_of(many + "a: b\r\n\r\n") == 431);
-    const std::string endless(most_head_bytes, 'a');
+    const std::string endless(max_head_bytes, 'a');
     CHECK(status_of(endless.substr(1)) == 0);
     CHECK(status_of(endless) == 431);
   }
 }
+
+} // namespace http_request_test

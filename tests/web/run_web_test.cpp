@@ -15,6 +15,8 @@
 #include "support/terminal_program.hpp"
 #include "web_client.hpp"
 
+namespace run_web_test {
+
 using namespace nendo;
 using nendo::test::FollowingClient;
 using nendo::test::WebClient;
@@ -243,3 +245,5 @@ TEST_SUITE("run_web") {
     CHECK(test::is_one_line_about(elsewhere.err, "no address of this machine"));
   }
 }
+
+} // namespace run_web_test

@@ -4,6 +4,8 @@
 
 #include "served.hpp"
 
+namespace server_limits_test {
+
 using namespace nendo;
 using namespace nendo::web;
 using nendo::test::follow_until;
@@ -20,17 +22,18 @@ constexpr int small_buffer = 4096; ///< at both ends: what waits in the system i
 /// Limits of which a client meets none, but those that a test sets.
 ServerLimits generous() {
   ServerLimits limits;
-  limits.system_buffer = small_buffer;
-  limits.most_waiting = std::size_t{1} << 30;
-  for (auto* limit : {&limits.head, &limits.stalled, &limits.lagging, &limits.silent})
+  limits.send_buffer_bytes = small_buffer;
+  limits.max_queued_bytes = std::size_t{1} << 30;
+  for (auto* limit : {&limits.request_timeout, &limits.stall_timeout, &limits.lag_timeout,
+                      &limits.silence_timeout})
     *limit = std::chrono::hours(1);
   return limits;
 }
 
 /// Of the loop that runs; this thread alone looks at its frames.
 const flow::Frame& newest_frame(Served& served) {
-  served.tapped.test.loop->frames().update();
-  return served.tapped.test.loop->frames().front();
+  served.streamed.test.loop->frames().update();
+  return served.streamed.test.loop->frames().front();
 }
 
 } // namespace
@@ -39,13 +42,13 @@ TEST_SUITE("server_limits") {
   TEST_CASE(
       "a client that does not read misses frames, and is given the whole shape when it does") {
     ServerLimits limits;
-    limits.most_waiting = 8192;
-    limits.system_buffer = 4096;
+    limits.max_queued_bytes = 8192;
+    limits.send_buffer_bytes = 4096;
     Served served(flow::Mode::type2, limits);
     served.begin();
     WebClient client(*served.server, 4096);
     REQUIRE(client.open_socket() == 101);
-    FollowingClient follower(served.tapped.model);
+    FollowingClient follower(served.streamed.model);
     follower.loop = 1;
     CHECK(follow_until(client, follower, [&] { return follower.follows(); }));
     CHECK(wait_for([&] { return served.server->counters().skipped > 50; }));
@@ -57,28 +60,28 @@ TEST_SUITE("server_limits") {
 
   TEST_CASE("who stalls, is silent or does not finish a request is dropped in its time") {
     ServerLimits limits;
-    limits.head = milliseconds(100);
-    limits.ping = milliseconds(50);
-    limits.silent = milliseconds(300);
+    limits.request_timeout = milliseconds(100);
+    limits.ping_period = milliseconds(50);
+    limits.silence_timeout = milliseconds(300);
     Served served(flow::Mode::type1, limits);
     served.begin();
     WebClient half(*served.server);
     half.send("GET / HTTP/1.1\r\nHost: 127");
     WebClient mute(*served.server); // half-open: never answers a ping
     REQUIRE(mute.open_socket() == 101);
-    CHECK(half.is_ended());
+    CHECK(half.is_closed());
     bool asked = false;
     while (const auto frame = mute.next())
       asked = asked || frame->opcode == 9;
     CHECK(asked);
-    CHECK(mute.is_ended());
+    CHECK(mute.is_closed());
     CHECK(served.server->counters().dropped >= 2);
   }
 
   TEST_CASE("who talks without end is sent away, and who is slower for long is heard") {
     ServerLimits limits;
-    limits.words_at_once = 20.0;
-    limits.words_a_second = 50.0;
+    limits.message_burst = 20.0;
+    limits.messages_per_second = 50.0;
     Served served(flow::Mode::type1, limits);
     served.begin();
     WebClient steady(*served.server);
@@ -96,7 +99,7 @@ TEST_SUITE("server_limits") {
       if (frame->opcode == 8) code = frame->close_code();
     CHECK(code == 1008);
     CHECK(steady.say("let go"));
-    FollowingClient follower(served.tapped.model);
+    FollowingClient follower(served.streamed.model);
     follower.loop = 1;
     CHECK(follow_until(steady, follower, [&] { return follower.updates > 0 && !follower.held; }));
   }
@@ -104,9 +107,9 @@ TEST_SUITE("server_limits") {
   TEST_CASE(
       "who takes nothing of what waits is dropped in its time, and so is who never has it all") {
     ServerLimits no_byte = generous();
-    no_byte.stalled = milliseconds(200);
+    no_byte.stall_timeout = milliseconds(200);
     ServerLimits not_all = generous();
-    not_all.lagging = milliseconds(300);
+    not_all.lag_timeout = milliseconds(300);
     for (const auto& way : {std::pair{no_byte, 0U}, {not_all, 1U}}) {
       CAPTURE(way.second);
       Served served(flow::Mode::type1, way.first);
@@ -124,7 +127,7 @@ TEST_SUITE("server_limits") {
 
   TEST_CASE("who takes what it is sent, however late, is not silent") {
     ServerLimits limits = generous();
-    limits.silent = milliseconds(1500);
+    limits.silence_timeout = milliseconds(1500);
     Served served(flow::Mode::type1, limits);
     served.begin();
     WebClient client(*served.server, small_buffer); // answers no ping
@@ -145,8 +148,8 @@ TEST_SUITE("server_limits") {
 
   TEST_CASE("an answer may take longer than a WebSocket may lag, if it moves") {
     ServerLimits limits = generous();
-    limits.lagging = milliseconds(100);
-    limits.stalled = milliseconds(5000);
+    limits.lag_timeout = milliseconds(100);
+    limits.stall_timeout = milliseconds(5000);
     const auto server = nendo::test::open_server(limits);
     const std::size_t page_bytes = WebClient(*server).get("/").body.size();
     WebClient slow(*server, small_buffer);
@@ -166,7 +169,7 @@ TEST_SUITE("server_limits") {
     served.begin();
     WebClient client(*served.server, small_buffer);
     REQUIRE(client.open_socket() == 101);
-    FollowingClient follower(served.tapped.model);
+    FollowingClient follower(served.streamed.model);
     follower.loop = 1;
     REQUIRE(follow_until(client, follower, [&] { return follower.follows() && follower.held; }));
     client.say("commit");
@@ -195,21 +198,21 @@ TEST_SUITE("server_limits") {
     {
       WebClient client(*served.server);
       REQUIRE(client.open_socket() == 101);
-      FollowingClient follower(served.tapped.model);
+      FollowingClient follower(served.streamed.model);
       follower.loop = 1;
       CHECK(follow_until(client, follower, [&] { return follower.updates > 3; }));
     }
     REQUIRE(wait_for([&] { return served.server->counters().clients == 0; }));
-    const auto lost = served.tapped.tap->lost();
+    const auto lost = served.streamed.stream->lost();
     const auto later = newest_frame(served).ticks_run + 3000; // more than find room in the ring
     CHECK(wait_for([&] { return newest_frame(served).ticks_run > later; }));
-    CHECK(served.tapped.tap->lost() == lost);
+    CHECK(served.streamed.stream->lost() == lost);
   }
 
   TEST_CASE("there are so many places, and a client that has one keeps it") {
     ServerLimits limits;
-    limits.connections = 6;
-    limits.clients = 3;
+    limits.max_connections = 6;
+    limits.max_clients = 3;
     Served served(flow::Mode::type1, limits);
     served.begin();
     std::vector<std::unique_ptr<WebClient>> clients;
@@ -229,8 +232,8 @@ TEST_SUITE("server_limits") {
 
   TEST_CASE("ten slow and hostile clients do not touch the loop, nor who looks on quietly") {
     ServerLimits limits;
-    limits.most_waiting = 16384;
-    limits.system_buffer = 4096;
+    limits.max_queued_bytes = 16384;
+    limits.send_buffer_bytes = 4096;
     Served served(flow::Mode::type2, limits);
     WebClient quiet(*served.server);
     REQUIRE(quiet.open_socket() == 101);
@@ -240,7 +243,7 @@ TEST_SUITE("server_limits") {
     for (std::size_t n = 0; n < 5; ++n)
       hostile[n]->open_socket();
     served.begin();
-    FollowingClient follower(served.tapped.model);
+    FollowingClient follower(served.streamed.model);
     follower.loop = 1;
     for (int round = 0; round < 200; ++round) {
       hostile[0]->send("");                                 // takes nothing
@@ -264,17 +267,19 @@ TEST_SUITE("server_limits") {
       return follower.updates > settled && follower.number == follower.newest;
     }));
     served.end();
-    const auto& stats = served.tapped.test.loop->stats();
+    const auto& stats = served.streamed.test.loop->stats();
     CHECK(stats.ticks > 100);
     CHECK(stats.failed == 0);
     CHECK(served.counts.allocations == 0);
     CHECK(served.counts.frees == 0);
     CHECK(served.counts.locks == 0);
-    served.tapped.test.loop->frames().update();
-    const auto& frame = served.tapped.test.loop->frames().front();
+    served.streamed.test.loop->frames().update();
+    const auto& frame = served.streamed.test.loop->frames().front();
     CHECK(frame.ticks_run == stats.ticks);
     CHECK(follow_until(quiet, follower, [&] { return follower.number == frame.ticks_run; }));
-    const auto shape = served.tapped.test.vertices_of(frame);
+    const auto shape = served.streamed.test.vertices_of(frame);
     CHECK((follower.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * follower.diagonal);
   }
 }
+
+} // namespace server_limits_test

@@ -4,13 +4,15 @@
 
 #include "served.hpp"
 
+namespace server_test {
+
 using namespace nendo;
 using namespace nendo::web;
 using nendo::test::follow_until;
 using nendo::test::FollowingClient;
 using nendo::test::open_server;
 using nendo::test::Served;
-using nendo::test::TappedLoop;
+using nendo::test::StreamedLoop;
 using nendo::test::wait_for;
 using nendo::test::WebClient;
 
@@ -46,8 +48,8 @@ TEST_SUITE("server") {
     };
     const std::string model = WebClient(*server).with_token("/model");
     CHECK(status(model) == 503);
-    const TappedLoop tapped(flow::Mode::type1);
-    server->present(tapped.tap, tapped.model);
+    const StreamedLoop streamed(flow::Mode::type1);
+    server->present(streamed.stream, streamed.model);
     CHECK(wait_for([&] { return status(model) == 200; }));
     CHECK(status("/model") == 403);
     CHECK(status("/model?token=00000000000000000000000000000000") == 403);
@@ -67,7 +69,7 @@ TEST_SUITE("server") {
 
   TEST_CASE("who sends no more after its request is answered, and is not waited for") {
     ServerLimits limits;
-    limits.head = std::chrono::hours(1);
+    limits.request_timeout = std::chrono::hours(1);
     const auto server = open_server(limits);
     const std::string request = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
     const auto page = WebClient(*server).get("/");
@@ -78,21 +80,21 @@ TEST_SUITE("server") {
       const auto answer = client.answer();
       CHECK(answer.status == 200);
       CHECK(answer.body.size() == page.body.size());
-      CHECK(client.is_ended());
+      CHECK(client.is_closed());
     }
     WebClient half(*server);
     half.send(request.substr(0, request.size() - 2));
     half.end_sending();
-    CHECK(half.is_ended());
-    const TappedLoop tapped(flow::Mode::type1);
-    server->present(tapped.tap, tapped.model);
+    CHECK(half.is_closed());
+    const StreamedLoop streamed(flow::Mode::type1);
+    server->present(streamed.stream, streamed.model);
     WebClient socket(*server); // a WebSocket needs both ways
     socket.send("GET " + socket.with_token("/ws") +
                 " HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                 "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
                 "Origin: http://127.0.0.1\r\n\r\n");
     socket.end_sending();
-    CHECK(socket.is_ended());
+    CHECK(socket.is_closed());
     // The socket ends before the server's turn, at whose end it counts who is still there.
     CHECK(wait_for([&] { return server->counters().clients == 0; }));
     CHECK(server->counters().dropped == 0);
@@ -112,7 +114,7 @@ TEST_SUITE("server") {
     WebClient client(*served.server);
     REQUIRE(client.open_socket() == 101);
     CHECK(client.accept);
-    FollowingClient follower(served.tapped.model);
+    FollowingClient follower(served.streamed.model);
     follower.loop = 1;
     CHECK(follow_until(client, follower, [&] { return follower.follows() && follower.held; }));
     client.say("let go");
@@ -136,36 +138,32 @@ TEST_SUITE("server") {
     while (const auto frame = client.next())
       if (frame->opcode == 8) code = frame->close_code();
     CHECK(code == 1008);
-    CHECK(client.is_ended());
+    CHECK(client.is_closed());
   }
 
-  TEST_CASE("what only a new loop can give, and hands that are moved, come out of the server") {
+  TEST_CASE("what clients ask for comes out of the server, in its order") {
     const auto server = open_server();
-    const TappedLoop tapped(flow::Mode::type1);
-    server->present(tapped.tap, tapped.model);
+    const StreamedLoop streamed(flow::Mode::type1);
+    server->present(streamed.stream, streamed.model);
     WebClient client(*server);
     REQUIRE(wait_for([&] { return client.open_socket() == 101; }));
     client.say("settings type2 c6 0.1 0.1 0.1 0.1 0.2");
     client.say("record");
     client.say("wrist left 1 2 3 0 0 0 1");
     client.say("wrist right 0 0 0 0 0 0 1");
-    client.say("wrist left 1 2 4 0 0 0 1"); // the last counts
     client.say("reset");
-    flow::LoopChange change;
-    std::array<std::optional<flow::WristMove>, 2> moves;
+    std::vector<flow::Command> commands;
     CHECK(wait_for([&] {
-      change.add(server->next_change());
-      while (const auto move = server->next_wrist())
-        moves[flow::Placement::index_of(move->side)] = move;
-      return change.reset && moves[0] && moves[0]->position_m[2] == 4.0;
+      while (const auto command = server->next_command())
+        commands.push_back(*command);
+      return commands.size() == 5;
     }));
-    REQUIRE(change.settings);
-    CHECK(change.settings->kernel == deform::Wendland::c6);
-    CHECK(change.settings->radius_m[4] == 0.2);
-    CHECK(change.record == true);
-    CHECK(moves[1]);
-    CHECK_FALSE(server->next_change().asks_anything());
-    CHECK_FALSE(server->next_wrist());
+    const std::vector<flow::Command> asked{
+        flow::ChangeSettings{{flow::Mode::type2, deform::Wendland::c6, {0.1, 0.1, 0.1, 0.1, 0.2}}},
+        flow::SetRecording{true}, flow::WristMove{Side::left, {1, 2, 3}},
+        flow::WristMove{Side::right}, flow::ResetModel{}};
+    CHECK(commands == asked);
+    CHECK_FALSE(server->next_command());
   }
 
   TEST_CASE("over the network, too, a follower has the shape that the loop ends with") {
@@ -175,7 +173,7 @@ TEST_SUITE("server") {
       served->begin();
       WebClient client(*served->server);
       REQUIRE(client.open_socket() == 101);
-      FollowingClient follower(served->tapped.model);
+      FollowingClient follower(served->streamed.model);
       follower.loop = 1;
       for (const auto* request : {"commit", "undo", "commit"}) {
         const int updates = follower.updates + 30;
@@ -184,12 +182,12 @@ TEST_SUITE("server") {
       }
       CHECK(follow_until(client, follower, [&] { return follower.commits >= 2; }));
       served->end();
-      served->tapped.test.loop->frames().update();
-      const auto& frame = served->tapped.test.loop->frames().front();
-      const auto shape = served->tapped.test.vertices_of(frame);
+      served->streamed.test.loop->frames().update();
+      const auto& frame = served->streamed.test.loop->frames().front();
+      const auto shape = served->streamed.test.vertices_of(frame);
       CHECK(follow_until(client, follower, [&] { return follower.number == frame.ticks_run; }));
       CHECK((follower.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * follower.diagonal);
-      CHECK((shape - served->tapped.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
+      CHECK((shape - served->streamed.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
       CHECK(follower.good);
       served->server.reset(); // says goodbye
       unsigned code = 0;
@@ -204,11 +202,11 @@ TEST_SUITE("server") {
     served.begin();
     WebClient client(*served.server);
     REQUIRE(client.open_socket() == 101);
-    FollowingClient follower(served.tapped.model);
+    FollowingClient follower(served.streamed.model);
     follower.loop = 1;
     CHECK(follow_until(client, follower, [&] { return follower.follows(); }));
-    const TappedLoop next(flow::Mode::type2);
-    served.server->present(next.tap, next.model);
+    const StreamedLoop next(flow::Mode::type2);
+    served.server->present(next.stream, next.model);
     unsigned code = 0;
     while (const auto frame = client.next())
       if (frame->opcode == 8) code = frame->close_code();
@@ -224,3 +222,5 @@ TEST_SUITE("server") {
     CHECK(second.kernel == 1);
   }
 }
+
+} // namespace server_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace socket_frames_test {
+
 using namespace nendo::web;
 
 namespace {
@@ -108,16 +110,16 @@ TEST_SUITE("socket_frames") {
     fault(client_frame(0x89, std::string(126, 'x')), CloseCode::protocol_error);
     fault(client_frame(0x80, "x"), CloseCode::protocol_error); // goes on from nothing
     fault(client_frame(0x01, "x") + client_frame(0x81, "y"), CloseCode::protocol_error);
-    fault(client_frame(0x81, std::string(most_client_message + 1, 'x')), CloseCode::too_big);
-    fault(client_frame(0x01, std::string(most_client_message, 'x')) + client_frame(0x80, "y"),
+    fault(client_frame(0x81, std::string(max_client_message + 1, 'x')), CloseCode::too_big);
+    fault(client_frame(0x01, std::string(max_client_message, 'x')) + client_frame(0x80, "y"),
           CloseCode::too_big);
     fault("\x81\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF", CloseCode::too_big); // 2^64 - 1 bytes
   }
 
   TEST_CASE("the largest message is taken whole, and its bytes fit into what may wait") {
-    const std::string frame = client_frame(0x81, std::string(most_client_message, 'x'));
-    CHECK(frame.size() <= ClientReader::most_pending);
-    CHECK(only_event(frame).payload.size() == most_client_message);
+    const std::string frame = client_frame(0x81, std::string(max_client_message, 'x'));
+    CHECK(frame.size() <= ClientReader::max_pending);
+    CHECK(only_event(frame).payload.size() == max_client_message);
   }
 
   TEST_CASE("of any bytes come bounded payloads, and no more bytes than were given") {
@@ -134,3 +136,5 @@ TEST_SUITE("socket_frames") {
     }
   }
 }
+
+} // namespace socket_frames_test

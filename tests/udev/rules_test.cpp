@@ -1,0 +1,167 @@
+// The text of udev rules and bindings. What udev does by them is in apps/udev_rules_test.cpp.
+
+#include <filesystem>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <nendo/base/files.hpp>
+#include <nendo/udev/bindings.hpp>
+#include <nendo/udev/rules.hpp>
+
+#include "support/shell.hpp"
+
+namespace rules_test {
+
+using namespace nendo;
+using namespace nendo::udev;
+
+namespace {
+
+SerialPort port_of(const std::string& device, const std::string& place, const std::string& serial,
+                   int interface_number = 0) {
+  SerialPort port;
+  port.device = device;
+  port.usb =
+      UsbIdentity{0x0403, 0x6001, "FTDI", "FT232R", serial, place, 1, 5, interface_number, 0};
+  return port;
+}
+
+std::string rule_for(const std::vector<SerialPort>& ports, const std::string& port, Side side,
+                     bool by_place = false) {
+  const auto binding = make_binding(port, ports, side, by_place);
+  REQUIRE_MESSAGE(binding, (binding ? "" : binding.error().message));
+  const auto rule = rule_of(*binding);
+  REQUIRE(rule);
+  return *rule;
+}
+
+} // namespace
+
+TEST_SUITE("udev rules") {
+  TEST_CASE("the committed files are what the table of devices makes") {
+    std::size_t committed = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(NENDO_UDEV_FOLDER))
+      committed += entry.path().extension() == ".rules" ? 1U : 0U;
+    CHECK(committed == rule_texts().size());
+    for (const RuleText& file : rule_texts()) {
+      const std::string name(file.name);
+      const auto text = read_file(NENDO_UDEV_FOLDER "/" + name, 1U << 20U, "udev rules");
+      CHECK_MESSAGE((text && *text == file.text), "make it again: nendo udev show ", name,
+                    " > udev/", name);
+    }
+  }
+
+  TEST_CASE("udevadm finds no fault with the committed files") {
+    if (test::shell("udevadm verify --help").exit_code != 0) {
+      MESSAGE("not run: udevadm verifies rules since systemd 254");
+      return;
+    }
+    for (const RuleText& file : rule_texts()) {
+      const auto judged =
+          test::shell("udevadm verify '" NENDO_UDEV_FOLDER "/" + std::string(file.name) + "'");
+      CHECK_MESSAGE(judged.exit_code == 0, judged.out);
+    }
+  }
+
+  TEST_CASE("no rule names an adapter that anything may hang on") {
+    for (const RuleText& file : rule_texts()) {
+      CHECK(file.text.starts_with(rule_mark));
+      std::string rules = file.text;
+      for (std::size_t at = 0; (at = rules.find('#')) != std::string::npos;)
+        rules.erase(at, rules.find('\n', at) - at);
+      CHECK(rules.find("GOTO") != std::string::npos);
+      for (const char* const vendor : {"0403", "067b", "10c4", "1a86"})
+        CHECK_MESSAGE(rules.find(vendor) == std::string::npos, vendor);
+    }
+  }
+
+  TEST_CASE("the grant comes before systemd turns tags into permissions") {
+    const auto files = rule_texts();
+    REQUIRE(files.size() == 2);
+    CHECK(files[0].name < files[1].name);
+    CHECK(files[1].name < std::string_view("73"));
+    CHECK(binding_file_name < files[0].name); // bindings are read first
+  }
+
+  TEST_CASE("a port is bound by its adapter's serial number") {
+    const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "A1"),
+                            port_of("/dev/ttyUSB1", "1-3", "A2")};
+    const std::string rule = rule_for(ports, "/dev/ttyUSB1", Side::right);
+    CHECK(rule.find(R"(ATTRS{serial}=="A2")") != std::string::npos);
+    CHECK(rule.find(R"(ENV{ID_NENDO_HAND}="right")") != std::string::npos);
+    CHECK(rule.find('\n') == std::string::npos);
+    CHECK(rule.find("INTERFACE") == std::string::npos);
+  }
+
+  TEST_CASE("what does not tell an adapter from another one binds nothing") {
+    auto no_usb = port_of("/dev/ttyS0", "", "");
+    no_usb.usb.reset();
+    const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "0001"),
+                            port_of("/dev/ttyUSB1", "1-3", "0001"),
+                            port_of("/dev/ttyUSB2", "1-4", ""), no_usb};
+    const auto code = [&](const std::string& port, bool by_place) {
+      const auto binding = make_binding(port, ports, Side::left, by_place);
+      return binding ? 0 : static_cast<int>(binding.error().code);
+    };
+    CHECK(code("/dev/ttyUSB0", false) == static_cast<int>(Errc::usage));
+    CHECK(code("/dev/ttyUSB0", true) == 0);
+    CHECK(code("/dev/ttyUSB2", false) == static_cast<int>(Errc::usage));
+    CHECK(code("/dev/ttyUSB2", true) == 0);
+    CHECK(code("/dev/ttyS0", true) == static_cast<int>(Errc::usage));
+    CHECK(code("/dev/ttyUSB9", false) == static_cast<int>(Errc::no_device));
+  }
+
+  TEST_CASE("of an adapter with several ports only the one is bound") {
+    const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "A1", 0),
+                            port_of("/dev/ttyUSB1", "1-2", "A1", 1)};
+    CHECK(rule_for(ports, "/dev/ttyUSB1", Side::left).find(R"(INTERFACE}=="01")") !=
+          std::string::npos);
+    const std::vector same{port_of("/dev/ttyUSB0", "1-2", "A1", 0),
+                           port_of("/dev/ttyUSB1", "1-2", "A1", 0)};
+    CHECK_FALSE(make_binding("/dev/ttyUSB1", same, Side::left, false));
+  }
+
+  TEST_CASE("a serial number that means something to udev makes no rule") {
+    for (const char* const hostile : {"A\", RUN+=\"/bin/sh", "A*", "A?", "A|B", "[A]", "A\nRUN+=x",
+                                      "$attr{x}", "%k", "A\\", "A\xC3\xA9", ""}) {
+      Binding binding;
+      binding.adapter = *port_of("/dev/ttyUSB0", "1-2", hostile).usb;
+      CHECK_MESSAGE(!rule_of(binding), hostile);
+    }
+  }
+
+  TEST_CASE("a hand has one adapter and an adapter one hand, whatever the order") {
+    const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "A1"),
+                            port_of("/dev/ttyUSB1", "1-3", "A2")};
+    const std::string first_right = rule_for(ports, "/dev/ttyUSB0", Side::right);
+    const std::string second_right = rule_for(ports, "/dev/ttyUSB1", Side::right);
+    const std::string first_left = rule_for(ports, "/dev/ttyUSB0", Side::left);
+    const std::string one = with_binding("", Side::right, first_right);
+    CHECK(binding_in(one, Side::right) == first_right);
+    CHECK_FALSE(binding_in(one, Side::left));
+    CHECK(with_binding(one, Side::right, first_right) == one); // idempotent
+    const std::string other = with_binding(one, Side::right, second_right);
+    CHECK(binding_in(other, Side::right) == second_right);
+    CHECK(other.find("A1") == std::string::npos);
+    const std::string turned = with_binding(one, Side::left, first_left);
+    CHECK_FALSE(binding_in(turned, Side::right));
+    CHECK(binding_in(turned, Side::left) == first_left);
+    const std::string both = with_binding(turned, Side::right, second_right);
+    CHECK(binding_in(both, Side::left) == first_left);
+    CHECK(binding_in(both, Side::right) == second_right);
+    CHECK(without_binding(without_binding(both, Side::left), Side::right).empty());
+  }
+
+  TEST_CASE("lines of the user's own survive binding and unbinding") {
+    const std::string own = "# mine\nKERNEL==\"ttyS0\", SYMLINK+=\"gps\"\n\n# ends without newline";
+    const std::string rule =
+        rule_for({port_of("/dev/ttyUSB0", "1-2", "A1")}, "/dev/ttyUSB0", Side::left);
+    const std::string bound = with_binding(own, Side::left, rule);
+    CHECK(bound.find(own + '\n') != std::string::npos);
+    CHECK(without_binding(bound, Side::left).find(own + '\n') != std::string::npos);
+    CHECK(without_binding(own, Side::left) == own);
+  }
+}
+
+} // namespace rules_test
