@@ -12,8 +12,7 @@
 #include <vector>
 
 #include <nendo/driver/devices.hpp>
-
-#include "udev/rule_files.hpp"
+#include <nendo/udev/installed_rules.hpp>
 
 namespace nendo::doctor {
 

@@ -4,14 +4,16 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nendo/driver/devices.hpp>
-#include <nendo/driver/udev_rules.hpp>
+#include <nendo/udev/bindings.hpp>
+#include <nendo/udev/installed_rules.hpp>
+#include <nendo/udev/rules.hpp>
 
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"
-#include "udev/rule_files.hpp"
 
 namespace nendo::app::udev_command {
 namespace {
@@ -29,7 +31,7 @@ Side side_of(const Options& options) {
   return options.hand == name_of(Side::left) ? Side::left : Side::right;
 }
 
-/// Makes the changes and says what each came to. An empty list: nothing but what was said before.
+/// Makes the changes and says what came of each. Returns the exit code.
 int carry_out(const std::vector<udev::RuleChange>& changes, const Options& options) {
   for (const udev::RuleChange& change : changes) {
     const std::string path = change.path.string();
@@ -52,7 +54,7 @@ Error foreign(const udev::RuleFile& file) {
 
 int install(const Options& options) {
   std::vector<udev::RuleChange> changes;
-  const auto texts = driver::udev_files();
+  const auto texts = udev::rule_texts();
   const auto in_force = udev::rules_in_force(options.root);
   for (std::size_t k = 0; k < texts.size(); ++k) {
     const udev::RuleFile& file = in_force[k];
@@ -66,7 +68,7 @@ int install(const Options& options) {
   return carry_out(changes, options);
 }
 
-/// Bindings stay: they are the user's own, and harmless without the rest.
+/// Bindings stay, because they are the user's own, and harmless without the rest.
 int uninstall(const Options& options) {
   std::vector<udev::RuleChange> changes;
   for (const udev::RuleFile& file : udev::rules_in_etc(options.root)) {
@@ -88,7 +90,7 @@ int uninstall(const Options& options) {
 }
 
 int show(const Options& options) {
-  for (const driver::UdevFile& file : driver::udev_files()) {
+  for (const udev::RuleText& file : udev::rule_texts()) {
     if (file.name != options.file) continue;
     std::cout << file.text;
     return 0;
@@ -107,14 +109,14 @@ int show(const Options& options) {
   const auto bindings = udev::read_bindings(options.root);
   if (!bindings) return cli::report(bindings.error());
   for (const Side side : {Side::left, Side::right}) {
-    std::cout << name_of(side) << ": " << driver::binding_in(*bindings, side).value_or("not bound")
+    std::cout << name_of(side) << ": " << udev::binding_in(*bindings, side).value_or("not bound")
               << '\n';
   }
   return 0;
 }
 
 int change_bindings(const std::string& before, const std::string& after, const Options& options) {
-  const auto path = udev::etc_rules(options.root) / driver::binding_file_name;
+  const auto path = udev::etc_rules(options.root) / udev::binding_file_name;
   std::vector<udev::RuleChange> changes;
   if (after == before) {
     std::cout << "unchanged " << path.string() << '\n';
@@ -125,10 +127,15 @@ int change_bindings(const std::string& before, const std::string& after, const O
 }
 
 int bind(const Options& options) {
-  const auto binding =
-      driver::make_binding(options.port, driver::find_gloves(), side_of(options), options.by_place);
+  std::vector<udev::SerialPort> ports;
+  for (driver::GloveCandidate& candidate : driver::find_gloves()) {
+    if (candidate.kind == driver::DeviceKind::serial_port)
+      ports.push_back({std::move(candidate.device), std::move(candidate.usb)});
+  }
+  const auto binding = udev::make_binding(driver::resolve_port(options.port), ports,
+                                          side_of(options), options.by_place);
   if (!binding) return cli::report(binding.error());
-  const auto rule = driver::rule_of(*binding);
+  const auto rule = udev::rule_of(*binding);
   if (!rule) return cli::report(rule.error());
   const auto bindings = udev::read_bindings(options.root);
   if (!bindings) return cli::report(bindings.error());
@@ -136,7 +143,7 @@ int bind(const Options& options) {
   if (!options.by_place && binding->adapter.serial == "0001") // the CP2102's default
     cli::note("many adapters have the serial number 0001; --by-place tells them apart");
   const int code =
-      change_bindings(*bindings, driver::with_binding(*bindings, side_of(options), *rule), options);
+      change_bindings(*bindings, udev::with_binding(*bindings, side_of(options), *rule), options);
   for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
     if (code == 0 && file.state == udev::RuleState::missing)
       cli::note(file.name + " is not installed, and the binding needs it: sudo nendo udev install");
@@ -147,7 +154,7 @@ int bind(const Options& options) {
 int unbind(const Options& options) {
   const auto bindings = udev::read_bindings(options.root);
   if (!bindings) return cli::report(bindings.error());
-  return change_bindings(*bindings, driver::without_binding(*bindings, side_of(options)), options);
+  return change_bindings(*bindings, udev::without_binding(*bindings, side_of(options)), options);
 }
 
 using Action = int (*)(const Options& options);

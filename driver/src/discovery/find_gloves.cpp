@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/udev/device_table.hpp>
 
-#include "discovery/device_table.hpp"
 #include "discovery/programs.hpp"
 #include "discovery/stable_names.hpp"
 #include "discovery/udev_records.hpp"
@@ -62,7 +62,7 @@ std::string serial_spec(const std::string& name) {
 std::string why_maybe(const SerialPortInfo& port) {
   if (port.bluetooth) return "may be a glove: Bluetooth serial port";
   if (!port.usb) return "may be a glove: serial port";
-  const UsbAdapter* const adapter = find_usb_adapter(id_of(*port.usb));
+  const udev::UsbAdapter* const adapter = udev::find_usb_adapter(id_of(*port.usb));
   return adapter != nullptr
              ? "may be a glove: USB-serial adapter (" + std::string(adapter->maker) + ")"
              : "may be a glove: USB serial device";
@@ -86,7 +86,7 @@ GloveCandidate judge_port(const SerialPortInfo& port, const PortLinks& links, bo
   if (!links.nendo.empty()) {
     candidate.reason = "a udev rule names it " + links.nendo;
     candidate.identified = true;
-  } else if (port.usb && names_a_glove(join(port.usb->manufacturer, port.usb->product))) {
+  } else if (port.usb && udev::names_a_glove(join(port.usb->manufacturer, port.usb->product))) {
     candidate.reason = "calls itself " + join(port.usb->manufacturer, port.usb->product);
     candidate.identified = true;
   } else {
@@ -129,7 +129,7 @@ GloveCandidate judge_usb_glove(const UsbDevice& device, std::string_view name) {
   return candidate;
 }
 
-GloveCandidate judge_portless(const UsbDevice& device, const UsbAdapter& adapter) {
+GloveCandidate judge_portless(const UsbDevice& device, const udev::UsbAdapter& adapter) {
   GloveCandidate candidate = start_usb(device, DeviceKind::portless_adapter);
   candidate.description = describe(*candidate.usb);
   candidate.reason = "a USB-serial adapter (" + std::string(adapter.maker) +
@@ -153,10 +153,11 @@ std::vector<GloveCandidate> list_candidates(const UsbBus& usb) {
   }
   for (const UsbDevice& device : usb.devices()) {
     if (with_port.contains({device.bus, device.address})) continue;
-    const std::string_view glove = usb_glove_name({device.vendor_id, device.product_id});
+    const std::string_view glove = udev::usb_glove_name({device.vendor_id, device.product_id});
     if (!glove.empty()) {
       found.push_back(judge_usb_glove(device, glove));
-    } else if (const auto* adapter = find_usb_adapter({device.vendor_id, device.product_id})) {
+    } else if (const auto* adapter =
+                   udev::find_usb_adapter({device.vendor_id, device.product_id})) {
       found.push_back(judge_portless(device, *adapter));
     }
   }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <nendo/base/result.hpp>
+#include <nendo/driver/devices.hpp>
 
 #include "transport/transport.hpp"
 
@@ -17,9 +18,6 @@ namespace nendo::driver {
 /// (missing, not a terminal, in use), no_permission.
 Result<std::unique_ptr<Transport>> open_transport(const std::string& path, int baud);
 
-/// The path with symbolic links followed, but no further than to a name that the kernel knows as a
-/// serial port.
-std::string resolve_port(const std::string& path);
 /// True for /dev/<name> with an entry in /sys/class/tty: a real port, and what libserialport can
 /// open.
 bool is_serial_port(const std::string& path);

@@ -7,12 +7,6 @@
 
 namespace nendo::driver {
 
-std::string to_string(UsbId id) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "%04x:%04x", unsigned{id.vendor}, unsigned{id.product});
-  return text.data();
-}
-
 std::string node_of(const UsbIdentity& identity) {
   std::array<char, 40> node{};
   std::snprintf(node.data(), node.size(), "/dev/bus/usb/%03u/%03u", identity.bus, identity.address);

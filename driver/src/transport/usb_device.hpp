@@ -2,7 +2,6 @@
 // What a USB device is called while it is plugged in. Nothing is asked of the device: the kernel
 // has read all of it when the device was plugged in, and gives it to everybody.
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,21 +9,14 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/devices.hpp>
+#include <nendo/udev/usb_identity.hpp>
 
 namespace nendo::driver {
 
-struct UsbId {
-  std::uint16_t vendor = 0;
-  std::uint16_t product = 0;
-  friend constexpr auto operator<=>(UsbId, UsbId) = default;
-};
+using udev::id_of;
+using udev::to_string;
+using udev::UsbId;
 
-constexpr UsbId id_of(const UsbIdentity& identity) noexcept {
-  return {identity.vendor_id, identity.product_id};
-}
-
-/// As `lsusb` shows it: 0d7f:0100.
-std::string to_string(UsbId id);
 /// e.g. /dev/bus/usb/001/007.
 std::string node_of(const UsbIdentity& identity);
 

@@ -7,7 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include "discovery/device_table.hpp"
+#include <nendo/udev/device_table.hpp>
+
 #include "fivedt_usb/fivedt_usb_driver.hpp"
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
 #include "p5/p5_driver.hpp"
@@ -29,7 +30,7 @@ constexpr std::array usb_drivers{
 };
 
 const UsbDriver* find_driver(UsbId id) noexcept {
-  if (usb_glove_name(id).empty()) return nullptr;
+  if (udev::usb_glove_name(id).empty()) return nullptr;
   const auto* const found =
       std::find_if(usb_drivers.begin(), usb_drivers.end(),
                    [&](const UsbDriver& driver) { return driver.vendor == id.vendor; });
@@ -58,7 +59,7 @@ Result<UsbId> id_of(const GloveSpec& spec) {
 
 Error unknown(const GloveSpec& spec) {
   std::string known;
-  const auto models = usb_glove_models();
+  const auto models = udev::usb_glove_models();
   for (std::size_t first = 0, next = 0; first < models.size(); first = next) {
     while (next < models.size() && models[next].name == models[first].name)
       ++next;

@@ -9,22 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include <nendo/udev/usb_identity.hpp>
+
 namespace nendo::driver {
 
-/// A USB device as the kernel describes it. Strings are printable ASCII; other bytes became '?'.
-struct UsbIdentity {
-  std::uint16_t vendor_id = 0;
-  std::uint16_t product_id = 0;
-  std::string manufacturer;
-  std::string product;
-  std::string serial;
-  std::string place;         ///< bus and hub ports, e.g. "1-2.4": where it is plugged in
-  unsigned bus = 0;          ///< as in /dev/bus/usb/BUS/ADDRESS
-  unsigned address = 0;      ///< another one whenever it is plugged in
-  int interface_number = -1; ///< of the port, at adapters that have several; -1 if unknown
-  int port_number = 0;       ///< of the port, at interfaces that have several
-  friend bool operator==(const UsbIdentity&, const UsbIdentity&) = default;
-};
+using udev::UsbIdentity;
 
 /// A program that holds a device open or locked.
 struct DeviceHolder {
@@ -67,6 +56,11 @@ struct GloveCandidate {
 /// Serial ports and USB gloves, a device being one entry, identified ones first. What vanishes
 /// meanwhile is left out. Blocks for less than a second.
 std::vector<GloveCandidate> find_gloves();
+
+/// Returns the port that a path leads to: follows symbolic links, e.g. /dev/nendo/right to
+/// /dev/ttyUSB0, up to a name that the kernel knows as a serial port. A path that leads nowhere is
+/// returned as it is. Reads the file system; opens nothing.
+std::string resolve_port(const std::string& path);
 
 /// The command that sets the latency timer of this port to 1 ms.
 std::string latency_timer_remedy(const std::string& port);

@@ -9,16 +9,11 @@
 #include <string_view>
 
 #include <nendo/base/event_count.hpp>
+#include <nendo/base/side.hpp>
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/units.hpp>
 
 namespace nendo {
-
-enum class Side : std::uint8_t { left, right };
-
-constexpr std::string_view name_of(Side side) noexcept {
-  return side == Side::left ? "left" : "right";
-}
 
 /// The CyberGlove's 24 sensor slots, in the order of its mask bits (vendor library and manual
 /// agree). The abduction sensors beside the thumb's measure the angle between two neighbouring

@@ -1,16 +1,17 @@
-#include "discovery/device_table.hpp"
+#include <nendo/udev/device_table.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 
-namespace nendo::driver {
+namespace nendo::udev {
 namespace {
 
 constexpr std::string_view ultra = "5DT Data Glove Ultra";
 
-// The numbers of a 5DT Ultra have a bit for the left hand, two for its link, of which one value is
-// unused, and one for five sensors (VRPN's driver).
+// Bits of a 5DT Ultra's product number (VRPN's driver): 0 is the left hand, 1 and 2 are its link,
+// where 2 is unused, and 4 is five sensors.
 constexpr std::array models{
     UsbGloveModel{{0x0D7F, 0x0100}, "Essential Reality P5"},
     UsbGloveModel{{0x5D70, 0x0000}, ultra},
@@ -27,8 +28,8 @@ constexpr std::array models{
     UsbGloveModel{{0x5D70, 0x0017}, ultra},
 };
 
-// 0403:6001 is also a CyberGlove III itself; Prolific's is what early users plug gloves into; the
-// other two are the chips of hobbyists' gloves.
+// 0403:6001 is also a CyberGlove III itself. Prolific's adapter is what early users plug gloves
+// into. The other two are the chips of hobbyists' gloves.
 constexpr std::array adapters{
     UsbAdapter{{0x0403, 0x6001}, "FTDI", "ftdi_sio"},
     UsbAdapter{{0x067B, 0x2303}, "Prolific", "pl2303"},
@@ -36,10 +37,16 @@ constexpr std::array adapters{
     UsbAdapter{{0x1A86, 0x7523}, "WCH", "ch341"},
 };
 
-// Not the maker Immersion, which also made digitisers that hang on a serial port.
+// Not "Immersion": that maker also made digitisers with a serial port.
 constexpr std::array<std::string_view, 2> names{"cyberglove", "cybertouch"};
 
 } // namespace
+
+std::string to_string(UsbId id) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%04x:%04x", unsigned{id.vendor}, unsigned{id.product});
+  return text.data();
+}
 
 std::span<const UsbGloveModel> usb_glove_models() noexcept {
   return models;
@@ -73,4 +80,4 @@ bool names_a_glove(std::string text) {
                      [&](std::string_view name) { return text.find(name) != std::string::npos; });
 }
 
-} // namespace nendo::driver
+} // namespace nendo::udev

@@ -1,4 +1,4 @@
-#include "udev/rule_files.hpp"
+#include <nendo/udev/installed_rules.hpp>
 
 #include <array>
 #include <cerrno>
@@ -11,7 +11,8 @@
 #include <unistd.h>
 
 #include <nendo/base/files.hpp>
-#include <nendo/driver/udev_rules.hpp>
+#include <nendo/udev/bindings.hpp>
+#include <nendo/udev/rules.hpp>
 
 extern char** environ; // NOLINT(readability-redundant-declaration): POSIX has it in no header
 
@@ -28,11 +29,11 @@ RuleState state_of(const fs::path& path, std::string_view wanted) {
   if (!fs::exists(status)) return RuleState::missing;
   if (!fs::is_regular_file(status)) return RuleState::foreign;
   const auto text = read_file(path, most_bytes, "udev rules");
-  if (!text || !text->starts_with(driver::udev_file_mark)) return RuleState::foreign;
+  if (!text || !text->starts_with(rule_mark)) return RuleState::foreign;
   return *text == wanted ? RuleState::current : RuleState::outdated;
 }
 
-/// Of the nearest folder that exists: the others would be made in it.
+/// Asks the nearest folder that exists, in which the missing ones would be made.
 bool may_write_in(fs::path folder) {
   std::error_code failed;
   while (!fs::exists(folder, failed) && folder.has_relative_path())
@@ -40,7 +41,7 @@ bool may_write_in(fs::path folder) {
   return ::access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
-/// True if it ran and was content.
+/// Returns true if the program ran and succeeded.
 bool run(std::vector<std::string> words) {
   std::vector<char*> argv;
   for (std::string& word : words)
@@ -63,7 +64,7 @@ fs::path etc_rules(const fs::path& root) {
 
 std::vector<RuleFile> rules_in_etc(const fs::path& root) {
   std::vector<RuleFile> files;
-  for (const driver::UdevFile& file : driver::udev_files()) {
+  for (const RuleText& file : rule_texts()) {
     const fs::path path = etc_rules(root) / file.name;
     files.push_back({std::string(file.name), path, state_of(path, file.text)});
   }
@@ -72,7 +73,7 @@ std::vector<RuleFile> rules_in_etc(const fs::path& root) {
 
 std::vector<RuleFile> rules_in_force(const fs::path& root) {
   std::vector<RuleFile> files;
-  for (const driver::UdevFile& file : driver::udev_files()) {
+  for (const RuleText& file : rule_texts()) {
     RuleFile found{std::string(file.name), etc_rules(root) / file.name, RuleState::missing};
     for (const char* const folder : {"etc", "run", "usr/local/lib", "usr/lib"}) {
       const fs::path path = root / folder / "udev/rules.d" / file.name;
@@ -88,7 +89,7 @@ std::vector<RuleFile> rules_in_force(const fs::path& root) {
 }
 
 Result<std::string> read_bindings(const fs::path& root) {
-  const fs::path path = etc_rules(root) / driver::binding_file_name;
+  const fs::path path = etc_rules(root) / binding_file_name;
   std::error_code failed;
   if (!fs::exists(fs::symlink_status(path, failed))) return std::string{};
   return read_file(path, most_bytes, "udev rules");
@@ -112,7 +113,7 @@ Result<void> apply(const RuleChange& change) {
   }
   fs::create_directories(folder, failed);
   if (auto written = replace_file(change.path, *change.contents); !written) return written;
-  using enum fs::perms; // whatever the umask: the doctor of another user reads it, too
+  using enum fs::perms; // whatever the umask: other users' `nendo doctor` reads it, too
   fs::permissions(change.path, owner_read | owner_write | group_read | others_read, failed);
   return {};
 }

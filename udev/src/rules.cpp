@@ -1,16 +1,20 @@
-#include <nendo/driver/udev_rules.hpp>
+#include <nendo/udev/rules.hpp>
 
 #include <array>
 #include <cctype>
 #include <cstdio>
 
-#include "discovery/device_table.hpp"
+#include <nendo/udev/device_table.hpp>
 
-namespace nendo::driver {
+namespace nendo::udev {
 namespace {
 
-// udev(7): ATTRS and SUBSYSTEMS look at the device and its parents, and all of a rule's must meet
-// one of them. A glove's port, its adapter and what lies between thus match by the same line.
+/// The group that may open gloves on a machine without a screen.
+constexpr std::string_view glove_group = "dialout";
+
+// udev(7): ATTRS and SUBSYSTEMS look at the device and its parents, and all of a rule's must match
+// the same one of them. Therefore the same line matches a glove's port, its adapter and what lies
+// between them.
 std::string by_numbers(const UsbGloveModel& model) {
   std::array<char, 96> match{};
   std::snprintf(match.data(), match.size(), R"(ATTRS{idVendor}=="%04x", ATTRS{idProduct}=="%04x")",
@@ -19,7 +23,7 @@ std::string by_numbers(const UsbGloveModel& model) {
          std::string(model.name) + "\"\n";
 }
 
-/// udev has no matching without regard to case: "ab" becomes "*[Aa][Bb]*".
+/// udev cannot match without regard to case, so "ab" becomes "*[Aa][Bb]*".
 std::string anywhere(std::string_view word) {
   std::string pattern = "*";
   for (const char c : word) {
@@ -48,27 +52,27 @@ std::string adapters_left_out() {
 }
 
 std::string identification() {
-  std::string text(udev_file_mark);
-  text +=
-      "which USB devices are data gloves, and what follows. Changes are lost;\n"
-      "# what you bind with `nendo udev bind` is in 60-nendo-local.rules, which is read first.\n"
-      "ACTION==\"remove\", GOTO=\"nendo_end\"\n"
-      "SUBSYSTEMS==\"usb\", GOTO=\"nendo_usb\"\n" // != would hold if any parent is another
-      "GOTO=\"nendo_end\"\nLABEL=\"nendo_usb\"\n\n"
-      "# Gloves with USB numbers of their own.\n";
+  std::string text(rule_mark);
+  text += "which USB devices are data gloves. Changes to this file are lost at the next\n"
+          "# update. `nendo udev bind` writes to 60-nendo-local.rules, which udev reads first.\n"
+          "ACTION==\"remove\", GOTO=\"nendo_end\"\n"
+          "SUBSYSTEMS==\"usb\", GOTO=\"nendo_usb\"\n" // != would hold if any parent is another
+          "GOTO=\"nendo_end\"\nLABEL=\"nendo_usb\"\n\n"
+          "# Gloves with USB numbers of their own.\n";
   for (const UsbGloveModel& model : usb_glove_models())
     text += by_numbers(model);
-  text += "\n# What calls itself a glove.\n";
+  text += "\n# Devices that call themselves a glove.\n";
   for (const std::string_view name : glove_names())
     text += by_name(name);
-  text += "\n# Not here, because anything may hang on them: " + adapters_left_out() +
+  text += "\n# USB-serial adapters are not listed, because anything may be connected to them:\n# " +
+          adapters_left_out() +
           ".\n"
           "# `nendo udev bind PORT --as right` binds one of those by its serial number.\n"
           "ENV{ID_NENDO_GLOVE}!=\"1\", GOTO=\"nendo_end\"\n\n"
           "# ModemManager would hold a new port for 10 to 20 s and send modem commands to it.\n"
           "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ENV{ID_MM_DEVICE_IGNORE}=\"1\"\n"
           "SUBSYSTEM==\"tty\", ENV{ID_MM_PORT_IGNORE}=\"1\"\n\n"
-          "# A name that stays. What a device calls itself must not lead out of the folder.\n"
+          "# Links that stay the same. A device's own text must not lead out of the folder.\n"
           "SUBSYSTEM==\"tty\", ENV{ID_NENDO_HAND}==\"left|right\", "
           "SYMLINK+=\"nendo/$env{ID_NENDO_HAND}\"\n"
           "SUBSYSTEM==\"tty\", ENV{ID_NENDO_HAND}==\"\", ENV{.NENDO_SERIAL}==\"?*\", "
@@ -80,14 +84,15 @@ std::string identification() {
   return text;
 }
 
-// Below 73: that is where systemd turns the tag into the permission. The USB device itself only
-// where the glove has no port, so that nobody can take a port's kernel driver away.
+// The number is below 73, because there systemd turns the tag into the permission. The USB device
+// itself is granted only where the glove has no port, so that nobody can take a port's kernel
+// driver away.
 std::string grant() {
   const std::string rights =
       "TAG+=\"uaccess\", GROUP=\"" + std::string(glove_group) + "\", MODE=\"0660\"\n";
-  return std::string(udev_file_mark) +
-         "who may open data gloves. Changes are lost.\n"
-         "# uaccess: the user at the screen; the group: a machine without one.\n"
+  return std::string(rule_mark) +
+         "who may open data gloves. Changes to this file are lost at the next update.\n"
+         "# uaccess: the user at the screen; the group: a machine without a screen.\n"
          "ACTION==\"remove\", GOTO=\"nendo_uaccess_end\"\n"
          "ENV{ID_NENDO_GLOVE}!=\"1\", GOTO=\"nendo_uaccess_end\"\n"
          "SUBSYSTEM==\"tty\", " +
@@ -98,8 +103,8 @@ std::string grant() {
 
 } // namespace
 
-std::vector<UdevFile> udev_files() {
+std::vector<RuleText> rule_texts() {
   return {{"60-nendo.rules", identification()}, {"61-nendo-uaccess.rules", grant()}};
 }
 
-} // namespace nendo::driver
+} // namespace nendo::udev

@@ -1,14 +1,11 @@
-#include <nendo/driver/udev_rules.hpp>
+#include <nendo/udev/bindings.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdio>
 
-#include "transport/open_transport.hpp"
-#include "transport/usb_device.hpp"
-
-namespace nendo::driver {
+namespace nendo::udev {
 namespace {
 
 constexpr std::string_view head =
@@ -17,7 +14,8 @@ constexpr std::string_view head =
     "ENV{.NENDO_INTERFACE}=\"$attr{bInterfaceNumber}\"\n";
 constexpr std::string_view what_follows = ", ENV{ID_NENDO_GLOVE}=\"1\"";
 
-/// Quotes would end the text; udev takes *?[]| for patterns and $% for substitutions.
+/// Returns false for text that could mean something to udev: quotes end it, *?[]| are patterns and
+/// $% are substitutions.
 bool is_plain(std::string_view text) {
   constexpr std::string_view harmless = " _-.:/+=#,@()";
   return !text.empty() && std::all_of(text.begin(), text.end(), [&](unsigned char c) {
@@ -30,7 +28,7 @@ std::string hand_of(Side side) {
   return "ENV{ID_NENDO_HAND}=\"" + std::string(name_of(side)) + "\"";
 }
 
-/// What a binding's rule says of the adapter, without the hand.
+/// Returns what a binding's rule says of the adapter, without the hand.
 std::string_view adapter_part(std::string_view rule) {
   return rule.substr(0, rule.find(what_follows));
 }
@@ -65,43 +63,41 @@ Error indistinct(std::string_view port, const std::string& why) {
 
 } // namespace
 
-Result<UdevBinding> make_binding(std::string_view port, std::span<const GloveCandidate> ports,
-                                 Side side, bool by_place) {
-  const std::string device = resolve_port(std::string(port));
-  const auto is_it = [&](const GloveCandidate& candidate) {
-    return candidate.kind == DeviceKind::serial_port && candidate.device == device;
-  };
-  const auto found = std::find_if(ports.begin(), ports.end(), is_it);
+Result<Binding> make_binding(std::string_view device, std::span<const SerialPort> ports, Side side,
+                             bool by_place) {
+  const auto found = std::find_if(ports.begin(), ports.end(),
+                                  [&](const SerialPort& port) { return port.device == device; });
   if (found == ports.end()) {
     return Error{Errc::no_device,
-                 std::string(port) +
+                 std::string(device) +
                      ": no such serial port; `nendo devices` lists those there are"};
   }
   if (!found->usb) {
-    return Error{Errc::usage, std::string(port) +
+    return Error{Errc::usage, std::string(device) +
                                   ": is no USB adapter's, so it keeps its name; "
                                   "use it as serial:" +
-                                  device};
+                                  std::string(device)};
   }
   const UsbIdentity& usb = *found->usb;
-  if (!by_place && usb.serial.empty()) return indistinct(port, "its adapter has no serial number");
-  UdevBinding binding{side, usb, by_place, false};
-  for (const GloveCandidate& other : ports) {
-    if (!other.usb || other.device == device || other.kind != DeviceKind::serial_port) continue;
+  if (!by_place && usb.serial.empty())
+    return indistinct(device, "its adapter has no serial number");
+  Binding binding{side, usb, by_place, false};
+  for (const SerialPort& other : ports) {
+    if (!other.usb || other.device == device) continue;
     const bool same_adapter = other.usb->place == usb.place;
     binding.by_interface |= same_adapter;
     if (same_adapter && other.usb->interface_number == usb.interface_number) {
-      return Error{Errc::usage, std::string(port) + ": nothing but its number tells it from " +
+      return Error{Errc::usage, std::string(device) + ": nothing but its number tells it from " +
                                     other.device + "; use an adapter with one port"};
     }
     const bool same_kind = id_of(*other.usb) == id_of(usb);
     if (!by_place && !same_adapter && same_kind && other.usb->serial == usb.serial)
-      return indistinct(port, other.device + " has the same serial number " + usb.serial);
+      return indistinct(device, other.device + " has the same serial number " + usb.serial);
   }
   return binding;
 }
 
-Result<std::string> rule_of(const UdevBinding& binding) {
+Result<std::string> rule_of(const Binding& binding) {
   const UsbIdentity& usb = binding.adapter;
   const std::string& key = binding.by_place ? usb.place : usb.serial;
   if (!is_plain(key)) {
@@ -148,4 +144,4 @@ std::optional<std::string> binding_in(std::string_view text, Side side) {
   return found;
 }
 
-} // namespace nendo::driver
+} // namespace nendo::udev

@@ -1,0 +1,20 @@
+#pragma once
+// Which of a person's two hands is meant.
+
+#include <cstdint>
+#include <string_view>
+
+namespace nendo {
+
+enum class Side : std::uint8_t { left, right };
+
+constexpr Side opposite(Side side) noexcept {
+  return side == Side::left ? Side::right : Side::left;
+}
+
+/// "left" or "right", as options, files and udev's rules write it.
+constexpr std::string_view name_of(Side side) noexcept {
+  return side == Side::left ? "left" : "right";
+}
+
+} // namespace nendo

@@ -1,0 +1,39 @@
+#pragma once
+// The table of devices: everything that USB numbers and names tell about gloves. The driver looks
+// devices up in it, and the udev rules are made from it, so the two cannot disagree.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <nendo/udev/usb_identity.hpp>
+
+namespace nendo::udev {
+
+/// A glove that is a USB device of its own.
+struct UsbGloveModel {
+  UsbId id;
+  std::string_view name;
+};
+
+/// A USB-serial adapter that gloves were seen on. Anything may be connected to it, so nothing is
+/// written to it unasked, and no rule matches it by these numbers.
+struct UsbAdapter {
+  UsbId id;
+  std::string_view maker;
+  std::string_view module; ///< the kernel's driver
+};
+
+std::span<const UsbGloveModel> usb_glove_models() noexcept;
+std::span<const UsbAdapter> usb_adapters() noexcept;
+/// Returns words, in lower case, that only a glove has in its own description.
+std::span<const std::string_view> glove_names() noexcept;
+
+/// Returns the name of the glove with these numbers; an empty text if nendo has no driver for it.
+std::string_view usb_glove_name(UsbId id) noexcept;
+/// Returns nullptr if gloves were seen on no adapter with these numbers.
+const UsbAdapter* find_usb_adapter(UsbId id) noexcept;
+/// Returns true if the text contains one of glove_names(), in upper or lower case.
+bool names_a_glove(std::string text);
+
+} // namespace nendo::udev

@@ -1,0 +1,25 @@
+#pragma once
+// The text of the udev rules, made from the table of devices. The same text is committed in udev/,
+// for packagers; a test proves that the two are the same.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nendo::udev {
+
+/// A file of rules.
+struct RuleText {
+  std::string_view name; ///< in a folder like /etc/udev/rules.d
+  std::string text;
+};
+
+/// Returns 60-nendo.rules, which says which devices are gloves, and 61-nendo-uaccess.rules, which
+/// grants them to the user at the screen and to a group. Neither names USB-serial adapters, because
+/// anything may be connected to them.
+std::vector<RuleText> rule_texts();
+
+/// The first line of these files begins with this mark; files without it belong to somebody else.
+inline constexpr std::string_view rule_mark = "# Made by nendo: ";
+
+} // namespace nendo::udev
