@@ -7,8 +7,9 @@
 #include <vector>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
 
-#include "text.hpp"
+#include "text_scanner.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -20,47 +21,30 @@ constexpr std::size_t most_rows = 1'000'000;
 
 constexpr std::array<std::string_view, 7> column_names{"x", "y", "z", "dx", "dy", "dz", "radius"};
 
-std::string_view trimmed(std::string_view text) noexcept {
-  constexpr std::string_view blanks = " \t\r";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-/// Cuts the part before the first `separator` off `rest`.
-std::string_view cut(std::string_view& rest, char separator) noexcept {
-  const std::size_t at = std::min(rest.find(separator), rest.size());
-  const std::string_view part = rest.substr(0, at);
-  rest.remove_prefix(std::min(at + 1, rest.size()));
-  return part;
-}
-
 class CsvParser {
 public:
-  explicit CsvParser(std::string_view name) : name_(name) {}
+  CsvParser(std::string_view text, std::string_view name) : lines_(text), name_(name) {}
 
-  Result<ControlVectors> parse(std::string_view text);
+  Result<ControlVectors> parse();
 
 private:
   Result<void> header(std::string_view row);
   Result<void> numbers(std::string_view row);
   ControlVectors vectors() const;
 
-  Error bad(const std::string& what) const { return bad_line(name_, line_, what); }
+  Error bad(const std::string& what) const { return bad_line(name_, lines_.line(), what); }
 
+  LineReader lines_;
   std::string_view name_;
-  std::size_t line_ = 0;
   std::size_t columns_ = 0;     ///< 6 or 7; 0 before the header
   std::vector<double> numbers_; ///< six a row
   std::vector<OwnSupport> own_;
 };
 
-Result<ControlVectors> CsvParser::parse(std::string_view text) {
-  while (!text.empty()) {
-    ++line_;
-    const std::string_view row = trimmed(cut(text, '\n'));
-    if (row.empty() || row.front() == '#') continue;
-    const auto done = columns_ == 0 ? header(row) : numbers(row);
+Result<ControlVectors> CsvParser::parse() {
+  while (const auto row = lines_.next()) {
+    if (row->front() == '#') continue;
+    const auto done = columns_ == 0 ? header(*row) : numbers(*row);
     if (!done) return done.error();
   }
   if (numbers_.empty())
@@ -73,7 +57,7 @@ Result<void> CsvParser::header(std::string_view row) {
   while (!row.empty()) {
     const std::string_view name = trimmed(cut(row, ','));
     if (column == column_names.size() || name != column_names[column])
-      return bad("column " + std::to_string(column + 1) + ": " + quoted(name) +
+      return bad("column " + std::to_string(column + 1) + ": " + in_quotes(name) +
                  ", but the header must be x,y,z,dx,dy,dz or x,y,z,dx,dy,dz,radius");
     ++column;
   }
@@ -98,14 +82,14 @@ Result<void> CsvParser::numbers(std::string_view row) {
     if (column == 6) {
       const auto supports = parse_supports(field);
       if (!supports)
-        return bad(place + quoted(field) + " is not a radius > 0, or several like 10+40:0.5");
+        return bad(place + in_quotes(field) + " is not a radius > 0, or several like 10+40:0.5");
       for (const Support& support : *supports)
         own_.push_back({static_cast<Eigen::Index>(rows), support});
       continue;
     }
     const auto number = to_number(field);
     if (!number || !is_usable(*number))
-      return bad(place + quoted(field) + " is not a finite number of at most 1e100");
+      return bad(place + in_quotes(field) + " is not a finite number of at most 1e100");
     numbers_.push_back(*number);
   }
   return {};
@@ -124,7 +108,7 @@ ControlVectors CsvParser::vectors() const {
 } // namespace
 
 Result<ControlVectors> parse_control_vectors(std::string_view text, std::string_view name) {
-  return CsvParser(name).parse(text);
+  return CsvParser(text, name).parse();
 }
 
 Result<ControlVectors> read_control_vectors(const std::filesystem::path& path) {

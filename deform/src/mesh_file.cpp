@@ -6,7 +6,7 @@
 #include <nendo/base/files.hpp>
 
 #include "mesh_formats.hpp"
-#include "text.hpp"
+#include "text_scanner.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {

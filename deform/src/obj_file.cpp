@@ -5,8 +5,10 @@
 #include <limits>
 #include <optional>
 
+#include <nendo/base/text.hpp>
+
 #include "mesh_formats.hpp"
-#include "text.hpp"
+#include "text_scanner.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -70,7 +72,7 @@ Result<void> ObjParser::coordinates(std::vector<double>& list, int needed, int k
       return bad("needs " + std::to_string(needed) + " numbers, has " + std::to_string(i));
     const auto number = field.empty() ? 0.0 : to_number(field);
     if (!number || !is_usable(*number))
-      return bad(quoted(field) + " is not a finite number of at most 1e100");
+      return bad(in_quotes(field) + " is not a finite number of at most 1e100");
     list.push_back(*number);
   }
   return {};
@@ -90,7 +92,7 @@ Result<void> ObjParser::face() {
 Result<void> ObjParser::corner(std::string_view field) {
   const std::size_t slash = field.find('/');
   const auto vertex = index(field.substr(0, slash), vertices_.size() / 3, highest_vertex_);
-  if (!vertex) return bad(quoted(field) + " names no vertex");
+  if (!vertex) return bad(in_quotes(field) + " names no vertex");
   mesh_.face_corners.push_back(*vertex);
   std::string_view texcoord;
   if (slash != std::string_view::npos) {
@@ -100,7 +102,7 @@ Result<void> ObjParser::corner(std::string_view field) {
   std::uint32_t texcoord_index = no_texcoord;
   if (!texcoord.empty()) {
     const auto found = index(texcoord, texcoords_.size() / 2, highest_texcoord_);
-    if (!found) return bad(quoted(field) + " names no texture coordinate");
+    if (!found) return bad(in_quotes(field) + " names no texture coordinate");
     texcoord_index = *found;
   }
   mesh_.corner_texcoords.push_back(texcoord_index);

@@ -7,9 +7,11 @@
 #include <optional>
 #include <utility>
 
+#include <nendo/base/text.hpp>
+
 #include "mesh_formats.hpp"
 #include "ply_header.hpp"
-#include "text.hpp"
+#include "text_scanner.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -87,7 +89,7 @@ public:
   }
   Error bad(const std::string& what) const { return error_at(place(), what); }
   Error no_number() const {
-    return bad(word_.empty() ? "the file is cut off" : quoted(word_) + " is not a number");
+    return bad(word_.empty() ? "the file is cut off" : in_quotes(word_) + " is not a number");
   }
 
 private:
@@ -170,7 +172,7 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
     least_bytes += size_of(property.count_type.value_or(property.type));
   if (!body_.has_room_for(element.count, least_bytes))
     return body_.bad("the header promises " + std::to_string(element.count) + " of " +
-                     quoted(element.name) + ", the file is too short for them");
+                     in_quotes(element.name) + ", the file is too short for them");
   if (element.name == "vertex") coordinates_.reserve(3 * element.count);
   for (std::uint64_t row = 0; row < element.count; ++row) {
     for (std::size_t i = 0; i < uses->size(); ++i) {

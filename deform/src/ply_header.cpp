@@ -3,7 +3,9 @@
 #include <limits>
 #include <string>
 
-#include "text.hpp"
+#include <nendo/base/text.hpp>
+
+#include "text_scanner.hpp"
 
 namespace nendo::deform {
 
@@ -69,13 +71,13 @@ Result<void> HeaderParser::statement(std::string_view keyword) {
   if (keyword == "element") return element();
   if (keyword == "property") return property();
   if (keyword.empty() || keyword == "comment" || keyword == "obj_info") return {};
-  return bad(quoted(keyword) + " is not known in a PLY header");
+  return bad(in_quotes(keyword) + " is not known in a PLY header");
 }
 
 Result<void> HeaderParser::format() {
   const std::string_view format = scanner_.field();
   const std::string_view version = scanner_.field();
-  if (version != "1.0") return bad("PLY version " + quoted(version) + " is not known, only 1.0");
+  if (version != "1.0") return bad("PLY version " + in_quotes(version) + " is not known, only 1.0");
   if (format == "ascii") {
     header_.format = PlyFormat::ascii;
   } else if (format == "binary_little_endian") {
@@ -83,7 +85,7 @@ Result<void> HeaderParser::format() {
   } else if (format == "binary_big_endian") {
     header_.format = PlyFormat::big_endian;
   } else {
-    return bad("PLY format " + quoted(format) + " is not known");
+    return bad("PLY format " + in_quotes(format) + " is not known");
   }
   has_format_ = true;
   return {};
@@ -94,9 +96,9 @@ Result<void> HeaderParser::element() {
   const std::string_view count_field = scanner_.field();
   const auto count = to_integer(count_field);
   if (!count || *count < 0 || *count > std::numeric_limits<std::uint32_t>::max())
-    return bad(quoted(count_field) + " is not a number of elements");
+    return bad(in_quotes(count_field) + " is not a number of elements");
   for (const auto& earlier : header_.elements)
-    if (earlier.name == element) return bad("element " + quoted(element) + " comes twice");
+    if (earlier.name == element) return bad("element " + in_quotes(element) + " comes twice");
   header_.elements.push_back({.name = element, .count = static_cast<std::uint64_t>(*count)});
   return {};
 }
@@ -108,11 +110,11 @@ Result<void> HeaderParser::property() {
   if (type == "list") {
     const std::string_view count_type = scanner_.field();
     property.count_type = type_named(count_type);
-    if (!property.count_type) return bad("type " + quoted(count_type) + " is not known");
+    if (!property.count_type) return bad("type " + in_quotes(count_type) + " is not known");
     type = scanner_.field();
   }
   const auto known = type_named(type);
-  if (!known) return bad("type " + quoted(type) + " is not known");
+  if (!known) return bad("type " + in_quotes(type) + " is not known");
   property.type = *known;
   property.name = scanner_.field();
   if (property.name.empty()) return bad("a property without a name");

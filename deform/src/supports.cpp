@@ -4,7 +4,8 @@
 #include <cassert>
 #include <utility>
 
-#include "text.hpp"
+#include <nendo/base/text.hpp>
+
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -69,10 +70,8 @@ void assign_radii(Supports& out, const Eigen::VectorXd& radii) {
 std::optional<std::vector<Support>> parse_supports(std::string_view text) {
   std::vector<Support> supports;
   for (bool more = true; more;) {
-    const std::size_t end = std::min(text.find('+'), text.size());
-    more = end < text.size();
-    std::string_view part = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    more = text.find('+') != std::string_view::npos;
+    const std::string_view part = cut(text, '+');
     const std::size_t colon = part.find(':');
     const auto radius = to_number(part.substr(0, colon));
     const auto weight =
@@ -86,10 +85,8 @@ std::optional<std::vector<Support>> parse_supports(std::string_view text) {
 std::optional<Supports> parse_supports_by_point(std::string_view text, Eigen::Index points) {
   std::vector<std::vector<Support>> lists;
   for (bool more = true; more;) {
-    const std::size_t end = std::min(text.find(','), text.size());
-    more = end < text.size();
-    auto list = parse_supports(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
+    more = text.find(',') != std::string_view::npos;
+    auto list = parse_supports(cut(text, ','));
     if (!list) return std::nullopt;
     lists.push_back(std::move(*list));
   }

@@ -16,7 +16,7 @@ namespace {
 using nendo::deform::octree_order;
 using nendo::deform::Points;
 
-Points random_points(Eigen::Index count, unsigned seed) {
+Points points_in_cube(Eigen::Index count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> place(-3.0, 5.0);
   Points points(3, count);
@@ -50,7 +50,7 @@ bool cells_are_runs(const Points& points, const std::vector<std::uint32_t>& orde
 
 TEST_SUITE("octree_order") {
   TEST_CASE("the order is a permutation, and every cell of the octree is one run of it") {
-    const Points points = random_points(400, 1);
+    const Points points = points_in_cube(400, 1);
     const auto order = octree_order(points);
     std::vector<std::uint32_t> sorted = order;
     std::sort(sorted.begin(), sorted.end());
@@ -62,7 +62,7 @@ TEST_SUITE("octree_order") {
   }
 
   TEST_CASE("moving or scaling all points by a power of two changes nothing") {
-    const Points points = random_points(100, 2);
+    const Points points = points_in_cube(100, 2);
     CHECK(octree_order(4.0 * points) == octree_order(points));
   }
 

@@ -15,14 +15,12 @@
 #include <toml++/toml.h>
 
 #include <nendo/base/result.hpp>
+#include <nendo/base/text.hpp>
 
 namespace nendo::timeline {
 
 inline std::string one_line(std::string_view text) {
-  std::string line(text.substr(0, 160));
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return line;
+  return printable(text.substr(0, 160));
 }
 
 /// Takes tables apart and keeps the first complaint; after it, values are blank.

@@ -1,6 +1,4 @@
-#include "text.hpp"
-
-#include <charconv>
+#include "text_scanner.hpp"
 
 namespace nendo::deform {
 
@@ -10,41 +8,9 @@ constexpr bool is_blank(char c) noexcept {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-template <class Number>
-std::optional<Number> parse_whole(std::string_view field) noexcept {
-  // from_chars knows no plus sign; "+-1" must not slip through.
-  if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
-  Number number{};
-  const char* const end = field.data() + field.size();
-  const auto [stop, error] = std::from_chars(field.data(), end, number);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return number;
-}
-
 } // namespace
 
-std::optional<double> to_number(std::string_view field) noexcept {
-  return parse_whole<double>(field);
-}
-
-std::optional<std::int64_t> to_integer(std::string_view field) noexcept {
-  return parse_whole<std::int64_t>(field);
-}
-
-std::string quoted(std::string_view field) {
-  constexpr std::size_t most = 24;
-  std::string text = "'";
-  for (const char c : field.substr(0, most))
-    text += c < ' ' || c > '~' ? '?' : c;
-  text += field.size() > most ? "...'" : "'";
-  return text;
-}
-
-Error bad_line(std::string_view name, std::size_t line, const std::string& what) {
-  return {Errc::bad_input, std::string(name) + ":" + std::to_string(line) + ": " + what};
-}
-
-/// Of a backslash and the line end after it, 0 if there is none at this place.
+/// The length of a backslash and the line end after it; 0 if there is none at this place.
 std::size_t TextScanner::continuation_length() const noexcept {
   if (dialect_ != Dialect::obj || text_[at_] != '\\') return 0;
   const std::string_view after = text_.substr(at_ + 1, 2);

@@ -1,0 +1,43 @@
+#pragma once
+// Splits text into lines and fields without copies, so that the length of a line costs nothing.
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace nendo::deform {
+
+/// The largest file of a mesh or of control vectors that is read.
+inline constexpr std::uint64_t most_file_bytes = std::uint64_t{4} << 30;
+
+/// Walks over a text field by field. Fields are separated by blanks and views into the text.
+class TextScanner {
+public:
+  enum class Dialect {
+    plain,
+    obj ///< a backslash at the end of a line continues it, # begins a comment
+  };
+  TextScanner(std::string_view text, Dialect dialect) noexcept : text_(text), dialect_(dialect) {}
+
+  /// Returns the next field of this line; empty at the end of the line.
+  std::string_view field() noexcept;
+  /// Returns the next field of this line, or the first field of a later line; empty at the end of
+  /// the text.
+  std::string_view field_on_any_line() noexcept;
+  /// Goes to the start of the next line; returns false at the end of the text.
+  bool next_line() noexcept;
+
+  /// The number of this line, from 1, and the offset of the next character in the text.
+  std::size_t line() const noexcept { return line_; }
+  std::size_t offset() const noexcept { return at_; }
+
+private:
+  std::size_t continuation_length() const noexcept;
+
+  std::string_view text_;
+  Dialect dialect_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 1;
+};
+
+} // namespace nendo::deform
