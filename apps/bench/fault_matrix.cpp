@@ -8,11 +8,11 @@
 
 #include <stdlib.h>
 
-#include <nendo/driver/emulator.hpp>
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 #include "bench/test_pattern.hpp"
-#include "gloves/served_emulator.hpp"
+#include <nendo/emulator/served_emulator.hpp>
 
 namespace nendo::bench {
 namespace {
@@ -66,9 +66,9 @@ const char* other_glove(const GloveCase& glove) {
   return glove.sensors == 18 || !glove.options.empty() ? "swap@2s=22" : "swap@2s=18";
 }
 
-driver::EmulatorOptions emulator_options(const FaultCase& fault, const GloveCase& glove,
-                                         const std::string& link) {
-  driver::EmulatorOptions options;
+emulator::EmulatorOptions emulator_options(const FaultCase& fault, const GloveCase& glove,
+                                           const std::string& link) {
+  emulator::EmulatorOptions options;
   options.link = link;
   options.sensors = glove.sensors;
   options.rate_hz = matrix_rate_hz;
@@ -114,9 +114,9 @@ Result<FaultOutcome> run_case(const FaultCase& fault, const GloveCase& glove, do
   FaultOutcome outcome;
   outcome.fault = &fault;
   outcome.glove = &glove;
-  auto emulator = driver::GloveEmulator::open(emulator_options(fault, glove, link));
+  auto emulator = emulator::GloveEmulator::open(emulator_options(fault, glove, link));
   if (!emulator) return emulator.error();
-  gloves::ServedEmulator server(**emulator);
+  emulator::ServedEmulator server(**emulator);
   SampleRing ring(4096);
   Watch watch;
   const HostTime begin = HostClock::now();

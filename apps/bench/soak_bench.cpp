@@ -11,13 +11,13 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include <nendo/driver/emulator.hpp>
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 #include "bench/bench.hpp"
 #include "bench/test_pattern.hpp"
 #include "cli/cli.hpp"
-#include "gloves/served_emulator.hpp"
+#include <nendo/emulator/served_emulator.hpp>
 
 namespace nendo::bench::soak_bench {
 namespace {
@@ -65,13 +65,13 @@ void take(SampleRing& ring, Tally& tally) {
 }
 
 Result<Tally> soak(const Options& options) {
-  driver::EmulatorOptions device;
+  emulator::EmulatorOptions device;
   device.cyberglove.pattern = true;
-  device.pace = driver::EmulatorPace::host;
+  device.pace = emulator::EmulatorPace::host;
   device.faults = options.faults;
-  auto emulator = driver::GloveEmulator::open(device);
+  auto emulator = emulator::GloveEmulator::open(device);
   if (!emulator) return emulator.error();
-  gloves::ServedEmulator server(**emulator);
+  emulator::ServedEmulator server(**emulator);
   SampleRing ring(1U << 16U);
   Tally tally;
   auto glove = driver::open_glove("serial:" + (*emulator)->tty_path());

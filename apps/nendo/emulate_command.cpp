@@ -9,17 +9,18 @@
 #include <optional>
 #include <thread>
 
-#include <nendo/driver/emulator.hpp>
+#include <nendo/driver/simulated_glove.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 #include "cli/cli.hpp"
-#include "gloves/served_emulator.hpp"
 #include "nendo/commands.hpp"
+#include <nendo/emulator/served_emulator.hpp>
 
 namespace nendo::app::emulate_command {
 namespace {
 
 struct Options {
-  driver::EmulatorOptions emulator;
+  emulator::EmulatorOptions emulator;
   std::string hand = "right";
   std::string mask;
   std::string pace = "clock";
@@ -37,7 +38,7 @@ std::string list_of(const std::vector<std::string_view>& names) {
 
 std::string faults_explained() {
   std::string text = "Faults (--fault, as often as you like; times in s or ms since the start):\n";
-  for (const driver::FaultForm& fault : driver::fault_forms()) {
+  for (const emulator::FaultForm& fault : emulator::fault_forms()) {
     std::string form(fault.form);
     form.resize(std::max<std::size_t>(form.size() + 1, 24), ' ');
     text += "  " + form + std::string(fault.effect) + "\n";
@@ -62,9 +63,10 @@ Result<void> complete(Options& options) {
   if (!std::isfinite(options.duration_s) || options.duration_s < 0.0) {
     return Error{Errc::usage, "--duration: use a number of seconds, 0 for no end"};
   }
-  driver::EmulatorOptions& emulator = options.emulator;
+  emulator::EmulatorOptions& emulator = options.emulator;
   emulator.side = options.hand == "left" ? Side::left : Side::right;
-  emulator.pace = options.pace == "host" ? driver::EmulatorPace::host : driver::EmulatorPace::clock;
+  emulator.pace =
+      options.pace == "host" ? emulator::EmulatorPace::host : emulator::EmulatorPace::clock;
   emulator.cyberglove.period_low_first = options.period_order == "lsb";
   emulator.cyberglove.stamp_bit7 = options.stamp_bit7 == "on";
   if (options.mask.empty()) return {};
@@ -77,7 +79,7 @@ Result<void> complete(Options& options) {
   return {};
 }
 
-void print(const driver::EmulatorStats& stats) {
+void print(const emulator::EmulatorStats& stats) {
   std::cout << stats.records_sent << " records sent, " << stats.bytes_received
             << " bytes received from the host\n";
   if (stats.bytes_refused > 0) {
@@ -85,14 +87,14 @@ void print(const driver::EmulatorStats& stats) {
   }
   if (stats.faults.empty()) return;
   std::cout << "faults:";
-  for (const driver::FaultCount& fault : stats.faults)
+  for (const emulator::FaultCount& fault : stats.faults)
     std::cout << ' ' << fault.name << ' ' << fault.done << ',';
   std::cout << " which touched " << stats.records_faulted << " records\n";
 }
 
 int emulate(Options& options) {
   if (const auto completed = complete(options); !completed) return cli::report(completed.error());
-  const auto emulator = driver::GloveEmulator::open(options.emulator);
+  const auto emulator = emulator::GloveEmulator::open(options.emulator);
   if (!emulator) return cli::report(emulator.error());
 
   cli::install_stop_signals();
@@ -100,7 +102,7 @@ int emulate(Options& options) {
             << (options.emulator.link.empty() ? (*emulator)->tty_path() : options.emulator.link)
             << "; Ctrl-C ends it" << std::endl;
 
-  gloves::ServedEmulator server(**emulator);
+  emulator::ServedEmulator server(**emulator);
   const auto start = std::chrono::steady_clock::now();
   const std::chrono::duration<double> duration(options.duration_s);
   while (!cli::stop_requested() && !server.is_over()) {
@@ -113,10 +115,11 @@ int emulate(Options& options) {
 }
 
 void add_glove_options(cli::Command& command, Options& options) {
-  driver::EmulatorOptions& emulator = options.emulator;
+  emulator::EmulatorOptions& emulator = options.emulator;
   const std::string heading = "The glove";
   command
-      .add_option("--glove", emulator.glove, "Its kind: " + list_of(driver::emulated_glove_names()))
+      .add_option("--glove", emulator.glove,
+                  "Its kind: " + list_of(emulator::emulated_glove_names()))
       .under(heading);
   command.add_option("--hand", options.hand, "left or right").under(heading);
   command.add_option("--sensors", emulator.sensors, "How many; a CyberGlove has 22 (default) or 18")
@@ -134,7 +137,7 @@ void add_glove_options(cli::Command& command, Options& options) {
 }
 
 void add_cyberglove_options(cli::Command& command, Options& options) {
-  driver::EmulatedCyberGlove& glove = options.emulator.cyberglove;
+  emulator::EmulatedCyberGlove& glove = options.emulator.cyberglove;
   const std::string heading = "CyberGlove only";
   command.add_option("--model", glove.model, "1, 2 or 3").under(heading);
   command.add_option("--mask", options.mask, "The sensors it has, in hexadecimal, e.g. 6b3b3f")

@@ -1,4 +1,4 @@
-#include "emulator/capture.hpp"
+#include "units/capture.hpp"
 
 #include <fstream>
 #include <span>
@@ -13,7 +13,7 @@
 namespace capture_test {
 
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 using namespace std::string_view_literals;
 
 TEST_SUITE("capture") {

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/emulator.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 #include "support/eventually.hpp"
 #include "support/scripted_port.hpp"
@@ -17,6 +17,7 @@ namespace cyberglove_driver_test {
 
 using namespace nendo;
 using namespace nendo::driver;
+using namespace nendo::emulator;
 using namespace nendo::test;
 using namespace std::chrono_literals;
 

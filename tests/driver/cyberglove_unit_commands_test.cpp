@@ -13,9 +13,9 @@ namespace cyberglove_unit_commands_test {
 
 using namespace std::chrono_literals;
 using nendo::Side;
-using nendo::driver::Incident;
 using nendo::driver::Motion;
-using nendo::driver::UnitOptions;
+using nendo::emulator::Incident;
+using nendo::emulator::UnitOptions;
 using nendo::test::Bytes;
 using nendo::test::split;
 using Bench = nendo::test::UnitBench;
@@ -179,7 +179,7 @@ TEST_SUITE("cyberglove_commands") {
   TEST_CASE("options change what sources disagree about") {
     UnitOptions options;
     options.reply_bytes = 3;
-    options.period_order = nendo::driver::unit::WordOrder::low_first;
+    options.period_order = nendo::emulator::unit::WordOrder::low_first;
     options.stamp_bit7 = false;
     Bench bench(options);
     CHECK(bench.ask("f 0\r").size() == 3);

@@ -1,4 +1,4 @@
-#include "emulator/cyberglove_unit.hpp"
+#include "units/cyberglove_unit.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -18,9 +18,9 @@ namespace cyberglove_unit_test {
 
 using namespace std::chrono_literals;
 using nendo::Side;
-using nendo::driver::CyberGloveUnit;
 using nendo::driver::Motion;
-using nendo::driver::UnitOptions;
+using nendo::emulator::CyberGloveUnit;
+using nendo::emulator::UnitOptions;
 using nendo::test::Bytes;
 using nendo::test::split;
 using Bench = nendo::test::UnitBench;

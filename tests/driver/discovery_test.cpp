@@ -226,6 +226,20 @@ TEST_SUITE("discovery") {
                        [](const auto& c) { return c.device == "/dev/ttyUSB7"; }));
   }
 
+  TEST_CASE("a port is left alone if udev tells ModemManager so, by the port or the device") {
+    MockedMachine machine;
+    machine.plug({});
+    const std::string file = MockedUsb().tty_path() + "/uevent";
+    const std::string node = "MAJOR=188\nMINOR=0\nDEVNAME=ttyUSB0\n";
+    CHECK_FALSE(find_gloves().at(0).left_alone);
+    for (const std::string property : {"ID_MM_DEVICE_IGNORE", "ID_MM_PORT_IGNORE"}) {
+      machine.write(file, node + property + "=1\n");
+      CHECK(find_gloves().at(0).left_alone);
+      machine.write(file, node + property + "=0\n");
+      CHECK_FALSE(find_gloves().at(0).left_alone);
+    }
+  }
+
   TEST_CASE("the latency timer of an FTDI adapter is read through any name, and set") {
     MockedMachine machine;
     machine.plug({});

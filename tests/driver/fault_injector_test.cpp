@@ -1,4 +1,4 @@
-#include "emulator/fault_injector.hpp"
+#include "line/fault_injector.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -12,7 +12,7 @@
 namespace fault_injector_test {
 
 using namespace std::chrono_literals;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 
 TEST_SUITE("fault_injector") {
   namespace {

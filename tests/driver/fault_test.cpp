@@ -1,16 +1,16 @@
-#include "emulator/fault.hpp"
+#include "line/fault.hpp"
 
 #include <chrono>
 #include <string>
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/emulator.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 namespace fault_test {
 
 using namespace std::chrono_literals;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 
 TEST_SUITE("fault") {
   TEST_CASE("a rate is a percentage, a time has a unit, and a value follows the times") {

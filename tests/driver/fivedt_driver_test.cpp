@@ -6,13 +6,14 @@
 
 #include <doctest/doctest.h>
 
-#include "emulator/fivedt_unit.hpp"
 #include "support/stream_laws.hpp"
+#include "units/fivedt_unit.hpp"
 
 namespace fivedt_driver_test {
 
 using namespace nendo;
 using namespace nendo::driver;
+using namespace nendo::emulator;
 using namespace nendo::test;
 
 namespace {

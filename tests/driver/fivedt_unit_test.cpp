@@ -1,4 +1,4 @@
-#include "emulator/fivedt_unit.hpp"
+#include "units/fivedt_unit.hpp"
 
 #include <chrono>
 #include <string>
@@ -10,7 +10,7 @@ namespace fivedt_unit_test {
 
 using namespace std::chrono_literals;
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 
 namespace {
 

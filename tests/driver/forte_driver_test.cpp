@@ -6,13 +6,14 @@
 
 #include <doctest/doctest.h>
 
-#include "emulator/forte_unit.hpp"
 #include "support/stream_laws.hpp"
+#include "units/forte_unit.hpp"
 
 namespace forte_driver_test {
 
 using namespace nendo;
 using namespace nendo::driver;
+using namespace nendo::emulator;
 using namespace nendo::test;
 
 namespace {

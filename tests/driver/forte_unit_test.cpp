@@ -1,4 +1,4 @@
-#include "emulator/forte_unit.hpp"
+#include "units/forte_unit.hpp"
 
 #include <chrono>
 #include <vector>
@@ -9,7 +9,7 @@ namespace forte_unit_test {
 
 using namespace std::chrono_literals;
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/emulator.hpp>
+#include <nendo/driver/simulated_glove.hpp>
 
 #include "simulated/typical_wearer.hpp"
 

@@ -1,4 +1,4 @@
-#include <nendo/driver/latency_probe.hpp>
+#include <nendo/emulator/latency_probe.hpp>
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 namespace latency_probe_test {
 
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 
 namespace {
 

@@ -11,14 +11,15 @@
 
 #include <doctest/doctest.h>
 
-#include "emulator/lucidgloves_unit.hpp"
 #include "lucidgloves/lucidgloves_driver.hpp"
 #include "support/stream_laws.hpp"
+#include "units/lucidgloves_unit.hpp"
 
 namespace lucidgloves_driver_test {
 
 using namespace nendo;
 using namespace nendo::driver;
+using namespace nendo::emulator;
 using namespace nendo::test;
 
 namespace {

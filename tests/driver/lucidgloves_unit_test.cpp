@@ -1,4 +1,4 @@
-#include "emulator/lucidgloves_unit.hpp"
+#include "units/lucidgloves_unit.hpp"
 
 #include <chrono>
 #include <sstream>
@@ -11,7 +11,7 @@ namespace lucidgloves_unit_test {
 
 using namespace std::chrono_literals;
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 
 namespace {
 

@@ -1,4 +1,4 @@
-// Who holds a device, and what udev recorded of it: from the kernel's and udev's texts.
+// Who holds a device, from the kernel's texts, and what the table of devices says of it.
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,6 @@
 #include <nendo/udev/device_table.hpp>
 
 #include "discovery/programs.hpp"
-#include "discovery/udev_records.hpp"
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
@@ -78,21 +77,6 @@ TEST_SUITE("programs") {
     CHECK(parse_locks("").empty());
   }
 
-  TEST_CASE("udev's record tells whether ModemManager is to leave a device alone") {
-    CHECK(tells_to_leave_alone("S:serial/by-id/x\nE:ID_MM_DEVICE_IGNORE=1\nG:systemd\n"));
-    CHECK(tells_to_leave_alone("E:ID_MM_PORT_IGNORE=1"));
-    CHECK_FALSE(tells_to_leave_alone("E:ID_MM_DEVICE_IGNORE=0\n"));
-    CHECK_FALSE(tells_to_leave_alone("S:E:ID_MM_DEVICE_IGNORE=1\n"));
-    CHECK_FALSE(tells_to_leave_alone(""));
-    CHECK_FALSE(tells_to_leave_alone("\n\n"));
-  }
-
-  TEST_CASE("a device number that is none does not become a path") {
-    CHECK(udev_record("../../../etc/hostname").empty());
-    CHECK(udev_record("").empty());
-    CHECK(udev_is_done_with("../x"));
-  }
-
   TEST_CASE("USB numbers tell gloves and adapters") {
     CHECK(udev::usb_glove_name({0x0D7F, 0x0100}) == "Essential Reality P5");
     CHECK(udev::usb_glove_name({0x0D7F, 0x0101}).empty());
@@ -118,7 +102,6 @@ TEST_SUITE("programs") {
     CHECK_FALSE(read_number(file));
     CHECK(read_line(folder.path()).empty());
     CHECK(names_in(file).empty());
-    CHECK_FALSE(link_target(folder.path()));
     const auto read_as_number = [&](const std::string& text, int base) {
       std::FILE* const out = std::fopen(file.c_str(), "w");
       std::fwrite(text.data(), 1, text.size(), out);

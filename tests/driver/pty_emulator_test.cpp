@@ -11,7 +11,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/emulator.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 #include "support/eventually.hpp"
 #include "support/pty_host.hpp"
@@ -21,8 +21,8 @@ namespace pty_emulator_test {
 
 using namespace std::chrono_literals;
 using nendo::Errc;
-using nendo::driver::EmulatorOptions;
-using nendo::driver::GloveEmulator;
+using nendo::emulator::EmulatorOptions;
+using nendo::emulator::GloveEmulator;
 using nendo::test::eventually;
 using nendo::test::PtyHost;
 using nendo::test::ServedEmulator;
@@ -106,7 +106,7 @@ TEST_SUITE("pty_emulator") {
 
   TEST_CASE("what counts as sent arrives, also when the emulator is stopped") {
     EmulatorOptions options;
-    options.pace = nendo::driver::EmulatorPace::host; // as much as the terminal takes, and more
+    options.pace = nendo::emulator::EmulatorPace::host; // as much as the terminal takes, and more
     options.cyberglove.streaming = true;
     ServedEmulator emulator(options);
     PtyHost host(emulator->tty_path());

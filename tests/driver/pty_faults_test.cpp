@@ -11,7 +11,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/driver/emulator.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 #include "support/eventually.hpp"
 #include "support/pty_host.hpp"
@@ -21,7 +21,7 @@ namespace pty_faults_test {
 
 using namespace std::chrono_literals;
 using namespace nendo;
-using namespace nendo::driver;
+using namespace nendo::emulator;
 
 TEST_SUITE("pty_faults") {
   namespace {

@@ -16,15 +16,15 @@
 #include <doctest/doctest.h>
 
 #include <nendo/base/units.hpp>
-#include <nendo/driver/emulator.hpp>
+#include <nendo/emulator/emulator.hpp>
 
 namespace nendo::test {
 
 /// Served by a thread of its own until stop() or the end.
 class ServedEmulator {
 public:
-  explicit ServedEmulator(const driver::EmulatorOptions& options = {}) {
-    auto opened = driver::GloveEmulator::open(options);
+  explicit ServedEmulator(const emulator::EmulatorOptions& options = {}) {
+    auto opened = emulator::GloveEmulator::open(options);
     REQUIRE_MESSAGE(opened, opened.error().message);
     emulator_ = *std::move(opened);
     thread_ = std::thread([this] { good_ = static_cast<bool>(emulator_->serve(stop_)); });
@@ -39,10 +39,10 @@ public:
     thread_.join();
     CHECK(good_);
   }
-  const driver::GloveEmulator* operator->() const { return emulator_.get(); }
+  const emulator::GloveEmulator* operator->() const { return emulator_.get(); }
 
 private:
-  std::unique_ptr<driver::GloveEmulator> emulator_;
+  std::unique_ptr<emulator::GloveEmulator> emulator_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> good_{false};
   std::thread thread_;

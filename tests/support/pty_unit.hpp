@@ -18,13 +18,13 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "emulator/emulated_unit.hpp"
+#include "units/emulated_unit.hpp"
 
 namespace nendo::test {
 
 class PtyUnit {
 public:
-  explicit PtyUnit(std::unique_ptr<driver::EmulatedUnit> unit)
+  explicit PtyUnit(std::unique_ptr<emulator::EmulatedUnit> unit)
       : unit_(std::move(unit)), master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
     char name[128] = {};
     if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0 ||
@@ -82,7 +82,7 @@ private:
   }
 
   std::mutex mutex_; // guards unit_
-  const std::unique_ptr<driver::EmulatedUnit> unit_;
+  const std::unique_ptr<emulator::EmulatedUnit> unit_;
   int master_ = -1;
   int slave_ = -1;
   std::string path_;
@@ -91,7 +91,7 @@ private:
 };
 
 /// Says nothing, ever; or the same noise for ever.
-class Stranger final : public driver::EmulatedUnit {
+class Stranger final : public emulator::EmulatedUnit {
 public:
   explicit Stranger(std::string_view noise) : noise_(noise) {}
   void receive(std::span<const std::byte> /*bytes*/, Time /*now*/) override {}

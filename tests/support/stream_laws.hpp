@@ -22,7 +22,7 @@ namespace nendo::test {
 using namespace std::chrono_literals;
 
 struct Kind {
-  std::function<std::unique_ptr<driver::EmulatedUnit>(Side)> make;
+  std::function<std::unique_ptr<emulator::EmulatedUnit>(Side)> make;
   std::function<std::string(const std::string& path)> spec;
   std::uint64_t longest_record = 0; ///< bytes
 };

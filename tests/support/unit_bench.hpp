@@ -10,7 +10,7 @@
 
 #include <doctest/doctest.h>
 
-#include "emulator/cyberglove_unit.hpp"
+#include "units/cyberglove_unit.hpp"
 
 namespace nendo::test {
 
@@ -18,7 +18,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 // A unit and a host that talks to it.
 struct UnitBench {
-  explicit UnitBench(const driver::UnitOptions& options = {}) : unit(options) {}
+  explicit UnitBench(const emulator::UnitOptions& options = {}) : unit(options) {}
 
   void send(const Bytes& bytes) { unit.receive(std::as_bytes(std::span(bytes)), now); }
   Bytes receive() {
@@ -34,14 +34,14 @@ struct UnitBench {
     return receive();
   }
   Bytes ask(std::string_view text) { return ask(Bytes(text.begin(), text.end())); }
-  Bytes after(driver::CyberGloveUnit::Time time) {
+  Bytes after(emulator::CyberGloveUnit::Time time) {
     now += time;
     unit.advance(now);
     return receive();
   }
 
-  driver::CyberGloveUnit unit;
-  driver::CyberGloveUnit::Time now =
+  emulator::CyberGloveUnit unit;
+  emulator::CyberGloveUnit::Time now =
       std::chrono::hours(1); // not 0: a unit has usually been on for a while
 };
 

@@ -1,5 +1,6 @@
 # nendo_library(<name> SOURCES ... HEADERS ...) makes nendo_<name> with the alias nendo::<name>, its public headers
-# as a verified file set under include/, and everything in src/ private. nendo_settings() is what every target gets.
+# as a verified file set under include/, and everything in src/ private. With INTERNAL it is static and not installed.
+# nendo_settings() is what every target gets.
 
 set(NENDO_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them")
 
@@ -71,11 +72,15 @@ function(nendo_precompile target)
 endfunction()
 
 function(nendo_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "INTERNAL" "" "SOURCES;HEADERS" ${ARGN})
   set(target nendo_${name})
   set(scope PUBLIC)
+  set(kind "")
+  if(ARG_INTERNAL)
+    set(kind STATIC)
+  endif()
   if(ARG_SOURCES)
-    add_library(${target} ${ARG_SOURCES})
+    add_library(${target} ${kind} ${ARG_SOURCES})
     nendo_settings(${target} PUBLIC)
     nendo_precompile(${target})
     if(NENDO_FUZZ) # coverage, for the fuzz targets that link it
@@ -93,6 +98,9 @@ function(nendo_library name)
   add_library(nendo::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
   target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS include FILES ${ARG_HEADERS})
+  if(ARG_INTERNAL)
+    return()
+  endif()
   install(TARGETS ${target} EXPORT nendoTargets FILE_SET HEADERS COMPONENT development
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)

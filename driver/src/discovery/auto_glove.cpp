@@ -30,7 +30,7 @@ Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Si
   const HostTime deadline = HostClock::now() + 4500ms;
   std::string why;
   Errc code = Errc::no_device;
-  for (const GloveCandidate& candidate : list_candidates(UsbBus())) {
+  for (const GloveCandidate& candidate : list_candidates()) {
     if (!candidate.identified || candidate.spec.empty()) continue;
     const auto parsed = parse_glove_spec(candidate.spec);
     if (!parsed || HostClock::now() >= deadline) continue;

@@ -5,17 +5,15 @@
 
 #include <nendo/driver/devices.hpp>
 
-#include "discovery/usb_bus.hpp"
-
 namespace nendo::driver {
 
-/// As find_gloves(), but without the holders, which take longest.
-std::vector<GloveCandidate> list_candidates(const UsbBus& usb);
+/// Returns what find_gloves() does, but without the holders, which take longest to find.
+std::vector<GloveCandidate> list_candidates();
 
-/// Fills in who holds them.
+/// Fills in which programs hold the candidates' devices.
 void add_holders(std::vector<GloveCandidate>& candidates);
 
-/// False while udev still works on the device: its node, links or permissions may yet come.
+/// Returns false while udev still works on the device: its node, links or permissions may yet come.
 bool is_settled(const GloveCandidate& candidate);
 
 } // namespace nendo::driver

@@ -6,9 +6,10 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <map>
 #include <string>
-#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <poll.h>
@@ -19,34 +20,20 @@
 #include <nendo/base/units.hpp>
 
 #include "discovery/candidates.hpp"
-#include "discovery/usb_bus.hpp"
+#include "transport/udev_devices.hpp"
 
 namespace nendo::driver {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// A port's node appears a little after its adapter, and udev's links later still.
+/// A port's node appears a little after its adapter, and udev's links later still. A device that
+/// leaves is announced before the kernel has taken its entry out of /sys.
 constexpr auto longest_settling = 2s;
 constexpr auto settling_look = 100ms;
 
-/// Whether one reading of an inotify descriptor tells of a serial port's node.
-bool tells_of_ports(std::string_view events) {
-  while (events.size() >= sizeof(inotify_event)) {
-    inotify_event event{};
-    std::memcpy(&event, events.data(), sizeof event);
-    events.remove_prefix(sizeof event);
-    const std::string_view name = events.substr(0, event.len);
-    if ((event.mask & IN_Q_OVERFLOW) != 0) return true;
-    for (const std::string_view kind : {"ttyUSB", "ttyACM", "rfcomm"}) {
-      if (name.starts_with(kind)) return true;
-    }
-    events.remove_prefix(name.size());
-  }
-  return false;
-}
-
-/// What makes it this device and no other: a name taken over by another one is another device.
+/// Returns what makes it this device and no other: if another device takes over the name, it is a
+/// departure and an arrival.
 std::string key_of(const GloveCandidate& candidate) {
   std::string key = candidate.device + '|' + std::string(name_of(candidate.kind));
   if (candidate.usb) {
@@ -55,12 +42,23 @@ std::string key_of(const GloveCandidate& candidate) {
   return key;
 }
 
+/// Returns null if there are no events to be had. udev's come when its rules have run; where it
+/// does not run, the kernel's own have to do.
+UdevMonitor watch_devices(::udev* context) {
+  std::error_code failed;
+  const bool udev_runs = std::filesystem::exists("/run/udev/control", failed);
+  UdevMonitor monitor(udev_monitor_new_from_netlink(context, udev_runs ? "udev" : "kernel"));
+  if (!monitor) return nullptr;
+  udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "usb", "usb_device");
+  udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "tty", nullptr);
+  return udev_monitor_enable_receiving(monitor.get()) >= 0 ? std::move(monitor) : nullptr;
+}
+
 class EventWatcher final : public DeviceWatcher {
 public:
   EventWatcher(int nodes, int stop_event) : nodes_(nodes), stop_event_(stop_event) {
-    sees_usb_ = usb_.watch();
     // Listed after it began to watch: what arrives between the two is announced, or was there.
-    present_ = list_candidates(usb_);
+    present_ = list_candidates();
     add_holders(present_);
     for (const GloveCandidate& candidate : present_)
       known_.emplace(key_of(candidate), candidate);
@@ -71,7 +69,7 @@ public:
   }
 
   const std::vector<GloveCandidate>& present() const noexcept override { return present_; }
-  bool sees_usb() const noexcept override { return sees_usb_; }
+  bool sees_usb() const noexcept override { return monitor_ != nullptr; }
   std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) override;
   void stop() noexcept override {
     stopped_ = true;
@@ -80,15 +78,15 @@ public:
   }
 
 private:
-  bool wait(HostTime until);
-  bool nodes_changed() const;
+  enum class Woken : std::uint8_t { by_change, by_time, by_signal };
+  Woken wait(HostTime until);
   void look();
 
-  UsbBus usb_;
-  const int nodes_;      ///< inotify, on /dev
+  const UdevContext context_{udev_new()};
+  const UdevMonitor monitor_ = watch_devices(context_.get());
+  const int nodes_;      ///< inotify, on /dev: containers may get the nodes alone, without events
   const int stop_event_; ///< readable once stop() was called
   std::atomic<bool> stopped_{false};
-  bool sees_usb_ = false;
   std::vector<GloveCandidate> present_;
   std::map<std::string, GloveCandidate> known_; ///< announced, by key
   std::map<std::string, HostTime> arriving_;    ///< not announced yet; since when it was seen
@@ -107,39 +105,36 @@ std::optional<DeviceEvent> EventWatcher::next(std::chrono::milliseconds timeout)
     const HostTime now = HostClock::now();
     if (now >= deadline && timeout > 0ms) return std::nullopt;
     const bool settling = now < look_until_ || !arriving_.empty();
-    if (!wait(settling ? std::min(deadline, now + settling_look) : deadline)) return std::nullopt;
-    const bool usb_changed = usb_.changed();
-    const bool changed = nodes_changed() || usb_changed;
-    if (changed) look_until_ = HostClock::now() + longest_settling;
-    if (changed || settling) look();
+    const Woken woken = wait(settling ? std::min(deadline, now + settling_look) : deadline);
+    if (woken == Woken::by_signal) return std::nullopt;
+    if (woken == Woken::by_change) look_until_ = HostClock::now() + longest_settling;
+    if (woken == Woken::by_change || settling) look();
     if (timeout <= 0ms && events_.empty()) return std::nullopt;
   }
   return std::nullopt;
 }
 
-/// False if a signal arrived.
-bool EventWatcher::wait(HostTime until) {
-  std::vector<pollfd> entries = usb_.wait_on();
-  entries.push_back({nodes_, POLLIN, 0});
-  entries.push_back({stop_event_, POLLIN, 0});
+EventWatcher::Woken EventWatcher::wait(HostTime until) {
+  const int events = monitor_ ? udev_monitor_get_fd(monitor_.get()) : -1; // poll() leaves -1 out
+  std::array<pollfd, 3> entries{
+      pollfd{events, POLLIN, 0}, {nodes_, POLLIN, 0}, {stop_event_, POLLIN, 0}};
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - HostClock::now());
   const int wait_ms = static_cast<int>(std::clamp<long>(left.count(), 0, 60'000));
-  return ::poll(entries.data(), entries.size(), wait_ms) >= 0 || errno != EINTR;
-}
-
-bool EventWatcher::nodes_changed() const {
-  std::array<char, 4096> buffer{};
-  bool changed = false;
-  for (ssize_t count = 0; (count = ::read(nodes_, buffer.data(), buffer.size())) > 0;) {
-    changed |= tells_of_ports({buffer.data(), static_cast<std::size_t>(count)});
+  if (::poll(entries.data(), entries.size(), wait_ms) < 0)
+    return errno == EINTR ? Woken::by_signal : Woken::by_time;
+  if (entries[0].revents == 0 && entries[1].revents == 0) return Woken::by_time;
+  // What they say does not matter: look() compares what is there with what was.
+  while (monitor_ && UdevDevice(udev_monitor_receive_device(monitor_.get()))) {
   }
-  return changed;
+  for (std::array<char, 4096> unread{}; ::read(nodes_, unread.data(), unread.size()) > 0;) {
+  }
+  return Woken::by_change;
 }
 
 /// Announces the differences between what is there and what was.
 void EventWatcher::look() {
   std::map<std::string, GloveCandidate> there;
-  for (GloveCandidate& candidate : list_candidates(usb_))
+  for (GloveCandidate& candidate : list_candidates())
     there.emplace(key_of(candidate), std::move(candidate));
   for (auto at = known_.begin(); at != known_.end();) {
     const bool gone = !there.contains(at->first);

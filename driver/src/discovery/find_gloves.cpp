@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -13,11 +12,9 @@
 
 #include "discovery/programs.hpp"
 #include "discovery/stable_names.hpp"
-#include "discovery/udev_records.hpp"
 #include "transport/ftdi_latency.hpp"
 #include "transport/port_access.hpp"
 #include "transport/serial_ports.hpp"
-#include "transport/sysfs.hpp"
 #include "transport/usb_device.hpp"
 #include "transport/usb_identity.hpp"
 
@@ -93,43 +90,30 @@ GloveCandidate judge_port(const SerialPortInfo& port, const PortLinks& links, bo
     candidate.reason = why_maybe(port);
   }
   candidate.latency_timer = ftdi_latency_timer(port.path);
-  candidate.left_alone = tells_to_leave_alone(udev_record(port.device_number));
+  candidate.left_alone = port.left_alone;
   judge_access(candidate);
   return candidate;
 }
 
-std::string node_of(const UsbDevice& device) {
-  std::array<char, 48> path{};
-  std::snprintf(path.data(), path.size(), "/dev/bus/usb/%03u/%03u", device.bus, device.address);
-  return path.data();
-}
-
-GloveCandidate start_usb(const UsbDevice& device, DeviceKind kind) {
+GloveCandidate start_usb(const UsbIdentity& device, DeviceKind kind) {
   GloveCandidate candidate;
   candidate.kind = kind;
   candidate.device = node_of(device);
-  candidate.usb = usb_identity_at(device.bus, device.address);
-  if (!candidate.usb) {
-    candidate.usb.emplace();
-    candidate.usb->vendor_id = device.vendor_id;
-    candidate.usb->product_id = device.product_id;
-    candidate.usb->bus = device.bus;
-    candidate.usb->address = device.address;
-  }
+  candidate.usb = device;
   judge_access(candidate);
   return candidate;
 }
 
-GloveCandidate judge_usb_glove(const UsbDevice& device, std::string_view name) {
+GloveCandidate judge_usb_glove(const UsbIdentity& device, std::string_view name) {
   GloveCandidate candidate = start_usb(device, DeviceKind::usb_glove);
   candidate.description = name;
   candidate.reason = "its USB number is that of a glove";
   candidate.identified = true;
-  candidate.spec = "usb:" + to_string(UsbId{device.vendor_id, device.product_id});
+  candidate.spec = "usb:" + to_string(id_of(device));
   return candidate;
 }
 
-GloveCandidate judge_portless(const UsbDevice& device, const udev::UsbAdapter& adapter) {
+GloveCandidate judge_portless(const UsbIdentity& device, const udev::UsbAdapter& adapter) {
   GloveCandidate candidate = start_usb(device, DeviceKind::portless_adapter);
   candidate.description = describe(*candidate.usb);
   candidate.reason = "a USB-serial adapter (" + std::string(adapter.maker) +
@@ -140,7 +124,7 @@ GloveCandidate judge_portless(const UsbDevice& device, const udev::UsbAdapter& a
 
 } // namespace
 
-std::vector<GloveCandidate> list_candidates(const UsbBus& usb) {
+std::vector<GloveCandidate> list_candidates() {
   std::vector<GloveCandidate> found;
   const std::vector<SerialPortInfo> ports = list_serial_ports();
   const auto links = find_port_links();
@@ -151,13 +135,12 @@ std::vector<GloveCandidate> list_candidates(const UsbBus& usb) {
                                port.usb && has_own_serial(*port.usb, ports)));
     if (port.usb) with_port.emplace(port.usb->bus, port.usb->address);
   }
-  for (const UsbDevice& device : usb.devices()) {
+  for (const UsbIdentity& device : list_usb_devices()) {
     if (with_port.contains({device.bus, device.address})) continue;
-    const std::string_view glove = udev::usb_glove_name({device.vendor_id, device.product_id});
+    const std::string_view glove = udev::usb_glove_name(id_of(device));
     if (!glove.empty()) {
       found.push_back(judge_usb_glove(device, glove));
-    } else if (const auto* adapter =
-                   udev::find_usb_adapter({device.vendor_id, device.product_id})) {
+    } else if (const auto* adapter = udev::find_usb_adapter(id_of(device))) {
       found.push_back(judge_portless(device, *adapter));
     }
   }
@@ -182,12 +165,11 @@ bool is_settled(const GloveCandidate& candidate) {
   if (candidate.kind == DeviceKind::portless_adapter) return false; // its port may yet come
   if (!fs::exists(candidate.device, failed)) return false;
   if (candidate.kind == DeviceKind::usb_glove) return true;
-  const fs::path entry = "/sys/class/tty" / fs::path(candidate.device).filename();
-  return udev_is_done_with(read_line(entry / "dev"));
+  return udev_is_done_with(candidate.device);
 }
 
 std::vector<GloveCandidate> find_gloves() {
-  std::vector<GloveCandidate> found = list_candidates(UsbBus());
+  std::vector<GloveCandidate> found = list_candidates();
   add_holders(found);
   return found;
 }

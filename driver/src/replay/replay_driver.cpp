@@ -144,14 +144,13 @@ private:
   HostClock::duration scaled(HostClock::duration time) const noexcept {
     constexpr double most_s = 1e8; // three years: a hostile file's gap is no reason to overflow
     const double seconds = std::clamp(to_seconds(time) / settings_.speed, -most_s, most_s);
-    return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
+    return from_seconds(seconds);
   }
 
   HostClock::duration period() const noexcept {
     constexpr double least_rate_hz = 1.0;
     constexpr double most_rate_hz = 1e4;
-    return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(
-        1.0 / std::clamp(info_.rate_hz, least_rate_hz, most_rate_hz)));
+    return from_seconds(1.0 / std::clamp(info_.rate_hz, least_rate_hz, most_rate_hz));
   }
 
   std::string path_;

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include <nendo/base/text.hpp>
+
 namespace nendo::driver {
 namespace {
 
@@ -37,14 +39,6 @@ bool set_flags(GloveSample& sample, unsigned flags) noexcept {
 
 unsigned bit(bool set, unsigned at) noexcept {
   return static_cast<unsigned>(set) << at;
-}
-
-/// GloveInfo's texts are printable, whatever a file holds.
-std::string printable(std::string_view text) {
-  std::string fit(text);
-  std::replace_if(
-      fit.begin(), fit.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return fit;
 }
 
 } // namespace

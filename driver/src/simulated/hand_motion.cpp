@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include <nendo/driver/emulator.hpp>
+#include <nendo/driver/simulated_glove.hpp>
 
 namespace nendo::driver {
 namespace {

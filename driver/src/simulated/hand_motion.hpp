@@ -19,7 +19,7 @@ enum class Motion : std::uint8_t {
   sculpt, ///< press in, knead, pull out: cycles of about 8 s
 };
 
-/// By one of motion_names() (emulator.hpp). Error: usage, naming those there are.
+/// By one of motion_names() (simulated_glove.hpp). Error: usage, naming those there are.
 Result<Motion> find_motion(std::string_view name);
 
 /// Radians, one a sensor slot. Flexion is positive, abduction is the angle between neighbours

@@ -24,8 +24,7 @@ class SimulatedGlove final : public Glove {
 public:
   SimulatedGlove(const SimulatedGloveOptions& options, SensorMotion motion)
       : motion_(std::move(motion)), wearer_(options.seed),
-        period_(std::chrono::duration_cast<HostClock::duration>(
-            std::chrono::duration<double>(1.0 / options.rate_hz))) {
+        period_(from_seconds(1.0 / options.rate_hz)) {
     info_.source = options.source;
     info_.model = "simulated glove, " + std::to_string(options.sensors) + " sensors, motion " +
                   options.motion;

@@ -179,8 +179,7 @@ void StreamGlove::run(const std::stop_token& token) {
 StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
   std::array<std::byte, 1024> buffer{};
   const HostClock::duration three_periods =
-      info_.rate_hz > 0.0 ? std::chrono::duration_cast<HostClock::duration>(
-                                std::chrono::duration<double>(std::min(3.0 / info_.rate_hz, 60.0)))
+      info_.rate_hz > 0.0 ? from_seconds(std::min(3.0 / info_.rate_hz, 60.0))
                           : HostClock::duration{};
   // Who did not answer is asked again soon; meanwhile it may have begun to stream by itself.
   const auto longest_silence = unanswered_

@@ -5,47 +5,50 @@
 #include <system_error>
 #include <tuple>
 
-#include "transport/sysfs.hpp"
+#include "transport/udev_devices.hpp"
 #include "transport/usb_identity.hpp"
 
 namespace nendo::driver {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Virtual consoles and pseudo-terminals hang on no device; sockets of the serial driver that no
-/// chip sits in have type 0. An rfcomm port is virtual until it is connected.
-bool is_a_port(const fs::path& entry, const std::string& name) {
-  if (name.starts_with("rfcomm")) return true;
-  std::error_code failed;
-  return fs::exists(entry / "device", failed) && read_line(entry / "type") != "0";
+/// Virtual consoles and pseudo-terminals have no parent; sockets of the serial driver that no chip
+/// sits in have type 0. An rfcomm port is virtual until it is connected.
+bool is_a_port(udev_device& tty, const std::string& name) {
+  return name.starts_with("rfcomm") ||
+         (udev_device_get_parent(&tty) != nullptr && attribute_of(tty, "type") != "0");
 }
 
-bool by_name_and_number(const std::string& a, const std::string& b) {
+bool by_name_and_number(const SerialPortInfo& a, const SerialPortInfo& b) {
   const auto key = [](const std::string& name) {
     const std::size_t end = name.find_last_not_of("0123456789") + 1;
     return std::tuple(name.substr(0, end), name.size(), name);
   };
-  return key(a) < key(b);
+  return key(a.path) < key(b.path);
 }
 
 } // namespace
 
 std::vector<SerialPortInfo> list_serial_ports() {
-  const fs::path folder = "/sys/class/tty";
-  std::vector<std::string> names = names_in(folder);
-  std::sort(names.begin(), names.end(), by_name_and_number);
   std::vector<SerialPortInfo> found;
-  for (const std::string& name : names) {
-    if (!is_a_port(folder / name, name)) continue;
+  for (const UdevDevice& tty : list_udev_devices("tty")) {
+    const std::string name = udev_device_get_sysname(tty.get());
+    if (!is_a_port(*tty, name)) continue;
     SerialPortInfo info;
     info.path = "/dev/" + name;
-    info.device_number = read_line(folder / name / "dev");
     info.bluetooth = name.starts_with("rfcomm");
+    info.left_alone = has_flag(*tty, "ID_MM_DEVICE_IGNORE") || has_flag(*tty, "ID_MM_PORT_IGNORE");
     info.usb = usb_identity_of_port(info.path);
     found.push_back(std::move(info));
   }
+  std::sort(found.begin(), found.end(), by_name_and_number);
   return found;
+}
+
+bool udev_is_done_with(const std::string& port) {
+  std::error_code failed;
+  if (!std::filesystem::exists("/run/udev/data", failed)) return true; // udev does not run here
+  const UdevDevice tty = find_udev_device("tty", std::filesystem::path(port).filename().string());
+  return !tty || udev_device_get_is_initialized(tty.get()) != 0;
 }
 
 } // namespace nendo::driver

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <system_error>
 
+#include <nendo/base/text.hpp>
+
 namespace nendo::driver {
 namespace {
 
@@ -22,10 +24,7 @@ std::string read_some_text(const fs::path& path, std::size_t most) {
 
 std::string printable(std::string_view text) {
   constexpr std::size_t longest = 128;
-  std::string shown(text.substr(0, longest));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
-  return shown;
+  return nendo::printable(text.substr(0, longest));
 }
 
 std::string read_line(const fs::path& path) {
@@ -46,12 +45,15 @@ std::string read_text(const fs::path& path) {
   return text;
 }
 
-std::optional<unsigned> read_number(const fs::path& path, int base) {
-  const std::string text = read_line(path);
+std::optional<unsigned> parse_number(std::string_view text, int base) {
   unsigned number = 0;
   const char* const end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, number, base);
   return error == std::errc{} && last == end ? std::optional(number) : std::nullopt;
+}
+
+std::optional<unsigned> read_number(const fs::path& path, int base) {
+  return parse_number(read_line(path), base);
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {
@@ -64,13 +66,6 @@ std::vector<std::string> names_in(const fs::path& folder) {
     names.push_back(at->path().filename().string());
   }
   return names;
-}
-
-std::optional<fs::path> link_target(const fs::path& link) {
-  std::error_code not_a_link;
-  const fs::path target = fs::read_symlink(link, not_a_link);
-  if (not_a_link) return std::nullopt;
-  return (link.parent_path() / target).lexically_normal();
 }
 
 } // namespace nendo::driver

@@ -10,22 +10,20 @@
 
 namespace nendo::driver {
 
-/// The text with whatever is not printable ASCII replaced by '?', cut at 128 characters: it goes to
-/// a terminal.
+/// Returns the text as a terminal may show it: what is not printable ASCII became '?', and it is
+/// cut at 128 characters.
 std::string printable(std::string_view text);
 
-/// The first line, printable; empty if the file cannot be read.
+/// Returns the first line, printable; an empty text if the file cannot be read.
 std::string read_line(const std::filesystem::path& path);
-/// At most 1 MiB of it; empty if it cannot be read.
+/// Returns the file, at most 1 MiB of it; an empty text if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
-/// The number that the file holds and nothing else; nullopt if there is none.
+/// Returns the number that the text is, and nothing else; nullopt if it is none.
+std::optional<unsigned> parse_number(std::string_view text, int base = 10);
+/// Returns the number that the file holds; nullopt if there is none.
 std::optional<unsigned> read_number(const std::filesystem::path& path, int base = 10);
 
-/// The entries' names, 65536 at most; empty if the folder cannot be read.
+/// Returns the names of the entries, 65536 at most; none if the folder cannot be read.
 std::vector<std::string> names_in(const std::filesystem::path& folder);
-
-/// Where a link of /sys leads, without asking the file system about anything behind it; nullopt if
-/// it is no link.
-std::optional<std::filesystem::path> link_target(const std::filesystem::path& link);
 
 } // namespace nendo::driver

@@ -1,63 +1,73 @@
 #include "transport/usb_identity.hpp"
 
 #include <filesystem>
-#include <system_error>
+#include <utility>
 
 #include "transport/sysfs.hpp"
+#include "transport/udev_devices.hpp"
 
 namespace nendo::driver {
 namespace {
 
-namespace fs = std::filesystem;
+constexpr const char* usb_device = "usb_device";
 
-/// nullopt if the folder is not that of a USB device.
-std::optional<UsbIdentity> read_identity(const fs::path& folder) {
-  const auto vendor_id = read_number(folder / "idVendor", 16);
-  const auto product_id = read_number(folder / "idProduct", 16);
+/// nullopt if it has no numbers, which every USB device has.
+std::optional<UsbIdentity> identity_of(udev_device& device) {
+  const auto vendor_id = number_of(device, "idVendor", 16);
+  const auto product_id = number_of(device, "idProduct", 16);
   if (!vendor_id || !product_id || *vendor_id > 0xFFFF || *product_id > 0xFFFF) return std::nullopt;
   UsbIdentity usb;
   usb.vendor_id = static_cast<std::uint16_t>(*vendor_id);
   usb.product_id = static_cast<std::uint16_t>(*product_id);
-  usb.manufacturer = read_line(folder / "manufacturer");
-  usb.product = read_line(folder / "product");
-  usb.serial = read_line(folder / "serial");
-  usb.place = printable(folder.filename().string());
-  usb.bus = read_number(folder / "busnum").value_or(0);
-  usb.address = read_number(folder / "devnum").value_or(0);
+  usb.manufacturer = attribute_of(device, "manufacturer");
+  usb.product = attribute_of(device, "product");
+  usb.serial = attribute_of(device, "serial");
+  usb.place = printable(udev_device_get_sysname(&device));
+  usb.bus = number_of(device, "busnum").value_or(0);
+  usb.address = number_of(device, "devnum").value_or(0);
   return usb;
+}
+
+/// Reads a number from the nearest parent of a kind; nullopt if there is none.
+std::optional<unsigned> number_of_parent(udev_device& port, const char* subsystem, const char* type,
+                                         const char* name, int base) {
+  udev_device* const parent = udev_device_get_parent_with_subsystem_devtype(&port, subsystem, type);
+  return parent != nullptr ? number_of(*parent, name, base) : std::nullopt;
 }
 
 } // namespace
 
 std::optional<UsbIdentity> usb_identity_of_port(const std::string& port) {
-  const std::string name = fs::path(port).filename().string();
-  // A connected rfcomm port hangs below the computer's own Bluetooth dongle.
+  const std::string name = std::filesystem::path(port).filename().string();
+  // A connected rfcomm port is a child of the computer's own Bluetooth dongle.
   if (name.starts_with("rfcomm")) return std::nullopt;
-  auto folder = link_target(fs::path("/sys/class/tty") / name);
-  if (!folder) return std::nullopt;
-  std::optional<unsigned> interface_number;
-  std::optional<unsigned> port_number;
-  // The path is the chain of the devices that the port hangs on.
-  for (; folder->has_relative_path(); folder = folder->parent_path()) {
-    if (!interface_number) interface_number = read_number(*folder / "bInterfaceNumber", 16);
-    if (!port_number) port_number = read_number(*folder / "port_number");
-    if (auto usb = read_identity(*folder)) {
-      if (interface_number) usb->interface_number = static_cast<int>(*interface_number & 0xFFU);
-      usb->port_number = static_cast<int>(port_number.value_or(0) & 0xFFU);
-      return usb;
-    }
+  const UdevDevice tty = find_udev_device("tty", name);
+  udev_device* const adapter =
+      tty ? udev_device_get_parent_with_subsystem_devtype(tty.get(), "usb", usb_device) : nullptr;
+  auto usb = adapter != nullptr ? identity_of(*adapter) : std::nullopt;
+  if (!usb) return std::nullopt;
+  const auto interface = number_of_parent(*tty, "usb", "usb_interface", "bInterfaceNumber", 16);
+  if (interface) usb->interface_number = static_cast<int>(*interface & 0xFFU);
+  const auto number = number_of_parent(*tty, "usb-serial", nullptr, "port_number", 10);
+  usb->port_number = static_cast<int>(number.value_or(0) & 0xFFU);
+  return usb;
+}
+
+std::optional<UsbIdentity> usb_identity_at(unsigned bus, unsigned address) {
+  for (UsbIdentity& usb : list_usb_devices()) {
+    if (usb.bus == bus && usb.address == address) return std::move(usb);
   }
   return std::nullopt;
 }
 
-std::optional<UsbIdentity> usb_identity_at(unsigned bus, unsigned address) {
-  const fs::path devices = "/sys/bus/usb/devices";
-  for (const std::string& name : names_in(devices)) {
-    if (read_number(devices / name / "devnum") != address) continue;
-    if (read_number(devices / name / "busnum") != bus) continue;
-    return read_identity(devices / name);
+std::vector<UsbIdentity> list_usb_devices() {
+  std::vector<UsbIdentity> found;
+  for (const UdevDevice& device : list_udev_devices("usb")) {
+    const char* const type = udev_device_get_devtype(device.get());
+    if (type == nullptr || std::string_view(type) != usb_device) continue; // an interface of one
+    if (auto usb = identity_of(*device)) found.push_back(*std::move(usb));
   }
-  return std::nullopt;
+  return found;
 }
 
 } // namespace nendo::driver

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/glove.hpp>
@@ -21,6 +22,10 @@ namespace nendo::driver {
 /// least 0. Flexion is positive, abduction the angle between neighbours. The glove's thread calls
 /// it; it must not throw.
 using SensorMotion = std::function<std::array<double, sensor_slots>(double time_s)>;
+
+/// Returns the names of the motions that a simulated or emulated hand can make by itself: rest,
+/// wave, pinch, grasp, sculpt.
+std::vector<std::string_view> motion_names();
 
 /// The one motion of `sim` that open_glove() cannot open, because it takes a surface.
 inline constexpr std::string_view touching_motion = "touch";

@@ -1,0 +1,99 @@
+#pragma once
+// A data glove's electronics on a pseudo-terminal: the protocol from the device's side, written
+// from the published facts and not from the parser, so that it can be its test. Users test their
+// own software against it, with the faults that real lines and real people have.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::emulator {
+
+/// Returns the names that EmulatorOptions::glove may have.
+std::vector<std::string_view> emulated_glove_names();
+
+/// How a fault is written, e.g. drop=RATE%, and what it does.
+struct FaultForm {
+  std::string_view form;
+  std::string_view effect;
+};
+std::vector<FaultForm> fault_forms();
+
+enum class EmulatorPace : std::uint8_t {
+  clock, ///< as a device: a record a period, lost if nobody reads it
+  host,  ///< a record whenever the host has room for it; the device's clock goes a period further
+};
+
+/// What only a CyberGlove has.
+struct EmulatedCyberGlove {
+  unsigned model = 1;              ///< CyberGlove I, II or III
+  std::uint32_t hardware_mask = 0; ///< the sensors that the glove has; 0: the usual ones
+  bool touch = false;              ///< it has the vibrators of a CyberTouch
+  unsigned reply_bytes = 2;        ///< of a set command's reply: 2, or 3 as one library expects
+  bool period_low_first = false;   ///< the order of the bytes in the words of T and ?T
+  bool stamp_bit7 = true; ///< bit 7 of a time stamp's first byte is always set; else if it must
+  bool streaming = false; ///< from the start, as a host that died leaves it
+  /// Instead of a motion: in record n the sensor of slot k has the count 1 + (n + 29 k) mod 255
+  /// (with 12 bits 16 times that), so that every record can be judged by itself.
+  bool pattern = false;
+  std::string replay = {}; ///< a file of bytes that a host received: its records are sent
+};
+
+struct EmulatorOptions {
+  std::string glove = "cyberglove";
+  std::string link = {}; ///< path of the symbolic link to make to the terminal; empty: none
+  Side side = Side::right;
+  unsigned sensors = 0;          ///< 0: as many as this kind of glove usually has
+  std::string motion = "sculpt"; ///< one of driver::motion_names()
+  double rate_hz = 90.0;         ///< records a second until the host sets a period
+  std::uint32_t seed = 1;
+  EmulatorPace pace = EmulatorPace::clock;
+  std::vector<std::string> faults = {}; ///< each in one of the forms of fault_forms()
+  std::string log = {};                 ///< a file to write all traffic to; empty: none
+  EmulatedCyberGlove cyberglove = {};
+};
+
+struct FaultCount {
+  std::string name; ///< as in fault_forms(), e.g. drop
+  std::uint64_t done = 0;
+};
+
+struct EmulatorStats {
+  std::uint64_t bytes_received = 0;
+  std::uint64_t bytes_sent = 0;
+  std::uint64_t records_sent = 0;    ///< whole ones that the unit gave, before any fault
+  std::uint64_t records_faulted = 0; ///< those that a fault of the line touched, or joined to junk
+  std::uint64_t bytes_refused = 0;   ///< not sent because no host read them
+  std::vector<FaultCount> faults = {}; ///< of the kinds that were asked for
+};
+
+class GloveEmulator {
+public:
+  /// Makes the pseudo-terminal and the link. Errors: usage (an option), bad_input (the file to
+  /// replay), failed (the link's place is taken by something that is not a link, or link or log
+  /// cannot be written).
+  static Result<std::unique_ptr<GloveEmulator>> open(const EmulatorOptions& options);
+
+  GloveEmulator() = default;
+  GloveEmulator(const GloveEmulator&) = delete;
+  GloveEmulator& operator=(const GloveEmulator&) = delete;
+  virtual ~GloveEmulator() = default; ///< removes the link
+
+  /// The terminal that a host opens at first, e.g. /dev/pts/4. After the fault `unplug` there is
+  /// another, to be found through the link.
+  virtual const std::string& tty_path() const noexcept = 0;
+  /// Serves hosts, one after another, until `stop` becomes true and what was sent has gone out;
+  /// looks at it at least every 20 ms, and waits 300 ms for a host that takes nothing. Blocks.
+  /// Error: failed.
+  virtual Result<void> serve(const std::atomic<bool>& stop) = 0;
+  /// Any thread.
+  virtual EmulatorStats stats() const = 0;
+};
+
+} // namespace nendo::emulator

@@ -1,0 +1,38 @@
+#pragma once
+// How long a record takes from the write of its last byte at the device's end until its sample is
+// visible in the ring: of the real CyberGlove driver, and of the least that any program can do, a
+// thread that poll()s, read()s and pushes. Both in one run, record by record in turn, because the
+// machine's mood changes faster than two runs follow one another.
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+
+#include <nendo/base/result.hpp>
+#include <nendo/base/units.hpp>
+
+namespace nendo::emulator {
+
+enum class Line {
+  pseudo_terminal, ///< what an emulated glove has; its far end is a kernel worker of no priority
+  socket_pair,     ///< no worker between: what remains is the driver's own
+};
+
+struct LatencyOptions {
+  Line line = Line::pseudo_terminal;
+  std::size_t records = 2000; ///< of each
+  double rate_hz = 300.0;     ///< 1 to 480, records a second to the driver; with stamps, 384 fit
+};
+
+struct LatencySinks {
+  std::function<void(HostClock::duration)> driver;
+  std::function<void(HostClock::duration)> bare;
+};
+
+/// Measures until done or until `stop` becomes true. Blocks for records / rate_hz and about 2 s;
+/// the sinks are called from another thread, one at a time. Errors: failed (no line, or a record
+/// did not arrive within a second), usage.
+Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& sinks,
+                             const std::atomic<bool>& stop);
+
+} // namespace nendo::emulator

@@ -1,0 +1,42 @@
+#pragma once
+// An emulated glove on a pseudo-terminal, served by a thread of its own.
+
+#include <atomic>
+#include <thread>
+
+#include <nendo/emulator/emulator.hpp>
+
+namespace nendo::emulator {
+
+class ServedEmulator {
+public:
+  /// `emulator` must outlive this.
+  explicit ServedEmulator(GloveEmulator& emulator)
+      : thread_([this, &emulator] {
+          served_ = emulator.serve(over_);
+          over_ = true; // an emulator that fails must not be waited for
+        }) {}
+  ServedEmulator(const ServedEmulator&) = delete;
+  ServedEmulator& operator=(const ServedEmulator&) = delete;
+  ~ServedEmulator() { stop(); }
+
+  /// It was told to end, or failed.
+  bool is_over() const noexcept { return over_; }
+  /// Lets what was sent go out, and says how serving went. Blocks for a moment.
+  Result<void> finish() {
+    stop();
+    return served_;
+  }
+
+private:
+  void stop() {
+    over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  std::atomic<bool> over_{false};
+  Result<void> served_;
+  std::thread thread_;
+};
+
+} // namespace nendo::emulator

@@ -1,0 +1,178 @@
+#include "line/fault.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include <nendo/emulator/emulator.hpp>
+
+namespace nendo::emulator {
+namespace {
+
+using Nanoseconds = std::chrono::nanoseconds;
+
+enum class Part : std::uint8_t { none, optional, required };
+
+struct Row {
+  std::string_view name;
+  std::string_view form;
+  std::string_view effect;
+  bool by_chance;
+  Part lasting;
+  Part value;
+};
+
+// In the order of FaultKind.
+constexpr std::array<Row, fault_kinds> rows{{
+    {"drop", "drop=RATE%", "a byte vanishes, RATE per byte", true, {}, {}},
+    {"flip", "flip=RATE%", "one bit of a byte turns over, RATE per byte", true, {}, {}},
+    {"insert", "insert=RATE%", "a random byte comes in, RATE per byte", true, {}, {}},
+    {"lose", "lose=RATE%", "a whole record vanishes, RATE per record", true, {}, {}},
+    {"burst", "burst=RATE%", "1 to 64 random bytes before a record, RATE per record", true, {}, {}},
+    {"silence", "silence@5s+3s", "nothing arrives from 5 s on, for 3 s", false, Part::required, {}},
+    {"junk",
+     "junk@5s",
+     "echoes of a modem probe's AT commands; at 0s they await the first host",
+     false,
+     {},
+     {}},
+    {"unplug", "unplug@5s+2s[=LINK]",
+     "the terminal vanishes; 2 s later there is another, at LINK or the same link", false,
+     Part::required, Part::optional},
+    {"eg", "eg@5s+2s", "the glove is pulled out of its unit for 2 s", false, Part::required, {}},
+    {"swap", "swap@5s[+2s]=WHAT",
+     "the glove is pulled and after 2 s (0.5 s) another plugged in: 18, 22, left or right", false,
+     Part::optional, Part::required},
+    {"restart",
+     "restart@5s",
+     "the unit loses its power for a moment, and with it all settings",
+     false,
+     {},
+     {}},
+    {"press",
+     "press@5s+2s",
+     "no fault: the switch at the wrist is on for 2 s",
+     false,
+     Part::required,
+     {}},
+}};
+
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+std::optional<double> rate(std::string_view text) {
+  if (!text.ends_with('%')) return {};
+  const auto percent = number(text.substr(0, text.size() - 1));
+  if (!percent || !(*percent > 0.0 && *percent <= 100.0)) return {};
+  return *percent / 100.0;
+}
+
+std::optional<Nanoseconds> time(std::string_view text) {
+  constexpr double most_s = 1e7; // nearly four months
+  const bool milliseconds = text.ends_with("ms");
+  if (!text.ends_with('s')) return {};
+  const auto value = number(text.substr(0, text.size() - (milliseconds ? 2 : 1)));
+  if (!value) return {};
+  const double seconds = milliseconds ? *value / 1000.0 : *value;
+  if (!(seconds >= 0.0 && seconds <= most_s)) return {};
+  return std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(seconds));
+}
+
+bool fits(Part part, bool given) noexcept {
+  return part == Part::optional || given == (part == Part::required);
+}
+
+// TIME[+TIME][=VALUE]
+std::optional<Fault> timed(const Row& row, std::string_view text) {
+  Fault fault;
+  const std::size_t equals = text.find('=');
+  if (equals != std::string_view::npos) fault.value = text.substr(equals + 1);
+  if (!fits(row.value, equals != std::string_view::npos && !fault.value.empty())) return {};
+  if (equals != std::string_view::npos && fault.value.empty()) return {};
+  const std::string_view times = text.substr(0, equals);
+  const std::size_t plus = times.find('+');
+  if (!fits(row.lasting, plus != std::string_view::npos)) return {};
+  const auto at = time(times.substr(0, plus));
+  if (!at) return {};
+  fault.at = *at;
+  if (plus == std::string_view::npos) return fault;
+  const auto lasting = time(times.substr(plus + 1));
+  if (!lasting) return {};
+  fault.lasting = *lasting;
+  return fault;
+}
+
+} // namespace
+
+std::string_view name_of(FaultKind kind) noexcept {
+  return rows[static_cast<std::size_t>(kind)].name;
+}
+
+std::vector<FaultForm> fault_forms() {
+  std::vector<FaultForm> forms;
+  for (const Row& row : rows)
+    forms.push_back({row.form, row.effect});
+  return forms;
+}
+
+Result<Fault> parse_fault(std::string_view text) {
+  const auto wrong = [text](const std::string& remedy) {
+    return Error{Errc::usage, "fault \"" + std::string(text) + "\": " + remedy};
+  };
+  const std::size_t name_size = std::min(text.find_first_of("=@"), text.size());
+  const std::string_view name = text.substr(0, name_size);
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [name](const Row& r) { return r.name == name; });
+  if (row == rows.end()) {
+    std::string names;
+    for (const Row& known : rows)
+      names.append(names.empty() ? "" : ", ").append(known.name);
+    return wrong("there is no such fault; there are " + names);
+  }
+  const std::string_view rest = text.substr(std::min(name_size + 1, text.size()));
+  std::optional<Fault> fault;
+  if (row->by_chance) {
+    const auto chance =
+        name_size < text.size() && text[name_size] == '=' ? rate(rest) : std::nullopt;
+    if (!chance) {
+      return wrong("write " + std::string(row->form) + ", RATE above 0 and at most 100");
+    }
+    fault = Fault{.rate = *chance};
+  } else {
+    if (name_size < text.size() && text[name_size] == '@') fault = timed(*row, rest);
+    if (!fault) return wrong("write it like " + std::string(row->form) + ", times in s or ms");
+  }
+  fault->kind = static_cast<FaultKind>(row - rows.begin());
+  if (fault->kind == FaultKind::swap) {
+    constexpr std::array<std::string_view, 4> gloves{"18", "22", "left", "right"};
+    if (std::find(gloves.begin(), gloves.end(), fault->value) == gloves.end()) {
+      return wrong("swap for 18, 22, left or right");
+    }
+    if (fault->lasting == Nanoseconds{}) fault->lasting = std::chrono::milliseconds(500);
+  }
+  return *fault;
+}
+
+Result<std::vector<Fault>> parse_faults(const std::vector<std::string>& texts) {
+  std::vector<Fault> faults;
+  for (const std::string& text : texts) {
+    auto fault = parse_fault(text);
+    if (!fault) return fault.error();
+    const bool twice = std::any_of(faults.begin(), faults.end(), [&](const Fault& other) {
+      return other.kind == fault->kind && fault->rate > 0.0;
+    });
+    if (twice) {
+      return Error{Errc::usage, "fault \"" + text + "\": its rate is given twice; keep one"};
+    }
+    faults.push_back(*std::move(fault));
+  }
+  return faults;
+}
+
+} // namespace nendo::emulator

@@ -1,0 +1,351 @@
+// Carries bytes and time between an emulated unit and its pseudo-terminal, and lets the faults
+// happen.
+
+#include <nendo/emulator/emulator.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <nendo/base/units.hpp>
+
+#include "line/fault.hpp"
+#include "line/fault_injector.hpp"
+#include "line/pseudo_terminal.hpp"
+#include "line/traffic_log.hpp"
+#include "units/emulated_kinds.hpp"
+#include "units/emulated_unit.hpp"
+
+namespace nendo::emulator {
+namespace {
+
+using namespace std::chrono_literals;
+using Time = EmulatedUnit::Time;
+
+constexpr HostClock::duration longest_wait = 20ms; // how late `stop` may be seen
+
+// What waits for the terminal beyond the unit's own output: enough for writes of some size.
+constexpr std::size_t wire_full = 4096;
+
+// At the host's pace: records made before faults, `stop` and the host are looked at again.
+constexpr int most_records_a_turn = 256;
+
+// At the end: for a host that takes nothing of what was sent to it.
+constexpr auto last_patience = 300ms;
+
+struct Parts {
+  EmulatorOptions options;
+  std::unique_ptr<EmulatedUnit> unit;
+  std::vector<Fault> faults;
+  TrafficLog log;
+  PseudoTerminal terminal;
+};
+
+class PtyEmulator final : public GloveEmulator {
+public:
+  explicit PtyEmulator(Parts parts)
+      : options_(std::move(parts.options)), unit_(std::move(parts.unit)),
+        injector_(parts.faults, options_.seed), log_(std::move(parts.log)),
+        first_path_(parts.terminal.path()) {
+    terminal_.emplace(std::move(parts.terminal));
+    for (const Fault& fault : parts.faults) {
+      if (std::find(asked_.begin(), asked_.end(), fault.kind) == asked_.end()) {
+        asked_.push_back(fault.kind);
+      }
+    }
+    publish();
+  }
+
+  const std::string& tty_path() const noexcept override { return first_path_; }
+
+  Result<void> serve(const std::atomic<bool>& stop) override {
+    last_turn_ = HostClock::now();
+    while (!stop) {
+      advance_clock();
+      if (auto happened = let_faults_happen(); !happened) return happened;
+      run_unit();
+      write();
+      publish();
+      if (auto logged = log_.flush(); !logged) return logged;
+      if (auto waited = wait(); !waited) return waited;
+    }
+    empty_wire();
+    publish();
+    return {};
+  }
+
+  EmulatorStats stats() const override {
+    const std::lock_guard lock(stats_mutex_);
+    return stats_;
+  }
+
+private:
+  bool at_hosts_pace() const noexcept { return options_.pace == EmulatorPace::host; }
+  bool host_present() const noexcept { return terminal_ && host_present_; }
+
+  // At the host's pace the unit's clock goes from record to record; it follows the host's clock
+  // only while nothing is due.
+  void advance_clock() {
+    const HostTime host_now = HostClock::now();
+    if (!at_hosts_pace() || !unit_->next_due()) now_ += host_now - last_turn_;
+    last_turn_ = host_now;
+  }
+
+  Result<void> let_faults_happen() {
+    if (!terminal_ && HostClock::now() >= replugged_at_) {
+      auto made = PseudoTerminal::make(options_.link);
+      if (!made) return made.error();
+      terminal_.emplace(*std::move(made));
+      log_.happened(now_, "plugged in again");
+    }
+    while (const auto event = injector_.next_event(now_))
+      happen(event->fault, event->over);
+    if (junk_waits_ && host_present()) {
+      junk_waits_ = false;
+      const std::size_t before = wire_.size();
+      injector_.pass_junk(wire_);
+      log_.sent(now_, "junk", std::span(wire_).subspan(before));
+    }
+    return {};
+  }
+
+  void happen(const Fault& fault, bool over) {
+    log_.happened(now_, std::string(name_of(fault.kind)) + (over ? " over" : ""));
+    switch (fault.kind) {
+    case FaultKind::junk:
+      junk_waits_ = true;
+      break;
+    case FaultKind::unplug:
+      terminal_.reset();
+      host_present_ = false;
+      replugged_at_ = HostClock::now() + fault.lasting;
+      if (!fault.value.empty()) options_.link = fault.value;
+      break;
+    case FaultKind::restart:
+      unit_->inject({Incident::Kind::power_cycle}, now_);
+      break;
+    case FaultKind::press:
+      unit_->inject({over ? Incident::Kind::switch_off : Incident::Kind::switch_on}, now_);
+      break;
+    case FaultKind::eg:
+      unit_->inject({over ? Incident::Kind::glove_in : Incident::Kind::glove_out}, now_);
+      break;
+    case FaultKind::swap:
+      unit_->inject(over ? other_glove(fault.value) : Incident{Incident::Kind::glove_out}, now_);
+      break;
+    default:
+      break; // the injector's own
+    }
+  }
+
+  static Incident other_glove(const std::string& what) {
+    Incident incident{Incident::Kind::glove_in};
+    if (what == "18") incident.sensors = 18;
+    if (what == "22") incident.sensors = 22;
+    if (what == "left") incident.side = Side::left;
+    if (what == "right") incident.side = Side::right;
+    return incident;
+  }
+
+  void run_unit() {
+    if (!at_hosts_pace()) {
+      unit_->advance(now_);
+      collect();
+      return;
+    }
+    collect();
+    for (int n = 0; n < most_records_a_turn && host_present() && wire_.size() < wire_full; ++n) {
+      const auto due = unit_->next_due();
+      if (!due) return;
+      now_ = std::max(now_, *due);
+      if (injector_.next_due().value_or(Time::max()) <= now_) return; // that comes first
+      unit_->advance(now_);
+      collect();
+    }
+  }
+
+  // Moves the unit's output to the wire, through the faults. What the wire has no room for waits in
+  // the unit, which refuses whole messages when it is full. With nobody at the other end the bytes
+  // are lost, as on a cable that ends in the air.
+  void collect() {
+    auto output = unit_->output();
+    if (!host_present()) {
+      lost_ += output.size() + wire_.size();
+      wire_.clear();
+      unit_->take(output.size());
+      return;
+    }
+    if (wire_.size() >= wire_full) return;
+    const std::size_t bytes = output.size();
+    for (const UnitMessage& message : unit_->messages()) {
+      const std::size_t before = wire_.size();
+      injector_.pass(output.first(message.bytes), message.record, now_, wire_);
+      output = output.subspan(message.bytes);
+      if (wire_.size() == before) continue;
+      log_.sent(now_, message.record ? "record" : "reply", std::span(wire_).subspan(before));
+    }
+    unit_->take(bytes);
+  }
+
+  void write() {
+    if (!host_present() || wire_.empty()) return;
+    const ssize_t count = ::write(terminal_->fd(), wire_.data(), wire_.size());
+    stuck_ = count <= 0;
+    if (count <= 0) return;
+    sent_ += static_cast<std::uint64_t>(count);
+    wire_.erase(wire_.begin(), wire_.begin() + count);
+  }
+
+  // What counts as sent goes out, for as long as the host takes any of it.
+  void empty_wire() {
+    HostTime patience = HostClock::now() + last_patience;
+    while (host_present() && !wire_.empty() && HostClock::now() < patience) {
+      const std::uint64_t before = sent_;
+      write();
+      if (sent_ == before) {
+        std::this_thread::sleep_for(1ms);
+      } else {
+        patience = HostClock::now() + last_patience;
+      }
+    }
+  }
+
+  // Until a host writes, or has room for what waits, or the unit or a fault has something to do, or
+  // it is time to look at `stop`.
+  HostTime wake_up() const {
+    const HostTime latest = HostClock::now() + longest_wait;
+    if (!terminal_) return std::min(latest, replugged_at_);
+    const auto due = unit_->next_due();
+    if (at_hosts_pace() && due && host_present()) return wire_.empty() ? last_turn_ : latest;
+    const auto next = std::min(at_hosts_pace() ? Time::max() : due.value_or(Time::max()),
+                               injector_.next_due().value_or(Time::max()));
+    return std::min(latest, last_turn_ + std::min<Time>(next - now_, 1h));
+  }
+
+  Result<void> wait() {
+    const HostTime until = wake_up();
+    if (!terminal_) {
+      std::this_thread::sleep_until(until);
+      return {};
+    }
+    const auto left = std::max<Time>(until - HostClock::now(), 0ns);
+    const timespec timeout{0, static_cast<long>(std::min<Time>(left, longest_wait).count())};
+    pollfd line{terminal_->fd(), POLLIN, 0};
+    if (!wire_.empty()) line.events |= POLLOUT;
+    if (::ppoll(&line, 1, &timeout, nullptr) < 0 && errno != EINTR) {
+      return failed("poll");
+    }
+    if ((line.revents & POLLIN) != 0) {
+      host_present_ = true;
+      return receive();
+    }
+    host_present_ = (line.revents & POLLHUP) == 0;
+    // Nobody has the terminal open: poll() then returns at once, for ever, and must not make this
+    // loop spin; nor must a terminal that says it has room and takes nothing.
+    if (!host_present_) {
+      std::this_thread::sleep_until(std::max(until, HostClock::now() + 1ms));
+    } else if (stuck_ && (line.revents & POLLOUT) != 0) {
+      std::this_thread::sleep_for(1ms);
+    }
+    return {};
+  }
+
+  Result<void> receive() {
+    std::array<std::byte, 256> buffer;
+    const ssize_t count = ::read(terminal_->fd(), buffer.data(), buffer.size());
+    if (count > 0) {
+      const auto bytes = std::span(buffer).first(static_cast<std::size_t>(count));
+      received_ += bytes.size();
+      advance_clock();
+      log_.received(now_, bytes);
+      unit_->receive(bytes, now_);
+      return {};
+    }
+    // EIO: the host has closed the terminal. There will be another.
+    if (count == 0 || errno == EAGAIN || errno == EINTR || errno == EIO) return {};
+    return failed("read");
+  }
+
+  Error failed(const char* what) const {
+    return {Errc::failed,
+            terminal_->path() + ": " + what + ": " + std::generic_category().message(errno)};
+  }
+
+  void publish() {
+    const std::lock_guard lock(stats_mutex_);
+    stats_.bytes_received = received_;
+    stats_.bytes_sent = sent_;
+    stats_.records_sent = injector_.records();
+    stats_.records_faulted = injector_.records_faulted();
+    stats_.bytes_refused = unit_->counters().bytes_refused + lost_;
+    stats_.faults.resize(asked_.size());
+    for (std::size_t k = 0; k < asked_.size(); ++k) {
+      stats_.faults[k].name = name_of(asked_[k]);
+      stats_.faults[k].done = injector_.done(asked_[k]);
+    }
+  }
+
+  EmulatorOptions options_;
+  std::unique_ptr<EmulatedUnit> unit_;
+  FaultInjector injector_;
+  TrafficLog log_;
+  std::string first_path_;
+  std::optional<PseudoTerminal> terminal_; ///< empty: unplugged
+  HostTime replugged_at_{};
+  std::vector<FaultKind> asked_;
+  FaultInjector::Wire wire_; ///< what the terminal has not taken yet
+  Time now_{};               ///< of the unit's clock
+  HostTime last_turn_{};
+  bool host_present_ = false;
+  bool junk_waits_ = false;
+  bool stuck_ = false; ///< the last write took nothing
+  std::uint64_t received_ = 0;
+  std::uint64_t sent_ = 0;
+  std::uint64_t lost_ = 0; ///< bytes that came out while no host was there
+  mutable std::mutex stats_mutex_;
+  EmulatorStats stats_;
+};
+
+Result<void> check_faults(const EmulatorOptions& options, const EmulatedKind& kind,
+                          const std::vector<Fault>& faults) {
+  for (const Fault& fault : faults) {
+    const std::string name = "fault " + std::string(name_of(fault.kind)) + ": ";
+    if (befalls_unit(fault.kind) && !kind.befallible) {
+      return Error{Errc::usage, name + "an emulated " + std::string(kind.name) + " has none"};
+    }
+    if (fault.kind == FaultKind::unplug && options.link.empty()) {
+      return Error{Errc::usage, name + "give a link, or no host finds the new terminal"};
+    }
+  }
+  return {};
+}
+
+} // namespace
+
+Result<std::unique_ptr<GloveEmulator>> GloveEmulator::open(const EmulatorOptions& options) {
+  const auto kind = find_emulated_kind(options.glove);
+  if (!kind) return kind.error();
+  auto faults = parse_faults(options.faults);
+  if (!faults) return faults.error();
+  if (auto fit = check_faults(options, *kind, *faults); !fit) return fit.error();
+  auto unit = kind->make(options);
+  if (!unit) return unit.error();
+  auto log = options.log.empty() ? Result<TrafficLog>(TrafficLog()) : TrafficLog::open(options.log);
+  if (!log) return log.error();
+  auto terminal = PseudoTerminal::make(options.link);
+  if (!terminal) return terminal.error();
+  return std::unique_ptr<GloveEmulator>(std::make_unique<PtyEmulator>(
+      Parts{options, *std::move(unit), *std::move(faults), *std::move(log), *std::move(terminal)}));
+}
+
+} // namespace nendo::emulator

@@ -1,0 +1,64 @@
+#pragma once
+// The records of an emulated CyberGlove: what the sensors see, in the 8-bit, the text and the
+// 12-bit form.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <nendo/driver/sample.hpp>
+
+#include "simulated/hand_motion.hpp"
+#include "simulated/typical_wearer.hpp"
+#include "units/cyberglove_settings.hpp"
+#include "units/emulated_unit.hpp"
+#include "units/unit_message.hpp"
+
+namespace nendo::emulator::unit {
+
+/// What a record tells besides the sensors.
+struct RecordFrame {
+  Byte header = 'S'; ///< a small letter makes it a text
+  EmulatedUnit::Time now{};
+  std::uint64_t ticks = 0; ///< of the unit's clock
+  Byte status = 0;
+  bool too_fast = false;  ///< the period is too short: `es`
+  unsigned subframes = 1; ///< 12-bit records: how many there are in a frame of 1/30 s
+};
+
+class RecordMaker {
+public:
+  /// With a `capture` 8-bit records are its records, one after the other and from the start again.
+  RecordMaker(driver::Motion motion, Side side, std::uint32_t seed, bool stamp_bit7, bool pattern,
+              std::vector<Message> capture);
+
+  /// The hand in the glove from now on.
+  void wear(Side side);
+
+  /// header, values, time stamp, status, error pairs, NUL. `known` is the glove that the unit has
+  /// read, `plugged` the one in its socket.
+  Message record(const RecordFrame& frame, const Settings& settings, const PluggedGlove& known,
+                 const std::optional<PluggedGlove>& plugged);
+  /// The 61 bytes of a CyberGlove III.
+  Message fine_record(const RecordFrame& frame, const std::optional<PluggedGlove>& plugged);
+
+private:
+  unsigned patterned(std::size_t slot) const noexcept; ///< 1 to 255
+  driver::JointAngles angles(EmulatedUnit::Time now);
+  Message fields(const RecordFrame& frame, const Settings& settings, const PluggedGlove& known,
+                 const std::optional<PluggedGlove>& plugged);
+  Message time_stamp(std::uint64_t ticks) const;
+
+  driver::Motion motion_;
+  std::uint32_t seed_;
+  driver::HandMotion hand_;
+  driver::TypicalWearer wearer_;
+  bool stamp_bit7_;
+  bool pattern_;
+  std::size_t record_number_ = 0; ///< of the pattern
+  std::vector<Message> capture_;
+  std::size_t next_captured_ = 0;
+  std::optional<EmulatedUnit::Time> motion_origin_;
+};
+
+} // namespace nendo::emulator::unit

@@ -1,0 +1,71 @@
+#pragma once
+// What a host can set in a CyberGlove's interface unit, how long each command is, and the parameter
+// flags that show most of it at once.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include <nendo/driver/sample.hpp>
+
+#include "units/unit_message.hpp"
+
+namespace nendo::emulator::unit {
+
+inline constexpr std::uint64_t tick_hz = 115200; // of the period T and of the time stamp
+
+/// The glove itself, which the unit reads when it starts and at 0x09.
+struct PluggedGlove {
+  Side side = Side::right;
+  std::uint32_t mask = 0; ///< the sensors that it has
+
+  std::size_t sensors() const noexcept;
+};
+
+struct Settings {
+  bool time_stamp = false;
+  bool filter = true;
+  bool switch_drives_light = true;
+  bool light = false;
+  bool switch_on = false;
+  bool quantised = false;
+  bool status_byte = false;
+  bool binary_sync = false;
+  bool text_sync = false;
+  std::uint32_t mask = 0xFFFFFF;
+  Byte values = 22;
+  Byte baud = 0;
+  std::uint16_t period_ticks = 0; ///< the period is their product, in 1/115200 s
+  std::uint16_t period_repeats = 1;
+  std::array<Byte, 6> vibration{};          ///< CyberTouch: thumb to pinky, palm
+  std::array<Byte, sensor_slots> offsets{}; ///< of the hardware calibration
+  std::array<Byte, sensor_slots> gains{};   ///< the same, in 1/64
+
+  /// A converter's count after the hardware calibration: 1..255.
+  Byte quantise(std::size_t slot, Byte count) const noexcept;
+};
+
+/// As after switching on.
+Settings power_up_settings(double rate_hz, const PluggedGlove& glove) noexcept;
+
+/// How its words go over the wire in the binary command and in its query: the sources disagree.
+enum class WordOrder : std::uint8_t { high_first, low_first };
+
+/// How many bytes the argument of a binary command has, as far as its first bytes tell; 0: there is
+/// no such command; empty: the argument is wrong. `letter` is a capital one.
+std::optional<std::size_t> argument_bytes(Byte letter, const Message& argument,
+                                          std::size_t sensors);
+/// How many bytes each number of the command's text form stands for.
+std::size_t number_width(Byte letter) noexcept;
+
+/// Obeys a set command whose argument is complete. False: a number is out of range, nothing is set.
+bool apply(Settings& settings, Byte letter, const Message& argument, WordOrder order,
+           const PluggedGlove& glove);
+
+/// The value of an on-off setting by its letter; empty: it is none.
+std::optional<bool> switch_state(const Settings& settings, Byte letter) noexcept;
+/// The part of the parameter flags that a host can write.
+std::uint32_t writable_parameters(const Settings& settings) noexcept;
+
+} // namespace nendo::emulator::unit

@@ -1,0 +1,119 @@
+#pragma once
+// A device from its own side, without any I/O or clock: bytes from the host and the time go in,
+// bytes to the host come out. Whoever has a terminal (PtyEmulator) or a test moves them.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <nendo/driver/sample.hpp>
+
+namespace nendo::emulator {
+
+/// What befalls a unit without the host's doing.
+struct Incident {
+  enum class Kind : std::uint8_t { glove_out, glove_in, power_cycle, switch_on, switch_off };
+  Kind kind = Kind::glove_out;
+  unsigned sensors = 0; ///< glove_in: of another glove; 0: as before
+  std::optional<Side> side = std::nullopt;
+};
+
+/// A whole record or reply in the output.
+struct UnitMessage {
+  std::size_t bytes = 0;
+  bool record = false;
+};
+
+struct UnitCounters {
+  std::uint64_t records = 0;       ///< put into the output
+  std::uint64_t bytes_refused = 0; ///< of records and replies for which the output had no room
+};
+
+class EmulatedUnit {
+public:
+  using Time = std::chrono::nanoseconds; ///< since the unit was switched on; never goes back
+
+  static constexpr std::size_t output_capacity = 4096;
+
+  EmulatedUnit() = default;
+  EmulatedUnit(const EmulatedUnit&) = delete;
+  EmulatedUnit& operator=(const EmulatedUnit&) = delete;
+  virtual ~EmulatedUnit() = default;
+
+  /// Obeys the bytes that arrive at `now`, one after another. Any bytes are allowed.
+  virtual void receive(std::span<const std::byte> bytes, Time now) = 0;
+  /// Does what is due at `now`, e.g. the records of a stream.
+  virtual void advance(Time now) = 0;
+  /// When advance() will have something to do; empty if only the host can cause it.
+  virtual std::optional<Time> next_due() const noexcept = 0;
+  /// Suffers an incident; a unit whose glove cannot be pulled or swapped does nothing.
+  virtual void inject(const Incident& incident, Time now) { (void)incident, (void)now; }
+
+  /// What waits for the host, at most output_capacity bytes.
+  std::span<const std::byte> output() const noexcept { return {output_.data(), output_size_}; }
+  /// The messages that output() consists of, or what is left of them.
+  std::span<const UnitMessage> messages() const noexcept { return messages_; }
+  /// The host has taken the first `count` bytes of output().
+  void take(std::size_t count) noexcept {
+    count = std::min(count, output_size_);
+    output_size_ -= count;
+    std::memmove(output_.data(), output_.data() + count, output_size_);
+    auto message = messages_.begin();
+    for (; message != messages_.end() && message->bytes <= count; ++message)
+      count -= message->bytes;
+    if (message != messages_.end()) message->bytes -= count;
+    messages_.erase(messages_.begin(), message);
+  }
+
+  UnitCounters counters() const noexcept { return counters_; }
+
+protected:
+  /// False: the message does not fit and is refused whole.
+  bool send(std::span<const std::byte> message) { return put(message, false); }
+  /// The same for a record, which it counts.
+  bool send_record(std::span<const std::byte> message) {
+    const bool sent = put(message, true);
+    if (sent) ++counters_.records;
+    return sent;
+  }
+
+  /// Sends `make(due)` for each time from `next` on that is due at `now`, one every `period`. Once
+  /// the output is full, the others that are due count as refused without being made, however many
+  /// they are.
+  template <class Make>
+  void send_due(Time& next, Time period, Time now, Make&& make) {
+    for (; next <= now; next += period) {
+      const auto record = make(next);
+      if (send_record(std::as_bytes(std::span(record)))) continue;
+      const auto others = (now - next) / period;
+      counters_.bytes_refused += record.size() * static_cast<std::uint64_t>(others);
+      next += others * period;
+    }
+  }
+
+  UnitCounters counters_;
+
+private:
+  bool put(std::span<const std::byte> message, bool record) {
+    if (message.size() > output_capacity - output_size_) {
+      counters_.bytes_refused += message.size();
+      return false;
+    }
+    std::copy(message.begin(), message.end(), output_.data() + output_size_);
+    output_size_ += message.size();
+    messages_.push_back({message.size(), record});
+    return true;
+  }
+
+  std::array<std::byte, output_capacity> output_{};
+  std::size_t output_size_ = 0;
+  std::vector<UnitMessage> messages_;
+};
+
+} // namespace nendo::emulator

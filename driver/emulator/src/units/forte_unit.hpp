@@ -1,0 +1,59 @@
+#pragma once
+// A BeBop Forte Data Glove from the device's side. It shares no code with the driver's parser, so
+// that each can test the other. The facts are those of github.com/sofwerx/dataglove.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <nendo/driver/sample.hpp>
+
+#include "simulated/hand_motion.hpp"
+#include "units/emulated_unit.hpp"
+
+namespace nendo::emulator {
+
+struct ForteUnitOptions {
+  Side side = Side::right; ///< of the motion; the glove itself does not tell it
+  driver::Motion motion = driver::Motion::sculpt;
+  double rate_hz = 90.0; ///< 1..most_rate_hz
+  std::uint32_t seed = 1;
+  bool bluetooth = false; ///< the host is at its Bluetooth port
+};
+
+class ForteUnit final : public EmulatedUnit {
+public:
+  /// Records that 115200 baud can carry, with a frame of motion after each.
+  static constexpr double most_rate_hz = 370.0;
+
+  explicit ForteUnit(const ForteUnitOptions& options);
+
+  void receive(std::span<const std::byte> bytes, Time now) override;
+  void advance(Time now) override; ///< the frames that are due
+  std::optional<Time> next_due() const noexcept override;
+
+private:
+  using Byte = std::uint8_t;
+
+  void handle(Time now);
+  bool streams() const noexcept { return data_on_ && linked_; }
+  std::vector<Byte> record(Time now) const;
+
+  const ForteUnitOptions options_;
+  const Time period_;
+  driver::HandMotion motion_;
+  std::array<Byte, 3> last_{}; ///< bytes from the host: a command, if it is one
+  bool data_on_ = false;
+  bool linked_ = false;               ///< told to send where the host is
+  std::optional<Time> motion_origin_; ///< empty until time was seen to pass
+  Time next_record_{};
+};
+
+/// Never null.
+std::unique_ptr<EmulatedUnit> make_forte_unit(const ForteUnitOptions& options);
+
+} // namespace nendo::emulator
