@@ -14,7 +14,8 @@
 #include <umockdev.h>
 
 namespace nendo::test {
-namespace {
+namespace mocked_usb { // not anonymous: MockedUsb::Device, which a header names, has members of
+                       // these
 
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
@@ -57,7 +58,9 @@ std::string hex(const UsbBytes& bytes) {
   return text;
 }
 
-} // namespace
+} // namespace mocked_usb
+
+using namespace mocked_usb;
 
 struct MockedUsb::Device {
   Device(UsbGlove& model, std::string sys_path, std::string dev_node)
