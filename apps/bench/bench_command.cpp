@@ -1,8 +1,24 @@
-// nendo bench: what this machine, and this program on it, can do.
+// The commands of nendo bench.
+
+#include <iostream>
 
 #include "bench/bench.hpp"
+#include "manual/model_json.hpp"
 
 namespace nendo::bench {
+namespace {
+
+void add_describe(cli::Command& bench) {
+  cli::Command command =
+      bench.add_command("describe", "Prints what these commands are, for nendo manual --bench");
+  command.hide();
+  command.on_chosen([bench] {
+    std::cout << manual::model_json(bench.model()) << '\n';
+    return 0;
+  });
+}
+
+} // namespace
 
 void add_bench(cli::Command& program) {
   cli::Command bench = program.add_command(
@@ -19,6 +35,7 @@ void add_bench(cli::Command& program) {
   soak_bench::add(bench);
   solve_bench::add(bench);
   table1_bench::add(bench);
+  add_describe(bench);
 }
 
 } // namespace nendo::bench

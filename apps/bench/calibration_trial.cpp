@@ -11,7 +11,7 @@
 #include <nendo/hand/range_adaptation.hpp>
 #include <nendo/hand/range_capture.hpp>
 
-#include "bench/wearers.hpp"
+#include "reference/wearers.hpp"
 
 namespace nendo::bench {
 namespace {
@@ -24,12 +24,11 @@ constexpr double rate_hz = 90.0;
 constexpr double tremor_rad = 0.002;
 
 HostTime at_time(double time_s) {
-  return HostTime(
-      std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(1.0 + time_s)));
+  return HostTime(from_seconds(1.0 + time_s));
 }
 
 /// The wearer holds each pose until it is captured, as in a guided calibration.
-Result<std::vector<PoseReading>> hold_all(Wearer& wearer, std::mt19937_64& random,
+Result<std::vector<PoseReading>> hold_all(reference::Wearer& wearer, std::mt19937_64& random,
                                           TrialErrors& errors) {
   std::normal_distribution<double> tremor(0.0, tremor_rad);
   hand::PoseCapture capture;
@@ -62,8 +61,8 @@ struct Watched {
   Calibration adaptive;
 };
 
-Watched watch(Wearer& wearer, std::uint64_t seed) {
-  const FreeMotion motion(seed, wearer.ranges());
+Watched watch(reference::Wearer& wearer, std::uint64_t seed) {
+  const reference::FreeMotion motion(seed, wearer.ranges());
   hand::RangeCapture capture;
   hand::RangeAdaptation adaptation;
   for (double time_s = 0.0; time_s < 30.0; time_s += 1.0 / rate_hz) {
@@ -110,7 +109,7 @@ void add_errors(const JointAngles& told, const JointAngles& truth,
 } // namespace
 
 Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
-  Wearer wearer(seed);
+  reference::Wearer wearer(seed);
   std::mt19937_64 random(seed);
   const auto readings = hold_all(wearer, random, errors);
   if (!readings) return readings.error();
@@ -138,12 +137,12 @@ Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors) {
   const std::array<Calibration, method_names.size()> calibrations{
       full->calibration, two_pose->calibration, min_max_calibration(watched.ranges),
       watched.adaptive, wearer.truth()};
-  const FreeMotion motion(random(), wearer.ranges());
+  const reference::FreeMotion motion(random(), wearer.ranges());
   for (double time_s = 0.0; time_s < 60.0; time_s += 0.2) {
     const hand::SensorAngles angles = motion.angles_rad(time_s);
     const GloveSample sample = wearer.read(angles);
     for (std::size_t method = 0; method < calibrations.size(); ++method) {
-      add_errors(hand::joint_angles(sample, calibrations[method]), joints_of(angles),
+      add_errors(hand::joint_angles(sample, calibrations[method]), reference::joints_of(angles),
                  errors.deg[method]);
     }
   }

@@ -12,8 +12,8 @@
 #include "bench/deform_trial.hpp"
 #include "bench/plane_room.hpp"
 #include "bench/simd_choice.hpp"
-#include "bench/table1.hpp"
 #include "cli/cli.hpp"
+#include "reference/table1.hpp"
 
 namespace nendo::bench::deform_bench {
 namespace {
@@ -103,10 +103,10 @@ int bench_deform(const Options& options) {
                 "vertices radius     plain    type 1  2 threads   type 2  2 threads   type 1 "
                 "evaluated  type 2      grab kB kept\n");
   }
-  for (const Table1Plane& mesh : table1_planes) {
+  for (const reference::Table1Plane& mesh : reference::table1_planes) {
     if (options.short_form && mesh.cells > 64) continue;
-    const deform::Points plane = table1_plane(mesh.cells, mesh.with_middles);
-    for (const double radius : table1_radii) {
+    const deform::Points plane = reference::table1_plane(mesh.cells, mesh.with_middles);
+    for (const double radius : reference::table1_radii) {
       const CellTimes times = measure_cell(plane, radius, repetitions);
       options.json ? print_cell_json(plane.cols(), radius, times)
                    : print_cell_text(plane.cols(), radius, times);

@@ -3,7 +3,7 @@
 #include <ctime>
 #include <random>
 
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 
 namespace nendo::bench {
 
@@ -17,7 +17,7 @@ std::array<deform::Points, poses> random_ends(const deform::Points& starts) {
   std::mt19937 random(1);
   std::array<deform::Points, poses> ends;
   for (auto& end : ends)
-    end = starts + table1_displacements(random);
+    end = starts + reference::table1_displacements(random);
   return ends;
 }
 

@@ -7,7 +7,7 @@
 
 #include "bench/deform_frames.hpp"
 #include "bench/plain_deformer.hpp"
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 
 namespace nendo::bench {
 namespace {
@@ -42,7 +42,7 @@ double apart_from_double(Type1Deformer& deformer, const Points& ends) {
 
 /// The second thread spins as long as its deformer lives, so that nothing else is measured then.
 void measure_two_threads(const Points& mesh, double radius, int repetitions, CellTimes& times) {
-  const Points starts = table1_starts();
+  const Points starts = reference::table1_starts();
   const auto ends = random_ends(starts);
   const auto vertices = static_cast<std::size_t>(mesh.cols());
   Best best1;
@@ -64,7 +64,7 @@ void measure_two_threads(const Points& mesh, double radius, int repetitions, Cel
 } // namespace
 
 CellTimes measure_cell(const Points& mesh, double radius, int repetitions) {
-  const Points starts = table1_starts();
+  const Points starts = reference::table1_starts();
   const auto ends = random_ends(starts);
   const auto vertices = static_cast<std::size_t>(mesh.cols());
   PlainDeformer plain1(mesh, starts, radius);
@@ -101,8 +101,8 @@ namespace {
 
 /// Ten supports over a plane of 289 vertices, which all of them contain.
 double ns_an_influence(int repetitions) {
-  const Points mesh = table1_plane(16);
-  const Points starts = spread_starts();
+  const Points mesh = reference::table1_plane(16);
+  const Points starts = reference::spread_starts();
   const auto ends = random_ends(starts);
   Type1Deformer deformer(mesh, 10, 200.0, {}, {.weight_bytes = 0});
   const BlockLayout& layout = deformer.layout();
@@ -124,12 +124,12 @@ double ns_an_influence(int repetitions) {
 
 LargeTimes measure_large(int cells, int repetitions) {
   const double radius = 10.0;
-  const Points mesh = table1_plane(cells);
-  const Points starts = spread_starts();
+  const Points mesh = reference::table1_plane(cells);
+  const Points starts = reference::spread_starts();
   const auto ends = random_ends(starts);
   LargeTimes times;
   times.vertices = static_cast<std::size_t>(mesh.cols());
-  times.influences = count_evaluations(mesh, starts, radius);
+  times.influences = reference::count_evaluations(mesh, starts, radius);
   Deformers deformers(mesh, starts, radius);
   deformers.evaluated1.apply(ends[0], deformers.other);
   std::size_t reached = 0;

@@ -1,4 +1,4 @@
-// nendo bench scale: how the deformation's cost grows with vertices, control points and normals.
+// nendo bench scale: how the deformation's cost grows with vertices and control points.
 
 #include <cstdio>
 #include <iostream>
@@ -10,7 +10,6 @@
 #include "bench/plane_room.hpp"
 #include "bench/scale_trial.hpp"
 #include "bench/simd_choice.hpp"
-#include "bench/table1.hpp"
 #include "cli/cli.hpp"
 
 namespace nendo::bench::scale_bench {
@@ -71,24 +70,6 @@ void print(const CrowdTimes& times, bool json) {
   std::fflush(stdout);
 }
 
-void print(const NormalTimes& times, bool json) {
-  const double more = times.both_us - times.places_us;
-  if (json) {
-    const nlohmann::ordered_json object{{"measured", "normals"},
-                                        {"vertices", times.vertices},
-                                        {"radius", times.radius},
-                                        {"places_us", times.places_us},
-                                        {"normals_us", times.normals_us},
-                                        {"both_us", times.both_us},
-                                        {"ratio", {{"normals_to_places", more / times.places_us}}}};
-    std::cout << object.dump() << std::endl;
-    return;
-  }
-  std::printf("%9zu %6.0f %9.1f %9.1f %9.1f %8.2f x\n", times.vertices, times.radius,
-              times.places_us, times.normals_us, times.both_us, more / times.places_us);
-  std::fflush(stdout);
-}
-
 void heading(const Options& options, const char* text) {
   if (!options.json) std::printf("%s", text);
 }
@@ -119,10 +100,6 @@ int bench_scale(const Options& options) {
   const int cells = options.short_form ? 199 : 999;
   for (const double overlap : {9.0, 26.0})
     print(measure_crowd(cells, 1000, overlap, repetitions), options.json);
-  heading(options, "\nnormals, microseconds; what they take beside the places\n vertices radius    "
-                   "places   normals      both    ratio\n");
-  for (const double radius : table1_radii)
-    print(measure_normals(options.short_form ? 64 : 181, radius, 4 * repetitions), options.json);
   return 0;
 }
 
@@ -131,7 +108,7 @@ int bench_scale(const Options& options) {
 void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
-      "scale", "How the deformation grows: ten million vertices, a thousand centres, normals");
+      "scale", "How the deformation grows: ten million vertices, a thousand centres");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
   command.add_option("--repetitions", options->repetitions, "Take the best of so many");

@@ -12,7 +12,7 @@
 #include <nendo/deform/type1.hpp>
 
 #include "bench/deform_frames.hpp"
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 
 namespace nendo::bench {
 namespace {
@@ -35,13 +35,13 @@ double radius_for(double overlap, std::size_t centres) {
 } // namespace
 
 GrowthTimes measure_growth(int cells, int repetitions) {
-  const Points mesh = table1_plane(cells);
-  const Points starts = spread_starts();
+  const Points mesh = reference::table1_plane(cells);
+  const Points starts = reference::spread_starts();
   const double radius = 10.0;
   const auto ends = random_ends(starts);
   GrowthTimes times;
   times.vertices = static_cast<std::size_t>(mesh.cols());
-  times.influences = count_evaluations(mesh, starts, radius);
+  times.influences = reference::count_evaluations(mesh, starts, radius);
   {
     const std::size_t before = resident_bytes();
     Type1Deformer type1(mesh, 10, radius, {}, {.weight_bytes = 0});
@@ -80,7 +80,7 @@ CrowdTimes measure_crowd(int cells, std::size_t centres, double overlap, int rep
     starts.col(i) << place(random), place(random), 0.0;
     moves.col(i) << move(random), move(random), move(random);
   }
-  const Points mesh = table1_plane(cells);
+  const Points mesh = reference::table1_plane(cells);
   const BlockLayout layout(mesh);
   const BoundedShape rest(layout.pack());
   BlockShape out = rest.shape;
@@ -90,13 +90,13 @@ CrowdTimes measure_crowd(int cells, std::size_t centres, double overlap, int rep
   const Eigen::VectorXd radii = Eigen::VectorXd::Constant(starts.cols(), radius);
 
   CsrbfField ten;
-  ten.centres = spread_starts();
+  ten.centres = reference::spread_starts();
   ten.radii = Eigen::VectorXd::Constant(10, 80.0);
   ten.coefficients = random_ends(ten.centres)[0] - ten.centres;
 
   CrowdTimes times{.vertices = layout.vertex_count(),
                    .centres = centres,
-                   .influences = count_evaluations(mesh, starts, radius)};
+                   .influences = reference::count_evaluations(mesh, starts, radius)};
   BestOfThread build, solve, list, evaluate, by_ten;
   for (int n = 0; n < repetitions; ++n) {
     build.measure(times.vertices, [&](std::size_t) { solver.build(starts, radii); });
@@ -113,38 +113,6 @@ CrowdTimes measure_crowd(int cells, std::size_t centres, double overlap, int rep
   times.list_us = list.us();
   times.evaluate_us = evaluate.us();
   times.ten_ns = 1e3 * by_ten.us() / static_cast<double>(10 * times.vertices);
-  return times;
-}
-
-NormalTimes measure_normals(int cells, double radius, int repetitions) {
-  const Points mesh = table1_plane(cells);
-  const BlockLayout layout(mesh);
-  const BoundedShape rest(layout.pack());
-  Points up = Points::Zero(3, mesh.cols());
-  up.row(2).setOnes();
-  const BlockShape normals = layout.pack_vectors(up);
-  BlockShape turned = normals;
-  BlockShape out = rest.shape;
-  BoundedShape moving = rest;
-  BoundedShape moving_too = rest;
-  const Points starts = table1_starts();
-  CsrbfSolver solver({});
-  CsrbfField there;
-  solver.build(starts, Eigen::VectorXd::Constant(10, radius));
-  solver.solve(random_ends(starts)[0] - starts, there);
-  there.coefficients *= 1e-6; // the shape goes on and on
-  BlockEvaluator evaluator(layout, 10, {});
-  evaluator.set_field(there);
-  NormalTimes times{.vertices = layout.vertex_count(), .radius = radius};
-  BestOfThread places, alone, both;
-  for (int n = 0; n < repetitions; ++n) {
-    places.measure(times.vertices, [&](std::size_t) { evaluator.displace(moving); });
-    alone.measure(times.vertices, [&](std::size_t) { evaluator.turn(rest, normals, turned); });
-    both.measure(times.vertices, [&](std::size_t) { evaluator.displace(moving_too, &turned); });
-  }
-  times.places_us = places.us();
-  times.normals_us = alone.us();
-  times.both_us = both.us();
   return times;
 }
 

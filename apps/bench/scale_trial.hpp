@@ -1,6 +1,6 @@
 #pragma once
-// How the deformation's cost grows: with the vertices, up to ten millions of them, with the control
-// points, up to a thousand, and with normals. Times are the thread's, the best of many.
+// How the deformation's cost grows: with the vertices, up to ten millions of them, and with the
+// control points, up to a thousand. Times are the thread's, the best of many.
 
 #include <cstddef>
 
@@ -38,16 +38,5 @@ struct CrowdTimes {
 
 /// Centres at random over the plane, about `overlap` of which reach a vertex.
 CrowdTimes measure_crowd(int cells, std::size_t centres, double overlap, int repetitions);
-
-/// Ten supports of this radius near the plane of Table 1: places alone, normals alone, and both.
-struct NormalTimes {
-  std::size_t vertices = 0;
-  double radius = 0.0;
-  double places_us = 0.0;
-  double normals_us = 0.0;
-  double both_us = 0.0;
-};
-
-NormalTimes measure_normals(int cells, double radius, int repetitions);
 
 } // namespace nendo::bench

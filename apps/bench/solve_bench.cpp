@@ -18,8 +18,8 @@
 #include <nendo/deform/csrbf.hpp>
 
 #include "bench/bench.hpp"
-#include "bench/bumpy_sheet.hpp"
 #include "cli/cli.hpp"
+#include "reference/bumpy_sheet.hpp"
 
 namespace nendo::bench::solve_bench {
 namespace {
@@ -168,7 +168,7 @@ void print_text(std::uint64_t points, std::uint64_t neighbours,
 
 void measure_many(std::uint64_t points, const Options& options) {
   std::mt19937 random(2);
-  const Points starts = bumpy_sheet(random, static_cast<Eigen::Index>(points));
+  const Points starts = reference::bumpy_sheet(random, static_cast<Eigen::Index>(points));
   const double radius = std::sqrt(static_cast<double>(options.neighbours) /
                                   (std::numbers::pi * static_cast<double>(points)));
   std::vector<Measured> measured;

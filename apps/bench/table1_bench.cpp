@@ -13,11 +13,11 @@
 
 #include "bench/bench.hpp"
 #include "bench/simd_choice.hpp"
-#include "bench/table1.hpp"
 #include "bench/table1_paper.hpp"
 #include "bench/table1_picture.hpp"
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "reference/table1.hpp"
 
 namespace nendo::bench::table1_bench {
 namespace {
@@ -31,7 +31,7 @@ struct Options {
 
 /// One mesh of one layout.
 struct Place {
-  const Table1Layout& layout;
+  const reference::Table1Layout& layout;
   std::size_t plane;
   std::size_t vertices, triangles;
 };
@@ -44,7 +44,7 @@ void print_json(const Place& place, const Table1Entry& entry) {
           {"layout", place.layout.name},
           {"vertices", place.vertices},
           {"triangles", place.triangles},
-          {"radius", table1_radii.at(entry.radius)},
+          {"radius", reference::table1_radii.at(entry.radius)},
           {"type", type + 1},
           {"threads", threads},
           {"frames_per_second", threads == 1 ? cell.one_thread[type] : cell.two_threads[type]},
@@ -65,7 +65,7 @@ void print_heading() {
               "that the compiler vectorises; 2 thr: two threads.\n");
 }
 
-void print_layout(const Table1Layout& layout) {
+void print_layout(const reference::Table1Layout& layout) {
   std::printf("\nlayout %s: ten control points at z = %.0f\n", layout.name, layout.height);
   std::printf("%25s %17s  %35s  %35s\n", "", "evaluations", "------------- Type-1 --------------",
               "------------- Type-2 --------------");
@@ -77,7 +77,7 @@ void print_layout(const Table1Layout& layout) {
 void print_text(const Place& place, const Table1Entry& entry) {
   const Table1Cell& cell = entry.cell;
   std::printf("%9zu %8zu %6.0f %8zu %8zu", place.triangles, place.vertices,
-              table1_radii.at(entry.radius), cell.evaluations,
+              reference::table1_radii.at(entry.radius), cell.evaluations,
               paper_evaluations.at(entry.plane).at(entry.radius));
   for (std::size_t type = 0; type < 2; ++type)
     std::printf("  %7.1f %8.0f %9.0f %8.0f",
@@ -87,16 +87,17 @@ void print_text(const Place& place, const Table1Entry& entry) {
   std::fflush(stdout);
 }
 
-std::vector<Table1Entry> measure_layout(const Table1Layout& layout, const Options& options) {
-  const deform::Points starts = table1_starts(layout.height);
+std::vector<Table1Entry> measure_layout(const reference::Table1Layout& layout,
+                                        const Options& options) {
+  const deform::Points starts = reference::table1_starts(layout.height);
   std::vector<Table1Entry> entries;
-  for (std::size_t plane = 0; plane < table1_planes.size(); ++plane) {
-    const deform::Mesh mesh = table1_mesh(table1_planes.at(plane));
+  for (std::size_t plane = 0; plane < reference::table1_planes.size(); ++plane) {
+    const deform::Mesh mesh = reference::table1_mesh(reference::table1_planes.at(plane));
     const Place place{layout, plane, static_cast<std::size_t>(mesh.vertices.cols()),
                       mesh.face_count()};
-    for (std::size_t radius = 0; radius < table1_radii.size(); ++radius) {
-      const Table1Cell cell = measure_table1_cell(mesh.vertices, starts, table1_radii.at(radius),
-                                                  options.seconds_per_cell);
+    for (std::size_t radius = 0; radius < reference::table1_radii.size(); ++radius) {
+      const Table1Cell cell = measure_table1_cell(
+          mesh.vertices, starts, reference::table1_radii.at(radius), options.seconds_per_cell);
       entries.push_back({plane, radius, cell});
       options.json ? print_json(place, entries.back()) : print_text(place, entries.back());
     }
@@ -112,10 +113,10 @@ int bench_table1(const Options& options) {
     return cli::report(fine.error());
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   if (!options.json) print_heading();
-  for (const Table1Layout& layout : table1_layouts) {
+  for (const reference::Table1Layout& layout : reference::table1_layouts) {
     if (!options.json) print_layout(layout);
     const auto entries = measure_layout(layout, options);
-    if (options.picture.empty() || &layout != table1_layouts.data()) continue;
+    if (options.picture.empty() || &layout != reference::table1_layouts.data()) continue;
     const auto written = replace_file(options.picture, table1_picture(entries, layout.name));
     if (!written) return cli::report(written.error());
   }

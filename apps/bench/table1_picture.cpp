@@ -7,9 +7,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "bench/table1.hpp"
 #include "bench/table1_paper.hpp"
 #include "cli/svg_drawing.hpp"
+#include "reference/table1.hpp"
 
 namespace nendo::bench {
 namespace {
@@ -40,8 +40,8 @@ double y_of(double frames_per_second, double top) {
 
 /// A mesh's five radii stand together.
 double x_of(const Table1Entry& entry) {
-  const double group = panel_width / static_cast<double>(table1_planes.size());
-  const double step = group / (static_cast<double>(table1_radii.size()) + 1.0);
+  const double group = panel_width / static_cast<double>(reference::table1_planes.size());
+  const double step = group / (static_cast<double>(reference::table1_radii.size()) + 1.0);
   return panel_left + group * static_cast<double>(entry.plane) +
          step * (static_cast<double>(entry.radius) + 1.0);
 }
@@ -85,8 +85,8 @@ void draw_column(cli::SvgDrawing& drawing, const Table1Entry& entry, std::size_t
   drawing.dot(x, y_of(cell.two_threads[type], top), 5.5, "white", two_colour);
   drawing.dot(x, ours, 3.0, one_colour, one_colour);
   drawing.words(x, best - 9.0, fmt::format("{:.0f} x", cell.one_thread[type] / paper), finest);
-  drawing.words(x, top + panel_height + 14.0, fmt::format("{:.0f}", table1_radii.at(entry.radius)),
-                small_in_middle);
+  drawing.words(x, top + panel_height + 14.0,
+                fmt::format("{:.0f}", reference::table1_radii.at(entry.radius)), small_in_middle);
 }
 
 void draw_panel(cli::SvgDrawing& drawing, const std::vector<Table1Entry>& entries, std::size_t type,
@@ -99,8 +99,8 @@ void draw_panel(cli::SvgDrawing& drawing, const std::vector<Table1Entry>& entrie
                 title_text);
   for (const Table1Entry& entry : entries)
     draw_column(drawing, entry, type, paper.at(entry.plane).at(entry.radius), top);
-  for (std::size_t plane = 0; plane < table1_planes.size(); ++plane) {
-    const double group = panel_width / static_cast<double>(table1_planes.size());
+  for (std::size_t plane = 0; plane < reference::table1_planes.size(); ++plane) {
+    const double group = panel_width / static_cast<double>(reference::table1_planes.size());
     const double middle = panel_left + group * (static_cast<double>(plane) + 0.5);
     drawing.words(middle, top + panel_height + 30.0,
                   fmt::format("radius; {} triangles", table1_triangles.at(plane)), small_in_middle);

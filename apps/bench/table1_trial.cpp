@@ -6,7 +6,7 @@
 
 #include "bench/deform_frames.hpp"
 #include "bench/plain_deformer.hpp"
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 
 namespace nendo::bench {
 namespace {
@@ -83,7 +83,7 @@ private:
 Table1Cell measure_table1_cell(const Points& plane, const Points& starts, double radius,
                                double seconds) {
   Table1Cell cell;
-  cell.evaluations = count_evaluations(plane, starts, radius);
+  cell.evaluations = reference::count_evaluations(plane, starts, radius);
   Trial trial(plane, starts, radius);
   trial.measure_alone(0.6 * seconds, cell);
   cell.two_threads = {trial.type1_by_two(0.2 * seconds), trial.type2_by_two(0.2 * seconds)};

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include <nendo/flow/finger_supports.hpp>
 #include <nendo/timeline/timeline_file.hpp>
 
 #include "edit/edit_words.hpp"
@@ -188,7 +189,7 @@ void EditSession::follow_history() {
   view_.duration_s = timeline.duration_s;
   view_.rate_hz = timeline.rate_hz;
   moment_.radius_m =
-      viewer::radii_on_stage(timeline.sculptor.deformer.supports, timeline.units_per_metre);
+      flow::radii_on_stage(timeline.sculptor.deformer.supports, timeline.units_per_metre);
   head_.seek(head_.time_s(), timeline.duration_s);
 }
 

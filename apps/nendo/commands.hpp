@@ -6,6 +6,13 @@
 
 namespace nendo::app {
 
+namespace bench_command {
+void add(cli::Command& program);
+/// Becomes the nendo-bench that stands beside this program. `arguments` begin with the word after
+/// the program's name, which is "bench", and end with a null pointer. Returns an exit code only if
+/// there is no nendo-bench.
+int start(char** arguments);
+} // namespace bench_command
 namespace calibrate_command {
 void add(cli::Command& program);
 }

@@ -1,5 +1,6 @@
 // nendo manual: writes the manual pages and completions, for whoever builds and packages nendo.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 #include "cli/cli.hpp"
 #include "manual/completions.hpp"
 #include "manual/man_page.hpp"
+#include "manual/model_json.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::manual_command {
@@ -19,9 +21,25 @@ namespace {
 struct Options {
   std::string folder;
   std::string date;
+  std::string bench;
 };
 
-int write_manual(const cli::CommandModel& program, const Options& options) {
+/// Has the commands of nendo-bench, as it described them, stand where `nendo bench` stands.
+Result<void> add_bench(const std::string& file, cli::CommandModel& program) {
+  if (file.empty()) return {};
+  constexpr std::uint64_t most_bytes = 1U << 20U;
+  const auto text = read_file(file, most_bytes, "description of nendo-bench");
+  if (!text) return text.error();
+  auto bench = manual::parse_model(*text);
+  if (!bench) return Error{bench.error().code, file + ": " + bench.error().message};
+  for (cli::CommandModel& command : program.commands)
+    if (command.name == bench->name) command = *bench;
+  return {};
+}
+
+int write_manual(cli::CommandModel program, const Options& options) {
+  if (const auto added = add_bench(options.bench, program); !added)
+    return cli::report(added.error());
   const manual::PageOrigin origin{options.date, NENDO_VERSION};
   std::vector<std::pair<std::string, std::string>> files{
       {"nendo.1", manual::program_page(program, origin)},
@@ -50,6 +68,8 @@ void add(cli::Command& program) {
   command.add_option("DIR", options->folder, "The folder to write them to").required();
   command.add_option("--date", options->date, "The date that the pages bear, as 2026-11-22")
       .required();
+  command.add_option("--bench", options->bench,
+                     "What nendo-bench describe printed; without it, nendo bench has a short page");
   command.on_chosen([options, program] { return write_manual(program.model(), *options); });
 }
 

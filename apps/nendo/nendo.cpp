@@ -2,13 +2,13 @@
 
 #include <exception>
 #include <iostream>
+#include <string_view>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <nendo/base/result.hpp>
 
-#include "bench/bench.hpp"
 #include "nendo/commands.hpp"
 
 namespace {
@@ -16,6 +16,7 @@ namespace {
 int run(int argc, char** argv) {
   using namespace nendo;
   using namespace nendo::app;
+  if (argc > 1 && std::string_view(argv[1]) == "bench") return bench_command::start(argv + 1);
   // The drivers' log lines must not mix with what a command prints.
   spdlog::set_default_logger(spdlog::stderr_color_mt("nendo"));
   spdlog::set_pattern("nendo: %v");
@@ -44,7 +45,7 @@ int run(int argc, char** argv) {
         export_command::add(program);
         edit_command::add(program);
         stress_command::add(program);
-        bench::add_bench(program);
+        bench_command::add(program);
         manual_command::add(program);
       });
 }

@@ -11,7 +11,7 @@
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/simd.hpp>
 
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
 
@@ -80,12 +80,13 @@ TEST_SUITE("block_evaluator") {
     for (const auto& [of_cells, middles] :
          {std::pair{32, false}, {64, false}, {128, false}, {128, true}}) {
       const int cells = of_cells; // Clang 14 captures no structured bindings
-      const Points mesh = nendo::bench::table1_plane(cells, middles);
-      for (const double radius : nendo::bench::table1_radii) {
+      const Points mesh = nendo::reference::table1_plane(cells, middles);
+      for (const double radius : nendo::reference::table1_radii) {
         std::mt19937 random(7);
         const Eigen::VectorXd radii = Eigen::VectorXd::Constant(10, radius);
-        for (const auto& starts : {nendo::bench::table1_starts(), nendo::bench::crowded_starts()}) {
-          const auto moves = nendo::bench::table1_displacements(random);
+        for (const auto& starts :
+             {nendo::reference::table1_starts(), nendo::reference::crowded_starts()}) {
+          const auto moves = nendo::reference::table1_displacements(random);
           const CsrbfField field = solved(starts, moves, radii);
           CAPTURE(cells);
           CAPTURE(radius);
@@ -176,7 +177,7 @@ TEST_SUITE("block_evaluator") {
   }
 
   TEST_CASE("a block that nothing reaches is not written, and vertices there stay bit for bit") {
-    const Points mesh = nendo::bench::table1_plane(64);
+    const Points mesh = nendo::reference::table1_plane(64);
     const BlockLayout layout(mesh);
     const BoundedShape rest(layout.pack());
     CsrbfField field = random_field(1, 6.0, 58);
@@ -229,7 +230,7 @@ TEST_SUITE("block_evaluator") {
   }
 
   TEST_CASE("a shape too large for the caches goes elsewhere by the same bits as in its place") {
-    const Points mesh = nendo::bench::table1_plane(650); // 424 000 vertices
+    const Points mesh = nendo::reference::table1_plane(650); // 424 000 vertices
     const BlockLayout layout(mesh);
     BoundedShape shape(layout.pack());
     for (const auto name : simd_names()) {

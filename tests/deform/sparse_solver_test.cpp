@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/bumpy_sheet.hpp"
+#include "reference/bumpy_sheet.hpp"
 #include "support/fields.hpp"
 #include "support/test_meshes.hpp"
 
@@ -30,7 +30,7 @@ double radius_for(double neighbours, Eigen::Index count) {
 TEST_SUITE("sparse solver") {
   TEST_CASE("sparse and dense give one field, for every kernel, polynomial and order") {
     std::mt19937 random(1);
-    const Points starts = nendo::bench::bumpy_sheet(random, 150);
+    const Points starts = nendo::reference::bumpy_sheet(random, 150);
     const Points g = random_points(random, 150, 1.0);
     const Points points = random_points(random, 100, 1.2);
     VectorXd radii = VectorXd::Constant(150, radius_for(15.0, 150));
@@ -66,7 +66,7 @@ TEST_SUITE("sparse solver") {
   // Neighbours are then looked for in another way (PointGrid).
   TEST_CASE("two crowds that are a thousand supports apart give the dense field, too") {
     std::mt19937 random(9);
-    Points starts = nendo::bench::bumpy_sheet(random, 160);
+    Points starts = nendo::reference::bumpy_sheet(random, 160);
     starts.rightCols(80).array() += 1000.0 * radius_for(15.0, 160);
     const Points g = random_points(random, 160, 1.0);
     const Points points = starts + random_points(random, 160, 0.1);
@@ -84,7 +84,7 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("an octree's order keeps the factor sparse, minimum degree more so") {
     std::mt19937 random(2);
-    const Points starts = nendo::bench::bumpy_sheet(random, 2000);
+    const Points starts = nendo::reference::bumpy_sheet(random, 2000);
     const VectorXd radii = VectorXd::Constant(2000, radius_for(9.0, 2000));
     const auto entries = [&](PointOrder order) {
       CsrbfSolver solver({.order = order});
@@ -100,7 +100,7 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("thousands of start points go where their control vectors say") {
     std::mt19937 random(3);
-    const Points starts = nendo::bench::bumpy_sheet(random, 5000);
+    const Points starts = nendo::reference::bumpy_sheet(random, 5000);
     const Points g = random_points(random, 5000, 1.0);
     for (const Polynomial polynomial : {Polynomial::none, Polynomial::linear}) {
       CsrbfSolver solver({.polynomial = polynomial});
@@ -115,11 +115,11 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("few points, and wide supports, are solved densely") {
     std::mt19937 random(4);
-    const Points few = nendo::bench::bumpy_sheet(random, 40);
+    const Points few = nendo::reference::bumpy_sheet(random, 40);
     CsrbfSolver solver({});
     REQUIRE(is_solved(solver.build(few, VectorXd::Constant(40, 0.1).eval())));
     CHECK_FALSE(solver.effort().sparse);
-    const Points many = nendo::bench::bumpy_sheet(random, 300);
+    const Points many = nendo::reference::bumpy_sheet(random, 300);
     REQUIRE(is_solved(solver.build(many, VectorXd::Constant(300, 0.1).eval())));
     CHECK(solver.effort().sparse);
     REQUIRE(is_solved(solver.build(many, VectorXd::Constant(300, 2.0).eval())));
@@ -133,7 +133,7 @@ TEST_SUITE("sparse solver") {
   TEST_CASE("too many points in each other's supports are refused, and the old field stays") {
     std::mt19937 random(5);
     const Eigen::Index n = CsrbfSolver::most_dense_points + 1;
-    const Points starts = nendo::bench::bumpy_sheet(random, n);
+    const Points starts = nendo::reference::bumpy_sheet(random, n);
     CsrbfSolver solver({});
     CsrbfField field;
     CHECK(solver.build(starts, VectorXd::Constant(n, 2.0).eval()) == FieldStatus::too_dense);
@@ -147,7 +147,7 @@ TEST_SUITE("sparse solver") {
 
   TEST_CASE("points of all scales, and outliers, are solved or refused, never without an answer") {
     std::mt19937 random(6);
-    Points starts = nendo::bench::bumpy_sheet(random, 400);
+    Points starts = nendo::reference::bumpy_sheet(random, 400);
     starts.col(7) << 1e90, -1e90, 3.0;
     const Points g = random_points(random, 400, 1.0);
     CsrbfSolver solver({.storage = Storage::sparse});

@@ -13,12 +13,13 @@
 #include <vtkThinPlateSplineTransform.h>
 
 #include "bench/deform_frames.hpp"
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 #include "bench/table1_trial.hpp"
 
 namespace {
 
 using namespace nendo::bench;
+using namespace nendo::reference;
 using nendo::deform::Points;
 
 void assign(const Points& from, vtkPoints& to) {

@@ -4,8 +4,6 @@
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,6 +13,7 @@
 #include <unistd.h>
 
 #include "support/temporary_folder.hpp"
+#include "support/text_files.hpp"
 
 namespace nendo::test {
 
@@ -24,16 +23,6 @@ struct Finished {
   std::string err;
   double seconds = 0.0;
 };
-
-inline std::string contents(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-inline void write_file(const std::filesystem::path& path, std::string_view text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
 
 /// A running program. Killed, if it still runs, when this is destroyed.
 class Program {
@@ -117,14 +106,6 @@ public:
 private:
   Program program_;
 };
-
-inline std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);)
-    lines.push_back(line);
-  return lines;
-}
 
 /// An error is one line that begins with the program's name and mentions `what`.
 inline bool is_one_line_about(const std::string& err, std::string_view what) {

@@ -1,6 +1,7 @@
-# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [ALONE] [UNOPTIMISED]): one doctest program test_<name>, one
-# ctest case per TEST_CASE. INCLUDES names private src/ folders of the unit under test. ALONE: nothing else is tested
-# meanwhile. UNOPTIMISED halves the compile time; not for tests of templates: the linker may prefer their slow copies.
+# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [PROGRAM] [ALONE] [UNOPTIMISED]): one doctest program
+# test_<name>, one ctest case per TEST_CASE. INCLUDES names private src/ folders of the unit under test. PROGRAM: the tests
+# run nendo, whose path is NENDO_PROGRAM. ALONE: nothing else is tested meanwhile. UNOPTIMISED halves the compile time; not
+# for tests of templates: the linker may prefer their slow copies.
 include(doctest)
 
 # doctest's own implementation, compiled once for all test programs.
@@ -9,7 +10,7 @@ nendo_settings(nendo_test_main PRIVATE)
 target_link_libraries(nendo_test_main PUBLIC doctest::doctest)
 
 function(nendo_test name)
-  cmake_parse_arguments(ARG "ALONE;UNOPTIMISED" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
+  cmake_parse_arguments(ARG "PROGRAM;ALONE;UNOPTIMISED" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
   set(target test_${name})
   add_executable(${target} ${ARG_SOURCES})
   # These replace malloc and the like, or stand before a program's own libraries: each is compiled alone.
@@ -27,6 +28,13 @@ function(nendo_test name)
   nendo_precompile(${target} <doctest/doctest.h>)
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
+  if(ARG_PROGRAM)
+    target_compile_definitions(${target} PRIVATE NENDO_PROGRAM="$<TARGET_FILE:nendo>")
+    add_dependencies(${target} nendo)
+    if(TARGET nendo-bench) # which `nendo bench` starts
+      add_dependencies(${target} nendo-bench)
+    endif()
+  endif()
   set(timeout_s 120)
   if(CMAKE_CROSSCOMPILING) # an emulator takes ten times as long
     set(timeout_s 1200)

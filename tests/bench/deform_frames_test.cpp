@@ -4,11 +4,12 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 
 namespace deform_frames_test {
 
 using namespace nendo::bench;
+using namespace nendo::reference;
 using namespace std::chrono_literals;
 
 TEST_SUITE("deform_frames") {

@@ -36,18 +36,18 @@ TEST_SUITE("touching_glove") {
     options.left = "sim:touch?seed=7";
     options.right = "sim:touch?seed=7";
     EventCount event_count;
-    const auto hands = session::open_hands(options, ball, event_count);
-    REQUIRE(hands);
-    for (const auto& hand : *hands)
+    const auto opened = session::open_hands(options, ball, event_count);
+    REQUIRE(opened);
+    for (const auto& hand : opened->hands)
       hand.glove->stop(); // so that the first samples are what the loop shows
-    const auto placed = session::place_loop(options, *hands, ball);
+    const auto placed = session::place_loop(options, opened->hands, ball);
     REQUIRE(placed);
-    for (const auto& hand : *hands)
+    for (const auto& hand : opened->hands)
       hand.ring->drain([](const GloveSample&) {});
     placed->loop->tick(0, HostClock::now());
     REQUIRE(placed->loop->frames().update());
     const flow::Frame& frame = placed->loop->frames().front();
-    for (const auto& hand : *hands) {
+    for (const auto& hand : opened->hands) {
       const std::size_t at = flow::Placement::index_of(hand.side);
       const auto meant = flow::TouchingHand::make(ball, hand::HandSkeleton(hand.side), {.seed = 7});
       REQUIRE(meant);

@@ -131,7 +131,7 @@ TEST_SUITE("stress options") {
     refused("--break", [](Arguments& a) { a.break_us = 0.0; });
     refused("--histogram", [](Arguments& a) { a.histogram_us = 0; });
     refused("--floor", [](Arguments& a) { a.floor_s = -1.0; });
-    refused("--radius", [](Arguments& a) { a.run.radius = "-3"; });
+    refused("--radius", [](Arguments& a) { a.radius = "-3"; });
     refused("--priority", [](Arguments& a) { a.loop.priority = 98; });
     refused("--affinity", [](Arguments& a) { a.loop.affinity = "x"; });
     refused("--policy", [](Arguments& a) { a.loop.policy = "hurry"; });

@@ -63,9 +63,12 @@ std::vector<Words> command_lines() {
 class Manual {
 public:
   Manual() {
-    REQUIRE(
-        nendo::test::nendo({"manual", folder_.path().string(), "--date", "2026-01-02"}).exit_code ==
-        0);
+    const auto described = nendo::test::nendo({"bench", "describe"});
+    REQUIRE(described.exit_code == 0);
+    write_file(path("bench.json"), described.out);
+    const auto written = nendo::test::nendo(
+        {"manual", folder_.path().string(), "--date", "2026-01-02", "--bench", path("bench.json")});
+    REQUIRE_MESSAGE(written.exit_code == 0, written.err);
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   /// What readline would offer for the words, of which the last one is being typed.

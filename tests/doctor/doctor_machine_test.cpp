@@ -7,7 +7,7 @@
 #include <nendo/udev/rules.hpp>
 
 #include "doctor/doctor.hpp"
-#include "support/program.hpp"
+#include "support/text_files.hpp"
 
 namespace doctor_machine_test {
 

@@ -11,9 +11,9 @@
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_store.hpp>
 
-#include "bench/wearers.hpp"
 #include "calibrate/capture_file.hpp"
 #include "gloves/sample_json.hpp"
+#include "reference/wearers.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/terminal_program.hpp"
@@ -30,7 +30,7 @@ constexpr int samples_between = 40; ///< from pose to pose
 constexpr int samples_held = 270;   // three seconds
 
 /// A wearer doing the poses one after another, recorded as nendo monitor --json --raw prints it.
-void record(bench::Wearer& wearer, std::span<const hand::PoseId> poses,
+void record(reference::Wearer& wearer, std::span<const hand::PoseId> poses,
             const std::filesystem::path& path) {
   std::ofstream file(path);
   hand::SensorAngles from = wearer.perform(hand::PoseId::flat);
@@ -38,8 +38,7 @@ void record(bench::Wearer& wearer, std::span<const hand::PoseId> poses,
   const auto put = [&](const hand::SensorAngles& angles) {
     GloveSample sample = wearer.read(angles);
     time_s += 1.0 / rate_hz;
-    sample.arrival = HostTime(
-        std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(time_s)));
+    sample.arrival = HostTime(from_seconds(time_s));
     sample.measured = sample.arrival;
     sample.side = wearer.side();
     file << gloves::sample_json(sample, nullptr) << '\n';
@@ -64,7 +63,7 @@ TEST_SUITE("calibrate") {
   TEST_CASE("a capture of all poses becomes a calibration that is this wearer's") {
     const TemporaryFolder folder;
     for (const std::uint64_t seed : {2001U, 2002U}) { // a left hand and a right one
-      bench::Wearer wearer(seed);
+      reference::Wearer wearer(seed);
       const auto capture = folder.path() / "capture.jsonl";
       const auto out = folder.path() / "anna.toml";
       const auto picture = folder.path() / "anna.svg";
@@ -96,7 +95,7 @@ TEST_SUITE("calibrate") {
 
   TEST_CASE("two poses are enough for the quick way, and less is an error that names what lacks") {
     const TemporaryFolder folder;
-    bench::Wearer wearer(2003);
+    reference::Wearer wearer(2003);
     const auto capture = folder.path() / "capture.jsonl";
     const auto out = folder.path() / "quick.toml";
     record(wearer, hand::quick_poses(), capture);
@@ -116,7 +115,7 @@ TEST_SUITE("calibrate") {
 
   TEST_CASE("held poses can be a capture, too, and are what was held") {
     const TemporaryFolder folder;
-    bench::Wearer wearer(2004);
+    reference::Wearer wearer(2004);
     std::vector<hand::PoseReading> readings;
     for (const auto pose : hand::full_poses()) {
       const GloveSample sample = wearer.read(wearer.perform(pose));
@@ -155,7 +154,7 @@ TEST_SUITE("calibrate") {
 
   TEST_CASE("a session that goes on has the free motion of the one that was quit") {
     const TemporaryFolder folder;
-    bench::Wearer wearer(2005);
+    reference::Wearer wearer(2005);
     std::vector<hand::PoseReading> readings;
     for (const auto pose : hand::full_poses()) {
       const GloveSample sample = wearer.read(wearer.perform(pose));

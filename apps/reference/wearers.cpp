@@ -1,4 +1,4 @@
-#include "bench/wearers.hpp"
+#include "reference/wearers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace nendo::bench {
+namespace nendo::reference {
 namespace {
 
 using hand::Finger;
@@ -330,4 +330,4 @@ hand::JointAngles joints_of(const SensorAngles& angles_rad) noexcept {
   return joints;
 }
 
-} // namespace nendo::bench
+} // namespace nendo::reference

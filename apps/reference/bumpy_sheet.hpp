@@ -6,7 +6,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-namespace nendo::bench {
+namespace nendo::reference {
 
 /// Over a square of side 1.
 inline deform::Points bumpy_sheet(std::mt19937& random, Eigen::Index count) {
@@ -20,4 +20,4 @@ inline deform::Points bumpy_sheet(std::mt19937& random, Eigen::Index count) {
   return points;
 }
 
-} // namespace nendo::bench
+} // namespace nendo::reference

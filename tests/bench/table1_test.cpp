@@ -1,4 +1,4 @@
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -14,6 +14,7 @@
 namespace table1_test {
 
 using namespace nendo::bench;
+using namespace nendo::reference;
 using nendo::deform::Mesh;
 
 TEST_SUITE("table1") {

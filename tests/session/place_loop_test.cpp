@@ -17,27 +17,30 @@ TEST_SUITE("place_loop") {
     RunOptions options;
     options.right = "sim";
     EventCount event_count;
-    auto hands = open_hands(options, mesh, event_count);
-    REQUIRE(hands);
-    OpenHand& hand = hands->front();
+    auto opened = open_hands(options, mesh, event_count);
+    REQUIRE(opened);
+    OpenHand& hand = opened->hands.front();
     constexpr Sensor sensor = Sensor::thumb_mcp;
-    hand.known.own.calibration[sensor].gain_rad_per_count = 0.01;
-    hand.known.own.size.length_m = 0.17;
-    hand.known.swapped.calibration[sensor].gain_rad_per_count = 0.02;
-    hand.known.swapped.size.length_m = 0.20;
+    hand.wearer.right.calibration[sensor].gain_rad_per_count = 0.01;
+    hand.wearer.right.size.length_m = 0.17;
+    hand.wearer.left.calibration[sensor].gain_rad_per_count = 0.02;
+    hand.wearer.left.size.length_m = 0.20;
     for (const Side side : {Side::right, Side::left, Side::right}) {
       hand.first.side = side; // a glove of that side was plugged into the box
-      const auto placed = place_loop(options, *hands, mesh);
+      const auto placed = place_loop(options, opened->hands, mesh);
       REQUIRE(placed);
       const flow::HandInput& input = placed->setup.inputs.front();
       const bool swapped = side == Side::left;
-      CHECK(input.calibration[sensor].gain_rad_per_count == (swapped ? 0.02 : 0.01));
-      CHECK(input.swapped[sensor].gain_rad_per_count == (swapped ? 0.01 : 0.02));
+      const auto gain = [&](Side glove) {
+        return input.wearer.of(glove).calibration[sensor].gain_rad_per_count;
+      };
+      CHECK(gain(input.first.side) == (swapped ? 0.02 : 0.01));
+      CHECK(gain(opposite(input.first.side)) == (swapped ? 0.01 : 0.02));
       const hand::HandSkeleton known(Side::right, {swapped ? 0.20 : 0.17});
       const auto tips = [](const hand::HandSkeleton& skeleton) {
         return skeleton.pose({}, Eigen::Isometry3d::Identity()).fingertip_positions();
       };
-      CHECK(tips(input.skeleton) == tips(known));
+      CHECK(tips(input.skeleton(input.first.side)) == tips(known));
     }
   }
 }

@@ -12,7 +12,7 @@
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/skeleton.hpp>
 
-namespace nendo::bench {
+namespace nendo::reference {
 
 struct AngleRange {
   double low_rad = 0.0;
@@ -84,4 +84,4 @@ private:
 /// The joints of these sensors' angles, with a straight middle finger.
 hand::JointAngles joints_of(const hand::SensorAngles& angles_rad) noexcept;
 
-} // namespace nendo::bench
+} // namespace nendo::reference

@@ -27,35 +27,46 @@ using namespace nendo::takes;
 
 namespace {
 
-/// Has the loop made anew three times, in the other mode each time, after some frames.
-class Renewer final : public Onlooker {
+/// Sees to the pace itself.
+class PacingObserver : public Observer {
 public:
-  void begin(const PlacedLoop& placed, const deform::Mesh& model, const std::vector<OpenHand>&,
-             const RunOptions&) override {
-    begun.push_back(model.vertices);
-    modes.push_back(placed.setup.options.sculptor.mode);
-    wrists.push_back(placed.setup.placement.T_stage_wrist[0].matrix());
-    settings_ = settings_of(placed);
+  bool sets_pace() const noexcept override { return true; }
+
+protected:
+  static void wait() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
+};
+
+/// Has the loop made anew three times, in the other mode each time, after some frames.
+class Renewer final : public PacingObserver {
+public:
+  void loop_begins(const LoopStart& start) override {
+    begun.push_back(start.model.vertices);
+    modes.push_back(start.placed.setup.options.sculptor.mode);
+    wrists.push_back(start.placed.setup.placement.T_stage_wrist[0].matrix());
+    layout_ = &start.placed.loop->layout();
+    settings_ = settings_of(start.placed);
     frames_ = 0;
   }
-  Verdict look(flow::DeformLoop& loop, bool fresh) override {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    if (!fresh) return Verdict::go_on;
+  void update(const RunStatus& status, flow::CommandRing& commands) override {
+    wait();
+    if (!status.fresh) return;
     if (++frames_ == 1) {
-      loop.layout().unpack(loop.frames().front().shape, shape_);
+      layout_->unpack(status.frame.shape, shape_);
       const double jump = (shape_ - begun.back()).colwise().norm().maxCoeff();
       const auto pause = HostClock::now() - left_at_;
       if (begun.size() > 1 && pause < std::chrono::milliseconds(250))
         most_jump = std::max(most_jump, jump);
     }
-    return frames_ < 40 || begun.size() < 4 ? Verdict::go_on : Verdict::end;
-  }
-  flow::LoopChange next_change() override {
-    if (frames_ < 40) return {};
+    if (frames_ < 40) return;
+    if (begun.size() >= 4) {
+      commands.try_push(flow::EndRun{});
+      return;
+    }
     flow::LoopSettings settings = settings_;
     settings.mode = settings.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
     left_at_ = HostClock::now();
-    return {settings, false, unrecorded && *unrecorded != begun.size()};
+    commands.try_push(flow::ChangeSettings{settings});
+    if (unrecorded) commands.try_push(flow::SetRecording{*unrecorded != begun.size()});
   }
 
   std::vector<deform::Points> begun;
@@ -68,32 +79,36 @@ private:
   int frames_ = 0;
   flow::LoopSettings settings_;
   HostTime left_at_{};
+  const deform::BlockLayout* layout_ = nullptr;
   deform::Points shape_;
 };
 
-using Changes = std::vector<flow::LoopChange>;
+/// What is asked for at the same time, one after another.
+using Changes = std::vector<std::vector<flow::Command>>;
 
-/// Wants one change after another of loops that have run for a while, and moves a hand meanwhile.
-class Wisher final : public Outlet {
+/// Asks for one change after another of loops that have run for a while, and moves a hand
+/// meanwhile.
+class Asker final : public Sink, public Observer {
 public:
-  explicit Wisher(Changes wanted) : changes(std::move(wanted)) {}
+  explicit Asker(Changes wanted) : changes(std::move(wanted)) {}
 
-  Result<void> begin(const PlacedLoop& placed, const deform::Mesh& model,
-                     const std::vector<OpenHand>&) override {
-    const auto settings = settings_of(placed);
+  Result<void> begin(const LoopStart& start) override {
+    const auto settings = settings_of(start.placed);
     if (refused && settings.kernel == *refused) return Error{Errc::failed, "not with this kernel"};
-    begun.push_back(model.vertices);
+    begun.push_back(start.model.vertices);
     in_force.push_back(settings);
-    recorded.push_back(placed.recorded);
-    wrists.push_back(placed.setup.placement.T_stage_wrist[0].translation());
+    recorded.push_back(start.placed.recorded);
+    wrists.push_back(start.placed.setup.placement.T_stage_wrist[0].translation());
     frames_ = 0;
     return {};
   }
   void show(const flow::Frame&) noexcept override { ++frames_; }
-  std::optional<flow::WristMove> next_wrist() override { return std::exchange(move, std::nullopt); }
-  flow::LoopChange next_change() override {
-    if (frames_ < least_frames || asked >= changes.size()) return {};
-    return changes[asked++];
+  void update(const RunStatus&, flow::CommandRing& commands) override {
+    if (move) commands.try_push(*std::exchange(move, std::nullopt));
+    if (frames_ < least_frames || asked >= changes.size()) return;
+    for (const auto& command : changes[asked])
+      commands.try_push(command);
+    ++asked;
   }
   /// Has asked for all, so long ago that it has it.
   bool is_content() const { return asked == changes.size() && frames_ >= 60; }
@@ -112,39 +127,36 @@ private:
   std::atomic<int> frames_{0};
 };
 
-/// Wants the shape kept, and ends the run at once.
-class Keeper final : public Onlooker {
+/// Asks for the shape to be saved, and ends the run at once.
+class Saver final : public PacingObserver {
 public:
-  void begin(const PlacedLoop&, const deform::Mesh&, const std::vector<OpenHand>&,
-             const RunOptions&) override {}
-  Verdict look(flow::DeformLoop&, bool fresh) override {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    return fresh && ++frames_ >= 60 ? Verdict::end : Verdict::go_on;
+  void update(const RunStatus& status, flow::CommandRing& commands) override {
+    wait();
+    if (!status.fresh || ++frames_ < 60) return;
+    commands.try_push(flow::SaveShape{});
+    commands.try_push(flow::EndRun{});
   }
-  flow::SaveRequest next_save_request() override { return {frames_ >= 60 && told.empty(), false}; }
-  void tell(const std::string& words) override { told.push_back(words); }
+  void report(const std::string& message) override { reports.push_back(message); }
 
-  std::vector<std::string> told;
+  std::vector<std::string> reports;
 
 private:
   int frames_ = 0;
 };
 
-/// Ends a run when all have what they wanted.
-class Ender final : public Onlooker {
+/// Ends a run when all have what they asked for.
+class Ender final : public PacingObserver {
 public:
-  explicit Ender(std::vector<const Wisher*> wishers) : wishers_(std::move(wishers)) {}
-  void begin(const PlacedLoop&, const deform::Mesh&, const std::vector<OpenHand>&,
-             const RunOptions&) override {}
-  Verdict look(flow::DeformLoop&, bool) override {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    const bool all = std::all_of(wishers_.begin(), wishers_.end(),
-                                 [](const Wisher* wisher) { return wisher->is_content(); });
-    return all ? Verdict::end : Verdict::go_on;
+  explicit Ender(std::vector<const Asker*> askers) : askers_(std::move(askers)) {}
+  void update(const RunStatus&, flow::CommandRing& commands) override {
+    wait();
+    if (std::all_of(askers_.begin(), askers_.end(),
+                    [](const Asker* asker) { return asker->is_content(); }))
+      commands.try_push(flow::EndRun{});
   }
 
 private:
-  std::vector<const Wisher*> wishers_;
+  std::vector<const Asker*> askers_;
 };
 
 struct Run {
@@ -160,16 +172,26 @@ struct Run {
     options.out = (folder.path() / "out.ply").string();
     REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
   }
-  RunOutcome follow(std::vector<Wisher*> wishers) {
-    auto hands = open_hands(options, mesh, event_count);
-    REQUIRE(hands);
-    Ender ender({wishers.begin(), wishers.end()});
-    const Followers followers{[](const auto&, double) {}, &ender, {wishers.begin(), wishers.end()}};
-    auto outcome = run_session(options, *hands, mesh, followers);
+  RunOutcome follow(std::vector<Asker*> askers) {
+    auto opened = open_hands(options, mesh, event_count);
+    REQUIRE(opened);
+    Ender ender({askers.begin(), askers.end()});
+    RunParticipants participants{
+        [](const auto&, double) {}, {askers.begin(), askers.end()}, {askers.begin(), askers.end()}};
+    participants.observers.push_back(&ender);
+    auto outcome = run_session(options, opened->hands, mesh, participants);
     REQUIRE(outcome);
     return *std::move(outcome);
   }
 };
+
+constexpr flow::Command reset = flow::ResetModel{};
+constexpr flow::Command record(bool on) {
+  return flow::SetRecording{on};
+}
+constexpr flow::Command change(const flow::LoopSettings& settings) {
+  return flow::ChangeSettings{settings};
+}
 
 constexpr flow::LoopSettings other_settings{
     flow::Mode::type2, deform::Wendland::c4, {0.1, 0.11, 0.12, 0.13, 0.14}};
@@ -204,10 +226,11 @@ TEST_SUITE("run_session") {
     options.mesh = "ball";
     options.out = (folder.path() / "out.ply").string();
     EventCount event_count;
-    auto hands = open_hands(options, mesh, event_count);
-    REQUIRE(hands);
+    auto opened = open_hands(options, mesh, event_count);
+    REQUIRE(opened);
     Renewer renewer;
-    const auto outcome = run_session(options, *hands, mesh, {[](const auto&, double) {}, &renewer});
+    const auto outcome =
+        run_session(options, opened->hands, mesh, {[](const auto&, double) {}, {&renewer}});
     REQUIRE(outcome);
     REQUIRE(renewer.begun.size() == 4);
     CHECK(renewer.begun[0] == mesh.vertices);
@@ -223,14 +246,15 @@ TEST_SUITE("run_session") {
     CHECK(renewer.most_jump < 0.15);
   }
 
-  TEST_CASE("what is to be kept just before the end is kept, and who asked is told where") {
+  TEST_CASE("what is to be saved just before the end is saved, and who asked hears where") {
     Run run;
-    auto hands = open_hands(run.options, run.mesh, run.event_count);
-    REQUIRE(hands);
-    Keeper keeper;
-    REQUIRE(run_session(run.options, *hands, run.mesh, {[](const auto&, double) {}, &keeper}));
+    auto opened = open_hands(run.options, run.mesh, run.event_count);
+    REQUIRE(opened);
+    Saver saver;
+    REQUIRE(
+        run_session(run.options, opened->hands, run.mesh, {[](const auto&, double) {}, {&saver}}));
     const auto saved = run.folder.path() / "out-1.ply";
-    CHECK(keeper.told == std::vector{"saved as " + saved.string()});
+    CHECK(saver.reports == std::vector{"saved as " + saved.string()});
     const auto kept = deform::read_mesh(saved);
     const auto last = deform::read_mesh(run.options.out);
     REQUIRE((kept && last));
@@ -253,11 +277,12 @@ TEST_SUITE("run_session") {
     std::ofstream(taken) << "kept";
     std::ofstream(folder.path() / "take.model.obj") << "of a take that is gone";
     EventCount event_count;
-    auto hands = open_hands(options, mesh, event_count);
-    REQUIRE(hands);
+    auto opened = open_hands(options, mesh, event_count);
+    REQUIRE(opened);
     Renewer renewer;
     renewer.unrecorded = 1;
-    const auto outcome = run_session(options, *hands, mesh, {[](const auto&, double) {}, &renewer});
+    const auto outcome =
+        run_session(options, opened->hands, mesh, {[](const auto&, double) {}, {&renewer}});
     REQUIRE(outcome);
     REQUIRE(outcome->recordings.size() == 3);
     CHECK(outcome->recordings[1].file == (folder.path() / "take-3.nendo").string());
@@ -276,9 +301,9 @@ TEST_SUITE("run_session") {
     Run run;
     run.options.left = run.options.right = "sim:grasp";
     run.options.calibration.adapt = true;
-    Wisher wisher(Changes{{.record = true}, {.settings = other_settings}});
-    wisher.least_frames = 270;
-    const auto outcome = run.follow({&wisher});
+    Asker asker(Changes{{record(true)}, {change(other_settings)}});
+    asker.least_frames = 270;
+    const auto outcome = run.follow({&asker});
     REQUIRE(outcome.recordings.size() == 2);
     std::array<std::uint64_t, 2> turns{};
     for (std::size_t at = 0; at < turns.size(); ++at) {
@@ -287,9 +312,9 @@ TEST_SUITE("run_session") {
       const auto take = recording::TakeReader::open(file);
       REQUIRE(take);
       for (const auto& hand : take->setup().hands) {
-        REQUIRE(hand.learned);
-        CHECK(hand.learned->side == hand.side);
-        for (const auto& sensor : hand.learned->sensors)
+        REQUIRE(hand.wearer.learned);
+        CHECK(hand.wearer.learned->side == hand.side);
+        for (const auto& sensor : hand.wearer.learned->sensors)
           turns[at] += std::uint64_t{sensor.bottoms} + sensor.tops;
       }
     }
@@ -297,53 +322,54 @@ TEST_SUITE("run_session") {
     CHECK(turns[1] > turns[0]);
   }
 
-  TEST_CASE("whoever follows a run has its settings changed, and only those that it names") {
+  TEST_CASE("whoever watches a run has its settings changed, and only those that it names") {
     Run run;
-    Wisher wisher(Changes{{.settings = other_settings}, {.reset = true}});
-    run.follow({&wisher});
-    REQUIRE(wisher.begun.size() == 3);
-    const auto& first = wisher.in_force[0];
-    const auto& second = wisher.in_force[1];
+    Asker asker(Changes{{change(other_settings)}, {reset}});
+    run.follow({&asker});
+    REQUIRE(asker.begun.size() == 3);
+    const auto& first = asker.in_force[0];
+    const auto& second = asker.in_force[1];
     CHECK(first.mode == flow::Mode::type1);
     CHECK(second.mode == flow::Mode::type2);
     CHECK(second.kernel == deform::Wendland::c4);
     for (std::size_t finger = 0; finger < 5; ++finger)
       CHECK(second.radius_m[finger] == doctest::Approx(other_settings.radius_m[finger]));
-    const double moved = (wisher.begun[1] - wisher.begun[0]).cwiseAbs().maxCoeff();
+    const double moved = (asker.begun[1] - asker.begun[0]).cwiseAbs().maxCoeff();
     CHECK(moved > 1e-4); // it goes on from what was shaped
-    CHECK(wisher.in_force[2] == second);
+    CHECK(asker.in_force[2] == second);
   }
 
   TEST_CASE(
       "a reset goes back to the model as it was loaded, to the last bit, with the radius that "
       "its size made") {
     Run run;
-    Wisher wisher(Changes{{.record = false}, {.record = true}, {.reset = true}});
-    run.follow({&wisher});
-    REQUIRE(wisher.begun.size() == 3); // one that records nothing already is no change
-    CHECK(wisher.begun[1] != run.mesh.vertices);
-    CHECK(wisher.begun[2] == run.mesh.vertices);
-    CHECK(wisher.in_force[1] == wisher.in_force[0]); // though the model is another size now
-    CHECK(wisher.in_force[2] == wisher.in_force[0]);
+    Asker asker(Changes{{record(false)}, {record(true)}, {reset}});
+    run.follow({&asker});
+    REQUIRE(asker.begun.size() == 3); // one that records nothing already is no change
+    CHECK(asker.begun[1] != run.mesh.vertices);
+    CHECK(asker.begun[2] == run.mesh.vertices);
+    CHECK(asker.in_force[1] == asker.in_force[0]); // though the model is another size now
+    CHECK(asker.in_force[2] == asker.in_force[0]);
   }
 
-  TEST_CASE("recordings begin and end by a follower's wish, each with a number, beside the shape") {
+  TEST_CASE(
+      "recordings begin and end by an observer's command, each with a number, beside the shape") {
     Run run;
-    Wisher wisher(Changes{{.record = true}, {.record = false}, {.record = true}});
-    const auto outcome = run.follow({&wisher});
-    CHECK(wisher.recorded == std::vector<bool>{false, true, false, true});
+    Asker asker(Changes{{record(true)}, {record(false)}, {record(true)}});
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.recorded == std::vector<bool>{false, true, false, true});
     REQUIRE(outcome.recordings.size() == 2);
     CHECK(outcome.recordings[0].file == (run.folder.path() / "out.nendo").string());
     CHECK(outcome.recordings[1].file == (run.folder.path() / "out-2.nendo").string());
     const auto replayed = replay(outcome.recordings[0].file);
-    CHECK(replayed.begun == wisher.begun[1]);
-    CHECK(replayed.left == wisher.begun[2]);
+    CHECK(replayed.begun == asker.begun[1]);
+    CHECK(replayed.left == asker.begun[2]);
   }
 
   TEST_CASE("what several want in the same moment is one new loop") {
     Run run;
-    Wisher one(Changes{{.settings = other_settings}});
-    Wisher other(Changes{{.reset = true, .record = true}});
+    Asker one(Changes{{change(other_settings)}});
+    Asker other(Changes{{reset, record(true)}});
     one.least_frames = other.least_frames = 0; // that is before a new loop may be
     run.follow({&one, &other});
     REQUIRE(one.begun.size() == 2);
@@ -354,34 +380,34 @@ TEST_SUITE("run_session") {
 
   TEST_CASE("who wants a new loop all the time has a few a second") {
     Run run;
-    Wisher wisher(Changes(300, {.reset = true}));
-    wisher.least_frames = 0;
+    Asker asker(Changes(300, {reset}));
+    asker.least_frames = 0;
     const HostTime start = HostClock::now();
-    run.follow({&wisher});
+    run.follow({&asker});
     const double elapsed_s = to_seconds(HostClock::now() - start);
-    CHECK(wisher.begun.size() >= 2);
-    CHECK(static_cast<double>(wisher.begun.size()) <= 2.0 + elapsed_s / 0.25);
+    CHECK(asker.begun.size() >= 2);
+    CHECK(static_cast<double>(asker.begun.size()) <= 2.0 + elapsed_s / 0.25);
   }
 
   TEST_CASE("a change with which no loop begins leaves the run as it was") {
     Run run;
-    Wisher wisher(Changes{{.settings = other_settings}, {.reset = true}});
-    wisher.refused = deform::Wendland::c4;
-    run.follow({&wisher});
-    REQUIRE(wisher.begun.size() == 3);
-    CHECK(wisher.in_force[1] == wisher.in_force[0]);
-    CHECK(wisher.begun[1] != run.mesh.vertices); // what was shaped is there
-    CHECK(wisher.begun[2] == run.mesh.vertices); // and it goes on hearing
+    Asker asker(Changes{{change(other_settings)}, {reset}});
+    asker.refused = deform::Wendland::c4;
+    run.follow({&asker});
+    REQUIRE(asker.begun.size() == 3);
+    CHECK(asker.in_force[1] == asker.in_force[0]);
+    CHECK(asker.begun[1] != run.mesh.vertices); // what was shaped is there
+    CHECK(asker.begun[2] == run.mesh.vertices); // and it goes on hearing
   }
 
-  TEST_CASE("a follower moves a hand, which stays there in the next loop") {
+  TEST_CASE("an observer moves a hand, which stays there in the next loop") {
     Run run;
-    Wisher wisher(Changes{{.reset = true}});
-    wisher.move = flow::WristMove{Side::left, {-0.5, 0.25, 0.125}, {0, 0, 0, 1}};
-    run.follow({&wisher});
-    REQUIRE(wisher.wrists.size() == 2);
-    CHECK(wisher.wrists[1] == Eigen::Vector3d(-0.5, 0.25, 0.125));
-    CHECK(wisher.wrists[0] != wisher.wrists[1]);
+    Asker asker(Changes{{reset}});
+    asker.move = flow::WristMove{Side::left, {-0.5, 0.25, 0.125}, {0, 0, 0, 1}};
+    run.follow({&asker});
+    REQUIRE(asker.wrists.size() == 2);
+    CHECK(asker.wrists[1] == Eigen::Vector3d(-0.5, 0.25, 0.125));
+    CHECK(asker.wrists[0] != asker.wrists[1]);
   }
 }
 

@@ -6,15 +6,15 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/wearers.hpp"
 #include "calibrate/guide.hpp"
 #include "calibrate/hand_drawing.hpp"
 #include "calibrate/screen.hpp"
+#include "reference/wearers.hpp"
 
 namespace calibration_guide_test {
 
 using namespace nendo;
-using namespace nendo::bench;
+using namespace nendo::reference;
 using namespace nendo::calibrate;
 using namespace nendo::gloves;
 using hand::PoseId;
@@ -35,8 +35,7 @@ struct Session {
     auto last = CalibrationGuide::Event::none;
     for (double end = time_s + seconds; time_s < end; time_s += 1.0 / 90.0) {
       GloveSample sample = wearer.read(angles);
-      sample.arrival = HostTime(
-          std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(time_s)));
+      sample.arrival = HostTime(from_seconds(time_s));
       sample.measured = sample.arrival;
       const auto event = guide.see(sample);
       if (event != CalibrationGuide::Event::none) last = event;

@@ -1,8 +1,8 @@
-#include "bench/table1.hpp"
+#include "reference/table1.hpp"
 
 #include <cstdint>
 
-namespace nendo::bench {
+namespace nendo::reference {
 
 deform::Mesh table1_mesh(const Table1Plane& plane) {
   deform::Mesh mesh;
@@ -39,4 +39,4 @@ std::size_t count_evaluations(const deform::Points& vertices, const deform::Poin
   return static_cast<std::size_t>(count);
 }
 
-} // namespace nendo::bench
+} // namespace nendo::reference

@@ -8,8 +8,9 @@
 
 #include <nendo/timeline/timeline_file.hpp>
 
-#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
+#include "support/text_files.hpp"
 #include "support/timelines.hpp"
 
 namespace edit_session_test {

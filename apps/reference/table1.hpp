@@ -9,7 +9,7 @@
 
 #include <nendo/deform/mesh.hpp>
 
-namespace nendo::bench {
+namespace nendo::reference {
 
 inline constexpr std::array<double, 5> table1_radii{10.0, 20.0, 40.0, 60.0, 80.0};
 
@@ -85,4 +85,4 @@ inline deform::Points table1_displacements(std::mt19937& random) {
   return moves;
 }
 
-} // namespace nendo::bench
+} // namespace nendo::reference

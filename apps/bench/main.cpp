@@ -1,0 +1,38 @@
+// The nendo-bench program. `nendo bench` starts it, and its --help speaks as that command.
+
+#include <exception>
+#include <iostream>
+#include <vector>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <nendo/base/result.hpp>
+
+#include "bench/bench.hpp"
+
+namespace {
+
+int run(int argc, char** argv) {
+  // The drivers' log lines must not mix with what a benchmark prints.
+  spdlog::set_default_logger(spdlog::stderr_color_mt("nendo"));
+  spdlog::set_pattern("nendo: %v");
+  char program[] = "nendo";
+  char command[] = "bench";
+  std::vector<char*> arguments{program, command};
+  arguments.insert(arguments.end(), argv + 1, argv + argc);
+  arguments.push_back(nullptr);
+  return nendo::cli::run_program(static_cast<int>(arguments.size()) - 1, arguments.data(),
+                                 "Nendo: benchmarks.", nendo::bench::add_bench);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) { // out of memory, mostly
+    std::cerr << "nendo: " << error.what() << '\n';
+    return static_cast<int>(nendo::Errc::failed);
+  }
+}
