@@ -1,12 +1,11 @@
 #include <nendo/deform/block_evaluator.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "evaluator_parts.hpp"
-#include "simd/normal_kernels.hpp"
+#include "simd/field_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -87,21 +86,16 @@ BlockPass pass_over(const BoundedShape& from, VertexBlock* to,
           .large = leaves_caches(from.shape)};
 }
 
-/// In pieces; normals may be null; `after` is told of each block whether the field reaches it.
+/// In pieces; calls after(block, reached) for each block.
 template <class After>
-void run(const BlockPass& whole, const NormalPass* normals, BlockEvaluator::Parts& parts,
-         const After& after) noexcept {
+void run(const BlockPass& whole, BlockEvaluator::Parts& parts, const After& after) noexcept {
   parts.in_pieces(whole.end, least_shared,
                   [&](std::size_t begin, std::size_t end, std::size_t thread) {
                     BlockPass piece = whole;
                     piece.begin = begin;
                     piece.end = end;
                     piece.scratch = parts.lists[thread].scratch();
-                    if (normals != nullptr) {
-                      displace_normals_pass(parts.field.view(), piece, *normals);
-                    } else {
-                      displace_pass(parts.field.view(), piece);
-                    }
+                    displace_pass(parts.field.view(), piece);
                     for (std::size_t block = begin; block < end; ++block)
                       after(block, parts.reached[block] > 0);
                   });
@@ -117,7 +111,7 @@ bool BlockEvaluator::displace(const BoundedShape& from, BlockShape& to) noexcept
   }
   const std::uint64_t stamp = BlockShape::new_stamp();
   const BlockPass pass = pass_over(from, to.data(), *parts_);
-  run(pass, nullptr, *parts_, [&](std::size_t block, bool reached) {
+  run(pass, *parts_, [&](std::size_t block, bool reached) {
     reached ? to.set_stamp(block, stamp) : to.follow(from.shape, block);
   });
   return true;
@@ -129,32 +123,16 @@ bool BlockEvaluator::fits_measured(BoundedShape& shape) const noexcept {
   return fits(shape);
 }
 
-bool BlockEvaluator::displace(BoundedShape& shape, BlockShape* normals) noexcept {
+bool BlockEvaluator::displace(BoundedShape& shape) noexcept {
   if (!fits_measured(shape)) return false;
   shape.extent += parts_->field.bound(shape.extent);
   const std::uint64_t stamp = BlockShape::new_stamp();
-  const std::uint64_t normals_stamp = BlockShape::new_stamp();
   BlockPass pass = pass_over(shape, shape.shape.data(), *parts_);
   pass.new_bounds = shape.bounds.data();
-  const NormalPass turning =
-      normals != nullptr ? NormalPass{normals->data(), normals->data()} : NormalPass{};
-  run(pass, normals != nullptr ? &turning : nullptr, *parts_, [&](std::size_t block, bool reached) {
-    if (!reached) return;
-    shape.shape.set_stamp(block, stamp);
-    if (normals != nullptr) normals->set_stamp(block, normals_stamp);
+  run(pass, *parts_, [&](std::size_t block, bool reached) {
+    if (reached) shape.shape.set_stamp(block, stamp);
   });
   return true;
-}
-
-void BlockEvaluator::turn(const BoundedShape& at, const BlockShape& normals,
-                          BlockShape& to) noexcept {
-  assert(normals.block_count() == at.shape.block_count());
-  if (to.block_count() != normals.block_count()) to = normals;
-  const std::uint64_t stamp = BlockShape::new_stamp();
-  const NormalPass turning{normals.data(), to.data()};
-  run(pass_over(at, nullptr, *parts_), &turning, *parts_, [&](std::size_t block, bool reached) {
-    reached ? to.set_stamp(block, stamp) : to.follow(normals, block);
-  });
 }
 
 std::size_t BlockEvaluator::count_pairs(const BoundedShape& shape) noexcept {

@@ -96,16 +96,13 @@ void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, dou
   const double inverse = 1.0 / r;
   const Eigen::Vector3d scaled =
       kernel_factor(kernel) * power(inverse, weight_power(kernel)) * coefficient;
-  const Eigen::Vector3d steep =
-      slope_factor(kernel) * power(inverse, 2 + slope_power(kernel)) * coefficient;
   precise_entries_[at] = {centre[0],
                           centre[1],
                           centre[2],
                           r,
                           inverse,
                           1.25 * r,
-                          {scaled[0], scaled[1], scaled[2]},
-                          {steep[0], steep[1], steep[2]}};
+                          {scaled[0], scaled[1], scaled[2]}};
   const FieldEntry<double>& entry = precise_entries_[at];
   entries_[at] = {as_float(centre[0]),
                   as_float(centre[1]),
@@ -113,12 +110,10 @@ void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, dou
                   as_float(r),
                   as_float(entry.inverse_radius),
                   as_float(entry.inner),
-                  {as_float(scaled[0]), as_float(scaled[1]), as_float(scaled[2])},
-                  {as_float(steep[0]), as_float(steep[1]), as_float(steep[2])}};
+                  {as_float(scaled[0]), as_float(scaled[1]), as_float(scaled[2])}};
   // Powers of others, and what they are multiplied by, are not numbers that float holds.
   in_range_ = in_range_ && r >= least_float_radius && r <= most_float_radius &&
-              scaled.cwiseAbs().maxCoeff() <= most_float &&
-              steep.cwiseAbs().maxCoeff() <= most_float;
+              scaled.cwiseAbs().maxCoeff() <= most_float;
   x_[at] = entries_[at].x;
   y_[at] = entries_[at].y;
   z_[at] = entries_[at].z;

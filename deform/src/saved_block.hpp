@@ -14,7 +14,6 @@ struct SavedBlock {
   SavedBlock* next;
   SavedBlock* previous;
   std::uint32_t block;
-  bool of_normals;
 };
 
 } // namespace nendo::deform

@@ -20,18 +20,15 @@ public:
   ShapeHistory(const BlockShape& first, std::size_t bytes, UndoMemory* more);
   ~ShapeHistory();
 
-  /// From now on the shape has normals. Allocates for those, too; what was kept is forgotten.
-  void carry(const BlockShape& now, const BlockShape& normals);
-
   /// Ends a step: from what was kept last to this. No step if nothing changed; otherwise undone
   /// steps are forgotten. A step for which there is no room at all is not kept, nor are those
-  /// before it. normals: no blocks unless carried.
-  void keep(const BlockShape& now, const BlockShape& normals) noexcept;
-  /// Undoes the last step; shape and normals are what was kept last. False: there is none.
-  bool undo(BoundedShape& shape, BlockShape& normals) noexcept;
-  /// Does again what was undone last, to what was kept last: what shape and normals have become
-  /// since is dropped. False: there is none, and nothing changes.
-  bool redo(BoundedShape& shape, BlockShape& normals) noexcept;
+  /// before it.
+  void keep(const BlockShape& now) noexcept;
+  /// Undoes the last step; the shape is what was kept last. False: there is none.
+  bool undo(BoundedShape& shape) noexcept;
+  /// Does again what was undone last, to what was kept last: what the shape has become since is
+  /// dropped. False: there is none, and nothing changes.
+  bool redo(BoundedShape& shape) noexcept;
 
   std::size_t steps() const noexcept { return steps_; }
   std::size_t undone() const noexcept { return undone_; }
@@ -39,16 +36,15 @@ public:
 
 private:
   bool is_kept() const noexcept { return kept_.block_count() > 0; }
-  std::size_t count_changed(const BlockShape& now, const BlockShape& kept) const noexcept;
-  void save_changed(const BlockShape& now, BlockShape& kept, bool of_normals, bool fits) noexcept;
-  void save(const BlockShape& kept, std::size_t block, bool of_normals) noexcept;
-  void exchange(SavedBlock& saved, BoundedShape& shape, BlockShape& normals) noexcept;
+  std::size_t count_changed(const BlockShape& now) const noexcept;
+  void save(std::size_t block) noexcept;
+  void exchange(SavedBlock& saved, BoundedShape& shape) noexcept;
   void own(std::size_t count);
   void add_free(const SavedChain& chain) noexcept;
   void forget_undone() noexcept;
   void drop_oldest() noexcept;
 
-  BlockShape kept_, kept_normals_;
+  BlockShape kept_;
   std::vector<std::unique_ptr<SavedBlock[]>> own_;
   UndoMemory* more_;
   SavedBlock* free_ = nullptr; ///< by `next`

@@ -120,11 +120,9 @@ FieldStatus Type1Deformer::apply_links(const Points& ends, BlockShape& out) {
 FieldStatus Type1Deformer::follow_links() {
   FieldStatus status = FieldStatus::ok;
   linked_->follow(rest_);
-  linked_normals_.follow(rest_normals_);
-  BlockShape* const normals = linked_normals_.block_count() > 0 ? &linked_normals_ : nullptr;
   do {
     const CsrbfField& link = chain_->field();
-    if (evaluator_.set_field(link) && evaluator_.displace(*linked_, normals))
+    if (evaluator_.set_field(link) && evaluator_.displace(*linked_))
       fields_.push(link);
     else
       status = FieldStatus::not_finite;
@@ -150,7 +148,6 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
   assert(ends.cols() == starts_.cols());
   const FieldStatus status = build(ends);
   if (!is_solved(status)) return status;
-  if (rest_normals_.block_count() > 0) commit_normals();
   if (in_links_) {
     rest_.follow(*linked_);
   } else if (weights_->is_built()) {
@@ -160,7 +157,7 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
     evaluator_.set_field(field_);
     evaluator_.displace(rest_);
   }
-  history_->keep(rest_.shape, rest_normals_);
+  history_->keep(rest_.shape);
   take_hold();
   return status;
 }
@@ -169,7 +166,7 @@ FieldStatus Type1Deformer::undo(const Points& tips) {
   assert(tips.cols() == starts_.cols());
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  history_->undo(rest_, rest_normals_);
+  history_->undo(rest_);
   take_hold();
   return status;
 }
@@ -179,7 +176,7 @@ FieldStatus Type1Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  history_->redo(rest_, rest_normals_);
+  history_->redo(rest_);
   take_hold();
   return status;
 }
@@ -194,28 +191,6 @@ std::size_t Type1Deformer::redo_steps() const noexcept {
 
 std::size_t Type1Deformer::forgotten_steps() const noexcept {
   return history_->forgotten();
-}
-
-void Type1Deformer::carry_normals(const Points& rest) {
-  rest_normals_ = layout_.pack_vectors(rest);
-  linked_normals_ = rest_normals_;
-  history_->carry(rest_.shape, rest_normals_);
-}
-
-void Type1Deformer::normals(BlockShape& out) noexcept {
-  assert(rest_normals_.block_count() == layout_.block_count());
-  if (in_links_) {
-    out.follow(linked_normals_);
-    return;
-  }
-  evaluator_.set_field(field_);
-  evaluator_.turn(rest_, rest_normals_, out);
-}
-
-/// Before the rest shape moves.
-void Type1Deformer::commit_normals() {
-  normals(linked_normals_);
-  rest_normals_.follow(linked_normals_);
 }
 
 std::size_t Type1Deformer::weight_bytes() const noexcept {

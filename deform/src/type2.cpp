@@ -41,7 +41,7 @@ Type2Deformer::Type2Deformer(Type2Deformer&&) noexcept = default;
 Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
 
 FieldStatus Type2Deformer::begin(const Points& tips) {
-  history_->keep(shape_.shape, normals_);
+  history_->keep(shape_.shape);
   return take_hold(tips);
 }
 
@@ -68,8 +68,8 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
 FieldStatus Type2Deformer::undo(const Points& tips) {
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  history_->keep(shape_.shape, normals_);
-  history_->undo(shape_, normals_);
+  history_->keep(shape_.shape);
+  history_->undo(shape_);
   fields_.clear();
   return status;
 }
@@ -78,7 +78,7 @@ FieldStatus Type2Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  history_->redo(shape_, normals_);
+  history_->redo(shape_);
   fields_.clear();
   return status;
 }
@@ -111,11 +111,6 @@ StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   return result;
 }
 
-void Type2Deformer::carry_normals(const Points& normals) {
-  normals_ = layout_.pack_vectors(normals);
-  history_->carry(shape_.shape, normals_);
-}
-
 /// From current_ to next_.
 FieldStatus Type2Deformer::apply_piece() {
   for (Eigen::Index i = 0; i < current_.cols(); ++i)
@@ -127,8 +122,7 @@ FieldStatus Type2Deformer::apply_piece() {
 }
 
 FieldStatus Type2Deformer::apply(const CsrbfField& field) {
-  BlockShape* const normals = normals_.block_count() > 0 ? &normals_ : nullptr;
-  if (!evaluator_.set_field(field) || !evaluator_.displace(shape_, normals))
+  if (!evaluator_.set_field(field) || !evaluator_.displace(shape_))
     return FieldStatus::not_finite;
   fields_.push(field);
   return FieldStatus::ok;

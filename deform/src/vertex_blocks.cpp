@@ -84,13 +84,6 @@ BlockShape BlockLayout::pack() const {
   });
 }
 
-BlockShape BlockLayout::pack_vectors(const Points& vectors) const {
-  assert(vectors.cols() == original_.cols());
-  return filled(order_, block_count(), [&](Eigen::Index vertex) -> Eigen::Vector3f {
-    return vectors.col(vertex).cast<float>();
-  });
-}
-
 void BlockLayout::unpack(const BlockShape& shape, Points& out) const {
   assert(shape.block_count() == block_count());
   if (out.cols() != original_.cols()) out.resize(3, original_.cols());
@@ -107,13 +100,6 @@ void BlockLayout::unpack(const BlockShape& shape, Points& out) const {
                                                   static_cast<double>(before_packed));
     }
   }
-}
-
-void BlockLayout::unpack_vectors(const BlockShape& vectors, Points& out) const {
-  assert(vectors.block_count() == block_count());
-  if (out.cols() != original_.cols()) out.resize(3, original_.cols());
-  for (std::size_t at = 0; at < order_.size(); ++at)
-    out.col(static_cast<Eigen::Index>(order_[at])) = at_place(vectors, at).cast<double>();
 }
 
 Eigen::Vector3d BlockLayout::rounded(const Eigen::Vector3d& place) const noexcept {

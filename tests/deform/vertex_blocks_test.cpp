@@ -138,14 +138,6 @@ TEST_SUITE("vertex_blocks") {
     CHECK(layout.rounded(Eigen::Vector3d::Constant(1e80)) == Eigen::Vector3d::Constant(1e80));
     CHECK(std::isnan(layout.rounded_radius(std::nan(""))));
   }
-
-  TEST_CASE("vectors of the vertices go into blocks and back") {
-    const Points normals = cloud(130).colwise().normalized();
-    const BlockLayout layout(cloud(130));
-    Points out;
-    layout.unpack_vectors(layout.pack_vectors(normals), out);
-    CHECK((out - normals).cwiseAbs().maxCoeff() < 1e-7);
-  }
 }
 
 } // namespace vertex_blocks_test

@@ -13,8 +13,7 @@ namespace nendo::deform {
 
 /// One centre: what a vertex's evaluation needs. With o = max(1 - t, 0), of which c0 and c2 are
 /// given r o instead, which spares a product: their coefficients are divided by the power of r that
-/// this makes. The coefficients also contain the kernel's constant factor (kernel_factor); the
-/// steep ones, for the field's derivative, slope_factor / r^2.
+/// this makes. The coefficients also contain the kernel's constant factor (kernel_factor).
 template <class Real>
 struct FieldEntry {
   Real x, y, z;
@@ -22,7 +21,6 @@ struct FieldEntry {
   Real inverse_radius;
   Real inner; ///< 1.25 r
   std::array<Real, 3> coefficient;
-  std::array<Real, 3> steep;
 };
 
 /// psi = factor * o^p * (polynomial in o) with o = 1 - t: what the vector code leaves out.
@@ -46,13 +44,10 @@ constexpr double slope_factor(Wendland kernel) noexcept {
   return 0.0;
 }
 
-/// Powers of r o in psi, and in psi' / t: those of c4 and c6 are of o.
+/// Powers of r o in psi: those of c4 and c6 are of o.
 constexpr int weight_power(Wendland kernel) noexcept {
   if (kernel == Wendland::c0) return 2;
   return kernel == Wendland::c2 ? 5 : 0;
-}
-constexpr int slope_power(Wendland kernel) noexcept {
-  return kernel == Wendland::c2 ? 3 : 0;
 }
 
 /// Centres coordinates apart, to find those that reach a block. Arrays are padded to whole vectors

@@ -46,14 +46,9 @@ public:
   /// to = from + s(from). Blocks that nothing reaches are copied only where `to` differs from
   /// `from`. False, and `to` is `from`, if the result might not be finite.
   bool displace(const BoundedShape& from, BlockShape& to) noexcept;
-  /// shape += s(shape), bounds and stamps included; `normals` (of the shape, as pack_vectors() of a
-  /// layout gives them), if not null, turn with it, as turn() has it. False, and nothing, if that
+  /// shape += s(shape), bounds and stamps included. Returns false, and does nothing, if the result
   /// might not be finite.
-  bool displace(BoundedShape& shape, BlockShape* normals = nullptr) noexcept;
-  /// The normals of the surface that displace() would make, to float's precision those of
-  /// nendo/deform/normals.hpp: of unit length in blocks that something reaches, the others are
-  /// copied only where `to` differs. `at`: where the surface is before, with its normals.
-  void turn(const BoundedShape& at, const BlockShape& normals, BlockShape& to) noexcept;
+  bool displace(BoundedShape& shape) noexcept;
   /// How many pairs of a block and a support that reaches its bounds there are: what displace()
   /// lists before it evaluates, 64 influences each.
   std::size_t count_pairs(const BoundedShape& shape) noexcept;

@@ -40,12 +40,6 @@ public:
   /// reaches, `out` is written only if it is not the rest shape there already. On failure `out` is
   /// the last good shape; before the first grab, singular and the rest shape.
   FieldStatus apply(const Points& ends, BlockShape& out);
-  /// From now on the surface has normals, which go where its shape goes. rest: 3 by #vertices, of
-  /// the rest shape as it is now. Allocates; earlier commits can no longer be undone.
-  void carry_normals(const Points& rest);
-  /// Those of the shape that apply() last gave, turned by its field (nendo/deform/normals.hpp),
-  /// into `out`, as apply() writes a shape. Needs carry_normals().
-  void normals(BlockShape& out) noexcept;
   /// The shape that apply() last gave becomes the rest shape, and `ends` the new start points.
   FieldStatus commit(const Points& ends);
   /// The rest shape becomes what it was before the last commit, and `tips` the start points; what
@@ -78,7 +72,6 @@ private:
   CsrbfSolver& solver() noexcept { return chain_ ? chain_->start_solver() : solver_; }
   void take_hold();
   void draw(BlockShape& out);
-  void commit_normals();
 
   BlockLayout layout_;
   BoundedShape rest_;
@@ -94,9 +87,8 @@ private:
   std::unique_ptr<CardinalWeights> weights_;
   std::unique_ptr<ShapeHistory> history_;
   std::optional<InjectiveChain> chain_;
-  std::optional<BoundedShape> linked_;       ///< the shape that a chain of several links makes
-  BlockShape rest_normals_, linked_normals_; ///< no blocks until they are carried
-  bool in_links_ = false;                    ///< the last apply() made it so
+  std::optional<BoundedShape> linked_; ///< the shape that a chain of several links makes
+  bool in_links_ = false;              ///< the last apply() made it so
   bool grabbed_ = false;
 };
 

@@ -60,16 +60,9 @@ public:
   /// How many could be undone once, and went for want of memory.
   std::size_t forgotten_steps() const noexcept;
 
-  /// From now on the surface has normals, which turn with each piece (nendo/deform/normals.hpp).
-  /// normals: 3 by #vertices, of the shape as it is now. Allocates; earlier strokes can no
-  /// longer be undone.
-  void carry_normals(const Points& normals);
-
   const BlockLayout& layout() const noexcept { return layout_; }
   /// A copy is brought up to date by BlockShape::follow().
   const BlockShape& shape() const noexcept { return shape_.shape; }
-  /// No blocks without carry_normals().
-  const BlockShape& normals() const noexcept { return normals_; }
   /// What the last call applied to the shape. Centres are the fingertips as float holds them
   /// (BlockLayout::rounded).
   const FieldSequence& fields() const noexcept { return fields_; }
@@ -88,7 +81,6 @@ private:
 
   BlockLayout layout_;
   BoundedShape shape_;
-  BlockShape normals_;
   FingertipCurve curve_;
   Points current_; ///< where the curves have been cut last
   Points next_;    ///< and where the piece leads

@@ -75,13 +75,9 @@ public:
 
   /// The original in blocks. What the last block has to spare repeats its last vertex.
   BlockShape pack() const;
-  /// The same for vectors of any other kind that belong to the vertices (normals), without origin
-  /// and unit. vectors: 3 by #vertices.
-  BlockShape pack_vectors(const Points& vectors) const;
   /// out = original + (shape - pack()): a coordinate that nothing moved is the original's, bit for
   /// bit. `out` is resized only if its size differs.
   void unpack(const BlockShape& shape, Points& out) const;
-  void unpack_vectors(const BlockShape& vectors, Points& out) const;
 
   /// The nearest place that a float holds in these coordinates. A field whose centres are such
   /// places is evaluated for exactly those centres that it was solved for.
