@@ -1,5 +1,5 @@
 #pragma once
-// `auto`: the glove that this machine knows to be one.
+// `auto`: opens a glove that this machine knows to be one.
 
 #include <memory>
 
@@ -9,8 +9,9 @@
 
 namespace nendo::driver {
 
-/// The table's entry for `auto[:left|right]`. Opens only ports that are identified as gloves, one
-/// after the other, until one is the wanted hand.
+/// Opens `auto[:left|right]`, as the table of drivers wants it: only ports that are identified as
+/// gloves, one after the other, until one is the wanted hand's. Blocks for 5 s at most. Errors:
+/// usage, no_device, no_permission.
 Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Side> side);
 
 } // namespace nendo::driver

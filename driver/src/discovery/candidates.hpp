@@ -1,5 +1,5 @@
 #pragma once
-// The list behind find_gloves() and DeviceWatcher: ports and USB devices, joined and judged.
+// The list behind find_gloves() and DeviceWatcher: all ports and USB devices that may be gloves.
 
 #include <vector>
 

@@ -17,11 +17,12 @@ struct Holders {
   bool complete = true; ///< every program could be looked into, in the time given
 };
 
-/// Looks through all programs' open files for these device nodes, for 0.5 s at most, and through
-/// the kernel's list of file locks, which also tells of other users' programs.
+/// Returns the programs that hold these device nodes. It looks through all programs' open files,
+/// for 0.5 s at most, and through the kernel's list of file locks, which also names the locks of
+/// other users' programs.
 Holders find_holders(const std::set<std::string>& devices);
 
-/// A line of /proc/locks: who locked which file.
+/// A line of /proc/locks: which program locked which file.
 struct FileLock {
   int pid = 0; ///< 0 or below: a program in another container
   unsigned major = 0;
@@ -30,7 +31,8 @@ struct FileLock {
   friend bool operator==(const FileLock&, const FileLock&) = default;
 };
 
-/// Lines that are not understood, and those that wait for a lock, are left out.
+/// Returns the locks in the text of /proc/locks. Lines that are not understood, and lines of
+/// programs that wait for a lock, are left out.
 std::vector<FileLock> parse_locks(std::string_view text);
 
 } // namespace nendo::driver

@@ -1,5 +1,5 @@
 #pragma once
-// What is plugged in and pulled out, as it happens.
+// Watches which gloves, and which ports that may be a glove's, are plugged in and pulled out.
 
 #include <chrono>
 #include <memory>
@@ -16,10 +16,11 @@ struct DeviceEvent {
   GloveCandidate candidate;
 };
 
-/// Has no thread: next() waits for the system's events, and nothing is lost between two calls.
+/// Has no thread of its own: next() waits for the system's events. No event is lost between two
+/// calls.
 class DeviceWatcher {
 public:
-  /// Lists what is there and begins to watch. Error: failed (the system gives no more watches).
+  /// Lists what is there and begins to watch. Error: failed (the system allows no more watches).
   static Result<std::unique_ptr<DeviceWatcher>> open();
 
   DeviceWatcher() = default;
@@ -27,16 +28,17 @@ public:
   DeviceWatcher& operator=(const DeviceWatcher&) = delete;
   virtual ~DeviceWatcher() = default;
 
-  /// What was there when it was opened. Constant.
+  /// Returns what was there when it was opened. The list never changes.
   virtual const std::vector<GloveCandidate>& present() const noexcept = 0;
-  /// True: USB devices are noticed by libusb's hot-plug. False (containers, machines without USB):
-  /// only the nodes of serial ports in /dev are watched, and a USB glove without one goes
-  /// unnoticed.
+  /// Returns true if the system gives events of USB devices: udev's, or the kernel's where udev
+  /// does not run. Otherwise only the nodes in /dev are watched, and a USB glove without a serial
+  /// port goes unnoticed. Some containers withhold all events although this returns true.
   virtual bool sees_usb() const noexcept = 0;
-  /// The next event; nullopt after `timeout`, after stop(), and when a signal arrived. A device is
-  /// announced when its node and links are made, or 2 s after it was seen. One thread at a time.
+  /// Waits for the next event and returns it; returns nullopt after `timeout`, after stop(), and
+  /// when a signal arrived. A device is announced when its node and links are made, or 2 s after it
+  /// was seen. At most one thread may wait.
   virtual std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) = 0;
-  /// Ends a next() that waits, and all that follow. Any thread.
+  /// Ends a next() that waits, and all later ones. Any thread may call it.
   virtual void stop() noexcept = 0;
 };
 

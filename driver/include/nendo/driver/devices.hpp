@@ -1,6 +1,6 @@
 #pragma once
-// What is plugged in that may be a glove, and what stands between it and this user. Looking opens
-// no device and writes to none: it reads /sys, /dev, /proc, udev's records and libusb's list.
+// Finds the devices that may be gloves, and what keeps this user from using them. No device is
+// opened or written to: all of it is read from libudev, /dev and /proc.
 
 #include <chrono>
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace nendo::driver {
 
 using udev::UsbIdentity;
 
-/// A program that holds a device open or locked.
+/// A program that has a device open or locked.
 struct DeviceHolder {
   int pid = 0;
   std::string name; ///< of the program; "another user's program" where it is not to be seen
@@ -36,25 +36,26 @@ constexpr std::string_view name_of(DeviceKind kind) noexcept {
 struct GloveCandidate {
   DeviceKind kind = DeviceKind::serial_port;
   std::string device; ///< e.g. /dev/ttyUSB0 or /dev/bus/usb/001/005
-  std::string
-      stable_name;  ///< udev's link, which survives plugging in again; empty if there is none
-  std::string spec; ///< what to give to open_glove(), the stable name preferred; empty if nothing
+  /// udev's link to it, which stays the same when it is plugged in again; empty if there is none.
+  std::string stable_name;
+  /// The text for open_glove(), with the stable name if there is one; empty if nothing can open it.
+  std::string spec;
   std::string description; ///< what the device says of itself
   std::string reason;      ///< why it may be a glove
   bool identified = false; ///< the device or a udev rule names it a glove; `auto` opens only these
   bool may_open = false;   ///< this user has the permission
   std::string access;      ///< who has: "you", "group dialout", "user anna", "root"
-  std::string remedy;      ///< command or deed that makes it usable; empty if may_open
+  std::string remedy;      ///< the command or action that makes it usable; empty if may_open
   std::optional<UsbIdentity> usb;
-  /// How long an FTDI adapter keeps short replies back. 16 ms unless somebody changed it.
+  /// How long an FTDI adapter keeps short replies back: 16 ms unless somebody changed it.
   std::optional<std::chrono::milliseconds> latency_timer;
   bool left_alone = false; ///< udev tells ModemManager to leave it alone
   std::vector<DeviceHolder> holders;
-  bool holders_complete = false; ///< false: other users' programs could not all be looked into
+  bool holders_complete = false; ///< false: not every program could be looked into
 };
 
-/// Serial ports and USB gloves, a device being one entry, identified ones first. What vanishes
-/// meanwhile is left out. Blocks for less than a second.
+/// Returns the serial ports and USB gloves, one entry a device, identified gloves first. A device
+/// that is pulled out meanwhile is left out. Blocks for less than a second.
 std::vector<GloveCandidate> find_gloves();
 
 /// Returns the port that a path leads to: follows symbolic links, e.g. /dev/nendo/right to
@@ -62,11 +63,11 @@ std::vector<GloveCandidate> find_gloves();
 /// returned as it is. Reads the file system; opens nothing.
 std::string resolve_port(const std::string& path);
 
-/// The command that sets the latency timer of this port to 1 ms.
+/// Returns the command that sets the latency timer of this port to 1 ms.
 std::string latency_timer_remedy(const std::string& port);
 
-/// Programs that run now and are known to open serial adapters that nobody offered them:
-/// "ModemManager", "brltty". Reads /proc; blocks briefly.
+/// Returns which of the programs run that open serial adapters unasked: "ModemManager", "brltty".
+/// Reads /proc; blocks briefly.
 std::vector<std::string> running_port_grabbers();
 
 } // namespace nendo::driver
