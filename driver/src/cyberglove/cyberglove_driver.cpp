@@ -100,17 +100,20 @@ public:
 
   void push(std::span<const std::byte> chunk, HostTime arrival,
             SampleSink& sink) noexcept override {
+    // After eg there may be another glove in the unit: what it measures is not known until it was
+    // asked.
     const auto judge = [&](Record& record) {
-      look_for_glove();
-      return pulled_ ? Verdict{false, 0} : check_(record);
+      if (!pulled_) return check_(record);
+      doubtful_ = true;
+      return Verdict{false, 0};
     };
-    parser_.push(chunk, judge, [&](const Record& record) { deliver(record, arrival, sink); });
-    look_for_glove();
+    parser_.push(chunk, judge,
+                 FindingSink{[&](const Record& record) { deliver(record, arrival, sink); },
+                             [&](BadRecord) { sink.reject(); },
+                             [&](Unplugged) { pulled_ = true; }});
   }
 
-  bool is_doubtful() const noexcept override {
-    return pulled_ && parser_.counters().implausible != implausible_when_pulled_;
-  }
+  bool is_doubtful() const noexcept override { return doubtful_; }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
@@ -130,7 +133,7 @@ private:
       if (reply.answer == Answer::no_glove || (reply && !reply.value.connected)) unplugged_ = true;
       return state.error();
     }
-    unplugged_ = pulled_ = false;
+    unplugged_ = pulled_ = doubtful_ = false;
     baud_ = greeting.baud;
     return cyberglove::identify(dialogue, source, {options_, baud_, identity_.word_order});
   }
@@ -151,15 +154,6 @@ private:
     const double period = keeps_period ? clock_hz / identity_.rate_hz : 0.0;
     check_ = RecordCheck(static_cast<std::uint64_t>(std::llround(period)));
     same_clock_ = false;
-    unplugged_records_ = parser_.counters().unplugged;
-  }
-
-  /// After eg there may be another glove in the unit: what it measures is not known until it was
-  /// asked.
-  void look_for_glove() noexcept {
-    const StreamCounters& counters = parser_.counters();
-    if (std::exchange(unplugged_records_, counters.unplugged) == counters.unplugged) return;
-    if (!std::exchange(pulled_, true)) implausible_when_pulled_ = counters.implausible;
   }
 
   void tell_time(const Record& record, HostTime arrival, GloveSample& sample) noexcept {
@@ -197,8 +191,7 @@ private:
   DeviceClock clock_;
   bool same_clock_ = false; ///< the stream paused, but the glove's clock went on
   bool pulled_ = false;     ///< records said so; who is there now has not been asked
-  std::uint64_t unplugged_records_ = 0;
-  std::uint64_t implausible_when_pulled_ = 0;
+  bool doubtful_ = false;   ///< records came since then
 };
 
 } // namespace

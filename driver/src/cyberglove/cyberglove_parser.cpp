@@ -91,11 +91,13 @@ std::optional<Record> decode_record(std::span<const std::byte> frame,
 std::optional<Record> Parser::push_byte(std::byte byte) noexcept {
   ++counters_.bytes;
   frame_[held_++] = byte;
-  auto record = shape_.form == RecordForm::hi_res ? extend_hi_res() : extend_plain();
-  if (!record || !record->no_glove) return record;
+  return shape_.form == RecordForm::hi_res ? extend_hi_res() : extend_plain();
+}
+
+/// The record's bytes are still held.
+void Parser::count_unplugged() noexcept {
   ++counters_.unplugged;
   discard(held_);
-  return std::nullopt;
 }
 
 std::optional<Record> Parser::extend_plain() noexcept {
@@ -136,7 +138,7 @@ bool Parser::may_be_stamp() const noexcept {
 
 /// Up to its NUL: the last byte, or the one that was taken for a time stamp's.
 void Parser::drop_bad_frame() noexcept {
-  ++counters_.bad_records;
+  count_bad();
   discard(nul_in_stamp_ ? 1 + shape_.values + 1 : held_);
   overlong_ = nul_in_stamp_ = false;
 }
@@ -153,7 +155,7 @@ std::optional<Record> Parser::extend_hi_res() noexcept {
     }
   } else {
     if (held_ > hi_res_time_bytes) {
-      ++counters_.bad_records;
+      count_bad();
       damage_counted_ = true;
     }
     std::size_t skipped = 1;
@@ -176,7 +178,7 @@ void Parser::look_for_tail(std::byte byte) noexcept {
     return;
   case '\0':
     if (tail_ == 2 && held_ <= hi_res_time_bytes) {
-      if (!damage_counted_) ++counters_.bad_records;
+      if (!damage_counted_) count_bad();
       damage_counted_ = false;
     }
     break;

@@ -18,6 +18,7 @@
 #include <span>
 
 #include "cyberglove/cyberglove_protocol.hpp"
+#include "stream/findings.hpp"
 #include "stream/stream_counters.hpp"
 
 namespace nendo::driver::cyberglove {
@@ -74,11 +75,23 @@ public:
   explicit Parser(const RecordShape& shape) noexcept : shape_(shape) {}
 
   /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is put before
-  /// `judge(Record&) -> Verdict`, and if it is plausible handed to `sink(const Record&)`.
+  /// `judge(Record&) -> Verdict`, and if it is plausible handed to `sink(const Record&)`. The sink
+  /// is also told of each BadRecord and Unplugged (findings.hpp).
   template <class Judge, class Sink>
   void push(std::span<const std::byte> chunk, Judge&& judge, Sink&& sink) {
     for (const std::byte byte : chunk) {
-      if (auto record = push_byte(byte); record && settle(*record, judge(*record))) sink(*record);
+      auto record = push_byte(byte);
+      for (; bad_ > 0; --bad_)
+        tell(sink, BadRecord{});
+      if (!record) continue;
+      if (record->no_glove) {
+        count_unplugged();
+        tell(sink, Unplugged{});
+      } else if (settle(*record, judge(*record))) {
+        sink(*record);
+      } else {
+        tell(sink, BadRecord{});
+      }
     }
   }
   /// The same, without a judge.
@@ -104,7 +117,9 @@ private:
   std::optional<Record> extend_hi_res() noexcept;
   void look_for_tail(std::byte byte) noexcept;
   bool settle(const Record& record, const Verdict& verdict) noexcept;
+  void count_unplugged() noexcept;
   bool may_be_stamp() const noexcept;
+  void count_bad() noexcept { ++counters_.bad_records, ++bad_; }
   void drop_bad_frame() noexcept;
   void discard(std::size_t count) noexcept;
 
@@ -115,6 +130,7 @@ private:
   bool nul_in_stamp_ = false;   ///< plain: the frame holds a NUL where a time stamp may have one
   std::uint8_t tail_ = 0;       ///< hi_res: how much of CR LF NUL was just seen
   bool damage_counted_ = false; ///< hi_res: the record that the next tail ends is counted already
+  unsigned bad_ = 0;            ///< found by the last byte, not yet told
   StreamCounters counters_;
 };
 

@@ -52,13 +52,14 @@ public:
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
-    parser_.push(chunk, [&](const Record& record) {
+    const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < fingers; ++k)
         sample.set(slots[k], RawCount{record.flexion[k]});
       sample.side = side_;
       sink.deliver(sample);
-    });
+    };
+    parser_.push(chunk, FindingSink{take, [&](BadRecord) { sink.reject(); }});
   }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
@@ -145,13 +146,10 @@ private:
   Result<GloveInfo> recognise(Transport& transport, const std::string& source,
                               const ReplyDeadline& patience) {
     Parser parser;
-    std::optional<std::uint64_t> dropped; // before the last sample
+    bool seen_one = false;
     bool proven = false;
-    const auto take = [&](const Record&) {
-      const std::uint64_t now = parser.counters().discarded_bytes;
-      proven = proven || (dropped && now - *dropped <= most_extra_bytes);
-      dropped = now;
-    };
+    FindingSink take{[&](const Record&) { proven = std::exchange(seen_one, true) || proven; },
+                     [&](BadRecord) { seen_one = false; }};
     const IoStatus heard =
         listen(transport, patience, open_budget, [&](std::span<const std::byte> chunk) {
           parser.push(chunk, take);

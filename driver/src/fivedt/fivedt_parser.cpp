@@ -44,7 +44,7 @@ void Parser::drop_first() noexcept {
   ++counters_.discarded_bytes;
   if (in_step_ && ++extra_ > most_extra_bytes) {
     in_step_ = false;
-    ++counters_.bad_records;
+    count_bad();
   }
 }
 

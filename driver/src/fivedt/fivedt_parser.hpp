@@ -11,6 +11,7 @@
 #include <span>
 
 #include "fivedt/fivedt_protocol.hpp"
+#include "stream/findings.hpp"
 #include "stream/stream_counters.hpp"
 
 namespace nendo::driver::fivedt {
@@ -30,7 +31,10 @@ public:
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
     for (const std::byte byte : chunk) {
-      if (const auto record = push_byte(byte)) sink(*record);
+      const auto record = push_byte(byte);
+      for (; bad_ > 0; --bad_)
+        tell(sink, BadRecord{});
+      if (record) sink(*record);
     }
   }
 
@@ -46,11 +50,13 @@ public:
 private:
   std::optional<Record> push_byte(std::byte byte) noexcept;
   void drop_first() noexcept;
+  void count_bad() noexcept { ++counters_.bad_records, ++bad_; }
 
   std::array<std::byte, sample_bytes> frame_{};
   std::size_t held_ = 0;
   bool in_step_ = false;  ///< the last sample was good, and no more than extra bytes came since
   std::size_t extra_ = 0; ///< bytes dropped since the last good sample, while in step
+  unsigned bad_ = 0;      ///< found by the last byte, not yet told
   StreamCounters counters_;
 };
 

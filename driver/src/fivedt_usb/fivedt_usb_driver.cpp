@@ -56,7 +56,7 @@ public:
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
     const auto report = parser_.push(chunk);
-    if (!report) return;
+    if (!report) return sink.reject();
     GloveSample sample;
     for (std::size_t k = 0; k < value_sensors.size(); k += step_)
       sample.set(value_sensors[k], RawCount{report->values[k]});

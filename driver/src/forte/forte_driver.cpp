@@ -60,13 +60,14 @@ public:
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
-    parser_.push(chunk, [&](const Record& record) {
+    const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < slots.size(); ++k)
         sample.set(slots[k], RawCount{record.flexion[k]});
       sample.side = hand_.side;
       sink.deliver(sample);
-    });
+    };
+    parser_.push(chunk, FindingSink{take, [&](BadRecord) { sink.reject(); }});
   }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }

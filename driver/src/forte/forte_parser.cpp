@@ -26,7 +26,7 @@ std::optional<Record> Parser::push_byte(std::byte byte) noexcept {
   ++counters_.bytes;
   if (byte == frame_begin) {
     if (state_ == State::in_frame) {
-      ++counters_.bad_records;
+      count_bad();
       discard_held();
     }
     state_ = State::in_frame;
@@ -40,7 +40,7 @@ std::optional<Record> Parser::push_byte(std::byte byte) noexcept {
   const bool motion = held_ == 2 && byte == motion_id;
   const bool overlong = held_ == record_bytes;
   if (motion || overlong) {
-    if (overlong) ++counters_.bad_records;
+    if (overlong) count_bad();
     discard_held();
     state_ = State::skipping;
   }
@@ -51,7 +51,7 @@ std::optional<Record> Parser::end_frame() noexcept {
   state_ = State::between;
   const auto record = decode_record(std::span(frame_).first(held_));
   if (!record) {
-    ++counters_.bad_records;
+    count_bad();
     discard_held();
     return std::nullopt;
   }
@@ -64,7 +64,7 @@ std::optional<Record> Parser::end_frame() noexcept {
 void Parser::skip_byte(std::byte byte) noexcept {
   ++counters_.discarded_bytes;
   if (byte != frame_end) return;
-  if (std::exchange(state_, State::between) == State::between) ++counters_.bad_records;
+  if (std::exchange(state_, State::between) == State::between) count_bad();
 }
 
 void Parser::discard_held() noexcept {

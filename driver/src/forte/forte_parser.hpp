@@ -10,6 +10,7 @@
 #include <span>
 
 #include "forte/forte_protocol.hpp"
+#include "stream/findings.hpp"
 #include "stream/stream_counters.hpp"
 
 namespace nendo::driver::forte {
@@ -31,7 +32,10 @@ public:
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
     for (const std::byte byte : chunk) {
-      if (const auto record = push_byte(byte)) sink(*record);
+      const auto record = push_byte(byte);
+      for (; bad_ > 0; --bad_)
+        tell(sink, BadRecord{});
+      if (record) sink(*record);
     }
   }
 
@@ -55,10 +59,12 @@ private:
   std::optional<Record> end_frame() noexcept;
   void skip_byte(std::byte byte) noexcept;
   void discard_held() noexcept;
+  void count_bad() noexcept { ++counters_.bad_records, ++bad_; }
 
   State state_ = State::skipping;
   std::array<std::byte, record_bytes> frame_{};
   std::size_t held_ = 0; ///< 0 outside in_frame
+  unsigned bad_ = 0;     ///< found by the last byte, not yet told
   StreamCounters counters_;
 };
 

@@ -95,13 +95,14 @@ public:
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
-    parser_.push(chunk, [&](const Line& line) {
+    const auto take = [&](const Line& line) {
       if (!line.measures()) return;
       GloveSample sample;
       fill_slots(line, range_, sample);
       sample.side = side_;
       sink.deliver(sample);
-    });
+    };
+    parser_.push(chunk, FindingSink{take, [&](BadRecord) { sink.reject(); }});
   }
 
   void set_feedback(Transport& transport, const Feedback& feedback,

@@ -183,7 +183,7 @@ std::optional<Line> Parser::end_line() noexcept {
     return line;
   }
   counters_.discarded_bytes += bytes;
-  if (!line && !empty && before != State::begin_unseen) ++counters_.bad_records;
+  if (!line && !empty && before != State::begin_unseen) count_bad();
   return line;
 }
 

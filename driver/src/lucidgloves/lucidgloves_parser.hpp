@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "lucidgloves/lucidgloves_protocol.hpp"
+#include "stream/findings.hpp"
 #include "stream/stream_counters.hpp"
 
 namespace nendo::driver::lucidgloves {
@@ -43,7 +44,10 @@ public:
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
     for (const std::byte byte : chunk) {
-      if (const auto line = push_byte(byte)) sink(*line);
+      const auto line = push_byte(byte);
+      for (; bad_ > 0; --bad_)
+        tell(sink, BadRecord{});
+      if (line) sink(*line);
     }
   }
 
@@ -62,11 +66,13 @@ private:
   std::optional<Line> push_byte(std::byte byte) noexcept;
   std::optional<Line> end_line() noexcept;
   void discard_held() noexcept;
+  void count_bad() noexcept { ++counters_.bad_records, ++bad_; }
 
   const std::uint16_t range_;
   State state_ = State::begin_unseen;
   std::array<char, most_line_bytes> line_{};
   std::size_t held_ = 0;
+  unsigned bad_ = 0; ///< found by the last byte, not yet told
   StreamCounters counters_;
 };
 

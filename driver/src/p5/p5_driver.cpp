@@ -57,7 +57,7 @@ public:
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
     const auto report = parser_.push(chunk);
-    if (!report) return;
+    if (!report) return sink.reject();
     GloveSample sample;
     for (std::size_t k = 0; k < bend_sensors.size(); ++k)
       sample.set(bend_sensors[k], RawCount{report->bends[k]});

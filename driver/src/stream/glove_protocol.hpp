@@ -41,6 +41,8 @@ enum class IdentifyReason : std::uint8_t {
 class SampleSink {
 public:
   virtual void deliver(GloveSample& sample) noexcept = 0;
+  /// A record came that is damaged or cannot be believed.
+  virtual void reject() noexcept = 0;
 
 protected:
   ~SampleSink() = default;

@@ -88,6 +88,7 @@ private:
   void run(const std::stop_token& token);
   StreamEnd stream(const std::stop_token& token);
   void deliver(GloveSample& sample) noexcept override;
+  void reject() noexcept override { ++bad_since_record_; }
   void show_feedback(const std::stop_token& token) noexcept;
   void measure_rate(HostTime now);
   void revive(const std::stop_token& token);
@@ -113,9 +114,9 @@ private:
   HostTime arrival_{};
   HostTime last_record_{};
   HostTime window_begin_{};
-  std::uint64_t window_records_ = 0;
+  std::uint64_t window_begins_with_ = 0; ///< the first sample of the window
   std::uint64_t sequence_ = 0;
-  std::uint64_t bad_before_ = 0; ///< bad records at the time of the last good one
+  std::uint64_t bad_since_record_ = 0; ///< bad ones since the last good one
   double rate_reported_hz_ = 0.0;
   bool outage_ = false;     ///< no record since the stream broke off
   bool unanswered_ = false; ///< the last question who is there had no good answer
@@ -134,10 +135,10 @@ Result<void> StreamGlove::start(SampleRing& ring) {
   stats_.ring_refused = stats_.silences = stats_.reopened = 0;
   ring_ = &ring;
   sequence_ = 0;
-  bad_before_ = at_start_.bad_records;
+  bad_since_record_ = 0;
   outage_ = unanswered_ = false;
   window_begin_ = HostClock::now();
-  window_records_ = at_start_.records;
+  window_begins_with_ = 0;
   reader_ = std::jthread([this](const std::stop_token& token) { run(token); });
   return {};
 }
@@ -167,7 +168,7 @@ void StreamGlove::run(const std::stop_token& token) {
     case StreamEnd::doubtful:
       outage_ = true;
       unanswered_ = !restart(token, IdentifyReason::damaged);
-      bad_before_ = protocol_->counters().bad_records;
+      bad_since_record_ = 0;
       break;
     case StreamEnd::gone:
       reopen(token);
@@ -178,9 +179,9 @@ void StreamGlove::run(const std::stop_token& token) {
 
 StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
   std::array<std::byte, 1024> buffer{};
-  const HostClock::duration three_periods =
-      info_.rate_hz > 0.0 ? from_seconds(std::min(3.0 / info_.rate_hz, 60.0))
-                          : HostClock::duration{};
+  const HostClock::duration three_periods = info_.rate_hz > 0.0
+                                                ? from_seconds(std::min(3.0 / info_.rate_hz, 60.0))
+                                                : HostClock::duration{};
   // Who did not answer is asked again soon; meanwhile it may have begun to stream by itself.
   const auto longest_silence = unanswered_
                                    ? HostClock::duration(retry_interval)
@@ -194,8 +195,7 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
     protocol_->push(std::span(buffer).first(count), arrival_, *this);
     stats_.store(protocol_->counters(), at_start_);
     measure_rate(arrival_);
-    const std::uint64_t bad = protocol_->counters().bad_records - bad_before_;
-    if (protocol_->is_doubtful() || bad >= bad_in_a_row) return StreamEnd::doubtful;
+    if (protocol_->is_doubtful() || bad_since_record_ >= bad_in_a_row) return StreamEnd::doubtful;
     if (arrival_ - last_record_ > longest_silence) return StreamEnd::silent;
     if (feedback_changed_) show_feedback(token);
   }
@@ -208,7 +208,7 @@ void StreamGlove::deliver(GloveSample& sample) noexcept {
   sample.sequence = sequence_++;
   last_record_ = arrival_;
   if (!ring_->try_push(sample)) ++stats_.ring_refused;
-  bad_before_ = protocol_->counters().bad_records;
+  bad_since_record_ = 0;
   if (std::exchange(outage_, false)) spdlog::warn("device: {} streams again", info_.source);
 }
 
@@ -225,9 +225,8 @@ void StreamGlove::show_feedback(const std::stop_token& token) noexcept {
 /// What the glove really delivers; a rate that is not the one it was set to is told once.
 void StreamGlove::measure_rate(HostTime now) {
   if (now - window_begin_ < rate_window) return;
-  const std::uint64_t records = protocol_->counters().records;
   const double rate_hz =
-      static_cast<double>(records - window_records_) / to_seconds(now - window_begin_);
+      static_cast<double>(sequence_ - window_begins_with_) / to_seconds(now - window_begin_);
   const bool steady = std::abs(rate_hz - stats_.rate_hz) < rate_tolerance * rate_hz;
   const bool wrong = std::abs(rate_hz - info_.rate_hz) > rate_tolerance * info_.rate_hz;
   if (info_.rate_hz > 0.0 && steady && wrong && rate_reported_hz_ == 0.0) {
@@ -237,7 +236,7 @@ void StreamGlove::measure_rate(HostTime now) {
   }
   stats_.rate_hz = rate_hz;
   window_begin_ = now;
-  window_records_ = records;
+  window_begins_with_ = sequence_;
 }
 
 /// The glove fell silent, or sends nothing usable: it may have been switched off and on, or
@@ -248,7 +247,7 @@ void StreamGlove::revive(const std::stop_token& token) {
     spdlog::warn("device: {} sent no good record for {:.1f} s; starting its stream again",
                  info_.source, to_seconds(HostClock::now() - last_record_));
   }
-  const bool damaged = protocol_->counters().bad_records != bad_before_;
+  const bool damaged = bad_since_record_ > 0;
   unanswered_ = !restart(token, damaged ? IdentifyReason::damaged : IdentifyReason::reviving);
 }
 
