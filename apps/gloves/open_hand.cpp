@@ -11,8 +11,8 @@ namespace nendo::gloves {
 using std::chrono::milliseconds;
 
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side,
-                           EventCount* event_count) {
-  auto glove = driver::open_glove(spec, side);
+                           EventCount* event_count, const driver::GloveContext& context) {
+  auto glove = driver::open_glove(spec, side, context);
   if (!glove) return glove.error();
   return hand_of(*std::move(glove), side, event_count);
 }
@@ -47,10 +47,13 @@ Result<void> wait_for_first_sample(OpenHand& hand) {
 }
 
 // A sample tells the side of the glove that sent it, which need not be the one that was identified.
-Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options) {
-  auto known = known_hands(hand.glove->info(), hand.first.side, options);
-  if (!known) return known.error();
-  hand.known = *std::move(known);
+Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options,
+                       const HandLength& length) {
+  auto wearer = find_wearer(hand.glove->info(), hand.first.side, options);
+  if (!wearer) return wearer.error();
+  hand.wearer = *std::move(wearer);
+  for (hand::HandSize* size : {&hand.wearer.left.size, &hand.wearer.right.size})
+    *size = length.size(*size);
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include <nendo/flow/placement.hpp>
 
 #include "gloves/glove_calibration.hpp"
+#include "gloves/hand_length.hpp"
 
 namespace nendo::gloves {
 
@@ -19,7 +20,7 @@ struct OpenHand {
   std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
   std::unique_ptr<driver::Glove> glove;
   GloveSample first;
-  KnownHands known; ///< for the glove that sent the first sample; by calibrate()
+  hand::Wearer wearer; ///< set by calibrate()
   /// Where the forearm ends, if something else than the glove tells it.
   std::optional<Eigen::Isometry3d> T_stage_wrist{};
 };
@@ -28,7 +29,8 @@ struct OpenHand {
 /// without `side`, for the hand that it is. each sample notifies `event_count`. Blocks and fails as
 /// open_glove().
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
-                           EventCount* event_count = nullptr);
+                           EventCount* event_count = nullptr,
+                           const driver::GloveContext& context = {});
 
 /// The same of a glove that is open already.
 OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
@@ -38,8 +40,8 @@ OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
 /// no_device if none comes, failed if a stop signal does.
 Result<void> wait_for_first_sample(OpenHand& hand);
 
-/// Finds what is known of the wearer's hand, once its first sample has come. Blocks and fails as
-/// known_hands().
-Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options);
+/// Sets `wearer`, once the first sample has come; both hands get `length` if it is given. Blocks
+/// and fails as find_wearer().
+Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options, const HandLength& length);
 
 } // namespace nendo::gloves

@@ -1,17 +1,15 @@
 #include "gloves/recorded_hands.hpp"
 
-#include <nendo/driver/open_glove.hpp>
 #include <nendo/recording/take_reader.hpp>
 
 namespace nendo::gloves {
 
-std::optional<recording::HandSetup> recorded_hand(const driver::GloveInfo& glove, Side side) {
-  const auto spec = driver::parse_glove_spec(glove.source);
-  if (!spec || spec->kind != "replay") return std::nullopt;
-  const auto reader = recording::TakeReader::open(spec->target);
+std::optional<hand::Wearer> recorded_wearer(const driver::GloveInfo& glove, Side side) {
+  if (glove.kind != driver::GloveKind::recorded) return std::nullopt;
+  const auto reader = recording::TakeReader::open(glove.recording);
   if (!reader) return std::nullopt;
   for (const auto& hand : reader->setup().hands) {
-    if (hand.first.side == side) return hand;
+    if (hand.first.side == side) return hand::Wearer{hand.wearer.left, hand.wearer.right};
   }
   return std::nullopt;
 }

@@ -1,8 +1,6 @@
 #include "gloves/touching_glove.hpp"
 
-#include <utility>
-
-#include <nendo/driver/simulated_glove.hpp>
+#include <string>
 
 #include "cli/cli.hpp"
 
@@ -20,31 +18,27 @@ void tell_idle_fingers(const std::string& spec, const flow::TouchingHand& hand) 
 
 } // namespace
 
-bool is_touching(const std::string& spec) {
-  const auto parsed = driver::parse_glove_spec(spec);
-  return parsed && parsed->kind == "sim" && parsed->target == driver::touching_motion;
-}
-
-Result<TouchingGlove> open_touching_glove(const std::string& spec, std::optional<Side> side,
-                                          const deform::Mesh& model, const hand::HandSize& size) {
-  const auto parsed = driver::parse_glove_spec(spec);
-  if (!parsed) return parsed.error();
-  const auto options = driver::simulated_glove_options(*parsed, side);
-  if (!options) return options.error();
-  flow::TouchOptions touch;
-  touch.seed = options->seed;
-  const hand::HandSkeleton skeleton(side.value_or(options->side), size);
-  const auto hand = flow::TouchingHand::make(model, skeleton, touch);
-  if (!hand) {
-    return Error{hand.error().code, spec + ": " + hand.error().message +
-                                        "; choose another model, or another motion, like "
-                                        "sim:sculpt"};
-  }
-  tell_idle_fingers(spec, *hand);
-  return TouchingGlove{
-      driver::make_simulated_glove(
-          *options, [hand = *hand](double time_s) { return hand.sensor_angles(time_s); }),
-      hand->wrist_pose()};
+driver::GloveContext touching_context(const deform::Mesh& model, std::optional<Side> side,
+                                      const hand::HandSize& size,
+                                      std::optional<Eigen::Isometry3d>& T_stage_wrist) {
+  const auto motion =
+      [=, &model, &T_stage_wrist](
+          const driver::SimulatedGloveOptions& options) -> Result<driver::SensorMotion> {
+    flow::TouchOptions touch;
+    touch.seed = options.seed;
+    const hand::HandSkeleton skeleton(side.value_or(options.side), size);
+    const auto hand = flow::TouchingHand::make(model, skeleton, touch);
+    if (!hand) {
+      return Error{hand.error().code, options.source + ": " + hand.error().message +
+                                          "; choose another model, or another motion, like "
+                                          "sim:sculpt"};
+    }
+    tell_idle_fingers(options.source, *hand);
+    T_stage_wrist = hand->wrist_pose();
+    return driver::SensorMotion(
+        [hand = *hand](double time_s) { return hand.sensor_angles(time_s); });
+  };
+  return {motion};
 }
 
 } // namespace nendo::gloves

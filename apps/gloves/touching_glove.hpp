@@ -1,28 +1,21 @@
 #pragma once
-// sim:touch, a simulated glove whose hand really touches the model: made here, because it takes
-// gloves, hands and the model.
+// What open_glove() needs for `sim:touch`, a simulated glove whose hand touches the model.
 
-#include <memory>
 #include <optional>
-#include <string>
 
-#include <nendo/driver/glove.hpp>
+#include <nendo/driver/open_glove.hpp>
 #include <nendo/flow/touching_hand.hpp>
 
 namespace nendo::gloves {
 
-/// Whether that GLOVE is one.
-bool is_touching(const std::string& spec);
-
-struct TouchingGlove {
-  std::unique_ptr<driver::Glove> glove;
-  Eigen::Isometry3d T_stage_wrist; ///< where its hand stands; a real glove would not know
-};
-
-/// For the hand of `side`, which has that size; without a side, for the one that `spec` says. Says
-/// on standard error which fingers cannot reach the model. Errors: usage (an option), bad_input
-/// (the model cannot be touched). Takes about 0.2 s.
-Result<TouchingGlove> open_touching_glove(const std::string& spec, std::optional<Side> side,
-                                          const deform::Mesh& model, const hand::HandSize& size);
+/// Returns the context in which open_glove() can open `sim:touch` on `model`, for the hand of
+/// `side`, which has that size; without a side, for the one that the specification says. Opening
+/// such a glove takes about 0.2 s, sets `T_stage_wrist` to the place of its hand, which a real
+/// glove would not know, and says on standard error which fingers cannot reach the model. Opening
+/// fails with bad_input if the model cannot be touched. `model` and `T_stage_wrist` must outlive
+/// the opening.
+driver::GloveContext touching_context(const deform::Mesh& model, std::optional<Side> side,
+                                      const hand::HandSize& size,
+                                      std::optional<Eigen::Isometry3d>& T_stage_wrist);
 
 } // namespace nendo::gloves

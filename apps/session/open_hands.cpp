@@ -43,25 +43,18 @@ Result<std::vector<gloves::OpenHand>> open_any(EventCount* event_count) {
   return hands;
 }
 
-Result<gloves::OpenHand> open_touching(const RunOptions& options, const deform::Mesh& model,
-                                       const std::string& spec, Side side,
-                                       EventCount* event_count) {
-  auto touching = gloves::open_touching_glove(spec, side, model, options.length.size({}));
-  if (!touching) return touching.error();
-  gloves::OpenHand hand = gloves::hand_of(std::move(touching->glove), side, event_count);
-  hand.T_stage_wrist = touching->T_stage_wrist;
-  return hand;
-}
-
 Result<std::vector<gloves::OpenHand>>
 open_named(const RunOptions& options, const deform::Mesh& model, EventCount* event_count) {
   std::vector<gloves::OpenHand> hands;
   for (const auto& [spec, side] :
        {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
     if (spec->empty()) continue;
-    auto hand = gloves::is_touching(*spec) ? open_touching(options, model, *spec, side, event_count)
-                                           : gloves::open_hand(*spec, side, event_count);
+    std::optional<Eigen::Isometry3d> T_stage_wrist;
+    const auto context =
+        gloves::touching_context(model, side, options.length.size({}), T_stage_wrist);
+    auto hand = gloves::open_hand(*spec, side, event_count, context);
     if (!hand) return hand.error();
+    hand->T_stage_wrist = T_stage_wrist;
     hands.push_back(*std::move(hand));
   }
   return hands;
@@ -80,27 +73,29 @@ Result<void> check_switch(flow::SwitchAction action, const std::vector<gloves::O
 
 } // namespace
 
-Result<std::vector<gloves::OpenHand>> open_hands(RunOptions& options, const deform::Mesh& model,
-                                                 EventCount& event_count) {
+Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
+                            EventCount& event_count) {
   if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.event_count = &event_count;
   const bool named = !options.left.empty() || !options.right.empty();
   EventCount* const rung = options.loop.event_count;
   auto hands = named ? open_named(options, model, rung) : open_any(rung);
-  if (!hands) return hands;
+  if (!hands) return hands.error();
   if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
     return fine.error();
+  RunHands opened{*std::move(hands), {}};
   {
     const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
-    if (readers.grant()) options.grants.push_back(*readers.grant());
-    for (auto& hand : *hands) {
+    if (readers.grant()) opened.grants.push_back(*readers.grant());
+    for (auto& hand : opened.hands) {
       if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
     }
   }
-  for (auto& hand : *hands) {
+  for (auto& hand : opened.hands) {
     if (const auto came = gloves::wait_for_first_sample(hand); !came) return came.error();
-    if (const auto done = gloves::calibrate(hand, options.calibration); !done) return done.error();
+    if (const auto done = gloves::calibrate(hand, options.calibration, options.length); !done)
+      return done.error();
   }
-  return hands;
+  return opened;
 }
 
 } // namespace nendo::session

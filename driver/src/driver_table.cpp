@@ -21,37 +21,47 @@ struct Driver {
   std::string_view kind;
   std::string_view grammar;
   std::string_view summary;
-  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side);
+  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side,
+                                         const GloveContext& context);
 };
+
+/// For the drivers that need no GloveContext.
+template <Result<std::unique_ptr<Glove>> (*open)(const GloveSpec&, std::optional<Side>)>
+Result<std::unique_ptr<Glove>> alone(const GloveSpec& spec, std::optional<Side> side,
+                                     const GloveContext& /*context*/) {
+  return open(spec, side);
+}
 
 constexpr std::array drivers{
     Driver{"serial", cyberglove::options_grammar, "a CyberGlove at a serial, USB or Bluetooth port",
-           cyberglove::open_serial},
+           alone<cyberglove::open_serial>},
     Driver{"lucidgloves", "lucidgloves:PATH[?baud=N&range=4095|1023&hand=left|right]",
            "LucidGloves, or what else speaks OpenGloves' encoding, at a serial port",
-           lucidgloves::open_lucidgloves},
+           alone<lucidgloves::open_lucidgloves>},
     Driver{"5dt", "5dt:PATH[?baud=19200|9600&hand=left|right]",
-           "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", fivedt::open_fivedt},
+           "a 5DT Data Glove 5 at a serial port; 9600: a wireless one", alone<fivedt::open_fivedt>},
     Driver{"forte", "forte:PATH[?link=usb|bluetooth&baud=460800|115200&hand=left|right]",
-           "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth", forte::open_forte},
+           "a BeBop Forte Data Glove at a serial port, by USB or Bluetooth",
+           alone<forte::open_forte>},
     Driver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
-           "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", open_usb_glove},
+           "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb_glove>},
     Driver{"auto", "auto[:left|right]", "the glove that its name or a udev rule makes known",
-           open_auto},
+           alone<open_auto>},
     Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
            "a simulated glove", open_simulated},
     Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes]",
-           "a glove as `nendo record` or `nendo run --record` recorded it", open_replay},
+           "a glove as `nendo record` or `nendo run --record` recorded it", alone<open_replay>},
 };
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_glove(std::string_view text, std::optional<Side> side) {
+Result<std::unique_ptr<Glove>> open_glove(std::string_view text, std::optional<Side> side,
+                                          const GloveContext& context) {
   const auto spec = parse_glove_spec(text);
   if (!spec) return spec.error();
   std::string known;
   for (const Driver& driver : drivers) {
-    if (driver.kind == spec->kind) return driver.open(*spec, side);
+    if (driver.kind == spec->kind) return driver.open(*spec, side, context);
     known += (known.empty() ? "" : ", ") + std::string(driver.kind);
   }
   return Error{Errc::usage,

@@ -24,10 +24,21 @@ constexpr double most_off_m = 0.008;
 
 TEST_SUITE("touching_glove") {
   TEST_CASE("a GLOVE is told from others by its kind and motion") {
-    CHECK(gloves::is_touching("sim:touch"));
-    CHECK(gloves::is_touching("sim:touch?seed=3"));
-    for (const char* other : {"sim", "sim:grasp", "sim:touching", "serial:touch", "", "?"})
-      CHECK_FALSE(gloves::is_touching(other));
+    const deform::Mesh ball = test::sphere(16, 32, 10.0);
+    for (const char* touching : {"sim:touch", "sim:touch?seed=3"}) {
+      std::optional<Eigen::Isometry3d> T_stage_wrist;
+      CHECK(driver::open_glove(
+          touching, Side::right,
+          gloves::touching_context(ball, Side::right, hand::HandSize{}, T_stage_wrist)));
+      CHECK(T_stage_wrist);
+    }
+    for (const char* other : {"sim", "sim:grasp", "sim:touching", "serial:touch", "", "?"}) {
+      std::optional<Eigen::Isometry3d> T_stage_wrist;
+      (void)driver::open_glove(
+          other, Side::right,
+          gloves::touching_context(ball, Side::right, hand::HandSize{}, T_stage_wrist));
+      CHECK_FALSE(T_stage_wrist);
+    }
   }
 
   TEST_CASE("the loop places both hands where they touch, and sees them there") {

@@ -75,6 +75,8 @@ public:
       : path_(spec.target), settings_(settings), number_(glove.number),
         info_(std::move(glove.info)) {
     info_.facts.push_back({"recorded_from", info_.source});
+    info_.kind = GloveKind::recorded;
+    info_.recording = spec.target;
     info_.source = spec.text;
     info_.rate_hz *= settings.speed;
     info_.abilities = {.wrist_switch = info_.abilities.wrist_switch};

@@ -25,6 +25,7 @@ public:
   SimulatedGlove(const SimulatedGloveOptions& options, SensorMotion motion)
       : motion_(std::move(motion)), wearer_(options.seed),
         period_(from_seconds(1.0 / options.rate_hz)) {
+    info_.kind = GloveKind::simulated;
     info_.source = options.source;
     info_.model = "simulated glove, " + std::to_string(options.sensors) + " sensors, motion " +
                   options.motion;
@@ -122,6 +123,21 @@ Error usage(const GloveSpec& spec, std::string_view what) {
   return Error{Errc::usage, std::string(spec.text).append(": ").append(what)};
 }
 
+/// The motion that needs what GloveContext has.
+constexpr std::string_view touching_motion = "touch";
+
+Result<std::unique_ptr<Glove>> open_touching(const GloveSpec& spec, std::optional<Side> side,
+                                             const GloveContext& context) {
+  if (!context.touching_motion)
+    return usage(spec, "needs a model to touch, which only nendo run and nendo stress have; use "
+                       "another motion here, like sim:sculpt");
+  const auto options = simulated_glove_options(spec, side);
+  if (!options) return options.error();
+  auto motion = context.touching_motion(*options);
+  if (!motion) return motion.error();
+  return make_simulated_glove(*options, *std::move(motion));
+}
+
 } // namespace
 
 Result<SimulatedGloveOptions> simulated_glove_options(const GloveSpec& spec,
@@ -150,10 +166,9 @@ std::unique_ptr<Glove> make_simulated_glove(const SimulatedGloveOptions& options
   return std::make_unique<SimulatedGlove>(options, std::move(motion));
 }
 
-Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side) {
-  if (spec.target == touching_motion)
-    return usage(spec, "needs a model to touch, which only nendo run and nendo stress have; use "
-                       "another motion here, like sim:sculpt");
+Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
+                                              const GloveContext& context) {
+  if (spec.target == touching_motion) return open_touching(spec, side, context);
   const auto motion = find_motion(spec.target.empty() ? "sculpt" : spec.target);
   if (!motion) return usage(spec, motion.error().message + ", " + std::string(touching_motion));
   auto settings = simulated_glove_options(spec, side);

@@ -12,6 +12,7 @@ namespace nendo::driver {
 
 /// As simulated_glove_options() says, with one of the motions of hand_motion.hpp. The motion begins
 /// with start(). Error: usage, also for the one motion that takes a surface.
-Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
+                                              const GloveContext& context = {});
 
 } // namespace nendo::driver

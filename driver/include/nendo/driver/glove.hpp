@@ -35,7 +35,15 @@ struct GloveFact {
   std::string value;
 };
 
+/// Where a glove's samples come from.
+enum class GloveKind : std::uint8_t {
+  device,    ///< a glove on somebody's hand, or an emulated one at a port
+  simulated, ///< made by this program
+  recorded,  ///< read from a recording
+};
+
 struct GloveInfo {
+  GloveKind kind = GloveKind::device;
   std::string source; ///< the GLOVE specification that opened it, e.g. "serial:/dev/ttyUSB0"
   std::string model;  ///< what the glove says it is, one line, e.g. "CyberGlove, 22 sensors"
   Side side = Side::right;
@@ -44,6 +52,7 @@ struct GloveInfo {
   CountScale counts;
   Abilities abilities;
   std::vector<GloveFact> facts; ///< everything else that it says of itself
+  std::string recording;        ///< the recording's path, if it is `recorded`
 };
 
 /// Monotonic counts since start(). bytes = record_bytes + discarded_bytes + a remainder shorter

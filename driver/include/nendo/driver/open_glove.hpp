@@ -3,6 +3,9 @@
 //   serial:/dev/ttyUSB0   serial:/dev/ttyUSB0?baud=38400   auto   auto:left
 //   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18   replay:take1.nendo?speed=0.5
 
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,12 +29,35 @@ struct GloveSpec {
 /// Error: usage, naming what cannot be read in it.
 Result<GloveSpec> parse_glove_spec(std::string_view text);
 
+/// Returns the joint angle of each sensor, by slot, in radians, at a time since start() in seconds,
+/// at least 0. Flexion is positive; abduction is the angle between neighbours. The glove's thread
+/// calls it; it must not throw.
+using SensorMotion = std::function<std::array<double, sensor_slots>(double time_s)>;
+
+/// What a `sim:` specification asks for.
+struct SimulatedGloveOptions {
+  std::string source;            ///< the specification
+  std::string motion = "sculpt"; ///< its name, not yet judged
+  std::uint32_t seed = 1;
+  double rate_hz = 90.0;
+  Side side = Side::right;
+  unsigned sensors = 22; ///< or 18
+};
+
+/// What some kinds of gloves need and this library does not know.
+struct GloveContext {
+  /// Makes the motion of `sim:touch`, a hand that touches something. It is called at most once, by
+  /// open_glove(), and its error is returned. Without it, `sim:touch` is a usage error.
+  std::function<Result<SensorMotion>(const SimulatedGloveOptions&)> touching_motion;
+};
+
 /// Opens and identifies the glove; may block, 5 seconds at most. `side` is the hand that the user
 /// wants it for: `auto` opens no other, and a simulated hand is that one (right if any will do).
 /// Errors: usage (kind, option), no_device (missing, or does not answer like a glove),
-/// no_permission.
+/// no_permission; whatever `context` fails with.
 Result<std::unique_ptr<Glove>> open_glove(std::string_view spec,
-                                          std::optional<Side> side = std::nullopt);
+                                          std::optional<Side> side = std::nullopt,
+                                          const GloveContext& context = {});
 
 /// A line a kind of glove, for `--help`: its grammar and what it is.
 struct DriverSummary {
