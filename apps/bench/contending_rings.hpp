@@ -53,7 +53,7 @@ struct SingleContender {
   template <class Sink>
   std::size_t receive(const Sink& sink) noexcept {
     Element element;
-    if (!ring.try_pop(element)) return 0;
+    if (!ring.try_pop_or_pause(element)) return 0;
     sink(element);
     return 1;
   }

@@ -10,8 +10,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/base/frame_pool.hpp>
-#include <nendo/base/overwriting_ring.hpp>
+#include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/triple_buffer.hpp>
 
 #include "support/parked.hpp"
@@ -88,52 +87,6 @@ TEST_SUITE("parked") {
     CHECK(ring.counters().offered == taken + ring.counters().refused + ring.size());
   }
 
-  TEST_CASE("a ring that overwrites takes every element, whatever its consumer does") {
-    nendo::OverwritingRing<Block> ring(16);
-    Block last{};
-    bool forward = true;
-    const auto drain = [&] {
-      ring.drain([&](const Block& block) {
-        forward = forward && block[0] > last[0] && block[0] == block[63];
-        last = block;
-      });
-    };
-    std::uint64_t number = 0;
-    CHECK(stalls(drain, [&] {
-            Block block;
-            block.fill(++number);
-            ring.push(block);
-            return ring.counters().pushed == number;
-          }) == 0);
-    drain();
-    CHECK(forward);
-    CHECK(last[0] == number);
-    CHECK(ring.counters().got + ring.counters().lost == number);
-  }
-
-  TEST_CASE("a consumer of overwritten elements goes on beside a producer in the middle of one") {
-    nendo::OverwritingRing<Block> ring(16);
-    Block block{};
-    std::uint64_t number = 0;
-    CHECK(stalls(
-              [&] {
-                Block next;
-                next.fill(++number);
-                ring.push(next);
-              },
-              [&] {
-                const auto before = ring.counters();
-                const bool got = ring.try_pop(block);
-                // All that was whole can be had but the one whose slot is being written.
-                const bool had_all = before.got + before.lost + 1 >= before.pushed;
-                return block[0] == block[63] &&
-                       (got || had_all || ring.counters().lost > before.lost);
-              }) == 0);
-    while (ring.try_pop(block)) {
-    }
-    CHECK(ring.counters().got + ring.counters().lost == ring.counters().pushed);
-  }
-
   TEST_CASE("a writer publishes beside a reader that stands still, and the other way round") {
     nendo::TripleBuffer<Block> value(Block{});
     std::uint64_t number = 0;
@@ -155,33 +108,6 @@ TEST_SUITE("parked") {
     CHECK(stalls(publish, read) == 0);
     read();
     CHECK(seen == number);
-  }
-
-  TEST_CASE(
-      "a recorder's writer goes on beside a reader that stands still, and drops what it must") {
-    nendo::FramePool<Block> pool(8, Block{});
-    std::uint64_t offered = 0;
-    std::uint64_t taken = 0;
-    const auto read = [&] {
-      while (const Block* frame = pool.take()) {
-        ++taken;
-        pool.give_back(frame);
-      }
-    };
-    CHECK(stalls(read, [&] {
-            ++offered;
-            const auto before = pool.counters();
-            Block* frame = pool.claim();
-            if (frame == nullptr) return pool.counters().dropped == before.dropped + 1;
-            frame->fill(offered);
-            pool.publish();
-            return pool.counters().dropped == before.dropped;
-          }) == 0);
-    read();
-    const auto counters = pool.counters();
-    CHECK(counters.offered == offered);
-    CHECK(counters.taken == taken);
-    CHECK(counters.offered == counters.taken + counters.dropped);
   }
 }
 

@@ -3,9 +3,7 @@
 #include <array>
 #include <memory>
 
-#include <nendo/base/frame_pool.hpp>
 #include <nendo/base/job_offer.hpp>
-#include <nendo/base/overwriting_ring.hpp>
 #include <nendo/base/seq_lock.hpp>
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/triple_buffer.hpp>
@@ -58,49 +56,6 @@ struct Pair {
   Value complement = 0;
 };
 
-struct Overwriting {
-  OverwritingRing<Pair, Explored> ring{2};
-  Explored::Atomic<Value> rests; ///< 1: the producer is done
-  Value got = 0;
-
-  void push(Value number) { ring.push({number, ~number}); }
-  void take(const Pair& pair) {
-    const OverwritingRingCounters counters = ring.counters();
-    require(pair.complement == ~pair.number, "an element is whole");
-    require(pair.number == counters.got + counters.lost - 1, "those before it were got or lost");
-    require(++got == counters.got, "every element is counted");
-    require(counters.got + counters.lost <= counters.pushed, "no more come out than went in");
-  }
-  void pop() {
-    Pair pair;
-    if (ring.try_pop(pair)) take(pair);
-  }
-  void drain() {
-    const bool last = rests.load(std::memory_order_acquire) == 1;
-    ring.drain([this](const Pair& pair) { take(pair); });
-    const OverwritingRingCounters counters = ring.counters();
-    if (last) require(counters.got + counters.lost == counters.pushed, "at rest it is emptied");
-  }
-  void check(Value pushed) {
-    drain();
-    const OverwritingRingCounters counters = ring.counters();
-    require(counters.pushed == pushed, "every push is counted");
-    require(counters.got + counters.lost == pushed, "got + lost = pushed");
-    require(pushed < 2 || got >= 1, "the newest are still there at the end");
-  }
-};
-
-Program overwriting_program(Value pushed, const std::function<void(Overwriting&)>& consumer) {
-  const auto shared = std::make_shared<Overwriting>();
-  return {{[=] {
-             for (Value number = 0; number < pushed; ++number)
-               shared->push(number);
-             shared->rests.store(1, std::memory_order_release);
-           },
-           [=] { consumer(*shared); }},
-          [=] { shared->check(pushed); }};
-}
-
 struct Latest {
   TripleBuffer<Value, Explored> value{0};
   Value overwritten = 0; ///< the writer's
@@ -117,43 +72,6 @@ struct Latest {
     require(fresh ? now > last : now == last, "values go forward, and change by an update alone");
     last = now;
     seen += fresh ? 1U : 0U;
-  }
-};
-
-struct Pool {
-  FramePool<Value, Explored> pool{2, 0};
-  Numbers published;
-  Numbers taken;
-
-  void write(Value number) {
-    if (auto* frame = pool.claim()) {
-      *frame = number;
-      pool.publish();
-      published.push_back(number);
-    }
-  }
-  const Explored::Plain<Value>* take() {
-    const auto* frame = pool.take();
-    if (frame != nullptr) taken.push_back(*frame);
-    return frame;
-  }
-  void give_back(const Explored::Plain<Value>* frame) {
-    if (frame == nullptr) return;
-    require(*frame != 0, "a frame that is held is not written");
-    pool.give_back(frame);
-  }
-  void check(Value offered) {
-    while (const auto* frame = take())
-      give_back(frame);
-    const FramePoolCounters counters = pool.counters();
-    require(taken == published, "every frame published comes out, once, whole and in order");
-    require(counters.offered == offered, "every frame is counted");
-    require(counters.offered == counters.taken + counters.dropped, "offered = taken + dropped");
-    require(counters.high_water <= 2, "the high water is a fill");
-    Value empty = 0;
-    for (; pool.claim() != nullptr; ++empty)
-      pool.publish();
-    require(empty == 2, "no frame is lost");
   }
 };
 
@@ -290,21 +208,7 @@ std::vector<Scenario> spsc_ring_scenarios() {
   };
 }
 
-std::vector<Scenario> overwriting_ring_scenarios() {
-  return {
-      {"four into two slots, popped",
-       [] {
-         return overwriting_program(4, [](Overwriting& shared) {
-           for (int n = 0; n < 3; ++n)
-             shared.pop();
-         });
-       }},
-      {"four into two slots, drained",
-       [] { return overwriting_program(4, [](Overwriting& shared) { shared.drain(); }); }},
-  };
-}
-
-std::vector<Scenario> latest_value_scenarios() {
+std::vector<Scenario> triple_buffer_scenarios() {
   return {{"four values, four looks", [] {
              const auto shared = std::make_shared<Latest>();
              return Program{{[=] {
@@ -324,37 +228,7 @@ std::vector<Scenario> latest_value_scenarios() {
            }}};
 }
 
-std::vector<Scenario> frame_pool_scenarios() {
-  const auto program = [](const std::function<void(Pool&)>& reader) {
-    const auto shared = std::make_shared<Pool>();
-    return Program{{[=] {
-                      for (Value number = 1; number <= 4; ++number)
-                        shared->write(number);
-                    },
-                    [=] { reader(*shared); }},
-                   [=] { shared->check(4); }};
-  };
-  return {
-      {"four frames through two, one held at a time",
-       [=] {
-         return program([](Pool& shared) {
-           for (int n = 0; n < 3; ++n)
-             shared.give_back(shared.take());
-         });
-       }},
-      {"four frames through two, both held, the newer given back first",
-       [=] {
-         return program([](Pool& shared) {
-           const auto* older = shared.take();
-           const auto* newer = shared.take();
-           shared.give_back(newer);
-           shared.give_back(older);
-         });
-       }},
-  };
-}
-
-std::vector<Scenario> sequence_stage_scenarios() {
+std::vector<Scenario> seq_lock_scenarios() {
   return {{"four contents in two slots, three looks at the newest", [] {
              const auto shared = std::make_shared<Staged>();
              return Program{{[=] {

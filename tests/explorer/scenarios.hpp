@@ -16,10 +16,8 @@ struct Scenario {
 };
 
 std::vector<Scenario> spsc_ring_scenarios();
-std::vector<Scenario> overwriting_ring_scenarios();
-std::vector<Scenario> latest_value_scenarios();
-std::vector<Scenario> frame_pool_scenarios();
-std::vector<Scenario> sequence_stage_scenarios();
+std::vector<Scenario> triple_buffer_scenarios();
+std::vector<Scenario> seq_lock_scenarios();
 std::vector<Scenario> job_offer_scenarios();
 
 } // namespace nendo::explorer

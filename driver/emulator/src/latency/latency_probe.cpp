@@ -76,7 +76,7 @@ std::optional<HostClock::duration> time_one(SampleRing& ring, int fd,
   if (!write_record(fd, record)) return std::nullopt;
   GloveSample sample;
   for (;;) {
-    if (ring.try_pop(sample)) return HostClock::now() - written;
+    if (ring.try_pop_or_pause(sample)) return HostClock::now() - written;
     if (HostClock::now() - written > 1s) return std::nullopt;
   }
 }

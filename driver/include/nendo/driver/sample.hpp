@@ -121,21 +121,36 @@ struct GloveSample {
   }
 };
 
-/// From a glove's reader thread to whoever uses its samples; rings an event count, if it has one,
-/// for a user who sleeps until a sample comes.
-class SampleRing : public SpscRing<GloveSample> {
+/// Carries samples from a glove's reader thread to the one thread that uses them. The ring notifies
+/// an event count, if it has one, of every sample, for a user that sleeps until one comes.
+class SampleRing {
 public:
-  /// `event_count` may serve several rings; it must outlive them.
+  /// Allocates once, `at_least` samples rounded up to a power of two. `event_count` may serve
+  /// several rings; it must outlive them.
   explicit SampleRing(std::size_t at_least, EventCount* event_count = nullptr)
-      : SpscRing(at_least), event_count_(event_count) {}
+      : ring_(at_least), event_count_(event_count) {}
 
+  /// Producer only, wait-free but for the system call that wakes a sleeper. False: the ring is
+  /// full, the sample was refused and counted.
   bool try_push(const GloveSample& sample) noexcept {
-    const bool taken = SpscRing::try_push(sample);
+    const bool taken = ring_.try_push(sample);
     if (event_count_ != nullptr) event_count_->notify();
     return taken;
   }
 
+  // Consumer only, and what any thread may ask: SpscRing's.
+  bool try_pop(GloveSample& sample) noexcept { return ring_.try_pop(sample); }
+  bool try_pop_or_pause(GloveSample& sample) noexcept { return ring_.try_pop_or_pause(sample); }
+  template <class Sink>
+  std::size_t drain(Sink&& sink) noexcept {
+    return ring_.drain(sink);
+  }
+  [[nodiscard]] std::size_t capacity() const noexcept { return ring_.capacity(); }
+  [[nodiscard]] std::size_t size() const noexcept { return ring_.size(); }
+  [[nodiscard]] RingCounters counters() const noexcept { return ring_.counters(); }
+
 private:
+  SpscRing<GloveSample> ring_;
   EventCount* const event_count_;
 };
 
