@@ -79,7 +79,7 @@ int run(const stress::StressArguments& arguments) {
   const auto model = deform::read_mesh(options->run.mesh);
   if (!model) return cli::report(model.error());
   cli::install_stop_signals();
-  std::unique_ptr<session::Onlooker> window;
+  std::unique_ptr<session::Observer> window;
   if (arguments.view) {
     auto opened = session::open_live_view({}, options->run);
     if (!opened) return cli::report(opened.error());
@@ -92,7 +92,7 @@ int run(const stress::StressArguments& arguments) {
   if (arguments.json) {
     cli::print_line(results);
   } else {
-    stress::print_stress(**outcome, results, *earlier);
+    stress::print_stress(stdout, *options, **outcome, *earlier);
   }
   if (arguments.histogram_us && !arguments.json)
     stress::print_histogram((*outcome)->tally[stress::Measure::lateness].raw,
@@ -149,7 +149,7 @@ void add(cli::Command& program) {
   command.add_option("MODEL,--mesh", arguments->run.mesh,
                      "OBJ or PLY file; without it, the shipped Moai");
   command.add_option("--mode", arguments->mode, "type1 or type2");
-  command.add_option("--radius", arguments->run.radius, "As of nendo run");
+  command.add_option("--radius", arguments->radius, "As of nendo run");
   command.add_flag("--view", arguments->view,
                    "Looks on with the live window, to see what that costs the loop");
   arguments->loop.add_to(command, true);

@@ -1,6 +1,7 @@
 #pragma once
-// What a stress test tells: a table for people, an object for programs, files for plotters.
+// The report of a stress test: a table for people, an object for programs, files for plotters.
 
+#include <cstdio>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,8 +14,9 @@ namespace nendo::stress {
 /// otherwise. Keys are stable: an earlier one is what --compare reads.
 nlohmann::ordered_json stress_json(const StressOptions& options, const StressOutcome& outcome);
 
-/// Prints the table. `earlier`: another report to stand beside; null: none.
-void print_stress(const StressOutcome& outcome, const nlohmann::ordered_json& report,
+/// Prints the same figures as a table. `earlier` is the JSON report of another test, which is
+/// printed beside this one, or null.
+void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,
                   const nlohmann::ordered_json& earlier);
 
 /// The lateness as cyclictest prints it: a line a microsecond, up to `most_us`, and what is beyond.

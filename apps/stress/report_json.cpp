@@ -1,30 +1,22 @@
-#include <cmath>
-#include <cstdio>
-#include <ctime>
-
 #include <nlohmann/json.hpp>
 
 #include "session/loop_options.hpp"
 #include "stress/report.hpp"
+#include "stress/report_parts.hpp"
 
 namespace nendo::stress {
 namespace {
 
 using nlohmann::ordered_json;
-using std::chrono::nanoseconds;
 
 // Null of what was never recorded.
 ordered_json figures_json(const flow::Histogram& histogram) {
-  if (histogram.count() == 0) return nullptr;
-  const auto at = [&](double fraction) { return to_microseconds(histogram.percentile(fraction)); };
-  return {{"count", histogram.count()},
-          {"min", to_microseconds(histogram.min())},
-          {"p50", at(0.50)},
-          {"p90", at(0.90)},
-          {"p99", at(0.99)},
-          {"p99_9", at(0.999)},
-          {"p99_99", at(0.9999)},
-          {"max", to_microseconds(histogram.max())}};
+  const auto figures = figures_of(histogram);
+  if (!figures) return nullptr;
+  ordered_json line{{"count", figures->count}};
+  for (std::size_t k = 0; k < Figures::names.size(); ++k)
+    line[std::string(Figures::names[k])] = figures->us[k];
+  return line;
 }
 
 ordered_json environment_json(const StressOptions& options, const StressOutcome& outcome) {
@@ -53,31 +45,8 @@ ordered_json environment_json(const StressOptions& options, const StressOutcome&
                     {"pictures", outcome.pictures},
                     {"realtime", session::grants_json(outcome.grants)}};
   if (machine.rt_runtime_us) line["rt_runtime_us"] = *machine.rt_runtime_us;
-  ordered_json stages{"sleep"};
-  const auto& runs = loop.stages;
-  for (const auto& [name, run] : {std::pair{"input", runs.input},
-                                  {"hands", runs.hands},
-                                  {"deform", runs.deform},
-                                  {"publish", runs.publish}}) {
-    if (run) stages.push_back(name);
-  }
-  line["stages"] = stages;
+  line["stages"] = stage_names(loop.stages);
   return line;
-}
-
-std::string wall_time(const StressOutcome& outcome, HostTime time) {
-  const auto wall =
-      outcome.wall_start + std::chrono::duration_cast<nanoseconds>(time - outcome.start);
-  const auto second = std::chrono::floor<std::chrono::seconds>(wall);
-  const std::time_t at = std::chrono::system_clock::to_time_t(second);
-  std::tm utc{};
-  gmtime_r(&at, &utc);
-  char text[64];
-  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
-  std::snprintf(text + length, sizeof text - length, ".%06lldZ",
-                static_cast<long long>(
-                    std::chrono::duration_cast<std::chrono::microseconds>(wall - second).count()));
-  return text;
 }
 
 ordered_json worst_json(const StressOutcome& outcome) {

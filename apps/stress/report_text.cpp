@@ -7,13 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "stress/report.hpp"
+#include "stress/report_parts.hpp"
 
 namespace nendo::stress {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::array columns{"min", "p50", "p90", "p99", "p99_9", "p99_99", "max"};
 
 std::string shown(double us) {
   char text[32];
@@ -27,132 +26,147 @@ std::string words(std::string_view name) {
   return text;
 }
 
-void print_row(const std::string& name, const ordered_json& figures, const ordered_json& earlier) {
-  if (figures.is_null()) return;
-  std::printf("  %-26s", name.c_str());
-  for (const char* column : columns)
-    std::printf(" %9s", shown(figures[column].get<double>()).c_str());
-  std::printf("\n");
-  if (!earlier.is_object()) return;
-  std::printf("  %-26s", "    earlier");
-  for (const char* column : columns) {
-    const auto value = earlier.find(column);
-    std::printf(" %9s", value != earlier.end() && value->is_number()
-                            ? shown(value->get<double>()).c_str()
-                            : "-");
-  }
-  std::printf("\n");
-}
-
+/// A part of the earlier report; null if it has none.
 ordered_json part(const ordered_json& whole, const std::string& key) {
   return whole.is_object() && whole.contains(key) ? whole[key] : ordered_json(nullptr);
 }
 
-void print_table(const ordered_json& report, const ordered_json& earlier) {
-  std::printf("\n  %-26s", "microseconds");
-  for (const char* column : {"min", "p50", "p90", "p99", "p99.9", "p99.99", "max"})
-    std::printf(" %9s", column);
-  std::printf("\n");
-  for (const auto name : measure_names) {
-    const std::string key = std::string(name) + "_us";
-    print_row(words(name), report[key], part(earlier, key));
-    print_row("  per scheduled tick", report["corrected"][key],
-              part(part(earlier, "corrected"), key));
+void print_row(std::FILE* out, const std::string& name, const flow::Histogram& histogram,
+               const ordered_json& earlier) {
+  const auto figures = figures_of(histogram);
+  if (!figures) return;
+  std::fprintf(out, "  %-26s", name.c_str());
+  for (const double us : figures->us)
+    std::fprintf(out, " %9s", shown(us).c_str());
+  std::fprintf(out, "\n");
+  if (!earlier.is_object()) return;
+  std::fprintf(out, "  %-26s", "    earlier");
+  for (const auto column : Figures::names) {
+    const ordered_json value = part(earlier, std::string(column));
+    std::fprintf(out, " %9s", value.is_number() ? shown(value.get<double>()).c_str() : "-");
   }
-  std::printf("  the work, by stage:\n");
-  for (const auto& [stage, figures] : report["stages_us"].items())
-    print_row("  " + stage, figures, part(part(earlier, "stages_us"), stage));
-  if (report["floor"].is_object())
-    print_row("the machine's own gaps", report["floor"]["gaps_us"],
+  std::fprintf(out, "\n");
+}
+
+void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_json& earlier) {
+  const TickTally& tally = outcome.tally;
+  std::fprintf(out, "\n  %-26s", "microseconds");
+  for (const auto column : Figures::names) {
+    std::string heading(column);
+    std::replace(heading.begin(), heading.end(), '_', '.');
+    std::fprintf(out, " %9s", heading.c_str());
+  }
+  std::fprintf(out, "\n");
+  for (std::size_t k = 0; k < measure_names.size(); ++k) {
+    const Distribution& of = tally[static_cast<Measure>(k)];
+    const std::string key = std::string(measure_names[k]) + "_us";
+    print_row(out, words(measure_names[k]), of.raw, part(earlier, key));
+    print_row(out, "  per scheduled tick", of.corrected, part(part(earlier, "corrected"), key));
+  }
+  std::fprintf(out, "  the work, by stage:\n");
+  for (std::size_t k = 1; k < phase_names.size(); ++k) {
+    const std::string stage(phase_names[k]);
+    print_row(out, "  " + stage, tally.stage(static_cast<Phase>(k)),
+              part(part(earlier, "stages_us"), stage));
+  }
+  if (outcome.floor.spun_s > 0.0)
+    print_row(out, "the machine's own gaps", outcome.floor.gaps,
               part(part(earlier, "floor"), "gaps_us"));
 }
 
-void print_environment(const StressOutcome& outcome, const ordered_json& report) {
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+void print_environment(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
   const Environment& machine = outcome.environment;
-  const ordered_json& about = report["environment"];
-  std::printf("nendo stress: %.1f s at %g Hz, policy %s%s%s\n", outcome.elapsed_s,
-              about["rate_hz"].get<double>(), about["policy"].get<std::string>().c_str(),
-              outcome.spins ? ", spinning to each deadline" : "",
-              about["threads"] == 2 ? ", two threads" : "");
-  std::printf("  %-14s Linux %s%s%s, %u CPUs%s\n", "machine", machine.kernel.c_str(),
-              machine.preemption.empty() ? "" : " ", machine.preemption.c_str(), machine.cpus,
-              machine.hypervisor ? ", virtual: the host may stop it at any time" : "");
-  std::printf("  %-14s %s, governor %s, clock %s\n", "", machine.processor.c_str(),
-              machine.governor.empty() ? "none" : machine.governor.c_str(),
-              machine.clock_source.c_str());
-  std::string stages;
-  for (const auto& stage : about["stages"])
-    stages += (stages.empty() ? "" : ", ") + stage.get<std::string>();
-  std::string load;
-  for (const auto& kind : about["load"])
-    load += (load.empty() ? "; own load " : ", ") + kind.get<std::string>();
-  std::printf("  %-14s %s; %td vertices, %s%s\n", "ticks", stages.c_str(), outcome.vertices,
-              about["mode"].get<std::string>().c_str(), load.c_str());
+  const flow::LoopOptions& loop = options.run.loop;
+  std::fprintf(out, "nendo stress: %.1f s at %g Hz, policy %s%s%s\n", outcome.elapsed_s,
+               loop.rate_hz, flow::describe_policy(loop).c_str(),
+               outcome.spins ? ", spinning to each deadline" : "",
+               loop.sculptor.deformer.evaluation.threads == 2 ? ", two threads" : "");
+  std::fprintf(out, "  %-14s Linux %s%s%s, %u CPUs%s\n", "machine", machine.kernel.c_str(),
+               machine.preemption.empty() ? "" : " ", machine.preemption.c_str(), machine.cpus,
+               machine.hypervisor ? ", virtual: the host may stop it at any time" : "");
+  std::fprintf(out, "  %-14s %s, governor %s, clock %s\n", "", machine.processor.c_str(),
+               machine.governor.empty() ? "none" : machine.governor.c_str(),
+               machine.clock_source.c_str());
+  const std::string load = options.load.empty() ? "" : "; own load " + joined(options.load);
+  std::fprintf(out, "  %-14s %s; %td vertices, %s%s\n", "ticks",
+               joined(stage_names(loop.stages)).c_str(), outcome.vertices,
+               std::string(flow::name_of(loop.sculptor.mode)).c_str(), load.c_str());
   if (outcome.pictures > 0)
-    std::printf("  %-14s %llu pictures in the live window meanwhile\n", "looked on",
-                static_cast<unsigned long long>(outcome.pictures));
+    std::fprintf(out, "  %-14s %llu pictures in the live window meanwhile\n", "looked on",
+                 static_cast<unsigned long long>(outcome.pictures));
   for (const auto& grant : outcome.grants) {
     const std::string how = " (" + grant.why + "); to have it, " + grant.remedy;
-    std::printf("  %-14s %s%s\n", grant.granted ? "granted" : "REFUSED", grant.wanted.c_str(),
-                grant.granted ? "" : how.c_str());
+    std::fprintf(out, "  %-14s %s%s\n", grant.granted ? "granted" : "REFUSED", grant.wanted.c_str(),
+                 grant.granted ? "" : how.c_str());
   }
 }
 
-void print_counts(const StressOutcome& outcome) {
+void print_counts(std::FILE* out, const StressOutcome& outcome) {
   const TickTally& tally = outcome.tally;
   const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::printf("\n  %llu ticks, %llu overruns, %llu deadlines missed; longest from tick to tick "
-              "%s us\n",
-              number(tally.ticks()), number(outcome.overruns), number(outcome.missed),
-              shown(static_cast<double>(tally.longest_outage().count()) / 1e3).c_str());
-  std::printf("  %ld page faults (%ld from disk), %ld involuntary switches, %.1f %% of a CPU",
-              outcome.costs.minor_faults + outcome.costs.major_faults, outcome.costs.major_faults,
-              outcome.costs.involuntary_switches,
-              100.0 * outcome.costs.cpu_s / std::max(outcome.elapsed_s, 1e-9));
-  if (outcome.stolen_s) std::printf(", %.2f s stolen by the host", *outcome.stolen_s);
-  std::printf("\n");
+  std::fprintf(out,
+               "\n  %llu ticks, %llu overruns, %llu deadlines missed; longest from tick to tick "
+               "%s us\n",
+               number(tally.ticks()), number(outcome.overruns), number(outcome.missed),
+               shown(static_cast<double>(tally.longest_outage().count()) / 1e3).c_str());
+  std::fprintf(out, "  %ld page faults (%ld from disk), %ld involuntary switches, %.1f %% of a CPU",
+               outcome.costs.minor_faults + outcome.costs.major_faults, outcome.costs.major_faults,
+               outcome.costs.involuntary_switches,
+               100.0 * outcome.costs.cpu_s / std::max(outcome.elapsed_s, 1e-9));
+  if (outcome.stolen_s) std::fprintf(out, ", %.2f s stolen by the host", *outcome.stolen_s);
+  std::fprintf(out, "\n");
   if (outcome.floor.spun_s > 0.0) {
-    std::printf(
+    std::fprintf(
+        out,
         "  this machine stopped a thread that did nothing but look at the clock for %.2f %% "
         "of %.1f s\n",
         100.0 * outcome.floor.stalled_s / outcome.floor.spun_s, outcome.floor.spun_s);
   }
   if (outcome.records_refused > 0)
-    std::printf("  %llu ticks are not in these figures: this program was too busy to take them\n",
-                number(outcome.records_refused));
+    std::fprintf(out,
+                 "  %llu ticks are not in these figures: this program was too busy to take them\n",
+                 number(outcome.records_refused));
 }
 
-void print_incidents(const ordered_json& report) {
-  const ordered_json& incidents = report["incidents"];
+void print_incidents(std::FILE* out, const StressOutcome& outcome) {
+  const TickTally& tally = outcome.tally;
   std::string line;
-  for (const auto& [cause, share] : incidents["by_cause"].items()) {
-    if (share["incidents"] == 0) continue;
-    line += (line.empty() ? "" : ", ") + std::to_string(share["incidents"].get<std::uint64_t>()) +
-            " " + cause;
+  for (std::size_t k = 0; k < cause_names.size(); ++k) {
+    const std::uint64_t incidents = tally.causes()[k].incidents;
+    if (incidents == 0) continue;
+    line +=
+        (line.empty() ? "" : ", ") + std::to_string(incidents) + " " + std::string(cause_names[k]);
   }
   if (!line.empty()) {
-    std::printf("\n  later than 1 ms: %s; %.1f %% of that lateness is explained\n", line.c_str(),
-                100.0 * incidents["explained"].get<double>());
+    std::fprintf(out, "\n  later than 1 ms: %s; %.1f %% of that lateness is explained\n",
+                 line.c_str(), 100.0 * tally.explained());
   }
-  std::printf("\n  the worst\n  %-28s %10s %7s  %-8s %-10s\n", "time (UTC)", "late us", "missed",
-              "phase", "cause");
-  for (const auto& worst : report["worst"]) {
-    std::printf("  %-28s %10s %7u  %-8s %-10s\n", worst["time"].get<std::string>().c_str(),
-                shown(worst["lateness_us"].get<double>()).c_str(), worst["missed"].get<unsigned>(),
-                worst["phase"].get<std::string>().c_str(),
-                worst["cause"].get<std::string>().c_str());
+  std::fprintf(out, "\n  the worst\n  %-28s %10s %7s  %-8s %-10s\n", "time (UTC)", "late us",
+               "missed", "phase", "cause");
+  for (const Incident& worst : tally.worst()) {
+    std::fprintf(out, "  %-28s %10s %7u  %-8s %-10s\n", wall_time(outcome, worst.due).c_str(),
+                 shown(to_microseconds(worst.lateness)).c_str(), worst.missed,
+                 phase_names[static_cast<std::size_t>(worst.phase)].data(),
+                 cause_names[static_cast<std::size_t>(worst.cause)].data());
   }
 }
 
 } // namespace
 
-void print_stress(const StressOutcome& outcome, const ordered_json& report,
+void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,
                   const ordered_json& earlier) {
-  print_environment(outcome, report);
-  print_counts(outcome);
-  print_table(report, earlier);
-  print_incidents(report);
-  std::fflush(stdout);
+  print_environment(out, options, outcome);
+  print_counts(out, outcome);
+  print_table(out, outcome, earlier);
+  print_incidents(out, outcome);
+  std::fflush(out);
 }
 
 void print_histogram(const flow::Histogram& lateness, unsigned most_us) {

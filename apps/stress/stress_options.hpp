@@ -18,6 +18,7 @@ struct StressArguments {
   std::string duration = "10";
   std::string stages = "sleep,input,hands,deform,publish";
   std::string mode = "type1";
+  std::string radius;
   std::string load;
   std::string fail_if;
   std::optional<double> break_us;

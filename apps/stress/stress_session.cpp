@@ -65,22 +65,37 @@ private:
   std::vector<flow::TickRecord> batch_;
 };
 
-/// Waits some milliseconds, with an onlooker for as long as it looks. True: it wants the end.
-bool look_on(session::Onlooker* onlooker, flow::DeformLoop& loop, std::uint64_t& pictures) {
-  if (onlooker == nullptr) {
-    std::this_thread::sleep_for(milliseconds(4));
-    return false;
+/// The observer, if there is one, and what it asks for.
+struct Watch {
+  session::Observer* observer = nullptr;
+  session::GloveStatuses gloves{};
+  flow::CommandRing commands{256};
+  flow::CommandRing for_loop{64};
+
+  /// Waits some milliseconds, or as long as the observer takes. True: it asks for the end.
+  bool update(flow::DeformLoop& loop, std::uint64_t& pictures) {
+    if (observer == nullptr) {
+      std::this_thread::sleep_for(milliseconds(4));
+      return false;
+    }
+    ++pictures;
+    const bool fresh = loop.frames().update();
+    observer->update({loop.frames().front(), fresh, gloves}, commands);
+    bool ends = false;
+    commands.drain([&](const flow::Command& command) noexcept {
+      ends = ends || std::holds_alternative<flow::EndRun>(command);
+      if (is_for_loop(command)) for_loop.try_push(command);
+    });
+    return ends;
   }
-  ++pictures;
-  return onlooker->look(loop, loop.frames().update()) == session::Onlooker::Verdict::end;
-}
+};
 
 void watch(const StressOptions& options, Collector& collector, const std::atomic<bool>& ended,
-           StressOutcome& outcome, const StressProgress& progress, session::Onlooker* onlooker,
+           StressOutcome& outcome, const StressProgress& progress, Watch& watched,
            flow::DeformLoop& loop) {
   HostTime next_report = outcome.start;
   while (!ended && !session::is_over(options.run, outcome.start)) {
-    const bool enough = look_on(onlooker, loop, outcome.pictures);
+    const bool enough = watched.update(loop, outcome.pictures);
     collector.collect();
     const auto& worst = outcome.tally.worst();
     outcome.broke =
@@ -94,7 +109,7 @@ void watch(const StressOptions& options, Collector& collector, const std::atomic
 }
 
 void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRing& ring,
-              StressOutcome& outcome, const StressProgress& progress, session::Onlooker* onlooker) {
+              StressOutcome& outcome, const StressProgress& progress, Watch& watched) {
   std::atomic<bool> over{false};
   std::atomic<bool> ended{false};
   std::promise<Prepared> prepared;
@@ -115,7 +130,7 @@ void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRi
     outcome.grants.push_back(std::move(grant));
   }
   Collector collector(ring, thread.thread, outcome);
-  watch(options, collector, ended, outcome, progress, onlooker, loop);
+  watch(options, collector, ended, outcome, progress, watched, loop);
   over = true;
   loop_thread.join();
   collector.collect();
@@ -128,7 +143,7 @@ void run_loop(const StressOptions& options, flow::DeformLoop& loop, flow::TickRi
 
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
                                                   const StressProgress& progress,
-                                                  session::Onlooker* onlooker) {
+                                                  session::Observer* observer) {
   session::RunOptions& run = options.run;
   auto outcome = std::make_unique<StressOutcome>(run.loop);
   const flow::RealtimeProcess process(run.realtime);
@@ -137,26 +152,25 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
     outcome->floor = measure_floor(options.floor_s, run.realtime, cli::stop_requested());
   const auto load = Load::start(options.load);
   if (!load) return load.error();
-  run.grants = process.grants();
+  outcome->grants = process.grants();
   EventCount event_count;
-  const auto hands = session::open_hands(run, model, event_count);
-  if (!hands) return hands.error();
-  for (const auto& hand : *hands) {
+  const auto opened = session::open_hands(run, model, event_count);
+  if (!opened) return opened.error();
+  const auto& hands = opened->hands;
+  for (const auto& hand : hands) {
     outcome->gloves.push_back(hand.glove->info().source);
     if (!run.loop.stages.input) hand.glove->stop();
   }
-  outcome->grants = run.grants;
+  outcome->grants.insert(outcome->grants.end(), opened->grants.begin(), opened->grants.end());
   flow::TickRing ring(records_kept);
   run.loop.records = &ring;
-  flow::RequestRing requests(64);
-  flow::WristRing wrists(64);
-  run.loop.requests = &requests;
-  run.loop.wrists = &wrists;
-  const auto placed = session::place_loop(run, *hands, model);
+  Watch watched{observer, session::status_of(hands)};
+  run.loop.commands = &watched.for_loop;
+  const auto placed = session::place_loop(run, hands, model);
   if (!placed) return placed.error();
-  if (onlooker != nullptr) onlooker->begin(*placed, model, *hands, run);
-  run_loop(options, *placed->loop, ring, *outcome, progress, onlooker);
-  for (const auto& hand : *hands)
+  if (observer != nullptr) observer->loop_begins({*placed, model, hands});
+  run_loop(options, *placed->loop, ring, *outcome, progress, watched);
+  for (const auto& hand : hands)
     hand.glove->stop();
   const flow::LoopStats& stats = placed->loop->stats();
   outcome->overruns = stats.overruns;

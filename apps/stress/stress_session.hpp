@@ -40,7 +40,7 @@ struct StressOutcome {
   double elapsed_s = 0.0;
   Eigen::Index vertices = 0;
   std::vector<std::string> gloves;                  ///< what opened them
-  std::uint64_t pictures = 0;                       ///< that the onlooker made of the loop
+  std::uint64_t pictures = 0;                       ///< that the observer made of the loop
   std::chrono::system_clock::time_point wall_start; ///< by the clock on the wall, of:
   HostTime start{};
   bool spins = false;   ///< the spin tail was asked for, and SCHED_FIFO granted
@@ -52,11 +52,11 @@ struct StressOutcome {
 using StressProgress = std::function<void(const TickTally& tally, double elapsed_s)>;
 
 /// Measures the floor, starts the load, and runs the loop for its time, until a stop signal, or
-/// until a tick is later than `break_at`. An onlooker looks on as it does in a run, but a loop is
-/// not made anew for it. Blocks. Errors: as open_hands(), place_loop(),
+/// until a tick is later than `break_at`. An observer watches as it does in a run, but only a
+/// loop's own commands and the end are done for it. Blocks. Errors: as open_hands(), place_loop(),
 /// Load::start().
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
                                                   const StressProgress& progress,
-                                                  session::Onlooker* onlooker = nullptr);
+                                                  session::Observer* observer = nullptr);
 
 } // namespace nendo::stress

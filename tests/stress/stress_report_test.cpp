@@ -1,0 +1,140 @@
+// The text and the JSON of a stress report say the same figures.
+
+#include "stress/report.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "support/text_files.hpp"
+
+namespace stress_report_test {
+
+using namespace nendo;
+using namespace nendo::stress;
+using namespace std::chrono_literals;
+using nlohmann::ordered_json;
+
+namespace {
+
+/// A thousand ticks, each later than the one before it; every hundredth is an incident.
+void fill(StressOutcome& outcome) {
+  constexpr HostTime first(1000s);
+  for (unsigned tick = 0; tick < 1000; ++tick) {
+    flow::TickRecord record;
+    record.tick = tick;
+    record.scheduled = first + tick * 1ms;
+    record.woke = record.scheduled + tick * 100ns + (tick % 100 == 99 ? 1200us : 0us);
+    record.drained_ns = 1000 + tick;
+    record.posed_ns = 3000 + 2 * tick;
+    record.solved_ns = 80'000 + 10 * tick;
+    record.published_ns = 90'000 + 11 * tick;
+    record.samples = 1;
+    record.input = record.woke - 250us;
+    outcome.tally.add(record, nullptr);
+  }
+  outcome.start = first;
+  outcome.wall_start = std::chrono::system_clock::time_point(1'700'000'000s);
+  outcome.elapsed_s = 1.0;
+  outcome.vertices = 1234;
+  outcome.floor.spun_s = 0.5;
+  outcome.floor.stalled_s = 0.001;
+  outcome.floor.gaps.record(7us);
+}
+
+std::string text_of(const StressOptions& options, const StressOutcome& outcome,
+                    const ordered_json& earlier) {
+  char* text = nullptr;
+  std::size_t length = 0;
+  std::FILE* out = ::open_memstream(&text, &length);
+  print_stress(out, options, outcome, earlier);
+  std::fclose(out);
+  std::string result(text, length);
+  std::free(text);
+  return result;
+}
+
+/// The numbers behind the last line that begins with `name`, after `nth` others.
+std::vector<double> row(const std::string& text, const std::string& name, int nth = 0) {
+  for (const std::string& line : test::lines_of(text)) {
+    if (!line.starts_with("  " + name + "  ") || nth-- > 0) continue;
+    std::istringstream words(line.substr(28)); // where the columns begin
+    std::vector<double> numbers;
+    for (double number = 0.0; words >> number;)
+      numbers.push_back(number);
+    return numbers;
+  }
+  return {};
+}
+
+std::vector<double> numbers_in(const ordered_json& figures) {
+  std::vector<double> numbers;
+  for (const char* column : {"min", "p50", "p90", "p99", "p99_9", "p99_99", "max"})
+    numbers.push_back(figures[column].get<double>());
+  return numbers;
+}
+
+/// The text rounds to five digits at least.
+void check_equal(const std::vector<double>& shown, const std::vector<double>& exact) {
+  REQUIRE(shown.size() == exact.size());
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    CHECK(std::abs(shown[k] - exact[k]) <= (exact[k] < 100.0 ? 0.00501 : 0.0501));
+}
+
+} // namespace
+
+TEST_SUITE("stress report") {
+  TEST_CASE("each figure of the text is that of the JSON, and an earlier report stands beside it") {
+    StressOptions options;
+    options.run.loop.rate_hz = 1000.0;
+    options.load = {"cpu", "mem"};
+    StressOutcome outcome(options.run.loop);
+    fill(outcome);
+    const ordered_json report = stress_json(options, outcome);
+    const std::string text = text_of(options, outcome, report);
+    CAPTURE(text);
+
+    const std::vector<std::string> measures{"lateness", "period error", "work", "input age",
+                                            "end to end"};
+    for (std::size_t k = 0; k < measures.size(); ++k) {
+      const std::string key = std::string(measure_names[k]) + "_us";
+      check_equal(row(text, measures[k]), numbers_in(report[key]));
+      const int nth = static_cast<int>(k);
+      check_equal(row(text, "  per scheduled tick", nth), numbers_in(report["corrected"][key]));
+      check_equal(row(text, "    earlier", 2 * nth), numbers_in(report[key]));
+    }
+    for (const auto& [stage, figures] : report["stages_us"].items())
+      check_equal(row(text, "  " + stage), numbers_in(figures));
+    check_equal(row(text, "the machine's own gaps"), numbers_in(report["floor"]["gaps_us"]));
+
+    for (const auto& worst : report["worst"]) {
+      const auto time = worst["time"].get<std::string>();
+      CHECK(text.find("  " + time + " ") != std::string::npos);
+    }
+    CHECK(text.find("1000 ticks, 0 overruns") != std::string::npos);
+    const auto& causes = report["incidents"]["by_cause"];
+    CHECK(causes["unexplained"]["incidents"] == 10);
+    CHECK(text.find("later than 1 ms: 10 unexplained; 0.0 % of") != std::string::npos);
+    CHECK(report["environment"]["stages"].size() == 5);
+    CHECK(text.find("sleep, input, hands, deform, publish; 1234 vertices, type1; own load cpu, "
+                    "mem\n") != std::string::npos);
+  }
+
+  TEST_CASE("what was never recorded is null in the JSON and has no line in the text") {
+    StressOptions options;
+    const StressOutcome outcome(options.run.loop);
+    CHECK(stress_json(options, outcome)["lateness_us"].is_null());
+    const std::string text = text_of(options, outcome, nullptr);
+    CHECK(row(text, "lateness").empty());
+    CHECK(text.find("earlier") == std::string::npos);
+  }
+}
+
+} // namespace stress_report_test
