@@ -3,8 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include <GLFW/glfw3.h>
-#include <imgui.h>
+#include "imgui_input.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -15,7 +14,6 @@ constexpr std::size_t most_waiting = 64; // of somebody who leans on the keyboar
 
 void QuickInput::press(int key, bool control, bool shift) {
   if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) return; // come with the others
-  if (key <= 0 || key >= IM_ARRAYSIZE(ImGui::GetIO().KeysDown)) return;
   if (waiting_.size() < most_waiting) waiting_.push_back({key, control, shift});
 }
 
@@ -24,18 +22,17 @@ void QuickInput::click() noexcept {
 }
 
 void QuickInput::put() {
-  ImGuiIO& io = ImGui::GetIO();
-  if (const auto place = std::exchange(clicked_, {})) io.MousePos = {place->x, place->y};
+  const ImGuiIO& io = ImGui::GetIO();
+  if (const auto place = std::exchange(clicked_, {})) put_pointer(place->x, place->y);
   const int before = std::exchange(last_, 0);
   while (!waiting_.empty()) {
     const Tap tap = waiting_.front();
     if (tap.key == before) return; // tapped twice: it is seen to go up in between
     waiting_.pop_front();
-    if (io.KeysDown[tap.key]) continue; // it still is down, and ImGui sees that
+    if (is_key_down(tap.key)) continue; // it still is down, and ImGui sees that
     beside_ = {tap.key, io.KeyCtrl, io.KeyShift};
-    io.KeysDown[tap.key] = true;
-    io.KeyCtrl = tap.control;
-    io.KeyShift = tap.shift;
+    put_key(tap.key, true);
+    put_modifiers(tap.control, tap.shift);
     last_ = tap.key;
     return;
   }
@@ -43,10 +40,8 @@ void QuickInput::put() {
 
 void QuickInput::take_back() {
   if (!beside_) return;
-  ImGuiIO& io = ImGui::GetIO();
-  io.KeysDown[beside_->key] = false;
-  io.KeyCtrl = beside_->control;
-  io.KeyShift = beside_->shift;
+  put_key(beside_->key, false);
+  put_modifiers(beside_->control, beside_->shift);
   beside_.reset();
 }
 

@@ -97,9 +97,11 @@ Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title,
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
   ImGui::GetStyle().Colors[ImGuiCol_TextDisabled] = {0.68F, 0.70F, 0.72F, 1.0F}; // to be read, too
   glfwSetWindowUserPointer(window->window_, window->quick_.get());
-  glfwSetKeyCallback(window->window_, on_key); // ImGui's own call these
-  glfwSetMouseButtonCallback(window->window_, on_button);
-  glfwSetCursorPosCallback(window->window_, on_pointer);
+  if (!imgui_queues_events) { // ImGui's own callbacks call these
+    glfwSetKeyCallback(window->window_, on_key);
+    glfwSetMouseButtonCallback(window->window_, on_button);
+    glfwSetCursorPosCallback(window->window_, on_pointer);
+  }
   ImGui_ImplGlfw_InitForOpenGL(window->window_, true);
   ImGui_ImplOpenGL3_Init("#version 330");
   return window;
@@ -146,6 +148,12 @@ void SceneWindow::choose_camera() {
 }
 
 void SceneWindow::pretend(const PretendedInput& input) {
+#if IMGUI_VERSION_NUM >= 18700
+  ImGui::GetIO().ConfigInputTrickleEventQueue =
+      false; // each picture shows what is pretended for it
+#endif
+  if (pretended_ && pretended_->key > 0 && pretended_->key != input.key)
+    put_key(pretended_->key, false);
   pretended_ = input;
   for (const int key : input.taps)
     quick_->press(key, input.control, input.shift);
@@ -156,16 +164,13 @@ void SceneWindow::pretend(const PretendedInput& input) {
 
 // As the window's back end tells ImGui of those that are there.
 void SceneWindow::put_pretended() const {
-  ImGuiIO& io = ImGui::GetIO();
-  io.MousePos = {static_cast<float>(pretended_->pointer.x()),
-                 static_cast<float>(pretended_->pointer.y())};
+  put_pointer(static_cast<float>(pretended_->pointer.x()),
+              static_cast<float>(pretended_->pointer.y()));
   for (std::size_t button = 0; button < pretended_->buttons.size(); ++button)
-    io.MouseDown[button] = pretended_->buttons[button];
-  io.MouseWheel = static_cast<float>(pretended_->wheel);
-  io.KeyCtrl = pretended_->control;
-  io.KeyShift = pretended_->shift;
-  std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-  if (pretended_->key > 0) io.KeysDown[pretended_->key] = true;
+    put_button(static_cast<int>(button), pretended_->buttons[button]);
+  put_wheel(static_cast<float>(pretended_->wheel));
+  put_modifiers(pretended_->control, pretended_->shift);
+  if (pretended_->key > 0) put_key(pretended_->key, true);
 }
 
 void SceneWindow::move_camera() {
@@ -208,7 +213,7 @@ void SceneWindow::draw_all() const {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-bool SceneWindow::take_close_wish() noexcept {
+bool SceneWindow::take_close_request() noexcept {
   const bool wanted = glfwWindowShouldClose(window_) != 0;
   glfwSetWindowShouldClose(window_, GLFW_FALSE);
   return wanted;

@@ -13,7 +13,7 @@ namespace {
 constexpr float panel_width = 300.0F;
 constexpr const char* question = "Unsaved changes";
 
-constexpr std::array key_table{
+constexpr std::array timeline_key_table{
     KeyLine{"space", "play, or pause"},
     KeyLine{"left, right", "a frame back, on"},
     KeyLine{"up, down", "to the key before, to the next"},
@@ -177,7 +177,7 @@ void TimelineWindow::Panel::keys(const TimelineView& view, EditWishes& wishes) {
   if (pressed(GLFW_KEY_L)) wishes.loops = !view.loops;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (pressed(GLFW_KEY_ESCAPE) && !wishes.drop) wishes.select.emplace();
-  if (keys_shown) draw_key_list(key_table, mouse_words, keys_shown);
+  if (keys_shown) draw_key_list(timeline_key_table, mouse_words, keys_shown);
 }
 
 void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditWishes& wishes) {

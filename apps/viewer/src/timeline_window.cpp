@@ -10,7 +10,7 @@ namespace nendo::viewer {
 namespace {
 
 constexpr ImU32 ring_colour = IM_COL32(255, 160, 40, 230);
-constexpr ImU32 pointed_colour = IM_COL32(205, 60, 15, 255);
+constexpr ImU32 pointed_tip_colour = IM_COL32(205, 60, 15, 255);
 constexpr float ring_px = 8.0F;
 
 /// The hand whose fingers can be bent now; null: none's.
@@ -46,7 +46,7 @@ EditWishes TimelineWindow::show(const TimelineView& view, const SceneFrame& mome
   panel_->draw(view, wishes);
   window_->follow_part_keys();
   panel_->keys(view, wishes);
-  panel_->leave(view, window_->take_close_wish(), wishes);
+  panel_->leave(view, window_->take_close_request(), wishes);
   window_->end_picture();
   return wishes;
 }
@@ -99,11 +99,11 @@ void TimelineWindow::mark_tips(const TimelineView& view, const SceneFrame& momen
     const auto pixel = pixel_of(camera, tips.col(finger), size);
     if (!pixel || pixel->y() > size.height) continue;
     const bool marked = pointed_at == static_cast<hand::Finger>(finger);
-    list.AddCircle(on_screen(*pixel), ring_px, marked ? pointed_colour : ring_colour, 0,
+    list.AddCircle(on_screen(*pixel), ring_px, marked ? pointed_tip_colour : ring_colour, 0,
                    marked ? 3.0F : 2.0F);
     if (!marked || !held) continue;
     if (const auto target = pixel_of(camera, panel_->tips.target_m(), size))
-      list.AddLine(on_screen(*pixel), on_screen(*target), pointed_colour, 1.5F);
+      list.AddLine(on_screen(*pixel), on_screen(*target), pointed_tip_colour, 1.5F);
   }
 }
 

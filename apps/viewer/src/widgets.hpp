@@ -1,14 +1,19 @@
 #pragma once
 // What every window's widgets need of ImGui.
 
-#include <GLFW/glfw3.h>
-#include <imgui.h>
+#include "imgui_input.hpp"
 
 namespace nendo::viewer {
 
 /// Whether a key, by GLFW's number, goes down now; repeats: or is held down, now and then.
 inline bool pressed(int key, bool repeats = false) {
-  return ImGui::IsKeyPressed(key, repeats);
+  const auto known = imgui_key(key);
+#if IMGUI_VERSION_NUM < 18700
+  if (known < 0) return false;
+#else
+  if (known == ImGuiKey_None) return false;
+#endif
+  return ImGui::IsKeyPressed(known, repeats);
 }
 
 /// Whether keys are the window's: nobody writes, and no question or list is open.
