@@ -12,7 +12,7 @@
 #include "lucidgloves/lucidgloves_driver.hpp"
 #include "replay/replay_driver.hpp"
 #include "simulated/simulated_driver.hpp"
-#include "usb/open_usb_glove.hpp"
+#include "usb_gloves/open_usb_glove.hpp"
 
 namespace nendo::driver {
 namespace {

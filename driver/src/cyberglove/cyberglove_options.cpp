@@ -9,7 +9,7 @@
 
 #include "cyberglove/cyberglove_line.hpp"
 #include "cyberglove/cyberglove_parser.hpp"
-#include "glove_spec.hpp"
+#include "spec/glove_spec.hpp"
 
 namespace nendo::driver::cyberglove {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "cyberglove/cyberglove_driver.hpp"
 #include "discovery/candidates.hpp"
-#include "glove_spec.hpp"
-#include "usb/open_usb_glove.hpp"
+#include "spec/glove_spec.hpp"
+#include "usb_gloves/open_usb_glove.hpp"
 
 namespace nendo::driver {
 namespace {

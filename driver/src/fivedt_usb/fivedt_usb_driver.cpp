@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "fivedt_usb/fivedt_usb_parser.hpp"
-#include "glove_spec.hpp"
+#include "spec/glove_spec.hpp"
 #include "usb/await_report.hpp"
-#include "usb/open_usb_glove.hpp"
+#include "usb/usb_opener.hpp"
 
 namespace nendo::driver::fivedt_usb {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "forte/forte_parser.hpp"
-#include "glove_options.hpp"
-#include "glove_spec.hpp"
+#include "spec/glove_options.hpp"
+#include "spec/glove_spec.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"

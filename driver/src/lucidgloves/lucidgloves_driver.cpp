@@ -8,10 +8,10 @@
 #include <string_view>
 #include <utility>
 
-#include "glove_options.hpp"
-#include "glove_spec.hpp"
 #include "lucidgloves/lucidgloves_parser.hpp"
 #include "lucidgloves/lucidgloves_slots.hpp"
+#include "spec/glove_options.hpp"
+#include "spec/glove_spec.hpp"
 #include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/follow_port.hpp"

@@ -11,7 +11,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/open_glove.hpp>
 
-#include "glove_options.hpp"
+#include "spec/glove_options.hpp"
 #include "stream/stream_glove.hpp"
 
 namespace nendo::driver::lucidgloves {

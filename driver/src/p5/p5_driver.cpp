@@ -3,11 +3,11 @@
 #include <array>
 #include <utility>
 
-#include "glove_options.hpp"
-#include "glove_spec.hpp"
 #include "p5/p5_parser.hpp"
+#include "spec/glove_options.hpp"
+#include "spec/glove_spec.hpp"
 #include "usb/await_report.hpp"
-#include "usb/open_usb_glove.hpp"
+#include "usb/usb_opener.hpp"
 
 namespace nendo::driver::p5 {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <nendo/driver/sample_record.hpp>
 
-#include "glove_options.hpp"
-#include "glove_spec.hpp"
+#include "spec/glove_options.hpp"
+#include "spec/glove_spec.hpp"
 #include "stream/reader_thread.hpp"
 
 namespace nendo::driver {

@@ -1,5 +1,5 @@
 #pragma once
-// The frame of a recording (apps/recording/FORMAT.md): a file header, then chunks, each with a
+// The frame of a recording (driver/src/replay/FORMAT.md): a file header, then chunks, each with a
 // type, a length, a number and checksums, so that damage is found, costs no more than the chunks
 // that it hit, and a file that ends in the middle of a chunk is good up to there.
 

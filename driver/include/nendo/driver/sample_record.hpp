@@ -1,6 +1,6 @@
 #pragma once
-// What of a recording belongs to gloves (apps/recording/FORMAT.md): who they are, and their samples
-// as entries of an input log.
+// What of a recording belongs to gloves (driver/src/replay/FORMAT.md): who they are, and their
+// samples as entries of an input log.
 
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "glove_options.hpp"
+#include "spec/glove_options.hpp"
 
 #include <string>
 

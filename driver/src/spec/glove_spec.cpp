@@ -1,4 +1,4 @@
-#include "glove_spec.hpp"
+#include "spec/glove_spec.hpp"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
-#include "usb/open_usb_glove.hpp"
+#include "usb_gloves/open_usb_glove.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <string>
 #include <system_error>
-#include <utility>
 
 #include <nendo/udev/device_table.hpp>
 
@@ -13,6 +13,7 @@
 #include "fivedt_usb/fivedt_usb_protocol.hpp"
 #include "p5/p5_driver.hpp"
 #include "p5/p5_protocol.hpp"
+#include "stream/stream_glove.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -85,26 +86,6 @@ Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime
 
 Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> /*side*/) {
   return open_usb_glove_by(spec, HostClock::now() + open_budget);
-}
-
-OpenPort usb_opener(UsbWanted wanted, const UsbInterface& interface) {
-  return [last = std::move(wanted), interface]() mutable -> Result<std::unique_ptr<Transport>> {
-    auto opened = open_usb(last, interface);
-    if (!opened) return opened.error();
-    const UsbIdentity& identity = (*opened)->identity();
-    last.serial = identity.serial;
-    last.port = identity.serial.empty() ? identity.place : std::string{};
-    return std::unique_ptr<Transport>(*std::move(opened));
-  };
-}
-
-std::vector<GloveFact> facts_of(const UsbIdentity& identity) {
-  std::vector<GloveFact> facts{{"usb_id", to_string(id_of(identity))},
-                               {"usb_port", identity.place}};
-  if (!identity.manufacturer.empty()) facts.push_back({"manufacturer", identity.manufacturer});
-  if (!identity.product.empty()) facts.push_back({"product", identity.product});
-  if (!identity.serial.empty()) facts.push_back({"serial", identity.serial});
-  return facts;
 }
 
 } // namespace nendo::driver
