@@ -81,7 +81,7 @@ TEST_SUITE("deform_loop") {
 
   TEST_CASE("a damaged count in one sample does not reach the shape, and is reported") {
     for (const bool gated : {true, false}) {
-      LoopUnderTest test(Mode::type1, 24, 1000.0, SwitchAction::none, gated);
+      LoopUnderTest test(Mode::type1, {.gated = gated});
       const HostTime now = HostClock::now();
       test.bend(10, now);
       const deform::Points shape = test.vertices_of(test.frame_after_tick(0));
@@ -98,8 +98,7 @@ TEST_SUITE("deform_loop") {
 
   TEST_CASE("with the filter on the hands come late, by what is reported, and get there") {
     LoopUnderTest plain(Mode::type1);
-    LoopUnderTest filtered(Mode::type1, 24, 1000.0, SwitchAction::none, true,
-                           hand::FilterKind::one_euro);
+    LoopUnderTest filtered(Mode::type1, {.filter = hand::FilterKind::one_euro});
     const auto index_tip = [](const Frame& frame) {
       return frame.hands[1].pose[hand::Joint::index_tip].translation().eval();
     };
@@ -149,7 +148,7 @@ TEST_SUITE("deform_loop") {
   TEST_CASE("the loop keeps its grid: every deadline is either a tick or counted as missed") {
     // 10 kHz on a mesh of 320,000 vertices cannot be kept: ticks overrun, deadlines are skipped and
     // not caught up.
-    LoopUnderTest test(Mode::type1, 400, 10'000.0);
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 400, .rate_hz = 10'000.0});
     std::atomic<bool> stop{false};
     constexpr std::uint64_t deadlines = 2000;
     std::thread glove([&] {
@@ -168,7 +167,7 @@ TEST_SUITE("deform_loop") {
   }
 
   TEST_CASE("stop ends the loop within a period, while another thread reads its frames") {
-    LoopUnderTest test(Mode::type1, 24, 200.0);
+    LoopUnderTest test(Mode::type1, {.rate_hz = 200.0});
     std::atomic<bool> stop{false};
     std::thread loop([&] { test.loop->run(stop); });
     std::uint64_t last = 0;
@@ -230,8 +229,9 @@ TEST_SUITE("deform_loop") {
       for (auto& sensor : slow.sensors)
         sensor.gain_rad_per_count *= 0.1;
       const GloveSample first = nendo::test::bent_sample(Side::right, 0, now);
-      HandInput input{&ring, hand::HandSkeleton(Side::right), slow_first ? slow : fast, first};
-      input.swapped = slow_first ? fast : slow;
+      HandInput input{&ring, Side::right, {}, first};
+      input.wearer.right.calibration = slow_first ? slow : fast;
+      input.wearer.left.calibration = slow_first ? fast : slow;
       flow::LoopOptions options;
       options.sculptor.deformer.supports = deform::one_radius(0.5);
       flow::DeformLoop loop(nendo::test::ball(12), {}, {input}, options);
@@ -254,8 +254,7 @@ TEST_SUITE("deform_loop") {
 
   TEST_CASE("a loop that adapts learns each hand's ranges as hand::RangeAdaptation does") {
     const HostTime now = HostClock::now();
-    LoopUnderTest test(Mode::type1, 24, 1000.0, SwitchAction::none, true, hand::FilterKind::off,
-                       CountScale{});
+    LoopUnderTest test(Mode::type1, {.adapt = CountScale{}});
     LoopUnderTest plain(Mode::type1);
     hand::RangeAdaptation reference;
     reference.push(test::bent_sample(Side::right, 0, now));
@@ -291,16 +290,13 @@ TEST_SUITE("deform_loop") {
   TEST_CASE("a glove of the other side in the place of the first has its own wearer's size") {
     const HostTime now = HostClock::now();
     SampleRing ring(64);
-    HandInput input{&ring, hand::HandSkeleton(Side::right), hand::default_calibration(),
-                    nendo::test::bent_sample(Side::right, 0, now)};
+    HandInput input{&ring, Side::right, {}, nendo::test::bent_sample(Side::right, 0, now)};
+    const hand::HandSkeleton usual(Side::right);
     const hand::HandSkeleton small(Side::right, {0.160, 0.070});
     flow::LoopOptions options;
     options.sculptor.deformer.supports = deform::one_radius(0.5);
     for (const bool known : {true, false}) {
-      if (known)
-        input.swapped_skeleton = small;
-      else
-        input.swapped_skeleton.reset();
+      input.wearer.left.size = known ? hand::HandSize{0.160, 0.070} : hand::HandSize{};
       flow::DeformLoop loop(nendo::test::ball(12), {}, {input}, options);
       std::uint64_t number = 0;
       for (const Side side : {Side::right, Side::left, Side::right}) {
@@ -312,12 +308,12 @@ TEST_SUITE("deform_loop") {
         const double shown = (pose[hand::Joint::middle_tip].translation() -
                               pose[hand::Joint::middle_distal].translation())
                                  .norm();
-        const auto& wearer = side == Side::left && known ? small : input.skeleton;
+        const auto& wearer = side == Side::left && known ? small : usual;
         CHECK(shown == doctest::Approx(wearer.rest_offset(hand::Joint::middle_tip).norm()));
       }
     }
     CHECK(small.rest_offset(hand::Joint::middle_tip).norm() <
-          0.95 * input.skeleton.rest_offset(hand::Joint::middle_tip).norm());
+          0.95 * usual.rest_offset(hand::Joint::middle_tip).norm());
   }
 
   TEST_CASE("a glove of the other side in the place of the first does not get its calibration") {
@@ -339,8 +335,8 @@ TEST_SUITE("deform_loop") {
     const auto placement = flow::place_hands(model, tips);
     flow::LoopOptions options;
     options.sculptor.deformer.supports = deform::one_radius(0.5);
-    flow::DeformLoop loop(model, placement, {{&ring, skeleton, own, first, false, {}, swapped}},
-                          options);
+    flow::DeformLoop loop(model, placement,
+                          {{&ring, Side::right, {{swapped}, {own}}, first, false}}, options);
     std::uint64_t number = 0;
     for (const Side side : {Side::left, Side::right}) {
       GloveSample sample = nendo::test::bent_sample(side, 30, now);

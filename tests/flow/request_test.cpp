@@ -23,7 +23,7 @@ struct Person {
   std::uint64_t tick = 0;
 
   explicit Person(Mode mode, SwitchAction action = SwitchAction::none)
-      : test(mode, 24, 1000.0, action) {}
+      : test(mode, {.switch_action = action}) {}
 
   const Frame& bend(int counts, WristSwitch position = WristSwitch::unknown) {
     now += std::chrono::milliseconds(11);

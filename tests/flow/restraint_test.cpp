@@ -49,8 +49,8 @@ TEST_SUITE("restraint") {
       const Mode mode = of_model; // Clang 14 captures no structured bindings
       const FilterKind filter = of_hands;
       const bool adapts = filter != FilterKind::off;
-      LoopUnderTest test(mode, 24, 1000.0, SwitchAction::none, true, filter,
-                         adapts ? std::optional(CountScale{}) : std::nullopt);
+      LoopUnderTest test(
+          mode, {.filter = filter, .adapt = adapts ? std::optional(CountScale{}) : std::nullopt});
       test::RestraintCounts counts;
       const HostTime begin = HostClock::now();
       // Samples are pushed, and frames read, on this thread too: the ring and the exchange are held
@@ -104,7 +104,7 @@ TEST_SUITE("restraint") {
 
   TEST_CASE("running at the fixed rate, sleeping included, does not either") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
-      LoopUnderTest test(mode, 24, 2000.0);
+      LoopUnderTest test(mode, {.rate_hz = 2000.0});
       std::atomic<bool> stop{false};
       test.bend(12, HostClock::now());
       test::RestraintCounts counts;

@@ -20,7 +20,7 @@ struct Sculptors {
   HostTime now = HostClock::now();
   std::uint64_t tick = 0;
 
-  Sculptors(Mode mode, SwitchAction action) : test(mode, 24, 1000.0, action) {}
+  Sculptors(Mode mode, SwitchAction action) : test(mode, {.switch_action = action}) {}
 
   const Frame& step(int counts, WristSwitch left, WristSwitch right = WristSwitch::unknown) {
     now += 11ms;

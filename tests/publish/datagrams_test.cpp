@@ -103,9 +103,9 @@ TEST_SUITE("datagrams") {
     for (const int family : {AF_INET, AF_INET6}) {
       Receiver receiver(family);
       if (!receiver.is_bound()) continue; // no IPv6 here
-      LoopUnderTest test(flow::Mode::type1, 8, 1000.0, flow::SwitchAction::none, true,
-                         hand::FilterKind::off, std::nullopt, nullptr,
-                         deform::InjectiveOptions{.most_bound = 0.2});
+      LoopUnderTest test(
+          flow::Mode::type1,
+          {.rings_of_ball = 8, .injective = deform::InjectiveOptions{.most_bound = 0.2}});
       SegmentPublisher publisher(test::segment_name("both"), {});
       DatagramPublisher sender("udp:port", receiver.target());
       test::attach(test, {&publisher, &sender});
@@ -157,7 +157,7 @@ TEST_SUITE("datagrams") {
       const Receiver gone; // its port is free again
       target = gone.target();
     }
-    LoopUnderTest test(flow::Mode::type2, 8);
+    LoopUnderTest test(flow::Mode::type2, {.rings_of_ball = 8});
     DatagramPublisher sender("udp:192.0.2.1:9", target);
     test::attach(test, {&sender});
     for (int loop = 0; loop < 2; ++loop) {
@@ -180,7 +180,7 @@ TEST_SUITE("datagrams") {
     target.address.v4.sin_family = AF_INET;
     target.address.v4.sin_port = htons(9000);
     target.address.v4.sin_addr.s_addr = INADDR_BROADCAST;
-    LoopUnderTest test(flow::Mode::type1, 8);
+    LoopUnderTest test(flow::Mode::type1, {.rings_of_ball = 8});
     DatagramPublisher sender("udp:255.255.255.255:9000", target);
     const auto begun = sender.begin(test::outline_of(test));
     REQUIRE_FALSE(begun);

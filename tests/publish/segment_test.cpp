@@ -22,7 +22,7 @@ using test::segment_name;
 TEST_SUITE("segment") {
   TEST_CASE("a frame's hands and vertices come out as they are, whatever changed since") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
-      LoopUnderTest test(mode, 12);
+      LoopUnderTest test(mode, {.rings_of_ball = 12});
       SegmentPublisher publisher(segment_name("frames"), {});
       test::attach(test, {&publisher});
       REQUIRE(publisher.begin(test::outline_of(test)));
@@ -77,7 +77,7 @@ TEST_SUITE("segment") {
   }
 
   TEST_CASE("faces become triangles of the same area, over the same vertices") {
-    LoopUnderTest test(Mode::type1, 8);
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
     SegmentPublisher publisher(segment_name("faces"), {});
     REQUIRE(publisher.begin(test::outline_of(test)));
     const MappedSegment segment(segment_name("faces"));
@@ -98,7 +98,7 @@ TEST_SUITE("segment") {
   }
 
   TEST_CASE("a loop that is made anew keeps the segment, another model gets another one") {
-    LoopUnderTest test(Mode::type1, 10);
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 10});
     SegmentPublisher publisher(segment_name("anew"), {});
     test::attach(test, {&publisher});
     REQUIRE(publisher.begin(test::outline_of(test)));
@@ -118,7 +118,7 @@ TEST_SUITE("segment") {
     CHECK(test::head_of(segment.record(21)).generation == 2);
     CHECK((segment.shape(21) - shape).cwiseAbs().maxCoeff() < 2 * test::float_gap);
 
-    LoopUnderTest larger(Mode::type1, 12);
+    LoopUnderTest larger(Mode::type1, {.rings_of_ball = 12});
     test::attach(larger, {&publisher});
     REQUIRE(publisher.begin(test::outline_of(larger)));
     CHECK(segment.has_ended());
@@ -129,8 +129,8 @@ TEST_SUITE("segment") {
 
   TEST_CASE(
       "a stranger that may write, and writes garbage everywhere, changes nothing in the loop") {
-    LoopUnderTest test(Mode::type1, 10);
-    LoopUnderTest alone(Mode::type1, 10);
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 10});
+    LoopUnderTest alone(Mode::type1, {.rings_of_ball = 10});
     SegmentPublisher publisher(segment_name("garbage"), {});
     test::attach(test, {&publisher});
     REQUIRE(publisher.begin(test::outline_of(test)));
@@ -162,7 +162,7 @@ TEST_SUITE("segment") {
   }
 
   TEST_CASE("fields that there is no room for are left out together, and marked") {
-    LoopUnderTest test(Mode::type1, 8);
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
     SegmentPublisher publisher(segment_name("room"), {});
     test::attach(test, {&publisher});
     auto outline = test::outline_of(test);
@@ -181,7 +181,7 @@ TEST_SUITE("segment") {
   }
 
   TEST_CASE("a reader takes no segment whose sizes lead outside of it") {
-    LoopUnderTest test(Mode::type1, 8);
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
     SegmentPublisher publisher(segment_name("judge"), {});
     REQUIRE(publisher.begin(test::outline_of(test)));
     const MappedSegment segment(segment_name("judge"));

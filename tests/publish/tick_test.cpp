@@ -51,7 +51,7 @@ TEST_SUITE("publishing_tick") {
             "calls the system, and none meets a new page") {
     if (!test::restraint_is_counted) return;
     for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
-      LoopUnderTest test(mode, 16);
+      LoopUnderTest test(mode, {.rings_of_ball = 16});
       SegmentPublisher publisher(test::segment_name("tick"), {});
       DatagramPublisher sender("udp:9", port_9());
       test::attach(test, {&publisher, &sender});

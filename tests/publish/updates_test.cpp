@@ -101,7 +101,7 @@ TEST_SUITE("updates") {
   TEST_CASE(
       "the updates, with commits, undo and redo, make the published shapes of the rest shape") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
-      LoopUnderTest test(mode, 10);
+      LoopUnderTest test(mode, {.rings_of_ball = 10});
       SegmentPublisher publisher(segment_name("follow"), {});
       test::attach(test, {&publisher});
       REQUIRE(publisher.begin(test::outline_of(test)));
@@ -124,7 +124,7 @@ TEST_SUITE("updates") {
 
   TEST_CASE("who misses records comes back to following the updates, and to the same shapes") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
-      LoopUnderTest test(mode, 10);
+      LoopUnderTest test(mode, {.rings_of_ball = 10});
       SegmentPublisher publisher(segment_name("miss"), {});
       test::attach(test, {&publisher});
       REQUIRE(publisher.begin(test::outline_of(test)));

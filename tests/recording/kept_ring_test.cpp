@@ -67,7 +67,8 @@ struct Filled {
 
   Filled(HostClock::duration span, std::size_t bytes) {
     std::uint32_t chunks = 0;
-    auto setup = setup_bytes(test::setup_of(test::LoopUnderTest(Mode::type1, 8)), chunks);
+    auto setup =
+        setup_bytes(test::setup_of(test::LoopUnderTest(Mode::type1, {.rings_of_ball = 8})), chunks);
     ring = std::make_unique<KeptRing>(std::move(setup), chunks, span, bytes);
   }
   void push(std::uint64_t ticks) {

@@ -75,14 +75,21 @@ void check_calibration(const json& told, const hand::Calibration& calibration) {
 
 /// A setup of which nothing is what it is by default.
 Setup unusual_setup() {
-  test::LoopUnderTest test(Mode::type2, 8, 333.0, flow::SwitchAction::toggle, false,
-                           hand::FilterKind::one_euro, CountScale{4095, true});
+  test::LoopUnderTest test(Mode::type2, {.rings_of_ball = 8,
+                                         .rate_hz = 333.0,
+                                         .switch_action = flow::SwitchAction::toggle,
+                                         .gated = false,
+                                         .filter = hand::FilterKind::one_euro,
+                                         .adapt = CountScale{4095, true}});
   auto& input = test.inputs[0];
-  input.calibration[Sensor::ring_mcp] = {0.1, -17.25};
-  input.calibration.mixed_in[3] = 0.125;
-  input.calibration.middle_bias = 0.7;
-  input.swapped[Sensor::thumb_ip] = {-1.0 / 3.0, 1e-9};
-  auto& learned = input.learned.emplace();
+  auto& [left, right, adapt, learned_before] = input.wearer;
+  left.calibration[Sensor::ring_mcp] = {0.1, -17.25};
+  left.calibration.mixed_in[3] = 0.125;
+  left.calibration.middle_bias = 0.7;
+  left.size = {0.2, 0.09};
+  right.calibration[Sensor::thumb_ip] = {-1.0 / 3.0, 1e-9};
+  right.size = {0.17, 0.07};
+  auto& learned = learned_before.emplace();
   learned.side = Side::left;
   learned.sensors[21] = {12.5, 3000.0, 17, 4'000'000'000, {0.001, -3.5}};
   input.first.device_time = std::chrono::nanoseconds(123456789);
@@ -92,13 +99,10 @@ Setup unusual_setup() {
   test.options.silent_after = std::chrono::milliseconds(321);
   auto& deformer = test.options.sculptor.deformer;
   deformer.supports = {{{0.5, 1.0}, {2.0, 0.25}}, {{3, {0.75, 2.0}}}};
-  deformer.csrbf = {deform::Wendland::c6, deform::Polynomial::linear, 0.07,
-                    deform::PointOrder::octree, deform::Storage::dense};
+  deformer.csrbf = {deform::Wendland::c6, deform::Polynomial::linear, 0.07};
   deformer.evaluation.weight_bytes = 12345;
   deformer.injective = deform::InjectiveOptions{0.8, 33, 0.04};
   Setup setup = test::setup_of(test);
-  setup.hands[0].size = {0.2, 0.09};
-  setup.hands[0].swapped_size = {0.17, 0.07};
   setup.gloves[1].facts = {{"serial", "42"}, {"firmware", "2.1"}};
   setup.gloves[1].counts = {1023, true};
   setup.gloves[1].abilities.light = true;
@@ -140,14 +144,17 @@ TEST_SUITE("take_reader") {
     CHECK(lines[2]["abilities"] == 2);
     for (unsigned hand = 0; hand < 2; ++hand, ++at) {
       CHECK(lines[at]["side"] == hand);
-      CHECK(lines[at]["size"][0] == setup.hands[hand].size.length_m);
-      CHECK(lines[at]["swapped_size"][0] == setup.hands[hand].swapped_size.length_m);
-      CHECK(lines[at]["swapped_size"][1] == setup.hands[hand].swapped_size.breadth_m);
+      const auto& wearer = setup.hands[hand].wearer;
+      const auto& own = hand == 0 ? wearer.left : wearer.right;
+      const auto& other = hand == 0 ? wearer.right : wearer.left;
+      CHECK(lines[at]["size"][0] == own.size.length_m);
+      CHECK(lines[at]["swapped_size"][0] == other.size.length_m);
+      CHECK(lines[at]["swapped_size"][1] == other.size.breadth_m);
       CHECK(lines[at]["gated"] == 0);
       CHECK(lines[at]["adapt"] == json::parse("[1, 4095, 1]"));
       CHECK(is_sample(lines[at]["first"], hand, setup.hands[hand].first));
-      check_calibration(lines[at]["own"], setup.hands[hand].calibration);
-      check_calibration(lines[at]["swapped"], setup.hands[hand].swapped);
+      check_calibration(lines[at]["own"], own.calibration);
+      check_calibration(lines[at]["swapped"], other.calibration);
     }
     CHECK(lines[3]["learned"]["side"] == 0);
     CHECK(lines[3]["learned"]["sensors"][21] ==
@@ -214,7 +221,7 @@ TEST_SUITE("take_reader") {
       Setup cut = setup;
       CHECK_FALSE(read_setup_chunk(chunk->type, whole.first(whole.size() - 2), cut));
       REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - 1), setup));
-      CHECK_FALSE(setup.hands.back().learned.has_value());
+      CHECK_FALSE(setup.hands.back().wearer.learned.has_value());
     }
     CHECK(setup.hands.size() == 2);
   }
@@ -268,9 +275,11 @@ TEST_SUITE("take_reader") {
             continue;
           }
           for (const auto& hand : setup.hands) {
-            for (const auto& line : hand.calibration.sensors)
-              CHECK(std::abs(line.gain_rad_per_count) < 1e7);
-            CHECK(hand.size.length_m < 2.0);
+            for (const Side side : {Side::left, Side::right}) {
+              for (const auto& line : hand.wearer.of(side).calibration.sensors)
+                CHECK(std::abs(line.gain_rad_per_count) < 1e7);
+              CHECK(hand.wearer.of(side).size.length_m < 2.0);
+            }
           }
           if (!setup.loop) continue;
           CHECK(setup.loop->placement.T_stage_wrist[0].matrix().allFinite());

@@ -38,24 +38,30 @@ inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
   return sample;
 }
 
+/// What a test may ask of its loop.
+struct LoopFixture {
+  std::uint32_t rings_of_ball = 24; ///< how fine the model is
+  double rate_hz = 1000.0;
+  flow::SwitchAction switch_action = flow::SwitchAction::none;
+  bool gated = true; ///< samples pass the sensor gate
+  hand::FilterKind filter = hand::FilterKind::off;
+  std::optional<CountScale> adapt = std::nullopt;
+  flow::InputLog* input_log = nullptr;
+  std::optional<deform::InjectiveOptions> injective = std::nullopt;
+};
+
 /// A loop over two hands whose rings the test fills itself.
 struct LoopUnderTest {
   std::vector<std::unique_ptr<SampleRing>> rings;
-  flow::RequestRing requests{16};
-  flow::WristRing wrists{16};
+  flow::CommandRing commands{32};
   deform::Mesh model;
   flow::Placement placement;
   std::vector<flow::HandInput> inputs; ///< these two as the loop was made of them
   flow::LoopOptions options;
   std::unique_ptr<flow::DeformLoop> loop;
 
-  explicit LoopUnderTest(flow::Mode mode, std::uint32_t rings_of_ball = 24, double rate_hz = 1000.0,
-                         flow::SwitchAction switch_action = flow::SwitchAction::none,
-                         bool gated = true, hand::FilterKind filter = hand::FilterKind::off,
-                         std::optional<CountScale> adapt = std::nullopt,
-                         flow::InputLog* input_log = nullptr,
-                         std::optional<deform::InjectiveOptions> injective = std::nullopt)
-      : model(ball(rings_of_ball)) {
+  explicit LoopUnderTest(flow::Mode mode, const LoopFixture& fixture = {})
+      : model(ball(fixture.rings_of_ball)) {
     const HostTime now = HostClock::now();
     std::array<std::optional<flow::Fingertips>, 2> tips;
     for (const Side side : {Side::left, Side::right}) {
@@ -67,17 +73,16 @@ struct LoopUnderTest {
               .pose(hand::joint_angles(first, hand::default_calibration()),
                     Eigen::Isometry3d::Identity())
               .fingertip_positions();
-      inputs.push_back({rings.back().get(), skeleton, hand::default_calibration(), first, gated});
-      inputs.back().filter.kind = filter;
-      inputs.back().adapt = adapt;
+      inputs.push_back({rings.back().get(), side, {}, first, fixture.gated});
+      inputs.back().filter.kind = fixture.filter;
+      inputs.back().wearer.adapt = fixture.adapt;
     }
     placement = flow::place_hands(model, tips);
-    options.input_log = input_log;
-    options.sculptor.deformer.injective = injective;
-    options.rate_hz = rate_hz;
-    options.switch_action = switch_action;
-    options.requests = &requests;
-    options.wrists = &wrists;
+    options.input_log = fixture.input_log;
+    options.sculptor.deformer.injective = fixture.injective;
+    options.rate_hz = fixture.rate_hz;
+    options.switch_action = fixture.switch_action;
+    options.commands = &commands;
     options.sculptor.mode = mode;
     options.sculptor.deformer.undo_bytes = std::size_t{4} << 20;
     options.sculptor.deformer.supports = deform::one_radius(0.5);

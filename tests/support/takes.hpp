@@ -33,11 +33,11 @@ inline recording::Setup setup_of(const LoopUnderTest& test) {
     driver::GloveInfo glove;
     glove.source = "sim";
     glove.model = "a glove of the test's";
-    glove.side = input.skeleton.side();
+    glove.side = input.side;
     glove.sensors = sensors_22;
     glove.rate_hz = 90.0;
     setup.gloves.push_back(glove);
-    setup.hands.push_back(recording::hand_setup(input, {}, {}));
+    setup.hands.push_back(input);
   }
   setup.loop = recording::LoopSetup{"ball.obj", recording::sum_of(test.model.vertices),
                                     test.placement, test.options, "AVX2"};
@@ -57,9 +57,13 @@ struct RecordedLoop {
   explicit RecordedLoop(flow::Mode mode, hand::FilterKind filter = hand::FilterKind::off,
                         bool adapts = false, bool injective = false,
                         flow::SwitchAction action = flow::SwitchAction::none)
-      : test(mode, 16, 1000.0, action, true, filter,
-             adapts ? std::optional(CountScale{}) : std::nullopt, &input_log,
-             injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt),
+      : test(mode,
+             {.rings_of_ball = 16,
+              .switch_action = action,
+              .filter = filter,
+              .adapt = adapts ? std::optional(CountScale{}) : std::nullopt,
+              .input_log = &input_log,
+              .injective = injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt}),
         setup(setup_of(test)) {}
 
   void record(recording::RecorderOptions options = {}) {
@@ -97,7 +101,7 @@ inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
       }
     }
     if (random() % 20 == 0)
-      played.test.requests.try_push(flow::requests[random() % flow::requests.size()]);
+      played.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
     if (random() % 20 == 0) {
       const Side side = random() % 2 == 0 ? Side::left : Side::right;
       Eigen::Isometry3d wrist =
@@ -105,7 +109,7 @@ inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
       wrist.translation().y() += 1e-3 * static_cast<double>(random() % 20);
       wrist.rotate(
           Eigen::AngleAxisd(1e-3 * static_cast<double>(random() % 20), Eigen::Vector3d::UnitX()));
-      played.test.wrists.try_push(flow::WristMove::to(side, wrist));
+      played.test.commands.try_push(flow::WristMove::to(side, wrist));
     }
     played.test.frame_after_tick(tick);
   }

@@ -19,7 +19,7 @@ TEST_SUITE("polled_loop") {
       "with a viewer that polls at 1 kHz and builds scenes, the loop allocates, frees and locks "
       "nothing, and misses no frame of its own") {
     for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
-      LoopUnderTest test(mode, 24, 1000.0);
+      LoopUnderTest test(mode);
       PollingViewer viewer(test);
       test::RestraintCounts counts;
       const std::atomic<bool> never{false};

@@ -25,7 +25,7 @@ constexpr double rate_hz = 50.0;
 
 /// A window over a ball and two hands, with keys on two lanes.
 struct Seat {
-  test::LoopUnderTest test{flow::Mode::type1, 12};
+  test::LoopUnderTest test{flow::Mode::type1, {.rings_of_ball = 12}};
   std::unique_ptr<TimelineWindow> window;
   TimelineView view;
   SceneFrame moment;

@@ -1,5 +1,5 @@
 #pragma once
-// A loop over two hands of the test's with a tap at it.
+// A loop over two hands that a test bends, and the stream of its frames.
 
 #include <memory>
 
@@ -10,35 +10,37 @@
 
 namespace nendo::test {
 
-struct TappedLoop {
+struct StreamedLoopOptions {
+  std::optional<deform::InjectiveOptions> injective = std::nullopt;
+  deform::Supports supports = deform::one_radius(0.5);
+  std::optional<double> swapped_length_m = std::nullopt; ///< of the hands that may be swapped in
+};
+
+struct StreamedLoop {
   LoopUnderTest test;
-  std::shared_ptr<web::FrameStream> tap;
+  std::shared_ptr<web::FrameStream> stream;
   std::vector<std::byte> model;
 
-  explicit TappedLoop(flow::Mode mode,
-                      std::optional<deform::InjectiveOptions> injective = std::nullopt,
-                      const deform::Supports& supports = deform::one_radius(0.5),
-                      std::optional<double> swapped_length_m = std::nullopt)
-      : test(mode, 12, 1000.0, flow::SwitchAction::none, true, hand::FilterKind::off, std::nullopt,
-             nullptr, injective) {
+  explicit StreamedLoop(flow::Mode mode, const StreamedLoopOptions& options = {})
+      : test(mode, {.rings_of_ball = 12, .injective = options.injective}) {
+    const deform::Supports& supports = options.supports;
     test.options.sculptor.deformer.supports = supports;
-    if (swapped_length_m)
+    if (options.swapped_length_m)
       for (auto& hand : test.inputs)
-        hand.swapped_skeleton.emplace(hand.skeleton.side(),
-                                      hand::HandSize{*swapped_length_m, 0.07});
+        hand.wearer.of(opposite(hand.side)).size = {*options.swapped_length_m, 0.07};
     const deform::BlockLayout layout(test.model.vertices);
     make_loop(); // to ask it how many fields a frame may have
-    tap =
+    stream =
         std::make_shared<web::FrameStream>(layout, mode, test.loop->frames().front().fields.room(),
                                            static_cast<std::size_t>(supports.functions(10)));
-    test.options.sinks = {tap.get()};
+    test.options.sinks = {stream.get()};
     make_loop();
     model = web::model_message(
         test.loop->layout(), test.model, test.inputs,
         {"ball", 1000.0, test.placement.units_per_metre, {mode, deform::Wendland::c2, {}}, false});
   }
 
-  /// Both hands bend by so many counts, and the loop ticks.
+  /// Bends both hands by so many counts and ticks. Returns the shape in the mesh's order.
   deform::Points tick(int bent) {
     test.bend(bent, HostClock::now());
     return test.vertices_of(test.frame_after_tick(next_++));
