@@ -20,6 +20,7 @@
 #include "bench/bench.hpp"
 #include "cli/cli.hpp"
 #include "reference/bumpy_sheet.hpp"
+#include "solver/solver_choices.hpp"
 
 namespace nendo::bench::solve_bench {
 namespace {
@@ -98,7 +99,7 @@ struct Measured {
 
 /// The best round of each, with the pieces of that round.
 Measured measure(const Method& method, const Points& starts, double radius, std::uint64_t rounds) {
-  CsrbfSolver solver({.order = method.order, .storage = method.storage});
+  CsrbfSolver solver = solver_with({}, {.order = method.order, .storage = method.storage});
   const Supports supports = one_radius(radius);
   CsrbfField field;
   Measured best{.method = method.name};

@@ -82,6 +82,12 @@ bool CsrbfSolver::State::write(CsrbfField& field, const Eigen::Matrix4d& b) {
   return true;
 }
 
+CsrbfSolver solver_with(const CsrbfOptions& options, const SolverChoices& choices) {
+  CsrbfSolver solver(options);
+  solver.state_->choices = choices;
+  return solver;
+}
+
 CsrbfSolver::CsrbfSolver(CsrbfOptions options) : state_(std::make_unique<State>(options)) {}
 CsrbfSolver::~CsrbfSolver() = default;
 CsrbfSolver::CsrbfSolver(CsrbfSolver&&) noexcept = default;

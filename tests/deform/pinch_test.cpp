@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "solver/solver_choices.hpp"
 #include "support/fields.hpp"
 #include "support/test_meshes.hpp"
 
@@ -75,9 +76,8 @@ struct Sweep {
 /// The law: four times as many steps make a fourth of the change in each, no more than half; and
 /// the field stays below so many times the displacements, which are at most 1.
 template <class Of>
-void check_sweep(const Sweep& sweep, const CsrbfOptions& options, const Of& of, int steps,
+void check_sweep(const Sweep& sweep, CsrbfSolver solver, const Of& of, int steps,
                  double bound_allowed) {
-  CsrbfSolver solver(options);
   const auto [bound, coarse] = sweep.run(solver, of, steps);
   const double fine = sweep.run(solver, of, 4 * steps).second;
   CHECK(bound < bound_allowed);
@@ -98,11 +98,11 @@ TEST_SUITE("pinch") {
       CAPTURE(static_cast<int>(kernel));
       const Sweep sweep(2, 3, 1);
       for (const Storage storage : {Storage::by_size, Storage::sparse}) {
-        const CsrbfOptions options{
-            .kernel = kernel, .merge_fraction = merge_fraction, .storage = storage};
-        check_sweep(sweep, options, VectorXd::Ones(5).eval(), 150, most);
-        check_sweep(sweep, options, unequal_radii(5), 150, most_of_several);
-        check_sweep(sweep, options, Supports{{{1.0, 1.0}, {3.0, 0.2}}, {}}, 150, most);
+        const CsrbfOptions options{.kernel = kernel, .merge_fraction = merge_fraction};
+        const auto solver = [&] { return solver_with(options, {.storage = storage}); };
+        check_sweep(sweep, solver(), VectorXd::Ones(5).eval(), 150, most);
+        check_sweep(sweep, solver(), unequal_radii(5), 150, most_of_several);
+        check_sweep(sweep, solver(), Supports{{{1.0, 1.0}, {3.0, 0.2}}, {}}, 150, most);
       }
     }
   }
@@ -111,10 +111,10 @@ TEST_SUITE("pinch") {
     const Sweep sweep(5, 5, 2);
     for (const Storage storage : {Storage::by_size, Storage::sparse})
       for (const Polynomial polynomial : {Polynomial::none, Polynomial::linear}) {
-        const CsrbfOptions options{
-            .polynomial = polynomial, .merge_fraction = merge_fraction, .storage = storage};
-        check_sweep(sweep, options, VectorXd::Ones(10).eval(), 200, 2.0 * most);
-        check_sweep(sweep, options, unequal_radii(10), 200, most_of_several);
+        const CsrbfOptions options{.polynomial = polynomial, .merge_fraction = merge_fraction};
+        const auto solver = [&] { return solver_with(options, {.storage = storage}); };
+        check_sweep(sweep, solver(), VectorXd::Ones(10).eval(), 200, 2.0 * most);
+        check_sweep(sweep, solver(), unequal_radii(10), 200, most_of_several);
       }
   }
 
@@ -122,9 +122,10 @@ TEST_SUITE("pinch") {
     const Sweep hundred(100, 10, 3);
     const Sweep thirty(30, 10, 3);
     for (const Storage storage : {Storage::dense, Storage::sparse}) {
-      const CsrbfOptions options{.merge_fraction = merge_fraction, .storage = storage};
-      check_sweep(hundred, options, VectorXd::Ones(110).eval(), 40, most);
-      check_sweep(thirty, options, unequal_radii(40), 120, most_of_several);
+      const CsrbfOptions options{.merge_fraction = merge_fraction};
+      const auto solver = [&] { return solver_with(options, {.storage = storage}); };
+      check_sweep(hundred, solver(), VectorXd::Ones(110).eval(), 40, most);
+      check_sweep(thirty, solver(), unequal_radii(40), 120, most_of_several);
     }
   }
 
@@ -154,8 +155,10 @@ TEST_SUITE("pinch") {
         for (const bool equal : {true, false}) {
           const VectorXd radii =
               equal ? VectorXd::Ones(crowd + 6).eval() : unequal_radii(crowd + 6);
-          const CsrbfField field = nendo::test::fitted({.storage = storage}, starts, radii, sweep.g,
-                                                       FieldStatus::merged);
+          CsrbfSolver solver = solver_with({}, {.storage = storage});
+          CsrbfField field;
+          CHECK(solver.build(starts, radii) == FieldStatus::merged);
+          CHECK(solver.solve(sweep.g, field) == FieldStatus::merged);
           CHECK(largest(values(field, starts) - expected) < 1e-6);
         }
       }

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "reference/bumpy_sheet.hpp"
+#include "solver/solver_choices.hpp"
 #include "support/fields.hpp"
 #include "support/test_meshes.hpp"
 
@@ -38,18 +39,15 @@ TEST_SUITE("sparse solver") {
       if (!equal) radii.array() *= 1.0 + 0.5 * random_points(random, 150, 1.0).row(0).array();
       for (const Wendland kernel : {Wendland::c0, Wendland::c2, Wendland::c6})
         for (const Polynomial polynomial : {Polynomial::none, Polynomial::linear}) {
-          CsrbfOptions options{kernel, polynomial, 0.01};
-          options.storage = Storage::dense;
-          CsrbfSolver dense(options);
+          const CsrbfOptions options{kernel, polynomial, 0.01};
+          CsrbfSolver dense = solver_with(options, {.storage = Storage::dense});
           CsrbfField expected;
           REQUIRE(is_solved(dense.build(starts, radii)));
           REQUIRE(is_solved(dense.solve(g, expected)));
           CHECK_FALSE(dense.effort().sparse);
-          options.storage = Storage::sparse;
           for (const auto order :
                {PointOrder::as_given, PointOrder::octree, PointOrder::minimum_degree}) {
-            options.order = order;
-            CsrbfSolver solver(options);
+            CsrbfSolver solver = solver_with(options, {.order = order, .storage = Storage::sparse});
             CsrbfField field;
             REQUIRE(is_solved(solver.build(starts, radii)));
             REQUIRE(is_solved(solver.solve(g, field)));
@@ -73,7 +71,7 @@ TEST_SUITE("sparse solver") {
     const VectorXd radii = VectorXd::Constant(160, radius_for(15.0, 160));
     CsrbfField fields[2];
     for (const bool sparse : {false, true}) {
-      CsrbfSolver solver({.storage = sparse ? Storage::sparse : Storage::dense});
+      CsrbfSolver solver = solver_with({}, {.storage = sparse ? Storage::sparse : Storage::dense});
       REQUIRE(is_solved(solver.build(starts, radii)));
       REQUIRE(is_solved(solver.solve(g, fields[sparse ? 1 : 0])));
       CHECK(solver.effort().sparse == sparse);
@@ -87,7 +85,7 @@ TEST_SUITE("sparse solver") {
     const Points starts = nendo::reference::bumpy_sheet(random, 2000);
     const VectorXd radii = VectorXd::Constant(2000, radius_for(9.0, 2000));
     const auto entries = [&](PointOrder order) {
-      CsrbfSolver solver({.order = order});
+      CsrbfSolver solver = solver_with({}, {.order = order});
       CHECK(is_solved(solver.build(starts, radii)));
       CHECK(solver.effort().sparse);
       CHECK(solver.effort().factor_entries >= solver.effort().matrix_entries);
@@ -150,7 +148,7 @@ TEST_SUITE("sparse solver") {
     Points starts = nendo::reference::bumpy_sheet(random, 400);
     starts.col(7) << 1e90, -1e90, 3.0;
     const Points g = random_points(random, 400, 1.0);
-    CsrbfSolver solver({.storage = Storage::sparse});
+    CsrbfSolver solver = solver_with({}, {.storage = Storage::sparse});
     CsrbfField field;
     for (const double scale : {1e-300, 1e-100, 1.0, 1e9}) {
       const VectorXd radii = VectorXd::Constant(400, 0.1 * scale);

@@ -35,7 +35,6 @@ inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys
   deformer.supports.shared = {{step(random), 1.0}, {step(random), 0.25}};
   deformer.supports.own = {{3, {step(random), 2.0}}};
   deformer.csrbf.kernel = deform::Wendland::c4;
-  deformer.csrbf.storage = deform::Storage::dense;
   if (random() % 2 == 0) deformer.injective.emplace();
   for (const Side side : {Side::left, Side::right}) {
     made.hands.push_back({side, {0.18 + 0.01 * step(random), 0.08}, {}});

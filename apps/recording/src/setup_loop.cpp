@@ -94,8 +94,7 @@ void put_deformer(ByteWriter& writer, const deform::DeformerOptions& options) {
   writer.u8(static_cast<std::uint8_t>(options.csrbf.kernel));
   writer.u8(static_cast<std::uint8_t>(options.csrbf.polynomial));
   writer.f64_le(options.csrbf.merge_fraction);
-  writer.u8(static_cast<std::uint8_t>(options.csrbf.order));
-  writer.u8(static_cast<std::uint8_t>(options.csrbf.storage));
+  writer.u16_le(0); // two bytes that were the solver's order and storage
   writer.u64_le(options.evaluation.weight_bytes);
   writer.u64_le(options.undo_bytes);
   writer.u8(static_cast<std::uint8_t>(options.injective.has_value()));
@@ -124,8 +123,7 @@ void read_deformer(ByteReader& reader, Judge& judge, deform::DeformerOptions& op
   options.csrbf.kernel = judge.one_of(deform::Wendland::c6);
   options.csrbf.polynomial = judge.one_of(deform::Polynomial::linear);
   options.csrbf.merge_fraction = judge.number(0.0, 1.0);
-  options.csrbf.order = judge.one_of(deform::PointOrder::minimum_degree);
-  options.csrbf.storage = judge.one_of(deform::Storage::sparse);
+  reader.u16_le(); // two bytes that were the solver's order and storage; any are good
   options.evaluation.weight_bytes = judge.memory();
   options.undo_bytes = judge.memory();
   const bool injects = reader.u8() != 0;

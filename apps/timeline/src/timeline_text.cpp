@@ -8,8 +8,6 @@
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
-#include "sculptor_names.hpp"
-
 namespace nendo::timeline {
 namespace {
 
@@ -56,16 +54,13 @@ std::string supports_text(const deform::Supports& supports) {
 std::string sculptor_text(const flow::SculptorOptions& sculptor) {
   const auto& options = sculptor.deformer;
   const auto word = [](std::string_view name) { return toml_string(name); };
-  std::string text =
-      "\n[sculptor]\n" + line("mode", word(name_of(sculptor.mode))) +
-      line("piece_length", decimal_text(sculptor.piece_length)) +
-      line("kernel", word(name_of(options.csrbf.kernel))) +
-      line("polynomial", word(name_of(options.csrbf.polynomial))) +
-      line("merge_fraction", decimal_text(options.csrbf.merge_fraction)) +
-      line("order", word(order_names[static_cast<std::size_t>(options.csrbf.order)])) +
-      line("storage", word(storage_names[static_cast<std::size_t>(options.csrbf.storage)])) +
-      line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
-      supports_text(options.supports);
+  std::string text = "\n[sculptor]\n" + line("mode", word(name_of(sculptor.mode))) +
+                     line("piece_length", decimal_text(sculptor.piece_length)) +
+                     line("kernel", word(name_of(options.csrbf.kernel))) +
+                     line("polynomial", word(name_of(options.csrbf.polynomial))) +
+                     line("merge_fraction", decimal_text(options.csrbf.merge_fraction)) +
+                     line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
+                     supports_text(options.supports);
   if (options.injective)
     text +=
         line("injective", "{ most_bound = " + decimal_text(options.injective->most_bound) +

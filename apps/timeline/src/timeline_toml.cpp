@@ -7,18 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "sculptor_names.hpp"
 #include "toml_reader.hpp"
 
 namespace nendo::timeline {
 namespace {
-
-template <class Enum, class Names>
-std::optional<Enum> numbered(const Names& names, std::string_view name) {
-  const auto* const found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<Enum>(found - names.begin());
-}
 
 deform::Support read_support(TomlReader& reader, const toml::node& node) {
   const auto values = reader.numbers<2>(node, "a shared support");
@@ -59,6 +51,7 @@ void read_injective(TomlReader& reader, const toml::table& table,
 void read_sculptor(TomlReader& reader, const toml::table& root, flow::SculptorOptions& sculptor) {
   const toml::table* const table = reader.table(root, "sculptor");
   if (table == nullptr) return;
+  // order and storage stand in older files; they are ignored.
   reader.allow_only(*table, {"mode", "piece_length", "kernel", "polynomial", "merge_fraction",
                              "order", "storage", "weight_bytes", "shared", "own", "injective"});
   auto& options = sculptor.deformer;
@@ -67,12 +60,6 @@ void read_sculptor(TomlReader& reader, const toml::table& root, flow::SculptorOp
   options.csrbf.kernel = reader.named(*table, "kernel", deform::wendland_named);
   options.csrbf.polynomial = reader.named(*table, "polynomial", deform::polynomial_named);
   options.csrbf.merge_fraction = reader.number(*table, "merge_fraction");
-  options.csrbf.order = reader.named(*table, "order", [](std::string_view name) {
-    return numbered<deform::PointOrder>(order_names, name);
-  });
-  options.csrbf.storage = reader.named(*table, "storage", [](std::string_view name) {
-    return numbered<deform::Storage>(storage_names, name);
-  });
   options.evaluation.weight_bytes =
       reader.count(*table, "weight_bytes", std::numeric_limits<std::int64_t>::max());
   read_supports(reader, *table, options.supports);

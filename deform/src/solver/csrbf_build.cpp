@@ -57,7 +57,7 @@ void CsrbfSolver::State::put_in_order(const Points& starts) {
   const Eigen::Index n = starts.cols();
   starts_ = starts;
   ordered_supports_ = supports;
-  if (n <= lean_size || options_.order == PointOrder::as_given) {
+  if (n <= lean_size || choices.order == PointOrder::as_given) {
     order_.resize(static_cast<std::size_t>(n));
     std::iota(order_.begin(), order_.end(), 0U);
     ordered_starts_ = starts;
@@ -83,11 +83,12 @@ KernelSystem::Assembled CsrbfSolver::State::assemble(const OwnFunctions& own, Sy
     system = systems[at].get();
     return system->assemble(options_, ordered_starts_, ordered_supports_, own);
   };
-  if (options_.storage == Storage::sparse ||
-      (options_.storage == Storage::by_size && n > least_sparse_points)) {
-    const auto assembled = assemble_in(2, make_sparse_system);
+  if (choices.storage == Storage::sparse ||
+      (choices.storage == Storage::by_size && n > least_sparse_points)) {
+    const bool must = choices.storage == Storage::sparse;
+    const auto assembled = assemble_in(2, [&] { return make_sparse_system(must); });
     effort.sparse = assembled != KernelSystem::Assembled::too_dense;
-    if (effort.sparse || options_.storage == Storage::sparse) return assembled;
+    if (effort.sparse || choices.storage == Storage::sparse) return assembled;
   }
   if (n > most_dense_points) return KernelSystem::Assembled::too_dense;
   return n <= lean_size ? assemble_in(0, make_lean_system) : assemble_in(1, make_dense_system);
@@ -110,7 +111,7 @@ FieldStatus CsrbfSolver::State::factorise_polynomial(double size) {
   KernelSystem* system = system_;
   if (is_polynomial_apart()) {
     if (assemble(no_own_, shared_systems_, shared_system_) == KernelSystem::Assembled::too_dense ||
-        !shared_system_->analyse(options_.order))
+        !shared_system_->analyse(choices.order))
       return FieldStatus::too_dense;
     if (factorise(*shared_system_, size) != FieldStatus::ok) return FieldStatus::singular;
     system = shared_system_;
@@ -129,7 +130,7 @@ FieldStatus CsrbfSolver::State::build(const Points& starts) {
     return FieldStatus::too_dense;
   const auto assembled = assemble(own_, systems_, system_);
   effort.assembly_s = laps.lap();
-  if (assembled == KernelSystem::Assembled::too_dense || !system_->analyse(options_.order))
+  if (assembled == KernelSystem::Assembled::too_dense || !system_->analyse(choices.order))
     return FieldStatus::too_dense;
   effort.analysis_s = laps.lap();
   const double shared_size = SharedKernel(options_.kernel, ordered_supports_).at(0.0);

@@ -9,12 +9,15 @@
 #include <nendo/deform/csrbf.hpp>
 
 #include "solver/polynomial_part.hpp"
+#include "solver/solver_choices.hpp"
 
 namespace nendo::deform {
 
 class CsrbfSolver::State {
 public:
   explicit State(const CsrbfOptions& options) : options_(options) {}
+
+  SolverChoices choices;
 
   void reserve(Eigen::Index points);
   /// Of `supports`. starts and supports: usable.

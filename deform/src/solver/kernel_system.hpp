@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "solver/own_functions.hpp"
+#include "solver/solver_choices.hpp"
 #include "solver/ties.hpp"
 
 namespace nendo::deform {
@@ -36,7 +37,8 @@ public:
 std::unique_ptr<KernelSystem> make_lean_system();
 /// Eigen's blocked Cholesky.
 std::unique_ptr<KernelSystem> make_dense_system();
-/// Neighbours by a grid, Eigen's simplicial Cholesky.
-std::unique_ptr<KernelSystem> make_sparse_system();
+/// Finds neighbours by a grid and uses Eigen's simplicial Cholesky. assemble() refuses a matrix that
+/// is so full that the dense way costs less, unless `must` is set.
+std::unique_ptr<KernelSystem> make_sparse_system(bool must);
 
 } // namespace nendo::deform

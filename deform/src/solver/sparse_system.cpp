@@ -36,12 +36,13 @@ public:
 
 class SparseSystem final : public KernelSystem {
 public:
+  explicit SparseSystem(bool must) : must_(must) {}
+
   Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
                      const OwnFunctions& own) override {
     const auto n = static_cast<std::size_t>(starts.cols());
     std::size_t most = most_matrix_entries;
-    if (options.storage == Storage::by_size)
-      most = std::min(most, n * (n + 1) / 2 / least_sparsity);
+    if (!must_) most = std::min(most, n * (n + 1) / 2 / least_sparsity);
     auto assembly = assemble_sparse(options, starts, supports, own, most);
     if (!assembly) return Assembled::too_dense;
     lower_ = std::move(assembly->lower);
@@ -117,6 +118,7 @@ public:
   Eigen::Index factor_entries() const noexcept override { return cholesky_.entries(); }
 
 private:
+  bool must_;
   SparseLower lower_;
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> to_place_;
   Matrix upper_;
@@ -126,8 +128,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<KernelSystem> make_sparse_system() {
-  return std::make_unique<SparseSystem>();
+std::unique_ptr<KernelSystem> make_sparse_system(bool must) {
+  return std::make_unique<SparseSystem>(must);
 }
 
 } // namespace nendo::deform

@@ -19,13 +19,6 @@ enum class Polynomial { none, constant, linear };
 std::string_view name_of(Polynomial polynomial) noexcept;
 std::optional<Polynomial> polynomial_named(std::string_view name) noexcept;
 
-/// How many start points are put in a row before the elimination: as they come, along an octree, or
-/// by approximate minimum degree on top of that, which fills the factor least but takes longer to
-/// find. by_size: an octree's up to 800 points.
-enum class PointOrder { by_size, as_given, octree, minimum_degree };
-/// by_size: dense up to a hundred start points, and where most of them meet.
-enum class Storage { by_size, dense, sparse };
-
 struct CsrbfOptions {
   Wendland kernel = Wendland::c2;
   Polynomial polynomial = Polynomial::none;
@@ -34,8 +27,6 @@ struct CsrbfOptions {
   /// bounded by some 0.25 / merge_fraction displacements, five times that with several radii (as
   /// pinch_test.cpp finds). From this distance on, interpolation is exact.
   double merge_fraction = 1e-6;
-  PointOrder order = PointOrder::by_size;
-  Storage storage = Storage::by_size;
 };
 
 enum class FieldStatus {
@@ -51,6 +42,8 @@ std::string_view describe(FieldStatus status) noexcept;
 constexpr bool is_solved(FieldStatus status) noexcept {
   return status == FieldStatus::ok || status == FieldStatus::merged;
 }
+
+struct SolverChoices; // those of tests and benchmarks: src/solver/solver_choices.hpp
 
 /// What the last build() took. Times are 0 up to lean_size points, where no clock is read.
 struct SolverEffort {
@@ -97,6 +90,8 @@ public:
 
 private:
   class State;
+  friend CsrbfSolver solver_with(const CsrbfOptions&, const SolverChoices&);
+
   std::unique_ptr<State> state_;
 };
 
