@@ -51,8 +51,7 @@ bool for_each_count(const json& line, const char* key, double most, Take&& take)
 bool read_sample(const json& line, GloveSample& sample) {
   const auto time_s = number(line, line.contains("measured_s") ? "measured_s" : "time_s", 0.0, 1e9);
   if (!time_s) return false;
-  sample.arrival = HostTime(
-      std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(*time_s)));
+  sample.arrival = HostTime(from_seconds(*time_s));
   sample.measured = sample.arrival;
   return for_each_count(line, "raw", 65535.0, [&](std::size_t slot, double count) {
     sample.set(static_cast<Sensor>(slot), RawCount{static_cast<std::uint16_t>(count)});

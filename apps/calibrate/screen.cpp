@@ -4,11 +4,11 @@
 #include <bit>
 #include <cmath>
 
+#include <nendo/base/text.hpp>
 #include <nendo/hand/inverse_kinematics.hpp>
 #include <nendo/hand/joint_angles.hpp>
 
 #include "calibrate/hand_drawing.hpp"
-#include "cli/printable.hpp"
 
 namespace nendo::calibrate {
 namespace {
@@ -184,7 +184,7 @@ std::vector<std::string> calibration_lines(const CalibrationPicture& picture,
   const std::string title =
       "Pose " + std::to_string(guide.number() + 1) + " of " + std::to_string(guide.pose_count()) +
       ": " + std::string(pose.name) + (guide.is_again() ? ", once more" : "") + "   (" +
-      std::string(name_of(picture.info->side)) + " hand of " + cli::printable(*picture.user) + ")";
+      std::string(name_of(picture.info->side)) + " hand of " + printable(*picture.user) + ")";
   std::vector<std::string> lines{title, std::string(pose.instruction), state_text(picture)};
   const std::vector<std::string> below{
       undetermined_text(picture.undetermined),

@@ -3,8 +3,9 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/base/text.hpp>
+
 #include "cli/cli.hpp"
-#include "cli/printable.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -20,7 +21,7 @@ std::string stem_of(const StoredCalibration& file) {
 hand::CalibrationList stored_calibrations() {
   auto list = hand::list_calibrations(hand::calibration_folders());
   for (const auto& error : list.unreadable)
-    cli::note(cli::printable(error.message));
+    cli::note(printable(error.message));
   return list;
 }
 
@@ -38,19 +39,18 @@ Result<StoredCalibration> named_calibration(const std::string& name) {
   }
   if (meant.size() == 1) return *meant.front();
   if (meant.empty()) {
-    return Error{Errc::bad_input, cli::printable(name) + ": no such calibration is stored; "
-                                                         "`nendo calibration list` shows them"};
+    return Error{Errc::bad_input, printable(name) + ": no such calibration is stored; "
+                                                    "`nendo calibration list` shows them"};
   }
   std::string several;
   for (const auto* file : meant)
     several.append(several.empty() ? "" : " or ").append(stem_of(*file));
-  return Error{Errc::usage, cli::printable(name + ": several are meant; name " + several)};
+  return Error{Errc::usage, printable(name + ": several are meant; name " + several)};
 }
 
 std::string title_of(const hand::WearerCalibration& wearer) {
-  return cli::printable(
-      wearer.user + ", " + std::string(name_of(wearer.side)) + " hand, " +
-      (wearer.glove_serial.empty() ? "any glove" : "glove " + wearer.glove_serial));
+  return printable(wearer.user + ", " + std::string(name_of(wearer.side)) + " hand, " +
+                   (wearer.glove_serial.empty() ? "any glove" : "glove " + wearer.glove_serial));
 }
 
 } // namespace nendo::gloves

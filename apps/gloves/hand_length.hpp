@@ -15,7 +15,8 @@ struct HandLength {
 
   /// Error: usage, if no hand is that long.
   Result<void> check() const;
-  /// The length that was given, with the proportions of `known`; otherwise `known`.
+  /// Returns a hand of the length that was given, with the proportions of `known`. Without a
+  /// length it returns `known`.
   hand::HandSize size(const hand::HandSize& known) const noexcept;
 };
 

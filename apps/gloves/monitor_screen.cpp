@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "cli/printable.hpp"
+#include <nendo/base/text.hpp>
 
 namespace nendo::gloves {
 namespace {
@@ -63,7 +63,7 @@ std::string glove_line(const MonitorPicture& picture, int width) {
   if (position != WristSwitch::unknown)
     right += ", switch " + on_or_off(position == WristSwitch::on);
   if (info.abilities.light) right += ", light " + on_or_off(picture.light);
-  return both_ends(cli::printable(info.source + ": " + info.model), right, width);
+  return both_ends(printable(info.source + ": " + info.model), right, width);
 }
 
 std::string losses(const driver::GloveStats& stats) {

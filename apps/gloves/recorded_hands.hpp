@@ -1,15 +1,16 @@
 #pragma once
-// The calibration that was in force when a glove was recorded.
+// The wearer of a glove that was recorded.
 
 #include <optional>
 
 #include <nendo/driver/glove.hpp>
-#include <nendo/recording/setup.hpp>
+#include <nendo/hand/wearer.hpp>
 
 namespace nendo::gloves {
 
-/// Of the hand of that side in the recording that `glove` replays; nothing for other gloves, and
-/// where it was not recorded. Blocks.
-std::optional<recording::HandSetup> recorded_hand(const driver::GloveInfo& glove, Side side);
+/// Returns the calibrations and sizes with which the hand of that side was recorded, if `glove`
+/// replays a recording; nullopt for other gloves, and if there is no such hand in it. What
+/// adaptation had learned is left out. Blocks.
+std::optional<hand::Wearer> recorded_wearer(const driver::GloveInfo& glove, Side side);
 
 } // namespace nendo::gloves

@@ -10,6 +10,7 @@
 
 #include <unistd.h>
 
+#include <nendo/base/text.hpp>
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_store.hpp>
@@ -18,7 +19,6 @@
 #include "calibrate/report.hpp"
 #include "calibrate/session.hpp"
 #include "cli/cli.hpp"
-#include "cli/printable.hpp"
 #include "gloves/glove_calibration.hpp"
 #include "gloves/hand_length.hpp"
 #include "nendo/commands.hpp"
@@ -125,9 +125,9 @@ int fit_and_write(const Options& options, Wearer& wearer,
   if (!earlier) return cli::report(earlier.error());
   std::error_code ignored;
   fs::remove(unfinished_path(wearer), ignored);
-  std::cout << "written to " << cli::printable(wearer.path.string()) << '\n';
+  std::cout << "written to " << printable(wearer.path.string()) << '\n';
   if (!earlier->empty())
-    std::cout << "the one before is kept as " << cli::printable(earlier->string()) << '\n';
+    std::cout << "the one before is kept as " << printable(earlier->string()) << '\n';
   if (options.picture.empty()) return 0;
   const auto drawn =
       calibrate::write_report_picture(options.picture, *fit, wearer.sensors, wearer.about.counts);

@@ -10,9 +10,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/base/text.hpp>
+
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
-#include "cli/printable.hpp"
 #include "gloves/calibration_names.hpp"
 #include "nendo/calibration_exchange.hpp"
 #include "nendo/commands.hpp"
@@ -69,7 +70,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t k = 0; k < row.size(); ++k) {
-      line += cli::printable(row[k]);
+      line += printable(row[k]);
       if (k + 1 < row.size()) line.append(widths[k] - row[k].size() + 2, ' ');
     }
     std::cout << line << '\n';
@@ -108,9 +109,9 @@ int list(bool json) {
 void show_text(const StoredCalibration& file) {
   const WearerCalibration& wearer = file.wearer;
   std::cout << gloves::title_of(wearer) << '\n'
-            << cli::printable("made " + hand::rfc3339(wearer.made) + " (" + wearer.method + "), " +
-                              (wearer.glove_model.empty() ? "any model" : wearer.glove_model) +
-                              ", " + file.path.string())
+            << printable("made " + hand::rfc3339(wearer.made) + " (" + wearer.method + "), " +
+                         (wearer.glove_model.empty() ? "any model" : wearer.glove_model) + ", " +
+                         file.path.string())
             << "\n\n";
   const double most = wearer.counts.most;
   std::vector<std::vector<std::string>> rows{
@@ -223,8 +224,8 @@ int remove(const std::string& name) {
   if (!file) return cli::report(file.error());
   const auto kept = hand::retire_calibration(file->path);
   if (!kept) return cli::report(kept.error());
-  std::cout << "removed " << cli::printable(file->path.string()) << "; it is kept as "
-            << cli::printable(kept->string()) << '\n';
+  std::cout << "removed " << printable(file->path.string()) << "; it is kept as "
+            << printable(kept->string()) << '\n';
   return 0;
 }
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/printable.hpp"
 #include "gloves/calibration_names.hpp"
 
 namespace nendo::app::calibration_exchange {
@@ -96,8 +96,8 @@ int import_calibration(const ImportOptions& options) {
       folder / hand::calibration_file_name(wearer->user, wearer->glove_serial, wearer->side);
   const auto kept = hand::write_calibration(path, *wearer);
   if (!kept) return cli::report(kept.error());
-  if (!kept->empty()) cli::note("the earlier one is kept as " + cli::printable(kept->string()));
-  std::cout << "imported for " << gloves::title_of(*wearer) << ": " << cli::printable(path.string())
+  if (!kept->empty()) cli::note("the earlier one is kept as " + printable(kept->string()));
+  std::cout << "imported for " << gloves::title_of(*wearer) << ": " << printable(path.string())
             << '\n';
   return 0;
 }
@@ -117,7 +117,7 @@ int export_calibration(const ExportOptions& options) {
   const auto result = exported(file->wearer, options.format);
   if (!result) {
     return cli::report(
-        {result.error().code, cli::printable(options.name) + ": " + result.error().message});
+        {result.error().code, printable(options.name) + ": " + result.error().message});
   }
   for (const auto& lost : result->notes)
     cli::note(lost);

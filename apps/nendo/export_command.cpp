@@ -84,7 +84,7 @@ Result<Take> read_recorded(const Options& options) {
   if (!model) return model.error();
   Take take;
   for (const auto& hand : setup.hands)
-    take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.side, hand.size);
+    take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton(hand.first.side));
   take.open = [path = options.file, mesh = *std::move(model)] {
     auto frames = takes::RecordedFrames::open(path, mesh);
     if (!frames) return Result<std::unique_ptr<takes::FrameSource>>(frames.error());

@@ -10,12 +10,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/base/text.hpp>
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/hand/angle_sources.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
-#include "cli/printable.hpp"
 #include "gloves/angle_sources_json.hpp"
 #include "nendo/commands.hpp"
 
@@ -99,9 +99,9 @@ public:
       name_width_ = std::max(name_width_, fact.name.size());
   }
   void print(const std::string& name, const std::string& value) const {
-    std::string line = cli::printable(name);
+    std::string line = printable(name);
     line.resize(name_width_ + 2, ' ');
-    std::cout << line << cli::printable(value) << '\n';
+    std::cout << line << printable(value) << '\n';
   }
   void print_list(std::string name, const std::vector<std::string>& words) const {
     for (const auto& line : wrapped(words, 80 - name_width_ - 2))

@@ -109,10 +109,10 @@ int monitor(const Options& options) {
   if (!glove) return cli::report(glove.error());
   std::optional<hand::ActiveCalibration> calibrations;
   if (!options.raw) {
-    const auto known =
-        gloves::known_hands((*glove)->info(), (*glove)->info().side, options.calibration);
-    if (!known) return cli::report(known.error());
-    calibrations = known->in_force();
+    const auto wearer =
+        gloves::find_wearer((*glove)->info(), (*glove)->info().side, options.calibration);
+    if (!wearer) return cli::report(wearer.error());
+    calibrations.emplace(*wearer);
   }
   SampleRing ring(1024);
   cli::install_stop_signals();

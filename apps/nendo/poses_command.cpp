@@ -1,7 +1,6 @@
 // nendo poses: the poses of a glove's hand, as JSON lines or as a BVH file.
 
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <thread>
@@ -52,17 +51,17 @@ Result<void> check(const Options& options) {
   return gloves::check(options.calibration);
 }
 
-hand::HandSkeleton skeleton_for(Side side, const gloves::OpenHand& hand, const Options& options) {
-  return hand::HandSkeleton(side, options.length.size(hand.known.of(side).size));
+hand::HandSkeleton skeleton_for(Side side, const gloves::OpenHand& hand) {
+  return hand::HandSkeleton(side, hand.wearer.of(side).size);
 }
 
 /// From samples to poses in an output, until there are enough.
 class PoseStream {
 public:
   PoseStream(const gloves::OpenHand& hand, const Options& options, gloves::PoseOutput& output)
-      : options_(options), output_(output), start_(hand.first.arrival),
-        calibration_(hand.known.in_force()), left_(skeleton_for(Side::left, hand, options)),
-        right_(skeleton_for(Side::right, hand, options)), grid_(start_, rate_of(options)) {}
+      : options_(options), output_(output), start_(hand.first.arrival), calibration_(hand.wearer),
+        left_(skeleton_for(Side::left, hand)), right_(skeleton_for(Side::right, hand)),
+        grid_(start_, rate_of(options)) {}
 
   /// False: no more is wanted, or the output failed.
   bool take(const GloveSample& sample) {
@@ -80,8 +79,7 @@ public:
 
 private:
   bool is_over(HostTime time) const {
-    return options_.duration_s > 0.0 &&
-           time - start_ >= std::chrono::nanoseconds(std::llround(options_.duration_s * 1e9));
+    return options_.duration_s > 0.0 && time - start_ >= from_seconds(options_.duration_s);
   }
   bool put(HostTime time, const GloveSample& sample) {
     if (is_over(time) || cli::stop_requested()) return false;
@@ -124,8 +122,7 @@ Result<void> stream(gloves::OpenHand& hand, const Options& options, gloves::Pose
 Result<std::unique_ptr<gloves::PoseOutput>> open_output(const Options& options,
                                                         const gloves::OpenHand& hand) {
   if (options.bvh.empty()) return gloves::json_pose_output();
-  return gloves::bvh_pose_output(options.bvh, skeleton_for(hand.side, hand, options),
-                                 rate_of(options));
+  return gloves::bvh_pose_output(options.bvh, skeleton_for(hand.side, hand), rate_of(options));
 }
 
 int poses(const Options& options) {
@@ -137,7 +134,7 @@ int poses(const Options& options) {
     return cli::report(started.error());
   if (const auto came = gloves::wait_for_first_sample(*hand); !came)
     return cli::report(came.error());
-  if (const auto done = gloves::calibrate(*hand, options.calibration); !done)
+  if (const auto done = gloves::calibrate(*hand, options.calibration, options.length); !done)
     return cli::report(done.error());
   const auto output = open_output(options, *hand); // a BVH file begins with the wearer's bones
   if (!output) return cli::report(output.error());

@@ -63,25 +63,16 @@ Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
   }
   for (auto& hand : hands) {
     if (const auto came = gloves::wait_for_first_sample(hand); !came) return came.error();
-    if (const auto known = gloves::calibrate(hand, options.calibration); !known)
-      return known.error();
+    if (const auto done = gloves::calibrate(hand, options.calibration, options.length); !done)
+      return done.error();
   }
   return hands;
 }
 
 recording::Setup setup_for(const std::vector<gloves::OpenHand>& hands, const Options& options) {
   recording::Setup setup = session::begin_setup(hands, options.calibration.user);
-  for (const auto& hand : hands) {
-    recording::HandSetup of_hand;
-    of_hand.side = hand.side;
-    of_hand.size = options.length.size(hand.known.own.size);
-    of_hand.first = hand.first;
-    of_hand.adapt = hand.known.adapt;
-    of_hand.calibration = hand.known.own.calibration;
-    of_hand.swapped = hand.known.swapped.calibration;
-    of_hand.swapped_size = options.length.size(hand.known.swapped.size);
-    setup.hands.push_back(of_hand);
-  }
+  for (const auto& hand : hands)
+    setup.hands.push_back({nullptr, hand.side, hand.wearer, hand.first});
   return setup;
 }
 

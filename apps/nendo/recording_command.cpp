@@ -77,11 +77,8 @@ int cut(const Options& options) {
         {Errc::usage, "--from, --to: use seconds from the beginning, --from before --to"});
   if (const auto fine = cli::check_place("--out", options.out); !fine)
     return cli::report(fine.error());
-  const auto time = [](double seconds) {
-    return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
-  };
-  const auto made =
-      recording::cut_take(options.file, options.out, time(options.from_s), time(to_s));
+  const auto made = recording::cut_take(options.file, options.out, from_seconds(options.from_s),
+                                        from_seconds(to_s));
   if (!made) return cli::report(made.error());
   print_made(options, made->entries, "entries", made->bytes);
   return 0;

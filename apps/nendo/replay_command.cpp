@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/simd.hpp>
 #include <nendo/recording/loop_replay.hpp>
@@ -14,7 +15,6 @@
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "cli/output_place.hpp"
-#include "cli/printable.hpp"
 #include "nendo/commands.hpp"
 #include "takes/recorded_model.hpp"
 
@@ -60,8 +60,7 @@ Result<void> check(const Options& options) {
 }
 
 HostTime host_time(const recording::Setup& setup, double seconds) {
-  return setup.begun_host +
-         std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
+  return setup.begun_host + from_seconds(seconds);
 }
 
 /// Sleeps until this tick's turn has come, in small pieces, so that a signal ends it.
@@ -166,7 +165,7 @@ int replay(const Options& options) {
   if (!model) return cli::report(model.error());
   const std::string simd(deform::simd_names().front());
   if (reader->setup().loop->simd != simd) {
-    cli::note("recorded with the instructions " + cli::printable(reader->setup().loop->simd) +
+    cli::note("recorded with the instructions " + printable(reader->setup().loop->simd) +
               ", replayed with " + simd + ", which round another way");
   }
   cli::install_stop_signals();

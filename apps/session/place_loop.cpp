@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include <nendo/flow/finger_supports.hpp>
+
 namespace nendo::session {
 namespace {
 
@@ -21,16 +23,10 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
   std::vector<flow::HandInput> inputs;
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
-    // The glove may be another one by now than when the hand was opened.
-    const gloves::KnownHand& now = hand.known.of(hand.first.side);
-    const gloves::KnownHand& swapped = hand.known.not_of(hand.first.side);
-    const hand::HandSkeleton skeleton(hand.side, options.length.size(now.size));
-    inputs.push_back({hand.ring.get(), skeleton, now.calibration, hand.first});
+    inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
     inputs.back().filter = options.filter;
-    inputs.back().swapped = swapped.calibration;
-    inputs.back().swapped_skeleton.emplace(hand.side, options.length.size(swapped.size));
-    inputs.back().adapt = hand.known.adapt;
-    if (carryover) inputs.back().learned = carryover->learned[flow::Placement::index_of(hand.side)];
+    if (carryover)
+      inputs.back().wearer.learned = carryover->learned[flow::Placement::index_of(hand.side)];
   }
   return inputs;
 }
@@ -40,9 +36,10 @@ flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
                               const deform::Mesh& model) {
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : inputs) {
-    const auto angles = hand::joint_angles(hand.first, hand.calibration);
-    tips[flow::Placement::index_of(hand.skeleton.side())] =
-        hand.skeleton.pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
+    const Side glove = hand.first.side;
+    const auto angles = hand::joint_angles(hand.first, hand.wearer.of(glove).calibration);
+    tips[flow::Placement::index_of(hand.side)] =
+        hand.skeleton(glove).pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
   }
   flow::Placement placement = flow::place_hands(model, tips);
   for (const auto& hand : open) {
@@ -57,18 +54,17 @@ double longest_side(const deform::Mesh& model) {
 }
 
 Error bad_radius(const std::string& text, const std::string& why) {
-  return {Errc::usage, "--radius " + text + ": " + why +
+  return {Errc::usage, "--radius" + text + ": " + why +
                            "; use a length > 0 in the mesh's units, five with commas between (or "
                            "ten, left hand first), or leave it out"};
 }
 
-Result<deform::Supports> supports_for(const std::string& radius, Eigen::Index fingertips,
-                                      double model_size) {
-  if (radius.empty())
+Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_two,
+                                      std::size_t hands, double model_size) {
+  if (!of_two)
     return deform::one_radius(default_radius_fraction * (model_size > 0.0 ? model_size : 1.0));
-  auto supports = deform::parse_supports_by_point(radius, fingertips);
-  if (!supports)
-    return bad_radius(radius, "does not fit " + std::to_string(fingertips) + " fingertips");
+  auto supports = flow::supports_of_hands(*of_two, static_cast<int>(hands));
+  if (!supports) return bad_radius("", "is for two hands, and there is one");
   return *std::move(supports);
 }
 
@@ -92,9 +88,11 @@ Carryover carryover_of(const flow::DeformLoop& ended) {
   return {ended.placement(), ended.learned()};
 }
 
-Result<void> check_radius(const std::string& text) {
-  if (text.empty() || deform::parse_supports_by_point(text, 10)) return {};
-  return bad_radius(text, "is none");
+Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
+  if (text.empty()) return std::optional<deform::Supports>();
+  auto supports = flow::parse_finger_supports(text);
+  if (!supports) return bad_radius(" " + text, "is none");
+  return supports;
 }
 
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
@@ -104,7 +102,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
   auto inputs = inputs_of(hands, options, carryover);
-  auto supports = supports_for(options.radius, 5 * static_cast<Eigen::Index>(inputs.size()), size);
+  auto supports = supports_for(options.supports, inputs.size(), size);
   if (!supports) return supports.error();
   const auto [least_radius, largest_radius] = least_and_largest(*supports);
   sculptor.deformer.supports = *std::move(supports);

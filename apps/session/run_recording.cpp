@@ -88,12 +88,7 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
   const std::string name = next_name(asked, with_model);
   outcomes_.push_back({asked.on ? name : "", std::nullopt});
   recording::Setup setup = begin_setup(hands, options.calibration.user);
-  for (std::size_t at = 0; at < hands.size(); ++at) {
-    const Side side = hands[at].first.side; // of the glove at hand now
-    setup.hands.push_back(
-        recording::hand_setup(placed.inputs[at], options.length.size(hands[at].known.of(side).size),
-                              options.length.size(hands[at].known.not_of(side).size)));
-  }
+  setup.hands = placed.inputs;
   // Whoever replays the loop needs the model that it began with.
   const auto mesh = with_model ? model_beside(name) : std::filesystem::path(options.mesh);
   if (with_model)
@@ -102,8 +97,7 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
                                     placed.options, std::string(deform::simd_names().front())};
   recording::RecorderOptions wanted;
   if (asked.on) wanted.file = name;
-  wanted.keep_last = std::chrono::duration_cast<HostClock::duration>(
-      std::chrono::duration<double>(asked.keep_last_s));
+  wanted.keep_last = from_seconds(asked.keep_last_s);
   wanted.kept_stem = asked.kept_stem;
   wanted.keep_on_switch = options.loop.switch_action == flow::SwitchAction::keep;
   wanted.tell = cli::note;

@@ -127,7 +127,7 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
     ordered_json& of_hand = line[std::string(name_of(hand.side))];
     of_hand = {{"glove", hand.glove->info().source},
                {"model", hand.glove->info().model},
-               {"hand_length_mm", 1e3 * options.length.size(hand.known.own.size).length_m},
+               {"hand_length_mm", 1e3 * hand.wearer.of(hand.first.side).size.length_m},
                {"samples", stats.samples[slot]},
                {"samples_per_s", static_cast<double>(stats.samples[slot]) / outcome.elapsed_s},
                {"silences", stats.silences[slot]},
@@ -136,7 +136,7 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
                {"bad_records", glove.bad_records},
                {"ring_refused", glove.ring_refused},
                {"reopened", glove.reopened}};
-    if (hand.known.adapt)
+    if (hand.wearer.adapt)
       of_hand["ranges"] = ranges_json(stats.ranges[slot], hand.glove->info().sensors);
   }
   line["injective"] = injective_json(options, stats);

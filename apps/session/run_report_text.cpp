@@ -121,7 +121,7 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
                 static_cast<unsigned long long>(stats.silences[slot]),
                 hand.glove->info().source.c_str());
     print_spikes(stats.spikes[slot]);
-    if (hand.known.adapt) print_ranges(stats.ranges[slot], hand.glove->info().sensors);
+    if (hand.wearer.adapt) print_ranges(stats.ranges[slot], hand.glove->info().sensors);
   }
   print_holds(options, stats);
   std::printf("  %-14s %s at %g Hz, %llu overruns, %llu missed\n", "ticks",

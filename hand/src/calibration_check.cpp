@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "text.hpp"
+#include <nendo/base/text.hpp>
 
 namespace nendo::hand {
 namespace {
@@ -75,10 +75,10 @@ std::string complaint_about_gain(Sensor sensor, double gain, CountScale counts) 
   if (gain == 0.0) return "a gain of 0 measures nothing; calibrate it or leave the sensor out";
   const double most = 255.0 / counts.most; // 1 rad a count of 8 bits
   if (!lies_within(std::abs(gain), 0.0, most))
-    return "a gain of " + number_text(gain) + " is absurd; it must lie within " +
-           number_text(most) + " rad a count";
+    return "a gain of " + decimal_text(gain) + " is absurd; it must lie within " +
+           decimal_text(most) + " rad a count";
   if (gain < 0.0 && rises_with_angle(sensor))
-    return "a gain of " + number_text(gain) +
+    return "a gain of " + decimal_text(gain) +
            " has the wrong sign; counts rise when the joint bends or the fingers spread";
   return {};
 }

@@ -2,12 +2,16 @@
 // What a calibration may hold, for readers and writers alike. Each function gives a complaint
 // without a place, or an empty string.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 #include <nendo/hand/calibration_file.hpp>
 
 namespace nendo::hand {
+
+/// No calibration file of any form may be larger.
+inline constexpr std::uint64_t most_calibration_bytes = std::uint64_t{1} << 20;
 
 /// Counts rise with the joint's angle in every glove that has this sensor: it bends, or lies
 /// between two fingers. The wrist's, the arch's and the thumb's other sensors have signs that

@@ -3,10 +3,11 @@
 #include <string>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
 
+#include "calibration_check.hpp"
 #include "imported_gains.hpp"
-#include "text.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -30,8 +31,8 @@ CalibrationFormat format_of(std::string_view text) noexcept {
     if (line->starts_with("version") || line->starts_with('[')) return CalibrationFormat::toml;
     const std::string_view first = line->substr(0, line->find_first_of(" \t"));
     const std::size_t colon = first.find(':');
-    const bool pair = colon != std::string_view::npos && to_number(first.substr(0, colon)) &&
-                      to_number(first.substr(colon + 1));
+    const bool pair = colon != std::string_view::npos && to_finite_number(first.substr(0, colon)) &&
+                      to_finite_number(first.substr(colon + 1));
     if (pair) return CalibrationFormat::two_point;
     if (line->find(" = ") != std::string_view::npos) return CalibrationFormat::toml;
     return CalibrationFormat::virtualhand;
@@ -57,8 +58,8 @@ Result<ImportedCalibration> parse_calibration_csv(std::string_view text, std::st
       return bad(in_quotes(*line) + " must have three columns, " + std::string(header));
     std::string_view rest = *line;
     const std::string_view sensor = trimmed(cut(rest, ','));
-    const auto gain = to_number(trimmed(cut(rest, ',')));
-    const auto offset = to_number(trimmed(rest));
+    const auto gain = to_finite_number(trimmed(cut(rest, ',')));
+    const auto offset = to_finite_number(trimmed(rest));
     const auto found = std::find(sensor_names.begin(), sensor_names.end(), sensor);
     if (found == sensor_names.end()) return bad("no sensor is called " + in_quotes(sensor));
     if (!gain || !offset) return bad(in_quotes(sensor) + " needs two finite numbers; mend the row");
@@ -79,8 +80,8 @@ Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration)
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& line = calibration.sensors[slot];
     if (line.gain_rad_per_count == 0.0) continue;
-    result.text += std::string(sensor_names[slot]) + "," + number_text(line.gain_rad_per_count) +
-                   "," + number_text(line.offset_counts) + "\n";
+    result.text += std::string(sensor_names[slot]) + "," + decimal_text(line.gain_rad_per_count) +
+                   "," + decimal_text(line.offset_counts) + "\n";
   }
   const bool couples = std::any_of(calibration.mixed_in.begin(), calibration.mixed_in.end(),
                                    [](double mixed_in) { return mixed_in != 0.0; });

@@ -13,9 +13,9 @@
 #include <unistd.h>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
 
 #include "calibration_check.hpp"
-#include "text.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -44,13 +44,13 @@ std::string toml_string(std::string_view text) {
 std::string sensor_line(Sensor sensor, const SensorCalibration& line,
                         const std::optional<SensorQuality>& quality) {
   std::string text = std::string(name_of(sensor)) +
-                     " = { gain_rad_per_count = " + number_text(line.gain_rad_per_count) +
-                     ", offset_counts = " + number_text(line.offset_counts);
+                     " = { gain_rad_per_count = " + decimal_text(line.gain_rad_per_count) +
+                     ", offset_counts = " + decimal_text(line.offset_counts);
   if (quality) {
-    text += ", residual_rad = " + number_text(quality->residual_rad) +
-            ", least_counts = " + number_text(quality->least_counts) +
-            ", most_counts = " + number_text(quality->most_counts) +
-            ", confidence = " + number_text(quality->confidence);
+    text += ", residual_rad = " + decimal_text(quality->residual_rad) +
+            ", least_counts = " + decimal_text(quality->least_counts) +
+            ", most_counts = " + decimal_text(quality->most_counts) +
+            ", confidence = " + decimal_text(quality->confidence);
   }
   return text + " }\n";
 }
@@ -61,7 +61,7 @@ std::string mixed_in_lines(const Calibration& calibration) {
     if (is_plain_zero(calibration.mixed_in[k])) continue;
     text += "  { of = \"" + std::string(name_of(couplings[k].of)) + "\", by = \"" +
             std::string(name_of(couplings[k].by)) +
-            "\", rad_per_rad = " + number_text(calibration.mixed_in[k]) + " },\n";
+            "\", rad_per_rad = " + decimal_text(calibration.mixed_in[k]) + " },\n";
   }
   return text.empty() ? "" : "mixed_in = [\n" + text + "]\n";
 }
@@ -89,7 +89,7 @@ std::optional<Version> version_of(std::string_view file_name, std::string_view s
   }
   file_name.remove_prefix(form.size());
   if (file_name.empty()) return version;
-  const auto number = to_number(file_name.substr(1));
+  const auto number = to_finite_number(file_name.substr(1));
   if (file_name.front() != '-' || !number || *number < 2.0 || *number > most_version_number)
     return std::nullopt;
   version.number = static_cast<unsigned>(*number);
@@ -184,14 +184,14 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
                      toml_string(wearer.user) + "\nhand = \"" + std::string(name_of(wearer.side)) +
                      "\"\nmade = " + rfc3339(wearer.made) +
                      "\nmethod = " + toml_string(wearer.method) +
-                     "\nmiddle_bias = " + number_text(wearer.calibration.middle_bias) + "\n" +
+                     "\nmiddle_bias = " + decimal_text(wearer.calibration.middle_bias) + "\n" +
                      mixed_in_lines(wearer.calibration);
   text += "\n[glove]\nmodel = " + toml_string(wearer.glove_model) +
           "\nserial = " + toml_string(wearer.glove_serial) +
           "\ncounts_most = " + std::to_string(wearer.counts.most) +
           "\nwhole_range = " + (wearer.counts.whole_range ? "true" : "false") + "\n";
-  text += "\n[hand_size]\nlength_m = " + number_text(wearer.size.length_m) +
-          "\nbreadth_m = " + number_text(wearer.size.breadth_m) + "\n\n[sensors]\n";
+  text += "\n[hand_size]\nlength_m = " + decimal_text(wearer.size.length_m) +
+          "\nbreadth_m = " + decimal_text(wearer.size.breadth_m) + "\n\n[sensors]\n";
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& line = wearer.calibration.sensors[slot];
     if (line.gain_rad_per_count == 0.0) continue;

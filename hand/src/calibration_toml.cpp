@@ -10,10 +10,10 @@
 
 #include <toml++/toml.h>
 
+#include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_file.hpp>
 
 #include "calibration_check.hpp"
-#include "text.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -238,10 +238,7 @@ void read_wearer(Reader& reader, const toml::table& root, WearerCalibration& wea
 }
 
 std::string one_line(std::string_view text) {
-  std::string line(text.substr(0, 160));
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return line;
+  return printable(text.substr(0, 160));
 }
 
 } // namespace

@@ -3,8 +3,9 @@
 #include <string>
 #include <utility>
 
+#include <nendo/base/text.hpp>
+
 #include "calibration_check.hpp"
-#include "text.hpp"
 
 namespace nendo::hand {
 namespace {

@@ -1,10 +1,10 @@
 #include <array>
 #include <string>
 
+#include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
 
 #include "imported_gains.hpp"
-#include "text.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -49,8 +49,8 @@ struct Point {
 
 std::optional<Point> point_of(std::string_view field) {
   const std::string_view angle = cut(field, ':');
-  const auto angle_rad = to_number(angle);
-  const auto count = to_number(field);
+  const auto angle_rad = to_finite_number(angle);
+  const auto count = to_finite_number(field);
   if (!angle_rad || !count || *count < 0.0 || *count > 255.0) return std::nullopt;
   return Point{*angle_rad, *count};
 }

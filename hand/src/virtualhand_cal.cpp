@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
 
 #include "calibration_check.hpp"
 #include "imported_gains.hpp"
-#include "text.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -62,7 +62,7 @@ Result<void> CalParser::read_heading(std::string_view line) {
   if (fields.size() < 2 || fields[0] != "FINGER") return {};
   std::string_view number = fields[1];
   if (number.ends_with(':')) number.remove_suffix(1);
-  if (to_number(number) != static_cast<double>(row_ / rows_per_group))
+  if (to_finite_number(number) != static_cast<double>(row_ / rows_per_group))
     return bad(in_quotes(line) + " is out of order; FINGER " +
                std::to_string(row_ / rows_per_group) + " should come here");
   return {};
@@ -73,7 +73,7 @@ Result<void> CalParser::read_row(const std::vector<std::string_view>& fields) {
   if (fields.size() < 3) return bad(place + "a row needs joint, offset and gain; it is cut short");
   std::array<double, 3> numbers{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto number = to_number(fields[k]);
+    const auto number = to_finite_number(fields[k]);
     if (!number) return bad(place + in_quotes(fields[k]) + " is not a number; mend the row");
     numbers[k] = *number;
   }
@@ -100,7 +100,7 @@ Result<void> CalParser::read_line(std::string_view line) {
   const auto fields = fields_of(line);
   read_side(fields);
   if (row_ == sensor_slots) return {}; // the hand's geometry
-  return to_number(fields.front()) ? read_row(fields) : read_heading(line);
+  return to_finite_number(fields.front()) ? read_row(fields) : read_heading(line);
 }
 
 // VTI's library and those that follow it put the gain of slot 11 into slot 7, which no glove has,
@@ -158,13 +158,13 @@ Result<Row> row_of(std::size_t slot, const SensorCalibration& line) {
   };
   const double offset = std::round(line.offset_counts);
   if (!(offset >= 0.0 && offset <= 255.0))
-    return bad("offset " + number_text(line.offset_counts) +
+    return bad("offset " + decimal_text(line.offset_counts) +
                " does not fit into a .cal file (0 to 255); export as toml or csv");
   const double gain = line.gain_rad_per_count;
   if (gain == 0.0 && sensors_18.has(static_cast<Sensor>(slot)))
     return bad("not calibrated, which a .cal file cannot say; export as toml or csv");
   if (gain != 0.0 && std::abs(gain) < 0.5e-5)
-    return bad("gain " + number_text(gain) +
+    return bad("gain " + decimal_text(gain) +
                " is too small for the five decimals of a .cal file; export as toml or csv");
   return Row{static_cast<long>(offset), gain};
 }

@@ -35,8 +35,7 @@ struct OneHand {
             .pose(hand::joint_angles(first, hand::default_calibration()),
                   Eigen::Isometry3d::Identity())
             .fingertip_positions();
-    return DeformLoop(model, place_hands(model, tips),
-                      {{&ring, skeleton, hand::default_calibration(), first}}, options);
+    return DeformLoop(model, place_hands(model, tips), {{&ring, Side::right, {}, first}}, options);
   }
 };
 

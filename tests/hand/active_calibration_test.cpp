@@ -34,19 +34,24 @@ TEST_SUITE("active_calibration") {
   TEST_CASE(
       "a sample gets the calibration of the hand whose glove sent it, as often as they swap") {
     for (const Side side : {Side::left, Side::right}) {
-      const Side other = side == Side::left ? Side::right : Side::left;
-      ActiveCalibration calibration(side, with_gain(0.01), with_gain(0.02));
+      const Side other = opposite(side);
+      Wearer wearer;
+      wearer.of(side).calibration = with_gain(0.01);
+      wearer.of(other).calibration = with_gain(0.02);
+      ActiveCalibration calibration(wearer);
       CHECK(calibration.adaptation() == nullptr);
       for (const Side now : {side, side, other, side, other, other}) {
-        const auto& in_force = calibration.follow(sample_of(now, HostTime(1h), 100));
-        CHECK(in_force[Sensor::index_mcp].gain_rad_per_count == (now == side ? 0.01 : 0.02));
+        const auto& active = calibration.follow(sample_of(now, HostTime(1h), 100));
+        CHECK(active[Sensor::index_mcp].gain_rad_per_count == (now == side ? 0.01 : 0.02));
       }
     }
   }
 
   TEST_CASE("an adapting one is what adaptation makes of the same samples") {
     const CountScale counts{4095, true};
-    ActiveCalibration calibration(counts);
+    Wearer wearer;
+    wearer.adapt = counts;
+    ActiveCalibration calibration(wearer);
     RangeAdaptation reference(counts);
     HostTime now(1h);
     for (int n = 0; n < 2000; ++n) {
@@ -54,9 +59,9 @@ TEST_SUITE("active_calibration") {
       const Side side = n < 1500 ? Side::right : Side::left;
       const auto sample = sample_of(side, now, 2000 + static_cast<int>(900 * std::sin(0.1 * n)));
       reference.push(sample);
-      const auto& in_force = calibration.follow(sample);
+      const auto& active = calibration.follow(sample);
       for (std::size_t slot = 0; slot < sensor_slots; ++slot)
-        REQUIRE(in_force.sensors[slot].offset_counts ==
+        REQUIRE(active.sensors[slot].offset_counts ==
                 reference.calibration().sensors[slot].offset_counts);
     }
     REQUIRE(calibration.adaptation() != nullptr);

@@ -34,8 +34,7 @@ struct Stream {
   }
   /// The last state after `seconds` of it.
   CaptureState run(double seconds, const std::function<double(double)>& counts_at) {
-    const auto period = std::chrono::duration_cast<HostClock::duration>(
-        std::chrono::duration<double>(1.0 / rate_hz));
+    const auto period = from_seconds(1.0 / rate_hz);
     for (double t = 0.0; t < seconds; t += 1.0 / rate_hz) {
       now += period;
       capture.push(sample(counts_at(t)));

@@ -108,8 +108,7 @@ TEST_SUITE("sensor_gate") {
           const double angle =
               0.9 + amplitude_rad * std::sin(peak_rad_s / amplitude_rad * n / rate_hz);
           const GloveSample next = stream.sample(count_at(angle));
-          const auto later = std::chrono::duration_cast<HostClock::duration>(
-              std::chrono::duration<double>(1.0 / rate_hz));
+          const auto later = from_seconds(1.0 / rate_hz);
           REQUIRE(stream.pass(next, later).raw == next.raw);
         }
         CHECK(stream.spikes() == 0);

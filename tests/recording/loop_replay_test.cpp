@@ -79,7 +79,7 @@ TEST_SUITE("loop_replay") {
     auto& test = live.test;
     const auto learned = before.test.loop->learned();
     for (auto& input : test.inputs)
-      input.learned = learned[flow::Placement::index_of(input.skeleton.side())];
+      input.wearer.learned = learned[flow::Placement::index_of(input.side)];
     test.loop =
         std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
     live.setup = test::setup_of(test);

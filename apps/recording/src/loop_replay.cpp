@@ -26,14 +26,13 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
     return Error{Errc::bad_input, std::string(without_loop)};
   }
   std::unique_ptr<LoopReplay> replay(new LoopReplay);
-  std::vector<flow::HandInput> inputs;
-  for (const HandSetup& hand : setup.hands) {
+  std::vector<flow::HandInput> inputs = setup.hands;
+  for (auto& input : inputs) {
     replay->rings_.push_back(std::make_unique<SampleRing>(ring_size));
-    inputs.push_back(hand.input(replay->rings_.back().get()));
+    input.ring = replay->rings_.back().get();
   }
   flow::LoopOptions options = setup.loop->options;
-  options.requests = &replay->requests_;
-  options.wrists = &replay->wrists_;
+  options.commands = &replay->commands_;
   options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
   replay->loop_ =
       std::make_unique<flow::DeformLoop>(model, setup.loop->placement, std::move(inputs), options);
@@ -51,9 +50,9 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
   if (const auto* sample = std::get_if<driver::RecordedSample>(&entry)) {
     take(*sample);
   } else if (const auto* request = std::get_if<flow::Request>(&entry)) {
-    exact_ = requests_.try_push(*request) && exact_;
+    exact_ = commands_.try_push(*request) && exact_;
   } else if (const auto* move = std::get_if<flow::WristMove>(&entry)) {
-    exact_ = wrists_.try_push(*move) && exact_;
+    exact_ = commands_.try_push(*move) && exact_;
   } else if (const auto* tick = std::get_if<flow::LoggedTick>(&entry)) {
     loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);

@@ -10,32 +10,6 @@
 
 namespace nendo::recording {
 
-flow::HandInput HandSetup::input(SampleRing* ring) const {
-  flow::HandInput input{ring, hand::HandSkeleton(side, size), calibration, first, gated};
-  input.filter = filter;
-  input.swapped = swapped;
-  input.swapped_skeleton.emplace(side, swapped_size);
-  input.adapt = adapt;
-  input.learned = learned;
-  return input;
-}
-
-HandSetup hand_setup(const flow::HandInput& input, const hand::HandSize& size,
-                     const hand::HandSize& swapped_size) {
-  HandSetup setup;
-  setup.side = input.skeleton.side();
-  setup.size = size;
-  setup.first = input.first;
-  setup.gated = input.gated;
-  setup.filter = input.filter;
-  setup.adapt = input.adapt;
-  setup.learned = input.learned;
-  setup.calibration = input.calibration;
-  setup.swapped = input.swapped;
-  setup.swapped_size = swapped_size;
-  return setup;
-}
-
 ShapeSum sum_of(const deform::Points& vertices) noexcept {
   static_assert(std::endian::native == std::endian::little);
   const std::span coordinates(vertices.data(), static_cast<std::size_t>(vertices.size()));

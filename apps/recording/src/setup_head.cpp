@@ -131,30 +131,34 @@ bool read_head(ByteReader& reader, Setup& setup) {
   return true;
 }
 
-void put_hand(ByteWriter& writer, std::uint8_t number, const HandSetup& hand) {
+void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand) {
+  const hand::WearerHand& own = hand.wearer.of(hand.first.side);
+  const hand::WearerHand& other = hand.wearer.of(opposite(hand.first.side));
+  const auto& adapt = hand.wearer.adapt;
   writer.u8(static_cast<std::uint8_t>(hand.side));
-  put_size(writer, hand.size);
+  put_size(writer, own.size);
   driver::put_sample_body(writer, {number, hand.first});
   writer.u8(static_cast<std::uint8_t>(hand.gated));
   writer.u8(static_cast<std::uint8_t>(hand.filter.kind));
   writer.f64_le(hand.filter.min_cutoff_hz);
   writer.f64_le(hand.filter.beta_hz_per_rad_s);
   writer.f64_le(hand.filter.derivative_cutoff_hz);
-  writer.u8(static_cast<std::uint8_t>(hand.adapt.has_value()));
-  writer.u16_le(hand.adapt ? hand.adapt->most : 0);
-  writer.u8(static_cast<std::uint8_t>(hand.adapt && hand.adapt->whole_range));
-  put_calibration(writer, hand.calibration);
-  put_calibration(writer, hand.swapped);
-  put_size(writer, hand.swapped_size);
-  writer.u8(static_cast<std::uint8_t>(hand.learned.has_value()));
-  if (hand.learned) put_learned(writer, *hand.learned);
+  writer.u8(static_cast<std::uint8_t>(adapt.has_value()));
+  writer.u16_le(adapt ? adapt->most : 0);
+  writer.u8(static_cast<std::uint8_t>(adapt && adapt->whole_range));
+  put_calibration(writer, own.calibration);
+  put_calibration(writer, other.calibration);
+  put_size(writer, other.size);
+  writer.u8(static_cast<std::uint8_t>(hand.wearer.learned.has_value()));
+  if (hand.wearer.learned) put_learned(writer, *hand.wearer.learned);
 }
 
-bool read_hand(ByteReader& reader, std::vector<HandSetup>& hands) {
-  HandSetup hand;
+bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
+  flow::HandInput hand;
+  hand::WearerHand own, other;
   const unsigned side = reader.u8();
   hand.side = side == 0 ? Side::left : Side::right;
-  const bool sized = read_size(reader, hand.size);
+  const bool sized = read_size(reader, own.size);
   const auto first = driver::read_sample_body(reader);
   if (!first || first->glove != hands.size() || hands.size() >= most_hands) return false;
   if (!hands.empty() && hands.front().side == hand.side) return false;
@@ -163,15 +167,17 @@ bool read_hand(ByteReader& reader, std::vector<HandSetup>& hands) {
   const bool filters = read_filter(reader, hand.filter);
   const bool adapts = reader.u8() != 0;
   const CountScale counts{reader.u16_le(), reader.u8() != 0};
-  if (adapts) hand.adapt = counts;
-  const bool calibrated = read_calibration(reader, hand.calibration) &&
-                          read_calibration(reader, hand.swapped) &&
-                          read_size(reader, hand.swapped_size);
+  if (adapts) hand.wearer.adapt = counts;
+  const bool calibrated = read_calibration(reader, own.calibration) &&
+                          read_calibration(reader, other.calibration) &&
+                          read_size(reader, other.size);
   bool has_learned = true;
   if (reader.remaining() > 0 && reader.u8() != 0) // format 1.0 ends before it
-    has_learned = read_learned(reader, hand.learned.emplace());
+    has_learned = read_learned(reader, hand.wearer.learned.emplace());
   if (reader.overrun() || side > 1 || !sized || !filters || !calibrated || !has_learned)
     return false;
+  hand.wearer.of(hand.first.side) = own;
+  hand.wearer.of(opposite(hand.first.side)) = other;
   hands.push_back(hand);
   return true;
 }

@@ -19,12 +19,12 @@ constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
 }
 
 void put_head(ByteWriter& writer, const Setup& setup);
-void put_hand(ByteWriter& writer, std::uint8_t number, const HandSetup& hand);
+void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand);
 void put_loop(ByteWriter& writer, const LoopSetup& loop);
 
 // False: the payload is not usable, and nothing has changed.
 bool read_head(ByteReader& reader, Setup& setup);
-bool read_hand(ByteReader& reader, std::vector<HandSetup>& hands);
+bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands);
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop);
 
 } // namespace nendo::recording

@@ -1,47 +1,45 @@
 #pragma once
-// Which calibration a glove's samples get, from one to the next: the wearer's; that of the other
-// hand, once a glove of the other side has been plugged into the same box; or what adaptation makes
-// of how the hand moves.
+// Chooses the calibration for each of a glove's samples: that of the wearer's left or right hand,
+// whichever glove sent the sample, or the one that adaptation learns from how the hand moves.
 
 #include <optional>
 
-#include <nendo/driver/sample.hpp>
-#include <nendo/hand/calibration.hpp>
-#include <nendo/hand/range_adaptation.hpp>
+#include <nendo/hand/wearer.hpp>
 
 namespace nendo::hand {
 
 class ActiveCalibration {
 public:
-  /// `own` is for samples of that side, `swapped` for the others.
-  ActiveCalibration(Side side, const Calibration& own, const Calibration& swapped) noexcept
-      : side_(side), own_(own), swapped_(swapped) {}
-  /// Learned from the samples of a glove with such counts; goes on from `learned` if there is any.
-  explicit ActiveCalibration(CountScale counts,
-                             const std::optional<LearnedRanges>& learned = {}) noexcept
-      : adaptation_(learned ? RangeAdaptation(counts, *learned) : RangeAdaptation(counts)) {}
+  explicit ActiveCalibration(const Wearer& wearer) noexcept
+      : left_(wearer.left.calibration), right_(wearer.right.calibration) {
+    if (!wearer.adapt) return;
+    if (wearer.learned) {
+      adaptation_.emplace(*wearer.adapt, *wearer.learned);
+    } else {
+      adaptation_.emplace(*wearer.adapt);
+    }
+  }
 
-  /// The calibration for this sample, the next in time; valid until the next call. Wait-free, no
-  /// allocation.
+  /// Returns the calibration for this sample, which must be the next in time. The reference is
+  /// valid until the next call. Wait-free, no allocation.
   const Calibration& follow(const GloveSample& sample) noexcept {
     if (adaptation_) adaptation_->push(sample);
     return of(sample.side);
   }
-  /// The calibration for a sample of that side, as things stand.
+  /// Returns the calibration for a sample of that side without learning from one.
   const Calibration& of(Side side) const noexcept {
     if (adaptation_) return adaptation_->calibration();
-    return side == side_ ? own_ : swapped_;
+    return side == Side::left ? left_ : right_;
   }
 
-  /// What was learned; null if nothing is.
+  /// Returns what is being learned, or null if the wearer's calibrations are used.
   const RangeAdaptation* adaptation() const noexcept {
     return adaptation_ ? &*adaptation_ : nullptr;
   }
 
 private:
-  Side side_ = Side::right;
-  Calibration own_;
-  Calibration swapped_;
+  Calibration left_;
+  Calibration right_;
   std::optional<RangeAdaptation> adaptation_;
 };
 

@@ -18,7 +18,7 @@ namespace nendo::flow {
 struct HandFrame {
   bool present = false; ///< a glove drives this hand
   bool silent = false;  ///< its glove has sent nothing for a while; the pose is frozen
-  bool swapped = false; ///< its bones are HandInput::swapped_skeleton's
+  bool swapped = false; ///< its glove has not the side of HandInput::first
   hand::HandPose pose;  ///< on the stage, metres
   /// Where the hand is; the joints of the wrist, where a glove measures them, turn it from there.
   Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();

@@ -15,27 +15,6 @@
 
 namespace nendo::recording {
 
-/// One hand of the loop, by its number; also of a recording without a loop.
-struct HandSetup {
-  Side side = Side::right; ///< as which it shapes
-  hand::HandSize size;
-  GloveSample first; ///< the pose in which it took hold of the model
-  bool gated = true;
-  hand::FilterOptions filter;
-  std::optional<CountScale> adapt;
-  std::optional<hand::LearnedRanges> learned; ///< what that went on from
-  hand::Calibration calibration;              ///< of gloves of the first sample's side
-  hand::Calibration swapped;                  ///< of the other side's
-  hand::HandSize swapped_size;                ///< of the hand in them
-
-  /// `ring` as HandInput has it.
-  flow::HandInput input(SampleRing* ring) const;
-};
-
-/// As `input` and skeletons of these sizes are.
-HandSetup hand_setup(const flow::HandInput& input, const hand::HandSize& size,
-                     const hand::HandSize& swapped_size);
-
 /// By which a model is known again: how many vertices, and CRC-32C of their coordinates, x y z of
 /// one after another, as little-endian doubles.
 struct ShapeSum {
@@ -62,8 +41,9 @@ struct Setup {
   std::string program;                                   ///< what recorded it: "nendo 0.1.0"
   std::string wearer;                                    ///< empty: not told
   std::vector<driver::GloveInfo> gloves;                 ///< by their numbers
-  std::vector<HandSetup> hands;                          ///< by their gloves' numbers
-  std::optional<LoopSetup> loop;                         ///< nothing: gloves alone were recorded
+  /// By their gloves' numbers, also without a loop. Without the rings and measured bones.
+  std::vector<flow::HandInput> hands;
+  std::optional<LoopSetup> loop; ///< nothing: gloves alone were recorded
 };
 
 /// A setup that begins now.

@@ -24,6 +24,16 @@ constexpr double to_seconds(HostClock::duration d) noexcept {
   return std::chrono::duration<double>(d).count();
 }
 
+/// Returns the longest duration, or the shortest, for seconds that HostClock cannot count, and zero
+/// for what is not a number. Parts of a nanosecond are cut off.
+constexpr HostClock::duration from_seconds(double seconds) noexcept {
+  constexpr double most_s = to_seconds(HostClock::duration::max());
+  if (seconds != seconds) return HostClock::duration::zero();
+  if (seconds >= most_s) return HostClock::duration::max();
+  if (seconds <= -most_s) return HostClock::duration::min();
+  return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
+}
+
 constexpr double to_milliseconds(std::chrono::nanoseconds d) noexcept {
   return static_cast<double>(d.count()) / 1e6;
 }

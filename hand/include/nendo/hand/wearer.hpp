@@ -1,0 +1,35 @@
+#pragma once
+// What is known of the person who wears a glove: for each of the two hands its calibration and its
+// size, and whether the calibration is to be learned while the glove is used. One glove box may see
+// both hands, since a glove of the other side can be plugged into it at any time.
+
+#include <optional>
+
+#include <nendo/base/side.hpp>
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/calibration.hpp>
+#include <nendo/hand/range_adaptation.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::hand {
+
+/// One hand of a wearer. By default it is an average one.
+struct WearerHand {
+  Calibration calibration = default_calibration();
+  HandSize size{};
+};
+
+struct Wearer {
+  WearerHand left;
+  WearerHand right;
+  /// If it is set, the ranges of the sensors are learned from a glove with such counts, and the
+  /// calibrations of `left` and `right` are not used.
+  std::optional<CountScale> adapt{};
+  /// What an earlier adaptation has learned; learning goes on from there.
+  std::optional<LearnedRanges> learned{};
+
+  const WearerHand& of(Side side) const noexcept { return side == Side::left ? left : right; }
+  WearerHand& of(Side side) noexcept { return side == Side::left ? left : right; }
+};
+
+} // namespace nendo::hand
