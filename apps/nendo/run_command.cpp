@@ -14,6 +14,7 @@
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
 #include "service/service_notice.hpp"
+#include "session/browser_view.hpp"
 #include "session/filter_options.hpp"
 #include "session/kernel_options.hpp"
 #include "session/live_view.hpp"
@@ -21,13 +22,13 @@
 #include "session/open_hands.hpp"
 #include "session/run_publishing.hpp"
 #include "session/run_report.hpp"
-#include "session/web_outlet.hpp"
 
 namespace nendo::app::run_command {
 namespace {
 
 struct CommandOptions {
   session::RunOptions run;
+  std::string radius;
   std::string mode = "type1";
   std::string switch_action = "none";
   session::FilterArguments filter;
@@ -96,7 +97,9 @@ Result<void> check(CommandOptions& options) {
   }
   if (!(run.undo_memory_mb.value_or(0.0) >= 0.0 && run.undo_memory_mb.value_or(0.0) <= 1e6))
     return Error{Errc::usage, "--undo-memory: use a number of megabytes up to 1000000"};
-  if (auto fine = session::check_radius(run.radius); !fine) return fine;
+  const auto supports = session::parse_radius(options.radius);
+  if (!supports) return supports.error();
+  run.supports = *supports;
   if (auto fine = run.length.check(); !fine) return fine;
   if (auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
@@ -117,38 +120,43 @@ int run(CommandOptions& options) {
   cli::install_stop_signals();
   session::RunOptions& wanted = options.run;
   const flow::RealtimeProcess process(wanted.realtime);
-  wanted.grants = process.grants();
-  std::unique_ptr<session::Onlooker> window;
+  std::unique_ptr<session::Observer> window;
   if (options.view.window) {
     auto opened = session::open_live_view(options.view, wanted);
     if (!opened) return cli::report(opened.error());
     window = *std::move(opened);
   }
-  std::unique_ptr<session::WebOutlet> browser;
+  std::unique_ptr<session::BrowserView> browser;
   if (!options.web.empty()) {
-    auto opened = session::open_web(options.web, wanted.mesh);
+    auto opened = session::open_browser_view(options.web, wanted.mesh);
     if (!opened) return cli::report(opened.error());
     browser = *std::move(opened);
   }
   EventCount event_count;
-  auto hands = session::open_hands(wanted, *model, event_count);
-  if (!hands) return cli::report(hands.error());
+  auto opened = session::open_hands(wanted, *model, event_count);
+  if (!opened) return cli::report(opened.error());
   service::ServiceNotice service;
-  session::Followers followers;
-  followers.progress = [&service, shown = session::progress_for(wanted)](const flow::Frame& frame,
-                                                                         double elapsed_s) {
+  session::RunParticipants participants;
+  participants.progress = [&service, shown = session::progress_for(wanted)](
+                              const flow::Frame& frame, double elapsed_s) {
     service.alive();
     shown(frame, elapsed_s);
   };
-  followers.onlooker = window.get();
-  for (const auto& outlet : *published)
-    followers.outlets.push_back(outlet.get());
-  if (browser) followers.outlets.push_back(browser.get());
-  auto outcome = session::run_session(wanted, *hands, *std::move(model), followers);
+  for (const auto& sink : *published)
+    participants.sinks.push_back(sink.get());
+  if (browser) {
+    participants.sinks.push_back(browser.get());
+    participants.observers.push_back(browser.get());
+  }
+  if (window) participants.observers.push_back(window.get());
+  auto grants = process.grants();
+  grants.insert(grants.end(), opened->grants.begin(), opened->grants.end());
+  auto outcome =
+      session::run_session(wanted, opened->hands, *std::move(model), participants, grants);
   if (!outcome) return cli::report(outcome.error());
-  for (const auto& outlet : *published)
-    outcome->published.push_back(outlet->end());
-  session::print_summary(wanted, *hands, *outcome);
+  for (const auto& sink : *published)
+    outcome->published.push_back(sink->end());
+  session::print_summary(wanted, opened->hands, *outcome);
   const bool recorded =
       std::all_of(outcome->recordings.begin(), outcome->recordings.end(),
                   [](const auto& of_loop) { return of_loop.recorded.has_value(); });
@@ -172,7 +180,7 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
       "--mode", options->mode,
       "type1: the rest shape follows the fingertips; type2: strokes along their paths");
   command.add_option(
-      "--radius", run_options.radius,
+      "--radius", options->radius,
       "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix");
   gloves::add_calibration_options(command, run_options.calibration);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr Size window_size{1180, 760};
 
-class LiveView final : public Onlooker {
+class LiveView final : public Observer {
 public:
   LiveView(std::unique_ptr<LiveWindow> window, const ViewOptions& options, const RunOptions& run)
       : window_(std::move(window)), options_(options) {
@@ -25,48 +25,34 @@ public:
     gauges_.rate_hz = run.loop.rate_hz;
   }
 
-  void begin(const PlacedLoop& placed, const deform::Mesh& model,
-             const std::vector<gloves::OpenHand>& hands, const RunOptions& options) override {
-    hands_ = &hands;
-    gauges_.recording = options.recording.on;
-    requests_ = placed.setup.options.requests;
-    wrists_ = placed.setup.options.wrists;
+  void loop_begins(const LoopStart& start) override {
+    const PlacedLoop& placed = start.placed;
+    gauges_.recording = placed.recorded;
     // The scene keeps its place when a shape that has been pulled about begins a new loop.
-    if (!builder_) builder_.emplace(model, placed.setup.placement.units_per_metre);
+    if (!builder_) builder_.emplace(start.model, placed.setup.placement.units_per_metre);
     window_->begin(placed.loop->layout(), *builder_, settings_of(placed));
     if (changed_at_ != HostTime{})
       gauges_.restart_ms = 1e3 * to_seconds(HostClock::now() - std::exchange(changed_at_, {}));
   }
 
-  Verdict look(flow::DeformLoop& loop, bool fresh) override {
-    for (const gloves::OpenHand& hand : *hands_) {
-      const std::size_t slot = flow::Placement::index_of(hand.side);
-      const auto stats = hand.glove->stats();
-      gauges_.gloves[slot] = hand.glove->info().source;
-      gauges_.bad_records[slot] = stats.bad_records;
-      gauges_.lost[slot] = stats.ring_refused;
+  void update(const RunStatus& status, flow::CommandRing& commands) override {
+    for (std::size_t slot = 0; slot < status.gloves.size(); ++slot) {
+      gauges_.gloves[slot] = status.gloves[slot].source;
+      gauges_.bad_records[slot] = status.gloves[slot].bad_records;
+      gauges_.lost[slot] = status.gloves[slot].lost;
     }
-    wishes_ = window_->show(loop.frames().front(), fresh, gauges_);
-    keepsakes_.add(wishes_.save_request);
-    if (fresh) ++shown_;
-    for (const auto request : wishes_.requests)
-      requests_->try_push(request); // full: the loop stands still, and asking again is as good
-    if (wishes_.wrist) wrists_->try_push(*wishes_.wrist); // full: the next one says it again
-    if (options_.frames > 0 && shown_ >= options_.frames) return Verdict::end;
-    if (wishes_.quit) return Verdict::end;
-    if (wishes_.settings || wishes_.reset || wishes_.record) changed_at_ = HostClock::now();
-    return Verdict::go_on;
+    LoopChange change;
+    for (const flow::Command& command : window_->show(status.frame, status.fresh, gauges_)) {
+      change.add(command);
+      commands.try_push(command);
+    }
+    if (!change.is_empty()) changed_at_ = HostClock::now();
+    if (status.fresh) ++shown_;
+    if (options_.frames > 0 && shown_ >= options_.frames) commands.try_push(flow::EndRun{});
   }
 
-  flow::LoopChange next_change() override {
-    flow::LoopChange change{wishes_.settings, wishes_.reset, std::nullopt};
-    if (wishes_.record) change.record = !gauges_.recording;
-    wishes_ = {};
-    return change;
-  }
-
-  flow::SaveRequest next_save_request() override { return std::exchange(keepsakes_, {}); }
-  void tell(const std::string& words) override { gauges_.told = words; }
+  void report(const std::string& message) override { gauges_.report = message; }
+  bool sets_pace() const noexcept override { return true; }
 
   Result<void> end() override {
     if (options_.screenshot.empty()) return {};
@@ -80,24 +66,19 @@ public:
 private:
   std::unique_ptr<LiveWindow> window_;
   ViewOptions options_;
-  flow::RequestRing* requests_ = nullptr; ///< the loop's
-  flow::WristRing* wrists_ = nullptr;     ///< the loop's
   std::optional<SceneBuilder> builder_;
-  const std::vector<gloves::OpenHand>* hands_ = nullptr;
   Gauges gauges_;
-  Wishes wishes_;
-  flow::SaveRequest keepsakes_; ///< wanted and not asked for yet
   std::uint32_t shown_ = 0;
   HostTime changed_at_{};
 };
 
 } // namespace
 
-Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions& options,
+Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options,
                                                  const RunOptions& run) {
   auto window = LiveWindow::open("Nendo", window_size);
   if (!window) return window.error();
-  return std::unique_ptr<Onlooker>(std::make_unique<LiveView>(*std::move(window), options, run));
+  return std::unique_ptr<Observer>(std::make_unique<LiveView>(*std::move(window), options, run));
 }
 
 } // namespace nendo::session
@@ -106,7 +87,7 @@ Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions& options,
 
 namespace nendo::session {
 
-Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions&, const RunOptions&) {
+Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions&, const RunOptions&) {
   return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
                              "libimgui-dev and libgl-dev and build it again, look on in a "
                              "browser with `nendo run --web 8080`, or draw files with "

@@ -1,11 +1,11 @@
 #pragma once
-// The live window as a run's onlooker.
+// The view in a window.
 
 #include <cstdint>
 #include <memory>
 #include <string>
 
-#include "session/run_session.hpp"
+#include "session/observer.hpp"
 
 namespace nendo::session {
 
@@ -15,8 +15,8 @@ struct ViewOptions {
   std::uint32_t frames = 0; ///< pictures after which the run ends; 0: as the person likes
 };
 
-/// Opens the window, on the main thread, which is where the onlooker must be used. Errors: failed
+/// Opens the window, on the main thread, where all of its calls belong. Errors: failed
 /// (no screen, no OpenGL, or built without), with what to do without it.
-Result<std::unique_ptr<Onlooker>> open_live_view(const ViewOptions& options, const RunOptions& run);
+Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options, const RunOptions& run);
 
 } // namespace nendo::session

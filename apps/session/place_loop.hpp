@@ -13,7 +13,7 @@
 
 namespace nendo::session {
 
-/// What a loop was made of, besides its hands' sizes and its model's file.
+/// What a loop was made of, besides its model's file.
 struct PlacedSetup {
   std::vector<flow::HandInput> inputs;
   flow::Placement placement;
@@ -27,6 +27,13 @@ struct PlacedLoop {
   bool recorded = false; ///< to a file, as long as it runs
 };
 
+/// What a loop begins with. All of it outlives the loop.
+struct LoopStart {
+  const PlacedLoop& placed;
+  const deform::Mesh& model;
+  const std::vector<gloves::OpenHand>& hands;
+};
+
 /// What a loop leaves to the next one of the same hands.
 struct Carryover {
   flow::Placement placement;
@@ -34,7 +41,7 @@ struct Carryover {
 };
 Carryover carryover_of(const flow::DeformLoop& ended);
 
-/// As options.loop says, with the supports that options.radius says. Without a carryover the hands
+/// As options.loop says, with the supports that options.supports says. Without a carryover the hands
 /// are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model,
@@ -47,7 +54,7 @@ struct FrameRoom {
 };
 FrameRoom room_of_frames(const PlacedLoop& placed);
 
-/// Whether a --radius is one, for hands at all. Error: usage.
-Result<void> check_radius(const std::string& text);
+/// The supports that --radius asks for; empty text asks for none. Error: usage.
+Result<std::optional<deform::Supports>> parse_radius(const std::string& text);
 
 } // namespace nendo::session

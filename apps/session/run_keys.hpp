@@ -1,47 +1,27 @@
 #pragma once
-// The keys of a run: what they are, and what they ask of the loop.
+// The keys of a run, in the terminal that it was started from.
 
 #include <chrono>
 #include <string>
-#include <string_view>
-#include <utility>
-
-#include <nendo/deform/mesh.hpp>
-#include <nendo/flow/deform_loop.hpp>
-#include <nendo/flow/save_request.hpp>
 
 #include "cli/keys.hpp"
-#include "session/run_recording.hpp"
+#include "session/observer.hpp"
 
 namespace nendo::session {
 
-class RunKeys {
+class RunKeys final : public Observer {
 public:
-  /// Asks in options.loop.requests; saved shapes are called as options.out and numbered. All must
-  /// outlive this. Says on standard error what the keys are, if any can come.
-  RunKeys(const RunOptions& options, const deform::Mesh& model, RunRecorder& recorder);
+  /// Says on standard error what the keys are, if any can come. patience: how long update() waits
+  /// for a key. keeps: a recording is kept in memory.
+  RunKeys(std::chrono::milliseconds patience, bool keeps);
 
-  /// Waits so long for a key, and does what it stands for; the user sees the frame at the front.
-  /// False: the run is to end.
-  bool handle(std::chrono::milliseconds patience, flow::DeformLoop& loop);
-  /// What keys want kept, since the last call.
-  flow::SaveRequest next_save_request() noexcept { return std::exchange(wanted_, {}); }
-  /// Keeps it; what became of that, which standard error tells, too.
-  std::string keep(const flow::SaveRequest& wanted, flow::DeformLoop& loop);
+  void update(const RunStatus& status, flow::CommandRing& commands) override;
+  /// Writes to standard error, whether keys can come or not.
+  void report(const std::string& message) override;
 
 private:
-  void ask(flow::Request request);
-  std::string save(flow::DeformLoop& loop);
-  std::string keep_recording();
-  void wait_until_heard() const;
-
   cli::Keys keys_;
-  flow::RequestRing& requests_;
-  const deform::Mesh& model_;
-  std::string out_;
-  RunRecorder& recorder_;
-  flow::SaveRequest wanted_;
-  int saved_ = 0;
+  std::chrono::milliseconds patience_;
 };
 
 } // namespace nendo::session

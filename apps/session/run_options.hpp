@@ -1,9 +1,8 @@
 #pragma once
-// What a run is asked for.
+// What a run is asked for on the command line.
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/realtime.hpp>
@@ -21,7 +20,9 @@ struct RunOptions {
   std::string out;         ///< empty: a name made of date and time
   std::string picture;     ///< empty: none
   double duration_s = 0.0; ///< 0: until a stop signal
-  std::string radius;      ///< as deform::parse_supports_by_point; empty: of the model's size
+  /// Of both hands' fingertips, model units (flow::parse_finger_supports); nullopt: one radius for
+  /// all, made of the model's size.
+  std::optional<deform::Supports> supports{};
   bool json = false;
   std::optional<double> undo_memory_mb{}; ///< nothing: half of what there is
   gloves::CalibrationOptions calibration;
@@ -29,8 +30,7 @@ struct RunOptions {
   hand::FilterOptions filter; ///< of both hands
   flow::LoopOptions loop;
   RecordingOptions recording;
-  flow::RealtimeOptions realtime;  ///< of the loop's thread
-  std::vector<flow::Grant> grants; ///< what was asked for before, of the process and the readers
+  flow::RealtimeOptions realtime; ///< of the loop's thread
 };
 
 } // namespace nendo::session

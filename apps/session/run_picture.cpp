@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/flow/finger_supports.hpp>
 #include <nendo/viewer/picture.hpp>
 
 namespace nendo::session {
@@ -29,7 +30,7 @@ void RunPicture::see(const flow::Frame& frame) {
   if (units_per_metre_ > 0.0) return;
   units_per_metre_ = frame.units_per_metre;
   first_ = last_;
-  first_.radius_m = radii_on_stage(supports_, units_per_metre_);
+  first_.radius_m = flow::radii_on_stage(supports_, units_per_metre_);
 }
 
 Result<void> RunPicture::write(const deform::Points& final_shape) {

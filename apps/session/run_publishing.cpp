@@ -10,11 +10,12 @@
 namespace nendo::session {
 namespace {
 
-publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& model) {
+publish::LoopOutline outline_of(const LoopStart& start) {
+  const PlacedLoop& placed = start.placed;
   const auto& options = placed.setup.options;
   const FrameRoom room = room_of_frames(placed);
   publish::LoopOutline outline;
-  outline.model = &model;
+  outline.model = &start.model;
   outline.layout = &placed.loop->layout();
   outline.mode = options.sculptor.mode;
   outline.rate_hz = options.rate_hz;
@@ -24,25 +25,24 @@ publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& mo
   return outline;
 }
 
-class SegmentOutlet final : public PublishingOutlet {
+class SegmentSink final : public PublishingSink {
 public:
-  SegmentOutlet(std::string text, const publish::SegmentTarget& target)
+  SegmentSink(std::string text, const publish::SegmentTarget& target)
       : text_(std::move(text)), segment_(target.name, target.group) {}
 
-  Result<void> begin(const PlacedLoop& placed, const deform::Mesh& model,
-                     const std::vector<gloves::OpenHand>&) override {
-    return segment_.begin(outline_of(placed, model));
+  Result<void> begin(const LoopStart& start) override {
+    return segment_.begin(outline_of(start));
   }
   void show(const flow::Frame& frame) noexcept override { segment_.show(frame); }
   PublishedTo end() override {
     segment_.end();
     const auto counts = segment_.counts();
-    PublishedTo told{.target = text_, .records = counts.records};
-    told.shape_changes = counts.shape_changes;
-    told.bytes = counts.bytes;
-    told.is_segment = true;
-    told.is_locked = counts.is_locked;
-    return told;
+    PublishedTo result{.target = text_, .records = counts.records};
+    result.shape_changes = counts.shape_changes;
+    result.bytes = counts.bytes;
+    result.is_segment = true;
+    result.is_locked = counts.is_locked;
+    return result;
   }
 
 private:
@@ -50,25 +50,24 @@ private:
   publish::SegmentPublisher segment_;
 };
 
-class DatagramOutlet final : public PublishingOutlet {
+class DatagramSink final : public PublishingSink {
 public:
-  DatagramOutlet(std::string text, const publish::DatagramTarget& target)
+  DatagramSink(std::string text, const publish::DatagramTarget& target)
       : text_(std::move(text)), datagrams_(text_, target) {}
 
-  Result<void> begin(const PlacedLoop& placed, const deform::Mesh& model,
-                     const std::vector<gloves::OpenHand>&) override {
-    return datagrams_.begin(outline_of(placed, model));
+  Result<void> begin(const LoopStart& start) override {
+    return datagrams_.begin(outline_of(start));
   }
   void show(const flow::Frame& frame) noexcept override { datagrams_.show(frame); }
   PublishedTo end() override {
     datagrams_.end();
     const auto counts = datagrams_.counts();
-    PublishedTo told{.target = text_, .records = counts.records};
-    told.bytes = counts.bytes;
-    told.datagrams = counts.datagrams;
-    told.lost_records = counts.lost;
-    told.refused_datagrams = counts.refused;
-    return told;
+    PublishedTo result{.target = text_, .records = counts.records};
+    result.bytes = counts.bytes;
+    result.datagrams = counts.datagrams;
+    result.lost_records = counts.lost;
+    result.refused_datagrams = counts.refused;
+    return result;
   }
 
 private:
@@ -87,9 +86,9 @@ void add_publish_option(cli::Command& command, std::vector<std::string>& targets
       .once_each("TARGET");
 }
 
-Result<std::vector<std::unique_ptr<PublishingOutlet>>>
+Result<std::vector<std::unique_ptr<PublishingSink>>>
 publish_to(const std::vector<std::string>& targets) {
-  std::vector<std::unique_ptr<PublishingOutlet>> outlets;
+  std::vector<std::unique_ptr<PublishingSink>> sinks;
   std::vector<publish::Target> places;
   for (const auto& text : targets) {
     const auto target = publish::parse_target(text);
@@ -103,12 +102,12 @@ publish_to(const std::vector<std::string>& targets) {
                                     " leads; give it once"};
     places.push_back(*target);
     if (const auto* segment = std::get_if<publish::SegmentTarget>(&*target)) {
-      outlets.push_back(std::make_unique<SegmentOutlet>(text, *segment));
+      sinks.push_back(std::make_unique<SegmentSink>(text, *segment));
     } else if (const auto* datagrams = std::get_if<publish::DatagramTarget>(&*target)) {
-      outlets.push_back(std::make_unique<DatagramOutlet>(text, *datagrams));
+      sinks.push_back(std::make_unique<DatagramSink>(text, *datagrams));
     }
   }
-  return outlets;
+  return sinks;
 }
 
 } // namespace nendo::session

@@ -1,12 +1,12 @@
 #pragma once
-// What a run shows to other programs: --publish, once for each place.
+// The option --publish: every frame goes to other programs.
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
-#include "session/outlet.hpp"
+#include "session/sink.hpp"
 
 namespace nendo::session {
 
@@ -24,17 +24,17 @@ struct PublishedTo {
   std::uint64_t refused_datagrams = 0;
 };
 
-/// One place, with what it has counted once the run is over.
-class PublishingOutlet : public Outlet {
+/// Publishes to one place.
+class PublishingSink : public Sink {
 public:
-  /// Ends it, if it has not ended.
+  /// Ends it, if it has not ended, and returns what it has counted.
   virtual PublishedTo end() = 0;
 };
 
 void add_publish_option(cli::Command& command, std::vector<std::string>& targets);
 
-/// One outlet for each target; none publishes before its begin(). Error: usage.
-Result<std::vector<std::unique_ptr<PublishingOutlet>>>
+/// Makes one sink for each target; none publishes before its begin(). Error: usage.
+Result<std::vector<std::unique_ptr<PublishingSink>>>
 publish_to(const std::vector<std::string>& targets);
 
 } // namespace nendo::session

@@ -1,6 +1,7 @@
 #include "session/run_session.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -16,6 +17,7 @@
 #include "session/loop_thread.hpp"
 #include "session/run_keys.hpp"
 #include "session/run_picture.hpp"
+#include "session/run_saving.hpp"
 
 namespace nendo::session {
 namespace {
@@ -41,7 +43,7 @@ std::size_t most_undo_bytes(const RunOptions& options) noexcept {
 
 // A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
 // room elsewhere.
-Result<void> keep(const std::string& out, const deform::Mesh& shape) {
+Result<void> write_shape(const std::string& out, const deform::Mesh& shape) {
   const auto written = deform::write_mesh(out, shape);
   if (written) return {};
   const std::filesystem::path wanted(out);
@@ -68,43 +70,56 @@ void take_newest(std::vector<gloves::OpenHand>& hands) {
   }
 }
 
-// One run: its loop, which may be made anew, and what follows it.
+// One run: its loops, one after another, and who takes part.
 class Session {
 public:
   Session(RunOptions options, std::vector<gloves::OpenHand>& hands, deform::Mesh model,
-          const Followers& followers)
+          const RunParticipants& participants, std::vector<flow::Grant> grants)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
-        loaded_(model_.vertices), followers_(followers), recorder_(model_),
+        loaded_(model_.vertices), participants_(participants), grants_(std::move(grants)),
+        recorder_(model_), saving_(options_.out, model_, recorder_),
         lights_(options_.loop.switch_action, hands_) {
-    options_.loop.requests = &requests_;
-    options_.loop.wrists = &wrists_;
+    options_.loop.commands = &for_loop_;
     const std::size_t most = most_undo_bytes(options_);
     const std::size_t at_once = std::min(undo_bytes_for(model_), most);
     options_.loop.sculptor.deformer.undo_bytes = at_once;
     options_.loop.undo_most_bytes = most - at_once;
-    options_.loop.sinks.assign(followers_.outlets.begin(), followers_.outlets.end());
+    options_.loop.sinks.assign(participants_.sinks.begin(), participants_.sinks.end());
   }
 
   Result<RunOutcome> run() {
     if (const auto begun = begin_loop({}); !begun) return begun.error();
     RunPicture picture(options_.picture, model_, placed_.setup.options);
-    RunKeys keys(options_, model_, recorder_);
-    while (run_loop(picture, keys)) {
-      if (const auto renewed = renew(); !renewed) return after_keeping(renewed.error());
+    RunKeys keys(patience(), recorder_.keeps());
+    observers_.push_back(&keys);
+    observers_.insert(observers_.end(), participants_.observers.begin(),
+                      participants_.observers.end());
+    while (run_loop(picture)) {
+      if (const auto renewed = renew(); !renewed) return after_writing(renewed.error());
     }
     lights_.put_out();
     for (const auto& hand : hands_)
       hand.glove->stop();
-    if (const auto kept = keep(options_.out, model_); !kept) return kept.error();
+    if (const auto written = write_shape(options_.out, model_); !written) return written.error();
     if (const auto drawn = picture.write(model_.vertices); !drawn) return drawn.error();
-    if (followers_.onlooker != nullptr)
-      if (const auto ended = followers_.onlooker->end(); !ended) return ended.error();
+    for (Observer* observer : observers_)
+      if (const auto ended = observer->end(); !ended) return ended.error();
     return RunOutcome{placed_.loop->stats(), elapsed_s_,   model_.vertices.cols(),
-                      placed_.radius,        options_.out, std::move(options_.grants),
+                      placed_.radius,        options_.out, std::move(grants_),
                       recorder_.outcomes()};
   }
 
 private:
+  LoopStart start() const { return {placed_, model_, hands_}; }
+
+  // How long the keys wait, unless somebody else sets the pace.
+  milliseconds patience() const {
+    const auto& observers = participants_.observers;
+    const bool paced = std::any_of(observers.begin(), observers.end(),
+                                   [](const Observer* observer) { return observer->sets_pace(); });
+    return milliseconds(paced ? 0 : 20);
+  }
+
   Result<void> begin_loop(const std::optional<Carryover>& carryover) {
     options_.loop.input_log = recorder_.input_log_for(options_.recording);
     auto placed = place_loop(options_, hands_, model_, carryover);
@@ -112,58 +127,70 @@ private:
     placed_ = *std::move(placed);
     if (const auto begun = recorder_.begin(options_, placed_.setup, hands_, model_); !begun)
       return begun.error();
-    for (Outlet* outlet : followers_.outlets)
-      if (const auto begun = outlet->begin(placed_, model_, hands_); !begun) return begun.error();
+    for (Sink* sink : participants_.sinks)
+      if (const auto begun = sink->begin(start()); !begun) return begun.error();
     return {};
   }
 
-  // The rings have one pushing thread, which is this one. Full: the loop stands still, and asking
-  // again is as good.
-  void pass_on_requests() {
-    for (Outlet* outlet : followers_.outlets) {
-      while (const auto request = outlet->next_request())
-        requests_.try_push(*request);
-      while (const auto move = outlet->next_wrist())
-        wrists_.try_push(*move);
+  void report(const std::string& message) {
+    for (Observer* observer : observers_)
+      observer->report(message);
+  }
+
+  void save() { report(saving_.save(*placed_.loop)); }
+
+  void ask_observers(bool fresh) {
+    const RunStatus status{placed_.loop->frames().front(), fresh, gloves_};
+    for (Observer* observer : observers_)
+      observer->update(status, commands_);
+    commands_.drain([this](const flow::Command& command) noexcept { take(command); });
+    for (auto& wrist : wrists_)
+      if (wrist) for_loop_.try_push(*std::exchange(wrist, {})); // full: the next one says it again
+    if (const auto refused = std::exchange(refused_, {}); refused && !deaf_) {
+      deaf_ = true;
+      report("the loop does not answer, so it was not asked to " + std::string(name_of(*refused)));
     }
   }
 
-  // The onlooker last: what it wants counts.
-  template <class Ask>
-  void for_each_follower(Ask&& ask) const {
-    for (Outlet* outlet : followers_.outlets)
-      ask(*outlet);
-    if (followers_.onlooker != nullptr) ask(*followers_.onlooker);
+  void take(const flow::Command& command) noexcept {
+    if (const auto* move = std::get_if<flow::WristMove>(&command)) {
+      wrists_[flow::Placement::index_of(move->side)] = *move; // only the newest counts
+    } else if (const auto* request = std::get_if<flow::Request>(&command)) {
+      if (for_loop_.try_push(command)) {
+        deaf_ = false;
+      } else {
+        refused_ = *request;
+      }
+    }
+    ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
+    saving_.add(command);
+    change_.add(command);
   }
 
-  void keep_what_followers_want(RunKeys& keys) {
-    flow::SaveRequest wanted;
-    for_each_follower([&](Follower& follower) { wanted.add(follower.next_save_request()); });
-    keep_and_tell(wanted, keys);
-  }
-
-  void keep_and_tell(const flow::SaveRequest& wanted, RunKeys& keys) {
-    if (!wanted.ask_anything()) return;
-    const std::string words = keys.keep(wanted, *placed_.loop);
-    for_each_follower([&](Follower& follower) { follower.tell(words); });
-  }
-
-  // Whether somebody has wanted a change for which it is time.
+  // Whether somebody has asked for a change for which it is time.
   bool is_change_due(HostTime loop_began) {
-    for_each_follower([&](Follower& follower) { wanted_.add(follower.next_change()); });
-    if (!differs(wanted_, placed_, options_)) wanted_ = {};
-    return wanted_.asks_anything() && HostClock::now() - loop_began >= least_loop;
+    if (!differs(change_, placed_, options_)) change_ = {};
+    return !change_.is_empty() && HostClock::now() - loop_began >= least_loop;
+  }
+
+  // What was asked for just before the end is done before it, if the loop ticks at all.
+  void wait_until_heard() const {
+    const HostTime latest = HostClock::now() + std::chrono::seconds(1);
+    while (for_loop_.size() > 0 && HostClock::now() < latest)
+      std::this_thread::sleep_for(milliseconds(1));
   }
 
   // Until the loop has ended; model_ is then as it left it. True: another one is wanted.
-  bool run_loop(RunPicture& picture, RunKeys& keys) {
+  bool run_loop(RunPicture& picture) {
     flow::DeformLoop& loop = *placed_.loop;
-    if (followers_.onlooker != nullptr)
-      followers_.onlooker->begin(placed_, model_, hands_, options_);
+    gloves_ = status_of(hands_);
+    for (Observer* observer : observers_)
+      observer->loop_begins(start());
     LoopThread thread(loop, options_);
-    tell_refusals(thread.grants());
-    const bool is_another_wanted = watch(thread, picture, keys);
-    keep_what_followers_want(keys); // just before the end
+    report_refusals(thread.grants());
+    const bool is_another_wanted = watch(thread, picture);
+    if (ends_) wait_until_heard();
+    if (saving_.is_due()) save(); // asked for just before the end
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
     model_.vertices = loop.final_shape();
@@ -172,50 +199,45 @@ private:
     return is_another_wanted;
   }
 
-  // Each loop's thread asks for the same rights; they are told of once.
-  void tell_refusals(std::vector<flow::Grant> of_thread) {
-    if (told_) return;
-    told_ = true;
-    std::move(of_thread.begin(), of_thread.end(), std::back_inserter(options_.grants));
-    for (const auto& line : flow::refusals(options_.grants))
+  // Each loop's thread asks for the same rights; what was refused is said once.
+  void report_refusals(std::vector<flow::Grant> of_thread) {
+    if (std::exchange(refusals_reported_, true)) return;
+    std::move(of_thread.begin(), of_thread.end(), std::back_inserter(grants_));
+    for (const auto& line : flow::refusals(grants_))
       cli::note(line);
   }
 
-  bool watch(const LoopThread& thread, RunPicture& picture, RunKeys& keys) {
+  bool watch(const LoopThread& thread, RunPicture& picture) {
     auto& frames = placed_.loop->frames();
-    const milliseconds patience(followers_.onlooker == nullptr ? 20 : 0);
-    HostTime next_report = thread.start;
-    bool unreported = false;
+    HostTime next_progress = thread.start;
+    bool is_news = false;
     while (!thread.ended && !cli::stop_requested() && !is_over(options_, thread.start)) {
-      if (!keys.handle(patience, *placed_.loop)) return false;
-      keep_and_tell(keys.next_save_request(), keys);
       placed_.loop->refill_undo();
       const bool fresh = frames.update();
       if (fresh) {
-        unreported = true;
+        is_news = true;
         lights_.show(frames.front().held);
         picture.see(frames.front());
       }
-      pass_on_requests();
-      if (followers_.onlooker != nullptr &&
-          followers_.onlooker->look(*placed_.loop, fresh) == Onlooker::Verdict::end)
-        return false;
+      ask_observers(fresh);
+      if (ends_) return false;
       if (is_change_due(thread.start)) return true;
-      if (HostClock::now() < next_report) continue;
-      keep_what_followers_want(keys); // no oftener, however often somebody asks
-      if (unreported)
-        followers_.progress(frames.front(),
-                            before_s_ + to_seconds(HostClock::now() - thread.start));
-      unreported = false;
-      next_report += milliseconds(250);
+      if (saving_.is_due_now()) save();
+      if (HostClock::now() < next_progress) continue;
+      gloves_ = status_of(hands_);
+      if (is_news)
+        participants_.progress(frames.front(),
+                               before_s_ + to_seconds(HostClock::now() - thread.start));
+      is_news = false;
+      next_progress += milliseconds(250);
     }
     return false;
   }
 
   // What has been shaped is not lost with what cannot go on.
-  Error after_keeping(const Error& error) {
-    const auto kept = keep(options_.out, model_);
-    return kept ? error : kept.error();
+  Error after_writing(const Error& error) {
+    const auto written = write_shape(options_.out, model_);
+    return written ? error : written.error();
   }
 
   Result<void> renew() {
@@ -223,7 +245,7 @@ private:
     if (options_.duration_s > 0.0)
       options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
     const Carryover carryover = carryover_of(*placed_.loop);
-    const flow::LoopChange change = std::exchange(wanted_, {});
+    const LoopChange change = std::exchange(change_, {});
     apply({}, placed_, options_);
     const RunOptions options = options_;
     const deform::Points shape = model_.vertices;
@@ -242,16 +264,24 @@ private:
   std::vector<gloves::OpenHand>& hands_;
   deform::Mesh model_;
   const deform::Points loaded_; ///< what a reset goes back to
-  const Followers& followers_;
-  flow::LoopChange wanted_; ///< of the next loop, so far
-  flow::RequestRing requests_{64};
-  flow::WristRing wrists_{64};
+  const RunParticipants& participants_;
+  std::vector<Observer*> observers_;
+  std::vector<flow::Grant> grants_;
+  flow::CommandRing commands_{2048}; ///< of all observers
+  flow::CommandRing for_loop_{64};
+  std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
+  std::optional<flow::Request> refused_;                 ///< the loop had no room for it
+  bool deaf_ = false;                                    ///< that was reported, and is still so
+  bool ends_ = false;                                    ///< somebody has asked for the end
+  LoopChange change_;                                    ///< what the next loop is to have
   RunRecorder recorder_;
+  RunSaving saving_;
   HoldLights lights_;
   PlacedLoop placed_;
+  GloveStatuses gloves_;
   double before_s_ = 0.0;  ///< of all loops but the latest
   double elapsed_s_ = 0.0; ///< of the latest loop
-  bool told_ = false;
+  bool refusals_reported_ = false;
 };
 
 } // namespace
@@ -273,8 +303,10 @@ bool is_over(const RunOptions& options, HostTime start) noexcept {
 }
 
 Result<RunOutcome> run_session(RunOptions options, std::vector<gloves::OpenHand>& hands,
-                               deform::Mesh model, const Followers& followers) {
-  return Session(std::move(options), hands, std::move(model), followers).run();
+                               deform::Mesh model, const RunParticipants& participants,
+                               std::vector<flow::Grant> grants) {
+  return Session(std::move(options), hands, std::move(model), participants, std::move(grants))
+      .run();
 }
 
 } // namespace nendo::session

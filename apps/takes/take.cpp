@@ -10,6 +10,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/driver/chunk_file.hpp>
+#include <nendo/flow/finger_supports.hpp>
 #include <nendo/recording/loop_replay.hpp>
 #include <nendo/recording/take_tools.hpp>
 #include <nendo/timeline/timeline_file.hpp>
@@ -23,10 +24,6 @@ namespace {
 using recording::LoopReplay;
 using recording::TakeReader;
 
-HostClock::duration duration_of(double seconds) {
-  return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
-}
-
 // A recorded loop, which goes on from where it is for a later time and begins anew for an earlier
 // one.
 class Replayed {
@@ -39,7 +36,7 @@ public:
       if (const auto begun = begin(); !begun) return begun.error();
     }
     time_s_ = time_s;
-    const HostTime until = reader_->setup().begun_host + duration_of(time_s);
+    const HostTime until = reader_->setup().begun_host + from_seconds(time_s);
     while (next_ && !(is_tick_after(*next_, until) && seen_)) {
       if (replay_->feed(*next_)) see();
       next_ = reader_->next();
@@ -76,7 +73,7 @@ private:
     holds_.follow(frame);
     viewer::see_hands(frame, holds_, moment_);
     replay_->loop().layout().unpack(frame.shape, moment_.vertices);
-    moment_.radius_m = viewer::radii_on_stage(
+    moment_.radius_m = flow::radii_on_stage(
         reader_->setup().loop->options.sculptor.deformer.supports, frame.units_per_metre);
     seen_ = true;
   }
@@ -127,8 +124,8 @@ public:
     const flow::Frame& frame = frames_->frame();
     viewer::see_hands(frame, holds_, moment_);
     frames_->layout().unpack(frame.shape, moment_.vertices);
-    moment_.radius_m = viewer::radii_on_stage(
-        frames_->player().timeline().sculptor.deformer.supports, frame.units_per_metre);
+    moment_.radius_m = flow::radii_on_stage(frames_->player().timeline().sculptor.deformer.supports,
+                                            frame.units_per_metre);
     moment_.time_s = time_s;
     return moment_;
   }

@@ -26,10 +26,10 @@ bool is_within(std::string_view part, std::string_view whole) {
 
 void check_head(std::string_view bytes) {
   const HttpHead head = parse_head(bytes);
-  require(head.bytes <= std::min(bytes.size(), most_head_bytes));
+  require(head.bytes <= std::min(bytes.size(), max_head_bytes));
   if (head.status != 200) return;
   require(bytes.substr(head.bytes - 4, 4) == "\r\n\r\n");
-  require(head.request.headers.size() <= most_headers);
+  require(head.request.headers.size() <= max_headers);
   for (const auto& [name, value] : head.request.headers)
     require(!name.empty() && is_within(name, bytes) && is_within(value, bytes));
   const Admission admission = admit(head.request, "0123456789abcdef0123456789abcdef");
@@ -47,30 +47,29 @@ void check_frames(std::string_view bytes, std::size_t chunk) {
     waiting += bytes.substr(at, chunk);
     for (auto event = reader.next(waiting); event.kind != ClientEvent::Kind::nothing;
          event = reader.next(waiting)) {
-      require(!failed && event.payload.size() <= most_client_message);
+      require(!failed && event.payload.size() <= max_client_message);
       failed = event.kind == ClientEvent::Kind::fault;
       told += event.payload.size();
     }
-    require(failed || waiting.size() < ClientReader::most_pending);
+    require(failed || waiting.size() < ClientReader::max_pending);
   }
   require(told <= bytes.size());
 }
 
 // Whatever is understood is something that a loop may be asked for.
 void check_words(std::string_view text) {
-  const auto wish = parse_words(text);
-  if (!wish) return;
+  const auto command = parse_command(text);
+  if (!command) return;
   require(text.front() != ' ' && text.back() != ' ');
-  if (const auto* move = std::get_if<nendo::flow::WristMove>(&*wish)) {
+  if (const auto* move = std::get_if<nendo::flow::WristMove>(&*command)) {
     const Eigen::Isometry3d pose = move->pose();
     require(move->is_usable() && pose.matrix().allFinite());
     require(std::abs(pose.linear().determinant() - 1.0) < 1e-9);
   }
-  const auto* change = std::get_if<nendo::flow::LoopChange>(&*wish);
-  require(change == nullptr || change->asks_anything());
-  if (change == nullptr || !change->settings) return;
-  for (const double radius_m : change->settings->radius_m)
-    require(radius_m >= least_radius_m && radius_m <= most_radius_m);
+  const auto* change = std::get_if<nendo::flow::ChangeSettings>(&*command);
+  if (change == nullptr) return;
+  for (const double radius_m : change->settings.radius_m)
+    require(radius_m >= min_radius_m && radius_m <= max_radius_m);
 }
 
 } // namespace

@@ -116,9 +116,9 @@ public:
     bent_ = std::clamp(bent_ + static_cast<int>(random_() % 7) - 3, 0, 30);
     test_.bend(bent_, HostClock::now());
     if (tick_ > 10 && random_() % 15 == 0)
-      test_.requests.try_push(flow::requests[random_() % flow::requests.size()]);
+      test_.commands.try_push(flow::requests[random_() % flow::requests.size()]);
     // Who lets go soon takes hold again.
-    if (tick_ % 10 == 0) test_.requests.try_push(flow::Request::grab);
+    if (tick_ % 10 == 0) test_.commands.try_push(flow::Request::grab);
     return test_.frame_after_tick(tick_++);
   }
 

@@ -109,9 +109,12 @@ public:
     for (const auto& command : changes[asked])
       commands.try_push(command);
     ++asked;
+    begun_then_ = begun.size();
   }
   /// Has asked for all, so long ago that it has it.
-  bool is_content() const { return asked == changes.size() && frames_ >= 60; }
+  bool is_content() const {
+    return asked == changes.size() && begun.size() > begun_then_ && frames_ >= 60;
+  }
 
   Changes changes;
   std::optional<deform::Wendland> refused;
@@ -124,6 +127,7 @@ public:
   std::vector<Eigen::Vector3d> wrists;
 
 private:
+  std::size_t begun_then_ = 0; ///< when it asked last
   std::atomic<int> frames_{0};
 };
 

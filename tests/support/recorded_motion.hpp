@@ -32,7 +32,7 @@ struct RecordedMotion {
       const double turn =
           6.283185307179586 * static_cast<double>(tick) / static_cast<double>(motion.ticks - 1);
       played.test.bend(static_cast<int>(motion.bend_counts * 0.5 * (1.0 - std::cos(turn))), woke);
-      if (tick == motion.commit_at_tick) played.test.requests.try_push(flow::Request::commit);
+      if (tick == motion.commit_at_tick) played.test.commands.try_push(flow::Request::commit);
       played.test.loop->tick(tick, woke, woke);
       played.test.loop->frames().update();
       const flow::Frame& frame = played.test.loop->frames().front();

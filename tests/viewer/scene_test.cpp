@@ -111,15 +111,6 @@ TEST_SUITE("scene") {
     const TipPlaces grabbed = tips(step(30));
     CHECK(holds.starts(0) == grabbed);
   }
-
-  TEST_CASE("each finger's radius is the largest that it was given, on the stage") {
-    const auto alike = radii_on_stage(deform::one_radius(10.0), 4.0);
-    for (const double radius : alike)
-      CHECK(radius == doctest::Approx(2.5));
-    const auto own = radii_on_stage(*deform::parse_supports_by_point("1,2,3,4,5+50:0.1", 10), 2.0);
-    CHECK(own[1] == doctest::Approx(1.0));
-    CHECK(own[4] == doctest::Approx(25.0));
-  }
 }
 
 } // namespace scene_test

@@ -66,9 +66,7 @@ TEST_SUITE("window") {
       test.bend(static_cast<int>(8 * tick), HostClock::now());
       const flow::Frame& frame = test.frame_after_tick(tick);
       const auto before = window.blocks_sent();
-      const auto wishes = window.show(frame, true, {});
-      CHECK_FALSE(wishes.quit);
-      CHECK(wishes.requests.empty());
+      CHECK(window.show(frame, true, {}).empty());
       if (tick == 0) CHECK(window.blocks_sent() - before == blocks);
       const auto sent = window.blocks_sent();
       window.show(frame, true, {}); // the same frame again: nothing has changed
@@ -113,10 +111,10 @@ TEST_SUITE("window") {
       PretendedInput input;
       input.taps = {key};
       window.pretend(input);
-      const auto wishes = window.show(frame, false, {});
+      auto commands = window.show(frame, false, {});
       window.pretend({});
       window.show(frame, false, {});
-      return wishes;
+      return commands;
     };
     using flow::Request;
     for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
@@ -124,21 +122,23 @@ TEST_SUITE("window") {
                                        {GLFW_KEY_C, Request::commit},
                                        {GLFW_KEY_U, Request::undo},
                                        {GLFW_KEY_R, Request::redo}})
-      CHECK(type(key).requests == std::vector{request});
-    CHECK(type(GLFW_KEY_T).record);
-    CHECK(type(GLFW_KEY_S).save_request.shape);
-    CHECK(type(GLFW_KEY_K).save_request.recording);
-    CHECK(type(GLFW_KEY_Q).quit);
+      CHECK(type(key) == Commands{request});
+    CHECK(type(GLFW_KEY_T) == Commands{flow::SetRecording{true}});
+    CHECK(type(GLFW_KEY_S) == Commands{flow::SaveShape{}});
+    CHECK(type(GLFW_KEY_K) == Commands{flow::SaveRecording{}});
+    CHECK(type(GLFW_KEY_Q) == Commands{flow::EndRun{}});
 
-    CHECK_FALSE(type(GLFW_KEY_ENTER).settings); // they are in force
+    CHECK(type(GLFW_KEY_ENTER).empty()); // they are in force
     type(GLFW_KEY_M);
     type(GLFW_KEY_N);
     type(GLFW_KEY_RIGHT_BRACKET);
-    const auto wanted = type(GLFW_KEY_ENTER).settings;
-    REQUIRE(wanted);
-    CHECK(wanted->mode == flow::Mode::type2);
-    CHECK(wanted->kernel == deform::Wendland::c4);
-    for (const double radius_m : wanted->radius_m)
+    const Commands changes = type(GLFW_KEY_ENTER);
+    REQUIRE(changes.size() == 1);
+    const auto* change = std::get_if<flow::ChangeSettings>(&changes.front());
+    REQUIRE(change != nullptr);
+    CHECK(change->settings.mode == flow::Mode::type2);
+    CHECK(change->settings.kernel == deform::Wendland::c4);
+    for (const double radius_m : change->settings.radius_m)
       CHECK(radius_m == doctest::Approx(0.11));
 
     const auto drawn_after = [&](int key) {
@@ -153,12 +153,12 @@ TEST_SUITE("window") {
     const std::size_t with_bones = drawn_after(GLFW_KEY_B);
     CHECK(with_bones > without_bones);
 
-    CHECK_FALSE(type(GLFW_KEY_X).reset);
-    CHECK(type(GLFW_KEY_G).requests.empty()); // the question comes first
+    CHECK(type(GLFW_KEY_X).empty());
+    CHECK(type(GLFW_KEY_G).empty()); // the question comes first
     CHECK(drawn_after(GLFW_KEY_B) == with_bones);
     type(GLFW_KEY_ESCAPE);
     window.show(frame, false, {});
-    CHECK(type(GLFW_KEY_G).requests.size() == 1);
+    CHECK(type(GLFW_KEY_G).size() == 1);
   }
 
   TEST_CASE("the mouse takes the hand that is seen under it, wherever the model's origin is") {
@@ -190,8 +190,10 @@ TEST_SUITE("window") {
     window.show(frame, false, {});
     input.pointer.y() -= 10.0;
     window.pretend(input);
-    const auto moved = window.show(frame, false, {}).wrist;
-    REQUIRE(moved);
+    const Commands commands = window.show(frame, false, {});
+    REQUIRE(commands.size() == 1);
+    const auto* moved = std::get_if<flow::WristMove>(&commands.front());
+    REQUIRE(moved != nullptr);
     CHECK(moved->side == Side::right);
     CHECK(moved->pose().translation().y() > frame.hands[1].T_stage_wrist.translation().y());
   }

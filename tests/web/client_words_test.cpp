@@ -14,7 +14,7 @@ namespace {
 
 template <class T>
 std::optional<T> parsed_as(std::string_view text) {
-  const auto command = parse_words(text);
+  const auto command = parse_command(text);
   if (!command || !std::holds_alternative<T>(*command)) return std::nullopt;
   return std::get<T>(*command);
 }
@@ -109,7 +109,7 @@ TEST_SUITE("client_words") {
     };
     for (const std::string& text : wrong) {
       CAPTURE(text);
-      CHECK_FALSE(parse_words(text));
+      CHECK_FALSE(parse_command(text));
     }
   }
 }

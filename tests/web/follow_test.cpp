@@ -57,7 +57,7 @@ const std::array<std::pair<flow::Mode, bool>, 4> ways{{{flow::Mode::type1, false
                                                        {flow::Mode::type2, true}}};
 
 StreamedLoop loop_of(const std::pair<flow::Mode, bool>& way) {
-  if (way.second) return StreamedLoop(way.first, deform::InjectiveOptions{});
+  if (way.second) return StreamedLoop(way.first, {.injective = deform::InjectiveOptions{}});
   return StreamedLoop(way.first);
 }
 
@@ -151,11 +151,11 @@ TEST_SUITE("follow") {
     CHECK(followed.is_up_to_date());
   }
 
-  TEST_CASE("radii of their own, and a finger's worth of nothing, are told as they are") {
+  TEST_CASE("radii of their own, and a finger's worth of nothing, are sent as they are") {
     std::vector<deform::OwnSupport> own;
     for (Eigen::Index point = 0; point < 10; ++point)
       own.push_back({point, {0.2 + 0.05 * static_cast<double>(point), 1.0}});
-    StreamedLoop streamed(flow::Mode::type1, std::nullopt, deform::with_common(own));
+    StreamedLoop streamed(flow::Mode::type1, {.supports = deform::with_common(own)});
     Followed followed(streamed);
     for (int tick = 0; tick < 40; ++tick) {
       const auto shape = streamed.tick(tick);
@@ -165,7 +165,8 @@ TEST_SUITE("follow") {
     CHECK(followed.is_up_to_date());
   }
 
-  TEST_CASE("the hands' joints are told to 0.03 mm and a hundredth of a degree, whatever bends") {
+  TEST_CASE(
+      "the hands' joints are sent to within 0.03 mm and a hundredth of a degree, whatever bends") {
     StreamedLoop streamed(flow::Mode::type1);
     Followed followed(streamed);
     std::mt19937 random(3);
@@ -191,8 +192,8 @@ TEST_SUITE("follow") {
         most_rad = std::max(most_rad, followed.client.forearms[slot].angularDistance(forearm));
         for (std::size_t joint = 0; joint < 26; ++joint) {
           const auto& pose = hand.pose.joints[joint];
-          const auto& told = followed.client.joints[slot][joint];
-          most_m = std::max(most_m, (told - pose.translation()).norm());
+          const auto& sent = followed.client.joints[slot][joint];
+          most_m = std::max(most_m, (sent - pose.translation()).norm());
           const Eigen::Quaterniond turn(pose.linear());
           most_rad = std::max(most_rad, followed.client.turns[slot][joint].angularDistance(turn));
         }
@@ -203,8 +204,8 @@ TEST_SUITE("follow") {
     CHECK(most_rad > 1e-6); // it was measured
   }
 
-  TEST_CASE("a glove of another hand size, in place of the first, is told with its own bones") {
-    StreamedLoop streamed(flow::Mode::type1, std::nullopt, deform::one_radius(0.5), 0.15);
+  TEST_CASE("a glove of another hand size, in place of the first, is sent with its own bones") {
+    StreamedLoop streamed(flow::Mode::type1, {.swapped_length_m = 0.15});
     Followed followed(streamed);
     for (const Side worn : {Side::right, Side::left}) { // on the right hand
       streamed.test.rings[1]->try_push(test::bent_sample(worn, 10, HostClock::now()));

@@ -1,5 +1,5 @@
 #pragma once
-// A loop that runs, with a server at it.
+// A loop that runs, its server, and a client of it.
 
 #include <atomic>
 #include <functional>
@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "following_client.hpp"
+#include "support/eventually.hpp"
 #include "support/restraint.hpp"
 #include "tapped_loop.hpp"
 #include "web_client.hpp"
@@ -20,38 +21,29 @@ inline std::unique_ptr<web::Server> open_server(web::ServerLimits limits = {}) {
   return *std::move(server);
 }
 
-/// As long as it takes on a machine that does much else.
-inline bool wait_for(const std::function<bool()>& is_so) {
-  for (const HostTime end = HostClock::now() + std::chrono::seconds(30); HostClock::now() < end;) {
-    if (is_so()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return is_so();
-}
-
-/// A loop that runs on a thread of its own, with hands that open and close, and its server.
+/// A server, and its loop on a thread of its own, whose hands open and close.
 struct Served {
-  TappedLoop tapped;
+  StreamedLoop streamed;
   std::unique_ptr<web::Server> server;
   RestraintCounts counts; ///< of the loop's thread
 
   explicit Served(flow::Mode mode, web::ServerLimits limits = {})
-      : tapped(mode, deform::InjectiveOptions{}), server(open_server(limits)) {
-    server->present(tapped.tap, tapped.model);
+      : streamed(mode, {.injective = deform::InjectiveOptions{}}), server(open_server(limits)) {
+    server->present(streamed.stream, streamed.model);
   }
   ~Served() { end(); }
   void begin() {
     hands_ = std::thread([this] {
       for (int bent = 0; !over_; ++bent) {
-        tapped.test.bend(bent % 40 < 20 ? bent % 40 : 40 - bent % 40, HostClock::now());
-        while (const auto request = server->next_request())
-          tapped.test.requests.try_push(*request);
+        streamed.test.bend(bent % 40 < 20 ? bent % 40 : 40 - bent % 40, HostClock::now());
+        while (const auto command = server->next_command())
+          streamed.test.commands.try_push(*command);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
       }
     });
     loop_ = std::thread([this] {
       const Restraint restraint;
-      tapped.test.loop->run(over_);
+      streamed.test.loop->run(over_);
       counts = restraint.counts();
     });
   }
@@ -66,15 +58,24 @@ private:
   std::thread hands_, loop_;
 };
 
-/// Takes messages until it is so, or the connection ends.
-inline bool follow_until(WebClient& client, FollowingClient& follower,
-                         const std::function<bool()>& is_so) {
-  while (!is_so()) {
-    const auto frame = client.next();
-    if (!frame || frame->opcode == 8) return is_so();
-    if (frame->opcode == 2) CHECK(follower.take(frame->payload));
+/// A client of a server's first loop, over a WebSocket.
+struct Viewer : FollowingClient {
+  WebClient client;
+
+  explicit Viewer(const Served& served, int receive_bytes = 0)
+      : FollowingClient(served.streamed.model), client(*served.server, receive_bytes) {
+    loop = 1;
+    REQUIRE(client.open_socket() == 101);
   }
-  return true;
-}
+  /// Takes messages until it is so. False if the connection ends before.
+  bool follow_until(const std::function<bool()>& is_so) {
+    while (!is_so()) {
+      const auto frame = client.next();
+      if (!frame || frame->opcode == 8) return is_so();
+      if (frame->opcode == 2) CHECK(take(frame->payload));
+    }
+    return true;
+  }
+};
 
 } // namespace nendo::test

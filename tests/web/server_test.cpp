@@ -8,12 +8,13 @@ namespace server_test {
 
 using namespace nendo;
 using namespace nendo::web;
-using nendo::test::follow_until;
+using nendo::test::client_frame;
+using nendo::test::eventually;
 using nendo::test::FollowingClient;
 using nendo::test::open_server;
 using nendo::test::Served;
 using nendo::test::StreamedLoop;
-using nendo::test::wait_for;
+using nendo::test::Viewer;
 using nendo::test::WebClient;
 
 TEST_SUITE("server") {
@@ -50,7 +51,7 @@ TEST_SUITE("server") {
     CHECK(status(model) == 503);
     const StreamedLoop streamed(flow::Mode::type1);
     server->present(streamed.stream, streamed.model);
-    CHECK(wait_for([&] { return status(model) == 200; }));
+    CHECK(eventually([&] { return status(model) == 200; }));
     CHECK(status("/model") == 403);
     CHECK(status("/model?token=00000000000000000000000000000000") == 403);
     CHECK(status(model, "Origin: http://evil.example\r\n") == 403);
@@ -96,11 +97,11 @@ TEST_SUITE("server") {
     socket.end_sending();
     CHECK(socket.is_closed());
     // The socket ends before the server's turn, at whose end it counts who is still there.
-    CHECK(wait_for([&] { return server->counters().clients == 0; }));
+    CHECK(eventually([&] { return server->counters().clients == 0; }));
     CHECK(server->counters().dropped == 0);
   }
 
-  TEST_CASE("the second server at a port is told what is wrong") {
+  TEST_CASE("a second server at the same port fails with an error that says what to do") {
     const auto server = open_server();
     const auto second = Server::open(server->endpoint());
     REQUIRE_FALSE(second);
@@ -108,37 +109,31 @@ TEST_SUITE("server") {
     CHECK_FALSE(Server::open({"192.0.2.1", 0})); // no machine's own
   }
 
-  TEST_CASE("buttons reach the loop, and who says anything else is sent away") {
+  TEST_CASE("commands reach the loop, and every other message closes the connection") {
     Served served(flow::Mode::type1);
     served.begin();
-    WebClient client(*served.server);
-    REQUIRE(client.open_socket() == 101);
-    CHECK(client.accept);
-    FollowingClient follower(served.streamed.model);
-    follower.loop = 1;
-    CHECK(follow_until(client, follower, [&] { return follower.follows() && follower.held; }));
-    client.say("let go");
-    CHECK(follow_until(client, follower, [&] { return !follower.held; }));
-    CHECK(follower.commits == 1);
-    client.say("grab");
-    CHECK(follow_until(client, follower, [&] { return follower.held; }));
-    client.say("commit");
-    CHECK(follow_until(client, follower, [&] { return follower.commits == 2; }));
-    client.say("undo");
-    CHECK(follow_until(client, follower, [&] { return follower.undos == 1; }));
-    client.say("", 0x89); // ping
+    Viewer viewer(served);
+    CHECK(viewer.client.accept);
+    CHECK(viewer.follow_until([&] { return viewer.follows() && viewer.held; }));
+    viewer.client.send_text("let go");
+    CHECK(viewer.follow_until([&] { return !viewer.held; }));
+    CHECK(viewer.commits == 1);
+    viewer.client.send_text("grab");
+    CHECK(viewer.follow_until([&] { return viewer.held; }));
+    viewer.client.send_text("commit");
+    CHECK(viewer.follow_until([&] { return viewer.commits == 2; }));
+    viewer.client.send_text("undo");
+    CHECK(viewer.follow_until([&] { return viewer.undos == 1; }));
+    viewer.client.send(client_frame(0x89, "")); // ping
     bool answered = false;
     while (!answered) {
-      const auto frame = client.next();
+      const auto frame = viewer.client.next();
       REQUIRE(frame);
       answered = frame->opcode == 10;
     }
-    client.say("format the disk");
-    unsigned code = 0;
-    while (const auto frame = client.next())
-      if (frame->opcode == 8) code = frame->close_code();
-    CHECK(code == 1008);
-    CHECK(client.is_closed());
+    viewer.client.send_text("format the disk");
+    CHECK(viewer.client.close_code() == 1008);
+    CHECK(viewer.client.is_closed());
   }
 
   TEST_CASE("what clients ask for comes out of the server, in its order") {
@@ -146,14 +141,14 @@ TEST_SUITE("server") {
     const StreamedLoop streamed(flow::Mode::type1);
     server->present(streamed.stream, streamed.model);
     WebClient client(*server);
-    REQUIRE(wait_for([&] { return client.open_socket() == 101; }));
-    client.say("settings type2 c6 0.1 0.1 0.1 0.1 0.2");
-    client.say("record");
-    client.say("wrist left 1 2 3 0 0 0 1");
-    client.say("wrist right 0 0 0 0 0 0 1");
-    client.say("reset");
+    REQUIRE(eventually([&] { return client.open_socket() == 101; }));
+    client.send_text("settings type2 c6 0.1 0.1 0.1 0.1 0.2");
+    client.send_text("record");
+    client.send_text("wrist left 1 2 3 0 0 0 1");
+    client.send_text("wrist right 0 0 0 0 0 0 1");
+    client.send_text("reset");
     std::vector<flow::Command> commands;
-    CHECK(wait_for([&] {
+    CHECK(eventually([&] {
       while (const auto command = server->next_command())
         commands.push_back(*command);
       return commands.size() == 5;
@@ -171,46 +166,35 @@ TEST_SUITE("server") {
       CAPTURE(name_of(mode));
       auto served = std::make_unique<Served>(mode);
       served->begin();
-      WebClient client(*served->server);
-      REQUIRE(client.open_socket() == 101);
-      FollowingClient follower(served->streamed.model);
-      follower.loop = 1;
+      Viewer viewer(*served);
       for (const auto* request : {"commit", "undo", "commit"}) {
-        const int updates = follower.updates + 30;
-        CHECK(follow_until(client, follower, [&] { return follower.updates > updates; }));
-        client.say(request);
+        const int updates = viewer.updates + 30;
+        CHECK(viewer.follow_until([&] { return viewer.updates > updates; }));
+        viewer.client.send_text(request);
       }
-      CHECK(follow_until(client, follower, [&] { return follower.commits >= 2; }));
+      CHECK(viewer.follow_until([&] { return viewer.commits >= 2; }));
       served->end();
       served->streamed.test.loop->frames().update();
       const auto& frame = served->streamed.test.loop->frames().front();
       const auto shape = served->streamed.test.vertices_of(frame);
-      CHECK(follow_until(client, follower, [&] { return follower.number == frame.ticks_run; }));
-      CHECK((follower.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * follower.diagonal);
+      CHECK(viewer.follow_until([&] { return viewer.number == frame.ticks_run; }));
+      CHECK((viewer.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * viewer.diagonal);
       CHECK((shape - served->streamed.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
-      CHECK(follower.good);
-      served->server.reset(); // says goodbye
-      unsigned code = 0;
-      while (const auto left = client.next())
-        if (left->opcode == 8) code = left->close_code();
-      CHECK(code == 1001);
+      CHECK(viewer.good);
+      served->server.reset(); // sends a close frame
+      CHECK(viewer.client.close_code() == 1001);
     }
   }
 
-  TEST_CASE("a loop that is made anew sends its clients away, who come again to its model") {
+  TEST_CASE(
+      "another loop closes its clients' connections, and they get its model when they come again") {
     Served served(flow::Mode::type1);
     served.begin();
-    WebClient client(*served.server);
-    REQUIRE(client.open_socket() == 101);
-    FollowingClient follower(served.streamed.model);
-    follower.loop = 1;
-    CHECK(follow_until(client, follower, [&] { return follower.follows(); }));
+    Viewer viewer(served);
+    CHECK(viewer.follow_until([&] { return viewer.follows(); }));
     const StreamedLoop next(flow::Mode::type2);
     served.server->present(next.stream, next.model);
-    unsigned code = 0;
-    while (const auto frame = client.next())
-      if (frame->opcode == 8) code = frame->close_code();
-    CHECK(code == 1012);
+    CHECK(viewer.client.close_code() == 1012);
     WebClient again(*served.server);
     const auto model = again.get(again.with_token("/model"));
     REQUIRE(model.status == 200);

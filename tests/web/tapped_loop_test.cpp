@@ -1,5 +1,5 @@
-// The loop is sacred, with a tap at it, too: shapes asked for over and over, and nobody who empties
-// the ring for long.
+// A loop with a FrameStream keeps its promises for the tick while shapes are requested over and
+// over.
 
 #include <atomic>
 #include <thread>
@@ -12,27 +12,29 @@
 #include "support/sleep_only.hpp"
 #include "tapped_loop.hpp"
 
+namespace tapped_loop_test {
+
 using namespace nendo;
-using nendo::test::TappedLoop;
+using nendo::test::StreamedLoop;
 
 // The sanitizers' own run-time makes calls and allocates.
-TEST_SUITE("tapped_loop" * doctest::skip(!nendo::test::restraint_is_counted)) {
-  TEST_CASE("with a tap that is listened to and asked for shapes, a tick makes no system call, no "
+TEST_SUITE("streamed_loop" * doctest::skip(!nendo::test::restraint_is_counted)) {
+  TEST_CASE("with a stream that is active and asked for shapes, a tick makes no system call, no "
             "allocation and takes no lock") {
     for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
       CAPTURE(name_of(mode));
-      TappedLoop tapped(mode, deform::InjectiveOptions{});
-      tapped.tap->listen(true);
+      StreamedLoop streamed(mode, {.injective = deform::InjectiveOptions{}});
+      streamed.stream->set_active(true);
       std::atomic<bool> over{false};
       std::atomic<std::uint64_t> records{0};
       std::atomic<std::uint64_t> shapes{0};
       std::thread server([&] {
         while (!over) {
           std::vector<web::Record> taken;
-          tapped.tap->take(taken);
+          streamed.stream->take(taken);
           records += taken.size();
-          if (tapped.tap->take_shape()) ++shapes;
-          tapped.tap->ask_for_shape();
+          if (streamed.stream->take_shape()) ++shapes;
+          streamed.stream->request_shape();
           std::this_thread::yield();
         }
       });
@@ -46,9 +48,9 @@ TEST_SUITE("tapped_loop" * doctest::skip(!nendo::test::restraint_is_counted)) {
         const auto run = [&](std::uint64_t first, std::uint64_t ticks) {
           for (std::uint64_t tick = first; tick < first + ticks; ++tick) {
             const int bent = static_cast<int>(tick % 60);
-            tapped.test.bend(bent < 30 ? bent : 60 - bent, HostClock::now());
-            if (tick % 50 == 0) tapped.test.requests.try_push(asked[tick / 50 % asked.size()]);
-            tapped.test.loop->tick(tick, HostClock::now());
+            streamed.test.bend(bent < 30 ? bent : 60 - bent, HostClock::now());
+            if (tick % 50 == 0) streamed.test.commands.try_push(asked[tick / 50 % asked.size()]);
+            streamed.test.loop->tick(tick, HostClock::now());
           }
         };
         run(0, 300);
@@ -69,14 +71,16 @@ TEST_SUITE("tapped_loop" * doctest::skip(!nendo::test::restraint_is_counted)) {
       CHECK(counts.allocations == 0);
       CHECK(counts.frees == 0);
       CHECK(counts.locks == 0);
-      const auto& stats = tapped.test.loop->stats();
+      const auto& stats = streamed.test.loop->stats();
       CHECK(stats.ticks == 10'300);
       CHECK(stats.commits > 10);
       CHECK(stats.undos > 10);
       std::vector<web::Record> rest;
-      tapped.tap->take(rest);
-      CHECK(records + rest.size() + tapped.tap->lost() == 10'300);
+      streamed.stream->take(rest);
+      CHECK(records + rest.size() + streamed.stream->lost() == 10'300);
       CHECK(shapes > 0);
     }
   }
 }
+
+} // namespace tapped_loop_test

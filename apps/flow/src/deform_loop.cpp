@@ -25,13 +25,9 @@ Frame first_frame(const Sculptor& sculptor, double units_per_metre) {
 
 ShapingOptions shaping_options(const LoopOptions& options) {
   ShapingOptions shaping{options.sculptor, options.undo_most_bytes};
-  if (options.requests != nullptr) shaping.most_requests = options.requests->capacity();
+  if (options.commands != nullptr) shaping.most_requests = options.commands->capacity();
   shaping.held = options.switch_action != SwitchAction::grab;
   return shaping;
-}
-
-HostClock::duration duration_of(double seconds) noexcept {
-  return std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(seconds));
 }
 
 } // namespace
@@ -44,11 +40,12 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
       frames_(first_frame(shaping_.sculptor(), placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
-    const std::size_t slot = Placement::index_of(input.skeleton.side());
-    const hand::ActiveCalibration calibration = input.in_force();
+    const std::size_t slot = Placement::index_of(input.side);
+    const std::array skeletons{input.skeleton(Side::left), input.skeleton(Side::right)};
+    const hand::ActiveCalibration calibration(input.wearer);
     const hand::JointFilter filter(input.filter);
     hands_.push_back(
-        {std::move(input), slot, placement.T_stage_wrist[slot], calibration, {}, filter});
+        {std::move(input), slot, placement.T_stage_wrist[slot], skeletons, calibration, {}, filter});
     hands_.back().follow(hands_.back().input.first);
   }
   compute_hands(frames_.back());
@@ -56,15 +53,10 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
 }
 
 void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
-  const hand::Calibration& in_force = calibration.follow(sample);
-  latest = input.gated ? gate.pass(sample, in_force) : sample;
+  const hand::Calibration& active = calibration.follow(sample);
+  latest = input.gated ? gate.pass(sample, active) : sample;
   const HostTime time = latest.has_device_time ? latest.measured : latest.arrival;
-  angles = filter.pass(hand::joint_angles(latest, in_force), time);
-}
-
-const hand::HandSkeleton& DeformLoop::Hand::skeleton() const noexcept {
-  const bool swapped = latest.side != input.first.side && input.swapped_skeleton;
-  return swapped ? *input.swapped_skeleton : input.skeleton;
+  angles = filter.pass(hand::joint_angles(latest, active), time);
 }
 
 void DeformLoop::take_samples(TickRecord& record) noexcept {
@@ -109,22 +101,19 @@ void DeformLoop::follow_switches() noexcept {
   switch_on_ = on;
 }
 
-void DeformLoop::take_requests() noexcept {
-  if (options_.requests == nullptr) return;
-  options_.requests->drain([this](Request request) noexcept {
-    if (options_.input_log != nullptr) options_.input_log->request(request);
-    shaping_.ask(request);
-  });
+void DeformLoop::take_commands() noexcept {
+  if (options_.commands == nullptr) return;
+  options_.commands->drain([this](const Command& command) noexcept { apply(command); });
 }
 
-void DeformLoop::take_wrists() noexcept {
-  if (options_.wrists == nullptr) return;
-  options_.wrists->drain([this](const WristMove& move) noexcept {
-    if (!move.is_usable()) return;
-    if (options_.input_log != nullptr) options_.input_log->wrist(move);
-    for (Hand& hand : hands_)
-      if (hand.slot == Placement::index_of(move.side)) hand.T_stage_wrist = move.pose();
-  });
+void DeformLoop::apply(const Command& command) noexcept {
+  const auto* const request = std::get_if<Request>(&command);
+  const auto* const move = std::get_if<WristMove>(&command);
+  if (request == nullptr && (move == nullptr || !move->is_usable())) return;
+  if (options_.input_log != nullptr) options_.input_log->command(command);
+  if (request != nullptr) return shaping_.ask(*request);
+  for (Hand& hand : hands_)
+    if (hand.slot == Placement::index_of(move->side)) hand.T_stage_wrist = move->pose();
 }
 
 void DeformLoop::compute_hands(Frame& frame) noexcept {
@@ -132,9 +121,8 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   for (const auto& hand : hands_) {
     HandFrame& shown = frame.hands[hand.slot];
     shown.angles = hand.angles;
-    const hand::HandSkeleton& skeleton = hand.skeleton();
-    shown.pose = skeleton.pose(hand.angles, hand.T_stage_wrist);
-    shown.swapped = &skeleton != &hand.input.skeleton;
+    shown.pose = hand.skeleton().pose(hand.angles, hand.T_stage_wrist);
+    shown.swapped = hand.latest.side != hand.input.first.side;
     shown.T_stage_wrist = hand.T_stage_wrist;
     shown.present = true;
     shown.silent = hand.silent;
@@ -151,8 +139,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   record.spun_ns = saturated_ns(due.spun);
   const auto now_ns = [&]() noexcept { return saturated_ns(HostClock::now() - record.woke); };
   if (runs.input) {
-    take_requests();
-    take_wrists();
+    take_commands();
     take_samples(record);
   }
   record.drained_ns = now_ns();
@@ -196,8 +183,8 @@ void DeformLoop::record_latencies(const TickRecord& record) noexcept {
     stats_.end_to_end.record(done - hand.latest.arrival);
     if (hand.filter.options().kind == hand::FilterKind::off) continue;
     const hand::FilterLatency latency = hand.filter.latency();
-    stats_.filter_moving.record(duration_of(latency.moving_s));
-    stats_.filter_worst.record(duration_of(latency.worst_s));
+    stats_.filter_moving.record(from_seconds(latency.moving_s));
+    stats_.filter_worst.record(from_seconds(latency.worst_s));
   }
 }
 

@@ -101,11 +101,14 @@ private:
     if (options_.keep_on_switch && edge.turned_on(taken.sample.wrist_switch, taken.sample.arrival))
       keep();
   }
-  void add(flow::Request request) {
-    put(request);
-    ++recorded_.requests;
+  void add(const flow::Command& command) {
+    if (const auto* request = std::get_if<flow::Request>(&command)) {
+      put(*request);
+      ++recorded_.requests;
+    } else if (const auto* move = std::get_if<flow::WristMove>(&command)) {
+      put(*move);
+    }
   }
-  void add(const flow::WristMove& move) { put(move); }
   void add(const flow::LoggedTick& tick) {
     tell_lost(tick.lost);
     put(tick);

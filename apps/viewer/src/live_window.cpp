@@ -24,7 +24,7 @@ Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, S
 }
 
 void LiveWindow::begin(const deform::BlockLayout& layout, const SceneBuilder& builder,
-                       const LoopSettings& settings) {
+                       const flow::LoopSettings& settings) {
   window_->set_model(layout, builder);
   panel_->in_force = panel_->wanted = settings;
   panel_->one_radius = std::all_of(settings.radius_m.begin(), settings.radius_m.end(),
@@ -34,9 +34,9 @@ void LiveWindow::begin(const deform::BlockLayout& layout, const SceneBuilder& bu
   holds_ = {};
 }
 
-Wishes LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gauges) {
+Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gauges) {
   const HostTime begin = HostClock::now();
-  Wishes wishes;
+  Commands commands;
   if (fresh) {
     holds_.follow(frame);
     panel_->follow(frame, gauges.rate_hz);
@@ -44,16 +44,16 @@ Wishes LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gaug
   }
   see_hands(frame, holds_, moment_);
   window_->begin_picture(moment_, frame.ticks_run > 0); // before, no hand is there
-  if (!move_hand(frame, wishes)) window_->move_camera();
-  draw_panel(frame, gauges, wishes);
+  if (!move_hand(frame, commands)) window_->move_camera();
+  draw_panel(frame, gauges, commands);
   window_->end_picture();
   panel_->pictures_ms.add(static_cast<float>(1e3 * to_seconds(HostClock::now() - begin)));
-  wishes.quit = wishes.quit || window_->take_close_wish();
-  return wishes;
+  if (window_->take_close_request()) commands.emplace_back(flow::EndRun{});
+  return commands;
 }
 
 // True: the mouse holds a hand, and does nothing else.
-bool LiveWindow::move_hand(const flow::Frame& frame, Wishes& wishes) {
+bool LiveWindow::move_hand(const flow::Frame& frame, Commands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse) return false;
   const Camera camera = window_->stage_camera();
@@ -70,7 +70,7 @@ bool LiveWindow::move_hand(const flow::Frame& frame, Wishes& wishes) {
     hand_mover_.shift(camera, dx, dy, size.height);
   }
   hand_mover_.push(camera, static_cast<double>(io.MouseWheel));
-  if (dx != 0.0 || dy != 0.0 || io.MouseWheel != 0.0F) wishes.wrist = hand_mover_.move();
+  if (dx != 0.0 || dy != 0.0 || io.MouseWheel != 0.0F) commands.emplace_back(hand_mover_.move());
   return true;
 }
 

@@ -83,10 +83,10 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
   last_tick = frame.tick;
 }
 
-void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes) {
+void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
   ImGui::TextUnformatted(frame.held ? "The hands hold the model." : "The hands have let go.");
   const auto ask = [&](const char* words, Request request) {
-    if (ImGui::Button(words)) wishes.requests.push_back(request);
+    if (ImGui::Button(words)) commands.emplace_back(request);
     ImGui::SameLine();
   };
   ask("Grab", Request::grab);
@@ -95,19 +95,20 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, 
   ask("Undo", Request::undo);
   ask("Redo", Request::redo);
   if (ImGui::Button("Reset")) reset_asked = true;
-  if (ImGui::Button(gauges.recording ? "End the recording" : "Record")) wishes.record = true;
+  if (ImGui::Button(gauges.recording ? "End the recording" : "Record"))
+    commands.emplace_back(flow::SetRecording{!gauges.recording});
   ImGui::SameLine();
-  if (ImGui::Button("Keep")) wishes.save_request.recording = true;
+  if (ImGui::Button("Keep")) commands.emplace_back(flow::SaveRecording{});
   ImGui::SameLine();
-  if (ImGui::Button("Save")) wishes.save_request.shape = true;
-  if (!gauges.told.empty()) {
+  if (ImGui::Button("Save")) commands.emplace_back(flow::SaveShape{});
+  if (!gauges.report.empty()) {
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 290.0F);
-    ImGui::TextUnformatted(gauges.told.c_str());
+    ImGui::TextUnformatted(gauges.report.c_str());
     ImGui::PopTextWrapPos();
   }
 }
 
-void LiveWindow::Panel::question(Wishes& wishes) {
+void LiveWindow::Panel::question(Commands& commands) {
   constexpr const char* title = "Back to the model as it was loaded?";
   if (std::exchange(reset_asked, false)) ImGui::OpenPopup(title);
   if (!begin_question(title)) return;
@@ -115,12 +116,12 @@ void LiveWindow::Panel::question(Wishes& wishes) {
   const bool reset = ImGui::Button("Reset");
   ImGui::SameLine();
   const bool stay = ImGui::Button("Keep the shape") || pressed(GLFW_KEY_ESCAPE);
-  wishes.reset = reset;
+  if (reset) commands.emplace_back(flow::ResetModel{});
   if (reset || stay) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 
-void LiveWindow::Panel::settings(Wishes& wishes) {
+void LiveWindow::Panel::settings(Commands& commands) {
   int mode = static_cast<int>(wanted.mode);
   ImGui::RadioButton("type1: pull", &mode, 0);
   ImGui::SameLine();
@@ -145,7 +146,7 @@ void LiveWindow::Panel::settings(Wishes& wishes) {
   if (wanted == in_force) {
     ImGui::TextDisabled("as in force");
   } else if (ImGui::Button("Apply")) {
-    wishes.settings = wanted;
+    commands.emplace_back(flow::ChangeSettings{wanted});
   } else {
     ImGui::SameLine();
     ImGui::TextDisabled("restarts the loop from this shape; undo begins anew");
@@ -180,7 +181,7 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
   }
 }
 
-void LiveWindow::Panel::settings_keys(Wishes& wishes) {
+void LiveWindow::Panel::settings_keys(Commands& commands) {
   if (pressed(GLFW_KEY_M))
     wanted.mode = wanted.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
   if (pressed(GLFW_KEY_N)) {
@@ -193,23 +194,23 @@ void LiveWindow::Panel::settings_keys(Wishes& wishes) {
     if (pressed(key, true))
       for (double& radius_m : wanted.radius_m)
         radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
-  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force)) wishes.settings = wanted;
+  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force)) commands.emplace_back(flow::ChangeSettings{wanted});
 }
 
-void LiveWindow::Panel::keys(Wishes& wishes) {
+void LiveWindow::Panel::keys(const Gauges& gauges, Commands& commands) {
   if (!takes_keys()) return;
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
                                      {GLFW_KEY_C, Request::commit},
                                      {GLFW_KEY_U, Request::undo},
                                      {GLFW_KEY_R, Request::redo}})
-    if (pressed(key)) wishes.requests.push_back(request);
+    if (pressed(key)) commands.emplace_back(request);
   if (pressed(GLFW_KEY_X)) reset_asked = true;
-  if (pressed(GLFW_KEY_T)) wishes.record = true;
-  if (pressed(GLFW_KEY_K)) wishes.save_request.recording = true;
-  if (pressed(GLFW_KEY_S)) wishes.save_request.shape = true;
-  settings_keys(wishes);
-  if (pressed(GLFW_KEY_Q)) wishes.quit = true;
+  if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
+  if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
+  if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});
+  settings_keys(commands);
+  if (pressed(GLFW_KEY_Q)) commands.emplace_back(flow::EndRun{});
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (keys_shown)
     draw_key_list(key_table,
@@ -218,20 +219,20 @@ void LiveWindow::Panel::keys(Wishes& wishes) {
                   keys_shown);
 }
 
-void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes) {
+void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
   ImGui::SetNextWindowPos(ImVec2(10.0F, 10.0F), ImGuiCond_FirstUseEver);
   ImGui::Begin("Nendo", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::Text("%s   (? for keys)", gauges.model.c_str());
-  panel_->buttons(frame, gauges, wishes);
-  if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings(wishes);
+  panel_->buttons(frame, gauges, commands);
+  if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings(commands);
   if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
     panel_->timing(frame, gauges);
   if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
     panel_->hands(frame, gauges);
   ImGui::End();
-  panel_->question(wishes);
+  panel_->question(commands);
   window_->follow_part_keys();
-  panel_->keys(wishes);
+  panel_->keys(gauges, commands);
 }
 
 } // namespace nendo::viewer

@@ -26,7 +26,7 @@ private:
 };
 
 struct LiveWindow::Panel {
-  LoopSettings in_force, wanted;
+  flow::LoopSettings in_force, wanted;
   Strip late_ms, gap_ms, pictures_ms;
   std::uint64_t last_tick = 0;
   bool keys_shown = false;
@@ -34,13 +34,13 @@ struct LiveWindow::Panel {
   bool reset_asked = false; ///< and not answered whether it is meant
 
   void follow(const flow::Frame& frame, double rate_hz);
-  void buttons(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes);
-  void question(Wishes& wishes);
-  void settings(Wishes& wishes);
+  void buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
+  void question(Commands& commands);
+  void settings(Commands& commands);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
-  void keys(Wishes& wishes);
-  void settings_keys(Wishes& wishes);
+  void keys(const Gauges& gauges, Commands& commands);
+  void settings_keys(Commands& commands);
 };
 
 } // namespace nendo::viewer

@@ -1,7 +1,5 @@
 #include <nendo/viewer/scene_frame.hpp>
 
-#include <algorithm>
-
 namespace nendo::viewer {
 
 void HoldFollower::follow(const flow::Frame& frame) noexcept {
@@ -19,19 +17,6 @@ void see_hands(const flow::Frame& frame, const HoldFollower& holds, SceneFrame& 
     moment.hands[slot] = SeenHand{
         hand.pose, frame.held ? holds.starts(slot) : hand.pose.fingertip_positions(), hand.silent};
   }
-}
-
-std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre) {
-  std::array<double, 5> radii{};
-  for (const auto& own : supports.own) {
-    auto& radius = radii[static_cast<std::size_t>(own.point) % radii.size()];
-    radius = std::max(radius, own.support.radius / units_per_metre);
-  }
-  if (!supports.own.empty()) return radii; // the shared one then but joins them
-  for (const auto& shared : supports.shared)
-    for (auto& radius : radii)
-      radius = std::max(radius, shared.radius / units_per_metre);
-  return radii;
 }
 
 } // namespace nendo::viewer

@@ -49,19 +49,19 @@ std::optional<Wendland> kernel_of(std::string_view word) noexcept {
   return std::nullopt;
 }
 
-std::optional<ClientWish> settings_in(Words words) noexcept {
+std::optional<flow::Command> settings_in(Words words) noexcept {
   const auto mode = flow::mode_named(words.next());
   const auto kernel = kernel_of(words.next());
   flow::LoopSettings settings;
   if (!mode || !kernel || !words.take(settings.radius_m) || !words.are_over()) return std::nullopt;
   for (const double radius_m : settings.radius_m)
-    if (radius_m < least_radius_m || radius_m > most_radius_m) return std::nullopt;
+    if (radius_m < min_radius_m || radius_m > max_radius_m) return std::nullopt;
   settings.mode = *mode;
   settings.kernel = *kernel;
-  return flow::LoopChange{.settings = settings};
+  return flow::ChangeSettings{settings};
 }
 
-std::optional<ClientWish> wrist_in(Words words) noexcept {
+std::optional<flow::Command> wrist_in(Words words) noexcept {
   const auto hand = words.next();
   flow::WristMove move;
   move.side = hand == "left" ? Side::left : Side::right;
@@ -72,7 +72,7 @@ std::optional<ClientWish> wrist_in(Words words) noexcept {
   for (const double part : move.turn_xyzw)
     squared += part * part;
   const double length = std::sqrt(squared);
-  if (!(std::abs(length - 1.0) <= most_off_unit) || !move.is_usable()) return std::nullopt;
+  if (!(std::abs(length - 1.0) <= max_norm_error) || !move.is_usable()) return std::nullopt;
   for (double& part : move.turn_xyzw)
     part /= length;
   return move;
@@ -80,13 +80,13 @@ std::optional<ClientWish> wrist_in(Words words) noexcept {
 
 } // namespace
 
-std::optional<ClientWish> parse_words(std::string_view text) noexcept {
+std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   if (const auto request = flow::request_named(text)) return *request;
-  if (text == "reset") return flow::LoopChange{.reset = true};
-  if (text == "record") return flow::LoopChange{.record = true};
-  if (text == "end recording") return flow::LoopChange{.record = false};
-  if (text == "save") return flow::SaveRequest{.shape = true};
-  if (text == "keep") return flow::SaveRequest{.recording = true};
+  if (text == "reset") return flow::ResetModel{};
+  if (text == "record") return flow::SetRecording{true};
+  if (text == "end recording") return flow::SetRecording{false};
+  if (text == "save") return flow::SaveShape{};
+  if (text == "keep") return flow::SaveRecording{};
   Words words(text);
   const auto first = words.next();
   if (first == "settings") return settings_in(words);

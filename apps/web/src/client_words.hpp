@@ -1,29 +1,22 @@
 #pragma once
-// What a client may say (PROTOCOL.md), strictly: who says anything else is not understood, and does
-// not get what it did not mean. Pure, and without allocation.
+// A strict parser for the commands that a client may send (PROTOCOL.md). It does not allocate.
 
 #include <optional>
 #include <string_view>
-#include <variant>
 
-#include <nendo/flow/loop_settings.hpp>
-#include <nendo/flow/request.hpp>
-#include <nendo/flow/save_request.hpp>
-#include <nendo/flow/wrist_move.hpp>
+#include <nendo/flow/command.hpp>
 
 namespace nendo::web {
 
-using ClientWish =
-    std::variant<flow::Request, flow::LoopChange, flow::SaveRequest, flow::WristMove>;
+/// The radii that a client may ask for. This is more than fingers can shape with, and a loop can
+/// begin with each of them.
+inline constexpr double min_radius_m = 0.001;
+inline constexpr double max_radius_m = 10.0;
+/// How far a quaternion's length may be from 1. Six decimals of each part are precise enough.
+inline constexpr double max_norm_error = 0.01;
 
-/// A radius that may be asked for: far beyond what fingers shape with, and no loop's end.
-inline constexpr double least_radius_m = 0.001;
-inline constexpr double most_radius_m = 10.0;
-/// How far a quaternion's length may be from 1: six decimals of each part are enough.
-inline constexpr double most_off_unit = 0.01;
-
-/// Nothing if it is none. The radii of settings and the length of a quaternion are in those ranges,
-/// the latter made 1; a place is within WristMove::farthest_m.
-std::optional<ClientWish> parse_words(std::string_view text) noexcept;
+/// The command that the text means; nothing if it is none, or if a number in it is out of range.
+/// The quaternion of a wrist is normalised.
+std::optional<flow::Command> parse_command(std::string_view text) noexcept;
 
 } // namespace nendo::web

@@ -14,7 +14,7 @@ Result<std::unique_ptr<Server>> Server::open(const Endpoint& endpoint, ServerLim
   Endpoint where = endpoint;
   auto listener = listen_at(where);
   if (!listener) return listener.error();
-  std::string token = random_figures(16);
+  std::string token = random_hex(16);
   Descriptor waker(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
   if (token.empty() || !waker.is_open())
     return Error{Errc::failed, "--web: the system gives no randomness or no descriptor; close "
@@ -38,39 +38,21 @@ std::string Server::url() const {
   return "http://" + work_->endpoint.authority() + "/#" + work_->token;
 }
 
-void Server::present(std::shared_ptr<FrameStream> tap, std::vector<std::byte> model) {
-  work_->present(std::move(tap), std::move(model));
+void Server::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model) {
+  work_->present(std::move(stream), std::move(model));
 }
 
-std::optional<flow::Request> Server::next_request() noexcept {
-  flow::Request request{};
-  if (work_->requests.size() == 0 || !work_->requests.try_pop(request)) return std::nullopt;
-  return request;
+std::optional<flow::Command> Server::next_command() noexcept {
+  flow::Command command;
+  if (work_->commands.size() == 0 || !work_->commands.try_pop(command)) return std::nullopt;
+  return command;
 }
 
-std::optional<flow::WristMove> Server::next_wrist() noexcept {
-  for (auto& wrist : work_->wrists)
-    if (wrist.update()) return wrist.front();
-  return std::nullopt;
+void Server::report(std::string message) {
+  work_->report(std::move(message));
 }
 
-flow::LoopChange Server::next_change() noexcept {
-  flow::LoopChange all;
-  work_->changes.drain([&](const flow::LoopChange& change) noexcept { all.add(change); });
-  return all;
-}
-
-flow::SaveRequest Server::next_save_request() noexcept {
-  flow::SaveRequest all;
-  work_->save_request.drain([&](const flow::SaveRequest& more) noexcept { all.add(more); });
-  return all;
-}
-
-void Server::tell(std::string words) {
-  work_->tell(std::move(words));
-}
-
-void Server::tell_bad_records(std::array<std::uint32_t, 2> counts) noexcept {
+void Server::set_bad_records(std::array<std::uint32_t, 2> counts) noexcept {
   work_->bad_records = counts[0] | std::uint64_t{counts[1]} << 32U;
 }
 

@@ -1,4 +1,4 @@
-// What comes in: requests, and what clients say.
+// What comes in: HTTP requests, and what clients ask for.
 
 #include <poll.h>
 
@@ -10,8 +10,8 @@
 
 namespace nendo::web {
 
-void Server::Work::look_at(Connection& connection, short events, HostTime now) {
-  if ((events & POLLOUT) != 0) connection.send_on(now);
+void Server::Work::serve(Connection& connection, short events, HostTime now) {
+  if ((events & POLLOUT) != 0) connection.resume_sending(now);
   if ((events & (POLLIN | POLLHUP | POLLERR)) == 0 || !connection.receive(now)) return;
   if (connection.stage() == Connection::Stage::head) read_head(connection, now);
   if (connection.stage() == Connection::Stage::socket) read_socket(connection, now);
@@ -25,7 +25,7 @@ void Server::Work::refuse(Connection& connection, int status, std::string_view w
 void Server::Work::read_head(Connection& connection, HostTime now) {
   const HttpHead head = parse_head(connection.incoming());
   if (head.status == 0) {
-    connection.await_rest();
+    connection.await_more();
     return;
   }
   if (head.status != 200) {
@@ -36,13 +36,13 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
   if (admission.status != 200) {
     refuse(connection, admission.status, admission.why, now);
   } else if (admission.resource == Resource::page) {
-    const std::string nonce = random_figures(16);
+    const std::string nonce = random_hex(16);
     const SharedBytes page = shared_bytes(page_with(nonce));
     connection.answer(page_head(page->size(), nonce, *head.request.header("Host")), page, now);
-  } else if (!show_.model) {
+  } else if (!presented_.model) {
     refuse(connection, 503, "the loop has not begun; try again in a second", now);
   } else if (admission.resource == Resource::model) {
-    connection.answer(model_head(show_.model->size()), show_.model, now);
+    connection.answer(model_head(presented_.model->size()), presented_.model, now);
   } else {
     open_socket(connection, head.request, now);
     connection.incoming().erase(0, head.bytes);
@@ -50,7 +50,7 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
 }
 
 void Server::Work::open_socket(Connection& connection, const HttpRequest& request, HostTime now) {
-  if (clients() >= limits_.clients) {
+  if (clients() >= limits_.max_clients) {
     refuse(connection, 503, "so many look already that there is no place", now);
     return;
   }
@@ -72,20 +72,13 @@ void Server::Work::read_socket(Connection& connection, HostTime now) {
 }
 
 void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {
-  const auto wish = connection.may_speak(now) ? parse_words(text) : std::nullopt;
-  if (!wish) {
+  const auto command = connection.within_message_rate(now) ? parse_command(text) : std::nullopt;
+  if (!command) {
     connection.close(CloseCode::policy, now);
     return;
   }
-  // Full: the loop stands still, and asking again is as good.
-  if (const auto* request = std::get_if<flow::Request>(&*wish)) requests.try_push(*request);
-  if (const auto* change = std::get_if<flow::LoopChange>(&*wish)) changes.try_push(*change);
-  if (const auto* wanted = std::get_if<flow::SaveRequest>(&*wish)) save_request.try_push(*wanted);
-  if (const auto* move = std::get_if<flow::WristMove>(&*wish)) {
-    auto& wrist = wrists[flow::Placement::index_of(move->side)];
-    wrist.back() = *move;
-    wrist.publish();
-  }
+  // If it is full the run stands still, and asking again is as good.
+  commands.try_push(*command);
 }
 
 } // namespace nendo::web

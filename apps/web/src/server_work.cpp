@@ -17,13 +17,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Screens show no more pictures; what a faster loop makes in between goes in one message.
+/// Screens do not show more frames. The steps that a faster loop makes in between share a message.
 constexpr milliseconds frame_period(8);
-/// How soon it is noticed that somebody is overdue.
-constexpr milliseconds patience(250);
+/// How often deadlines are looked at.
+constexpr milliseconds deadline_period(250);
 
-std::string words_message(const std::string& words) {
-  return std::string{static_cast<char>(MessageType::words), 0, 0, 0} + words;
+std::string report_message(const std::string& text) {
+  return std::string{static_cast<char>(MessageType::report), 0, 0, 0} + text;
 }
 
 void write_loop(std::uint16_t loop, std::size_t at, std::vector<std::byte>& message) {
@@ -48,20 +48,20 @@ void Server::Work::wake() noexcept {
   [[maybe_unused]] const ssize_t written = ::write(waker_.get(), &one, sizeof one);
 }
 
-void Server::Work::present(std::shared_ptr<FrameStream> tap, std::vector<std::byte> model) {
+void Server::Work::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model) {
   {
-    const std::scoped_lock lock(show_mutex_);
+    const std::scoped_lock lock(mutex_);
     write_loop(++loops_, offsetof(ModelHead, loop), model);
-    next_ = Show{std::move(tap), std::make_shared<const std::vector<std::byte>>(std::move(model)),
-                 loops_};
+    next_ = Presented{std::move(stream),
+                      std::make_shared<const std::vector<std::byte>>(std::move(model)), loops_};
   }
   wake();
 }
 
-void Server::Work::tell(std::string words) {
+void Server::Work::report(std::string message) {
   {
-    const std::scoped_lock lock(show_mutex_);
-    words_ = std::move(words);
+    const std::scoped_lock lock(mutex_);
+    report_ = std::move(message);
   }
   wake();
 }
@@ -77,28 +77,28 @@ void Server::Work::run() {
   while (!over_) {
     wait();
     const HostTime now = HostClock::now();
-    take_show();
-    pass_on_words(now);
+    take_presented();
+    send_report(now);
     std::size_t at = 2; // behind the listener and the waker
     for (Connection& connection : connections_)
-      look_at(connection, polled_[at++].revents, now);
+      serve(connection, polled_[at++].revents, now);
     if ((polled_[0].revents & POLLIN) != 0) accept_all(now);
     if (now >= next_frames_) {
       next_frames_ = now + frame_period;
       send_frames(now);
     }
-    drop_overdue(now);
+    drop_expired(now);
     counts.clients = clients();
-    if (show_.tap) show_.tap->listen(counts.clients > 0);
+    if (presented_.stream) presented_.stream->set_active(counts.clients > 0);
   }
   end();
 }
 
-// The last frame is the shape that the run leaves.
+// The last frame is sent, too, because it is the shape that the run leaves.
 void Server::Work::end() {
   const HostTime now = HostClock::now();
   send_frames(now);
-  if (show_.tap) show_.tap->listen(false);
+  if (presented_.stream) presented_.stream->set_active(false);
   for (Connection& connection : connections_)
     if (connection.stage() == Connection::Stage::socket)
       connection.close(CloseCode::going_away, now);
@@ -112,7 +112,7 @@ void Server::Work::wait() {
   for (const Connection& connection : connections_)
     polled_.push_back({connection.fd(), connection.events(), 0});
   milliseconds most(-1);
-  if (!connections_.empty() || !accepts) most = patience;
+  if (!connections_.empty() || !accepts) most = deadline_period;
   if (clients() > 0)
     most = std::clamp(std::chrono::ceil<milliseconds>(next_frames_ - HostClock::now()),
                       milliseconds(0), frame_period);
@@ -122,65 +122,67 @@ void Server::Work::wait() {
     const ssize_t got = ::read(waker_.get(), &ignored, sizeof ignored);
 }
 
-void Server::Work::take_show() {
-  std::optional<Show> next;
+void Server::Work::take_presented() {
+  std::optional<Presented> next;
   {
-    const std::scoped_lock lock(show_mutex_);
+    const std::scoped_lock lock(mutex_);
     next = std::exchange(next_, std::nullopt);
   }
   if (!next) return;
-  if (show_.tap) show_.tap->listen(false);
-  show_ = *std::move(next);
+  if (presented_.stream) presented_.stream->set_active(false);
+  presented_ = *std::move(next);
   for (Connection& connection : connections_)
     if (connection.stage() == Connection::Stage::socket)
       connection.close(CloseCode::service_restart, HostClock::now());
 }
 
-// To all who have room for them: words are not worth waiting for.
-void Server::Work::pass_on_words(HostTime now) {
-  std::string words;
+// A client whose queue is too long does not get the report at all.
+void Server::Work::send_report(HostTime now) {
+  std::string text;
   {
-    const std::scoped_lock lock(show_mutex_);
-    words.swap(words_);
+    const std::scoped_lock lock(mutex_);
+    text.swap(report_);
   }
-  if (words.empty()) return;
-  const SharedBytes message = shared_bytes(words_message(words));
+  if (text.empty()) return;
+  const SharedBytes message = shared_bytes(report_message(text));
   for (Connection& client : connections_)
-    if (client.stage() == Connection::Stage::socket && client.has_room())
+    if (client.stage() == Connection::Stage::socket && client.accepts_updates())
       client.send(Opcode::binary, message, false, now);
 }
 
-// A system that has no descriptor left says at once, and over and over, that somebody waits.
+// When the system has no descriptor left, poll() would return at once, over and over. So the
+// listener is left alone for a while after each failure.
 void Server::Work::accept_all(HostTime now) {
-  next_accept_ = now + patience;
-  while (auto socket = accept_from(listener_, limits_.system_buffer)) {
+  next_accept_ = now + deadline_period;
+  while (auto socket = accept_from(listener_, limits_.send_buffer_bytes)) {
     next_accept_ = now;
     ++counts.accepted;
-    if (connections_.size() >= limits_.connections) make_place();
+    if (connections_.size() >= limits_.max_connections) make_room();
     connections_.emplace_back(*std::move(socket), now, limits_);
   }
 }
 
-// Who is in has shown the token, and stays.
-void Server::Work::make_place() {
+// Clients with a WebSocket have shown the token, so they stay.
+void Server::Work::make_room() {
   const auto oldest =
       std::find_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
         return connection.stage() != Connection::Stage::socket;
       });
-  if (oldest == connections_.end()) return; // one more may ask, and is told that there is no place
+  if (oldest == connections_.end())
+    return; // the new one is answered with 503 if it asks for a WebSocket
   connections_.erase(oldest);
   ++counts.dropped;
 }
 
 void Server::Work::send_frames(HostTime now) {
-  if (!show_.tap) return;
+  if (!presented_.stream) return;
   records_.clear();
-  show_.tap->take(records_);
-  auto shape = show_.tap->take_shape();
-  if (shape) write_loop(show_.loop, offsetof(ShapeHead, loop), shape->message);
+  presented_.stream->take(records_);
+  auto shape = presented_.stream->take_shape();
+  if (shape) write_loop(presented_.loop, offsetof(ShapeHead, loop), shape->message);
   const SharedBytes bytes =
       shape ? std::make_shared<const std::vector<std::byte>>(std::move(shape->message)) : nullptr;
-  feed_counters_.lost = show_.tap->lost();
+  feed_counters_.lost = presented_.stream->lost();
   const std::uint64_t bad = bad_records;
   feed_counters_.bad_records = {static_cast<std::uint32_t>(bad),
                                 static_cast<std::uint32_t>(bad >> 32U)};
@@ -189,22 +191,22 @@ void Server::Work::send_frames(HostTime now) {
     if (client.stage() != Connection::Stage::socket) continue;
     send_frames(client, shape, bytes, now);
     client.keep_alive(now);
-    shape_wanted = shape_wanted ||
-                   (client.feed.wants_shape() && client.has_room() && !client.has_shape_waiting());
+    shape_wanted = shape_wanted || (client.feed.wants_shape() && client.accepts_updates() &&
+                                    !client.has_queued_shape());
   }
-  if (shape_wanted) show_.tap->ask_for_shape();
+  if (shape_wanted) presented_.stream->request_shape();
 }
 
 void Server::Work::send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,
                                const SharedBytes& bytes, HostTime now) {
-  if (!client.has_room()) {
+  if (!client.accepts_updates()) {
     client.feed.skip(records_);
     counts.skipped += records_.size();
     return;
   }
-  if (shape && client.feed.wants_shape() && !client.has_shape_waiting()) {
+  if (shape && client.feed.wants_shape() && !client.has_queued_shape()) {
     client.send(Opcode::binary, bytes, true, now);
-    client.feed.got_shape(shape->number);
+    client.feed.shape_sent(shape->number);
     ++counts.shapes;
     counts.shape_bytes += bytes->size();
   }
@@ -216,12 +218,12 @@ void Server::Work::send_frames(Connection& client, const std::optional<FrameStre
               false, now);
 }
 
-void Server::Work::drop_overdue(HostTime now) {
+void Server::Work::drop_expired(HostTime now) {
   connections_.remove_if([&](const Connection& connection) {
     const bool overdue =
-        connection.stage() != Connection::Stage::over && connection.is_overdue(now);
+        connection.stage() != Connection::Stage::ended && connection.is_expired(now);
     if (overdue && connection.stage() != Connection::Stage::linger) ++counts.dropped;
-    return overdue || connection.stage() == Connection::Stage::over;
+    return overdue || connection.stage() == Connection::Stage::ended;
   });
 }
 

@@ -23,28 +23,23 @@
 
 namespace nendo::flow {
 
-/// One hand's way into the loop. `ring` is drained by the loop's thread alone and must outlive the
+/// One hand, as the loop takes it in. The loop's thread alone drains `ring`, which must outlive the
 /// loop.
 struct HandInput {
   SampleRing* ring = nullptr;
-  hand::HandSkeleton skeleton;
-  hand::Calibration calibration = hand::default_calibration();
+  Side side = Side::right; ///< the hand that it is on the stage, whichever glove it wears
+  hand::Wearer wearer;
   GloveSample first; ///< the pose in which the hand takes hold of the model
-  bool gated = true; ///< counts that no hand can have caused are kept out: hand::SensorGate
-  hand::FilterOptions filter{}; ///< of the joint angles, at the samples' own times
-  /// For samples of the other side than the first: another glove has been plugged in since.
-  hand::Calibration swapped = hand::default_calibration();
-  /// A glove with such counts: its ranges are learned while it is used, in place of calibrations.
-  std::optional<CountScale> adapt{};
-  std::optional<hand::LearnedRanges> learned{}; ///< what that goes on from
-  /// For the samples that `swapped` is for; nullopt: the other hand has the same size. Of the same
-  /// side as `skeleton`: it shapes as that hand.
-  std::optional<hand::HandSkeleton> swapped_skeleton{};
+  bool gated = true; ///< hand::SensorGate keeps out counts that no hand can have caused
+  hand::FilterOptions filter{}; ///< for the joint angles, at the samples' own times
+  /// Measured bones (HandSkeleton::of_bones) for gloves of the first sample's side, in place of the
+  /// wearer's size. A recording does not keep them.
+  std::optional<hand::HandSkeleton> measured{};
 
-  /// For its samples from the first one on.
-  hand::ActiveCalibration in_force() const noexcept {
-    if (adapt) return hand::ActiveCalibration(*adapt, learned);
-    return {first.side, calibration, swapped};
+  /// Returns the skeleton for samples from a glove of that side. It always has the side `side`.
+  hand::HandSkeleton skeleton(Side glove) const {
+    if (measured && glove == first.side) return *measured;
+    return hand::HandSkeleton(side, wearer.of(glove).size);
   }
 };
 
@@ -61,10 +56,9 @@ struct LoopOptions : PaceOptions {
   TickStages stages;
   /// Every tick's record goes there; a full ring refuses it. Must outlive the loop.
   TickRing* records = nullptr;
-  /// What the loop is asked for while it runs. Must outlive it.
-  RequestRing* requests = nullptr;
-  /// Where its hands go while it runs. Must outlive it.
-  WristRing* wrists = nullptr;
+  /// What people ask of the loop while it runs; it takes them at the beginning of a tick. Must
+  /// outlive it.
+  CommandRing* commands = nullptr;
   /// What is taken goes there, too. Must outlive it.
   InputLog* input_log = nullptr;
   std::size_t undo_most_bytes = 0; ///< ShapingOptions::undo_most_bytes
@@ -118,8 +112,8 @@ public:
 
 private:
   void tick(const Pacer::Due& due) noexcept;
-  void take_requests() noexcept;
-  void take_wrists() noexcept;
+  void take_commands() noexcept;
+  void apply(const Command& command) noexcept;
   void take_samples(TickRecord& record) noexcept;
   void follow_switches() noexcept;
   void compute_hands(Frame& frame) noexcept;
@@ -129,12 +123,14 @@ private:
   struct Hand {
     /// Makes `latest` and `angles` of the next sample.
     void follow(const GloveSample& sample) noexcept;
-    /// Of the hand that sent `latest`.
-    const hand::HandSkeleton& skeleton() const noexcept;
+    const hand::HandSkeleton& skeleton() const noexcept {
+      return skeletons[Placement::index_of(latest.side)];
+    }
 
     HandInput input;
     std::size_t slot = 0; ///< of arrays by side
     Eigen::Isometry3d T_stage_wrist;
+    std::array<hand::HandSkeleton, 2> skeletons; ///< by the glove's side
     hand::ActiveCalibration calibration;
     hand::SensorGate gate{};
     hand::JointFilter filter;

@@ -1,6 +1,6 @@
 #pragma once
-// What the loop took, in the order in which it took it: samples, requests, wrists, and the ticks
-// that closed over them. Whoever gives the same to another loop of the same options gets the same
+// What the loop took, in the order in which it took it: samples, commands, and the ticks that closed
+// over them. Whoever gives the same to another loop of the same options gets the same
 // shape, bit for bit.
 
 #include <cstddef>
@@ -11,8 +11,7 @@
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/units.hpp>
 #include <nendo/driver/sample.hpp>
-#include <nendo/flow/request.hpp>
-#include <nendo/flow/wrist_move.hpp>
+#include <nendo/flow/command.hpp>
 
 namespace nendo::flow {
 
@@ -29,7 +28,7 @@ struct LoggedTick {
   std::uint64_t lost = 0; ///< entries that had found the input log full until then
 };
 
-using InputLogEntry = std::variant<TakenSample, Request, WristMove, LoggedTick>;
+using InputLogEntry = std::variant<TakenSample, Command, LoggedTick>;
 
 /// From the loop to a recorder, through a ring; a full one refuses what comes, and the next tick
 /// that finds room tells how much that was. The loop's side is wait-free.
@@ -41,8 +40,7 @@ public:
   void sample(std::uint8_t hand, const GloveSample& sample) noexcept {
     ring_.try_push(TakenSample{hand, sample});
   }
-  void request(Request request) noexcept { ring_.try_push(request); }
-  void wrist(const WristMove& move) noexcept { ring_.try_push(move); }
+  void command(const Command& command) noexcept { ring_.try_push(command); }
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {
     ring_.try_push(LoggedTick{number, scheduled, woke, ring_.counters().refused});
   }

@@ -1,13 +1,10 @@
 #pragma once
-// What a person asks of the loop while it runs, on its way there from a keyboard, a window or a
-// browser.
+// The commands that decide whether the hands hold the model, and which shape is its rest shape.
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
-
-#include <nendo/base/spsc_ring.hpp>
 
 namespace nendo::flow {
 
@@ -25,8 +22,5 @@ inline constexpr std::array requests{Request::grab, Request::let_go, Request::co
 
 std::string_view name_of(Request request) noexcept;
 std::optional<Request> request_named(std::string_view name) noexcept;
-
-/// One thread asks, the loop takes at the beginning of a tick what has been asked for.
-using RequestRing = SpscRing<Request>;
 
 } // namespace nendo::flow

@@ -7,7 +7,6 @@
 
 #include <Eigen/Geometry>
 
-#include <nendo/base/spsc_ring.hpp>
 #include <nendo/driver/sample.hpp>
 
 namespace nendo::flow {
@@ -25,9 +24,8 @@ struct WristMove {
   bool is_usable() const noexcept;
   /// T_stage_wrist, of one that is usable.
   Eigen::Isometry3d pose() const noexcept;
-};
 
-/// One thread moves, the loop takes at the beginning of a tick what has come.
-using WristRing = SpscRing<WristMove>;
+  friend bool operator==(const WristMove&, const WristMove&) = default;
+};
 
 } // namespace nendo::flow

@@ -34,8 +34,7 @@ private:
   void take(const driver::RecordedSample& sample) noexcept;
 
   std::vector<std::unique_ptr<SampleRing>> rings_;
-  flow::RequestRing requests_{1024};
-  flow::WristRing wrists_{1024};
+  flow::CommandRing commands_{2048};
   std::unique_ptr<flow::DeformLoop> loop_;
   bool exact_ = true;
 };

@@ -1,46 +1,33 @@
 #pragma once
-// The live window: the scene, a camera for the mouse, and a panel to see how the loop does and to
-// ask it for something. It reads frames and never waits for the loop, nor the loop for it. All of
-// this on the main thread, as windows demand.
+// The live window: the scene, a camera for the mouse, and a panel that shows how the loop does and
+// has buttons for every command. It reads frames; it never waits for the loop, and the loop never
+// waits for it. All calls belong to the main thread.
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
-#include <nendo/flow/loop_settings.hpp>
-#include <nendo/flow/request.hpp>
-#include <nendo/flow/save_request.hpp>
 #include <nendo/viewer/hand_mover.hpp>
 #include <nendo/viewer/scene_window.hpp>
 
 namespace nendo::viewer {
 
-using flow::LoopSettings;
-
-/// What the panel tells beside the frame.
+/// What the panel shows beside the frame.
 struct Gauges {
   std::string model;                 ///< its name
   double rate_hz = 0.0;              ///< wanted
   std::array<std::string, 2> gloves; ///< their names; empty: none
   std::array<std::uint64_t, 2> bad_records{};
   std::array<std::uint64_t, 2> lost{}; ///< samples that found no room
-  bool recording = false;              ///< goes on now
+  bool recording = false;              ///< to a file
   double restart_ms = 0.0;             ///< of the last change of settings; 0: none yet
-  std::string told;                    ///< what became of the last wish to keep something
+  std::string report;                  ///< what became of the last command to save something
 };
 
-/// What a person wants, since the last picture.
-struct Wishes {
-  std::vector<flow::Request> requests;
-  std::optional<flow::WristMove> wrist; ///< a hand that the mouse holds is to be there
-  std::optional<LoopSettings> settings; ///< to go on with, in place of those in force
-  bool reset = false;                   ///< back to the model as it was loaded
-  bool record = false;                  ///< the recording is to begin, or to end
-  flow::SaveRequest save_request;
-  bool quit = false;
-};
+/// What a person has asked for since the last picture, in that order.
+using Commands = std::vector<flow::Command>;
 
 class LiveWindow {
 public:
@@ -50,12 +37,12 @@ public:
   LiveWindow(const LiveWindow&) = delete;
   LiveWindow& operator=(const LiveWindow&) = delete;
 
-  /// Another loop, over this model. Keeps the camera unless there was none.
+  /// Begins to show another loop, over this model. The camera stays where it was.
   void begin(const deform::BlockLayout& layout, const SceneBuilder& builder,
-             const LoopSettings& settings);
-  /// One picture, of the latest frame; waits for the screen, 20 ms at most without one. fresh: the
-  /// frame is another one than before.
-  Wishes show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
+             const flow::LoopSettings& settings);
+  /// Draws one picture of the latest frame and waits for the screen, for 20 ms at most if there is
+  /// none. fresh: the frame is another one than at the call before.
+  Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
   /// As SceneWindow's.
   Image screenshot() const { return window_->screenshot(); }
@@ -68,8 +55,8 @@ public:
 private:
   struct Panel;
   explicit LiveWindow(std::unique_ptr<SceneWindow> window);
-  bool move_hand(const flow::Frame& frame, Wishes& wishes);
-  void draw_panel(const flow::Frame& frame, const Gauges& gauges, Wishes& wishes);
+  bool move_hand(const flow::Frame& frame, Commands& commands);
+  void draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
 
   std::unique_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;

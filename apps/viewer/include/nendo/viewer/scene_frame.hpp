@@ -42,7 +42,4 @@ private:
 /// All of a frame but its vertices and its time, which are left as they are.
 void see_hands(const flow::Frame& frame, const HoldFollower& holds, SceneFrame& moment);
 
-/// The radii of five fingers on the stage. supports: the loop's; the largest of each finger counts.
-std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre);
-
 } // namespace nendo::viewer

@@ -51,8 +51,8 @@ public:
   /// Draws it all; waits for the screen, 20 ms at most without one.
   void end_picture();
 
-  /// Somebody wants the window closed; once told, forgotten.
-  bool take_close_wish() noexcept;
+  /// Whether the person has asked to close the window since the last call.
+  bool take_close_request() noexcept;
   /// So many pixels at the bottom are not the scene's.
   void leave_below(int pixels) noexcept { below_ = pixels; }
   Size scene_size() const noexcept; ///< of what is left; its corner is the window's top left one

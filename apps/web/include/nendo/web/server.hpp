@@ -1,6 +1,7 @@
 #pragma once
-// Serves one page to browsers, and frames over WebSockets to whoever has the token (PROTOCOL.md).
-// One thread, which owns all sockets and waits for none of them.
+// An HTTP server that sends browsers one page, and over WebSockets the frames of a running loop to
+// those that have the token. PROTOCOL.md describes the bytes. One thread owns all sockets; no call
+// on a socket blocks it.
 
 #include <array>
 #include <chrono>
@@ -12,77 +13,78 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
-#include <nendo/flow/loop_settings.hpp>
-#include <nendo/flow/request.hpp>
-#include <nendo/flow/save_request.hpp>
-#include <nendo/flow/wrist_move.hpp>
+#include <nendo/flow/command.hpp>
 #include <nendo/web/endpoint.hpp>
 #include <nendo/web/frame_stream.hpp>
 
 namespace nendo::web {
 
-/// What a client may take of the server, whoever it is.
+/// What the server grants to each client, hostile ones included.
 struct ServerLimits {
-  std::size_t connections = 32; ///< the oldest without a WebSocket goes for a new one
-  std::size_t clients = 16;     ///< WebSockets
-  /// Bytes that wait for a client, beside a shape; then it misses frames until it has them all.
-  std::size_t most_waiting = std::size_t{256} << 10;
-  std::size_t system_buffer = std::size_t{256} << 10; ///< what waits in the system arrives old
-  std::chrono::milliseconds head{5000};               ///< for all of a request
-  std::chrono::milliseconds stalled{10000};           ///< without taking a byte of what waits
-  std::chrono::milliseconds lagging{30000};           ///< without having taken all of it
-  std::chrono::milliseconds ping{10000};              ///< how often it is asked whether it is there
-  std::chrono::milliseconds silent{30000};            ///< without any answer
-  double words_at_once = 512.0;  ///< messages that a client may send, if it has been quiet
-  double words_a_second = 128.0; ///< and in the long run; who says more is sent away
+  /// Open connections. A new one beyond this closes the oldest that is not a WebSocket.
+  std::size_t max_connections = 32;
+  std::size_t max_clients = 16; ///< open WebSockets; the next one is answered with 503
+  /// Bytes queued for a client, shapes not counted. A client that has more queued misses frames
+  /// until its queue is empty.
+  std::size_t max_queued_bytes = std::size_t{256} << 10;
+  /// SO_SNDBUF of each socket. What waits there can no longer be skipped, so it is kept small.
+  std::size_t send_buffer_bytes = std::size_t{256} << 10;
+  std::chrono::milliseconds request_timeout{5000};  ///< from the connection to the whole request
+  std::chrono::milliseconds stall_timeout{10000};   ///< without taking a byte of the queue
+  std::chrono::milliseconds lag_timeout{30000};     ///< of a WebSocket without an empty queue
+  std::chrono::milliseconds ping_period{10000};     ///< of a WebSocket
+  std::chrono::milliseconds silence_timeout{30000}; ///< of a WebSocket without a sign of life
+  /// Messages from a client, as a token bucket: its size, and how fast it fills. A client that
+  /// sends more is closed.
+  double message_burst = 512.0;
+  double messages_per_second = 128.0;
 };
 
-/// Since the server was opened.
+/// Counts since the server was opened, except for `clients`.
 struct ServerCounters {
-  std::uint64_t clients = 0;  ///< WebSockets at present
+  std::uint64_t clients = 0;  ///< WebSockets that are open now
   std::uint64_t accepted = 0; ///< connections
   std::uint64_t refused = 0;  ///< requests that were answered with an error
-  std::uint64_t dropped = 0;  ///< clients that were too slow, silent or wrong
-  std::uint64_t updates = 0;  ///< messages to clients, and their bytes
+  std::uint64_t dropped = 0;  ///< connections that met a limit of time or number
+  std::uint64_t updates = 0;  ///< update messages to all clients, and their bytes
   std::uint64_t update_bytes = 0;
-  std::uint64_t shapes = 0;
+  std::uint64_t shapes = 0; ///< shape messages to all clients, and their bytes
   std::uint64_t shape_bytes = 0;
-  std::uint64_t skipped = 0; ///< frames that had no room on their way to a client
+  std::uint64_t skipped = 0; ///< frames that clients missed because their queues were full
 };
 
 class Server {
 public:
-  /// Listens, and begins its thread; there is nothing to look at until present(). Errors: failed
-  /// (the port is taken, the address is not this machine's, no randomness for a token).
+  /// Opens the port and starts the server's thread. Until present() is called, requests for the
+  /// model and for WebSockets are answered with 503. Error: failed (the port is taken, the address
+  /// is not one of this machine, the system has no random bytes for the token).
   static Result<std::unique_ptr<Server>> open(const Endpoint& endpoint, ServerLimits limits = {});
-  /// Closes all connections and waits for the thread, which is prompt.
+  /// Sends what is left of the last frame, closes all connections and joins the thread. It does not
+  /// wait for slow clients.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// With the port that was found, if that was left open.
+  /// Where the server listens. The port is the one that the system chose if 0 was asked for.
   const Endpoint& endpoint() const noexcept;
-  /// 128 random bits in hexadecimal figures: who has them may look and press buttons.
+  /// 128 random bits in hexadecimal figures. Whoever has them may watch and send commands.
   const std::string& token() const noexcept;
-  /// What a person opens: the token stands behind "#", which browsers send to nobody.
+  /// The address for a browser. The token stands behind "#", which browsers do not send.
   std::string url() const;
 
-  /// Before a loop begins: what shows its frames, and its model (model_message()). Clients of the
-  /// loop before are sent away, and come again. Any thread; does not wait for the network.
-  void present(std::shared_ptr<FrameStream> tap, std::vector<std::byte> model);
-  /// What clients asked of the loop, in their order. This and what follows: one thread; wait-free.
-  std::optional<flow::Request> next_request() noexcept;
-  /// Where a hand was moved to last, if that was since the last call; one hand after the other.
-  std::optional<flow::WristMove> next_wrist() noexcept;
-  /// What only a new loop can give, of all who asked since the last call.
-  flow::LoopChange next_change() noexcept;
-  /// What is to be kept, of all who asked since the last call.
-  flow::SaveRequest next_save_request() noexcept;
-  /// Words for the people who look on now. Any thread; does not wait for the network.
-  void tell(std::string words);
-  /// Of the gloves, for who looks. Any thread, wait-free.
-  void tell_bad_records(std::array<std::uint32_t, 2> counts) noexcept;
-  /// Any thread, wait-free; each for itself.
+  /// Serves another loop, which must not have begun yet: its frames and its model_message().
+  /// Clients of the loop before are closed with code 1012 and may connect again. Any thread; does
+  /// not wait for the network.
+  void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model);
+  /// The next command of any client, in the order in which they came; nothing if there is none now.
+  /// To be called by one thread only; wait-free.
+  std::optional<flow::Command> next_command() noexcept;
+  /// Sends a text to all clients, for people to read. Any thread; does not wait for the network.
+  void report(std::string message);
+  /// Sets how many bad records the gloves have sent, by flow::Placement::index_of(side), for the
+  /// page to show. Any thread, wait-free.
+  void set_bad_records(std::array<std::uint32_t, 2> counts) noexcept;
+  /// Any thread, wait-free. Each number is right by itself; together they are no snapshot.
   ServerCounters counters() const noexcept;
 
 private:

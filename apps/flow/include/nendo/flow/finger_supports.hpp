@@ -1,0 +1,29 @@
+#pragma once
+// The radii of fingertips: as a person gives them, for a hand's five or both hands' ten, and as the
+// loop's supports, for its own fingertips.
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include <nendo/deform/supports.hpp>
+
+namespace nendo::flow {
+
+/// Parses one radius for all fingertips, or several with commas between (see
+/// deform::parse_supports_by_point), in model units. Returns the supports of both hands' ten
+/// fingertips, left hand first, or nothing if the text is not that.
+std::optional<deform::Supports> parse_finger_supports(std::string_view text);
+
+/// The supports of a loop with that many hands, 1 or 2, of those of two hands. Returns nothing if
+/// there is one hand, and the two hands differ.
+std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands);
+
+/// The supports of both hands, whose fingers have these radii on the stage, thumb to little finger.
+deform::Supports supports_on_model(const std::array<double, 5>& radius_m, double units_per_metre);
+
+/// The radii of five fingers on the stage, in metres. supports: a loop's; the largest radius of each
+/// finger counts.
+std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre);
+
+} // namespace nendo::flow

@@ -1,0 +1,52 @@
+#include <nendo/flow/finger_supports.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace nendo::flow {
+namespace {
+
+constexpr Eigen::Index fingertips_of_hand = 5;
+constexpr Eigen::Index fingertips_of_two = 2 * fingertips_of_hand;
+
+} // namespace
+
+std::optional<deform::Supports> parse_finger_supports(std::string_view text) {
+  return deform::parse_supports_by_point(text, fingertips_of_two);
+}
+
+std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands) {
+  if (hands == 2) return of_two;
+  deform::Supports of_one{of_two.shared, {}};
+  std::vector<deform::OwnSupport> of_other;
+  for (deform::OwnSupport own : of_two.own) {
+    const bool is_other = own.point >= fingertips_of_hand;
+    own.point %= fingertips_of_hand;
+    (is_other ? of_other : of_one.own).push_back(own);
+  }
+  if (of_other != of_one.own) return std::nullopt;
+  return of_one;
+}
+
+deform::Supports supports_on_model(const std::array<double, 5>& radius_m, double units_per_metre) {
+  std::vector<deform::OwnSupport> own;
+  for (Eigen::Index point = 0; point < fingertips_of_two; ++point)
+    own.push_back(
+        {point, {radius_m[static_cast<std::size_t>(point) % radius_m.size()] * units_per_metre}});
+  return deform::with_common(std::move(own));
+}
+
+std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre) {
+  std::array<double, 5> radii{};
+  for (const auto& own : supports.own) {
+    auto& radius = radii[static_cast<std::size_t>(own.point) % radii.size()];
+    radius = std::max(radius, own.support.radius / units_per_metre);
+  }
+  if (!supports.own.empty()) return radii; // the shared one then but joins them
+  for (const auto& shared : supports.shared)
+    for (auto& radius : radii)
+      radius = std::max(radius, shared.radius / units_per_metre);
+  return radii;
+}
+
+} // namespace nendo::flow

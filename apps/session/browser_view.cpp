@@ -1,0 +1,56 @@
+#include "session/browser_view.hpp"
+
+#include <array>
+#include <filesystem>
+
+#include <nendo/web/model_message.hpp>
+
+#include "cli/cli.hpp"
+#include "session/loop_change.hpp"
+
+namespace nendo::session {
+
+Result<void> BrowserView::begin(const LoopStart& start) {
+  const PlacedLoop& placed = start.placed;
+  const auto& options = placed.setup.options;
+  const auto& layout = placed.loop->layout();
+  if (layout.vertex_count() > web::max_vertices)
+    return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
+                                      " vertices, and a browser takes " +
+                                      std::to_string(web::max_vertices) +
+                                      " at most; run it without --web, or thin it out"};
+  const FrameRoom room = room_of_frames(placed);
+  stream_ = std::make_shared<web::FrameStream>(layout, options.sculptor.mode, room.fields,
+                                               room.functions);
+  server_->present(stream_, web::model_message(layout, start.model, placed.setup.inputs,
+                                               {model_name_, options.rate_hz,
+                                                placed.setup.placement.units_per_metre,
+                                                settings_of(placed), placed.recorded}));
+  return {};
+}
+
+void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
+  std::array<std::uint32_t, 2> bad{};
+  for (std::size_t slot = 0; slot < bad.size(); ++slot)
+    bad[slot] = static_cast<std::uint32_t>(status.gloves[slot].bad_records);
+  server_->set_bad_records(bad);
+  while (const auto command = server_->next_command())
+    commands.try_push(*command);
+}
+
+Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
+                                                       const std::string& mesh) {
+  const auto where = web::parse_endpoint(endpoint);
+  if (!where) return where.error();
+  auto server = web::Server::open(*where);
+  if (!server) return server.error();
+  cli::note("to look on, open " + (*server)->url());
+  const std::string& address = (*server)->endpoint().address;
+  if (address == "0.0.0.0" || address == "::")
+    cli::note("from another machine, with this one's address in place of " + address +
+              "; who is on the network can read along, for nothing is encrypted");
+  return std::make_unique<BrowserView>(*std::move(server),
+                                       std::filesystem::path(mesh).filename().string());
+}
+
+} // namespace nendo::session

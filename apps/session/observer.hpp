@@ -1,0 +1,48 @@
+#pragma once
+// Who watches a run from the main thread and may ask for something: the keys, a window, a browser.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nendo/flow/command.hpp>
+#include <nendo/flow/frame.hpp>
+
+#include "session/place_loop.hpp"
+
+namespace nendo::session {
+
+struct GloveStatus {
+  std::string source; ///< GloveInfo::source; empty: there is no glove on this hand
+  std::uint64_t bad_records = 0;
+  std::uint64_t lost = 0; ///< samples that found the ring full
+};
+/// By flow::Placement::index_of(side).
+using GloveStatuses = std::array<GloveStatus, 2>;
+/// Asks each glove, which may take a lock.
+GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands);
+
+struct RunStatus {
+  const flow::Frame& frame; ///< the latest
+  bool fresh = false;       ///< it is another one than at the call before
+  const GloveStatuses& gloves;
+};
+
+/// All calls come from the main thread. None may block for longer than 30 ms.
+class Observer {
+public:
+  virtual ~Observer() = default;
+  /// A loop is about to begin. Its model and hands live until the next call.
+  virtual void loop_begins(const LoopStart& start) { static_cast<void>(start); }
+  /// Called over and over while the loop runs; pushes whatever is asked for since the last call.
+  virtual void update(const RunStatus& status, flow::CommandRing& commands) = 0;
+  /// What became of a command, for the person who watches.
+  virtual void report(const std::string& message) { static_cast<void>(message); }
+  /// Whether update() waits by itself, as a window waits for its screen.
+  virtual bool sets_pace() const noexcept { return false; }
+  /// Called after the last loop, when the shape has been written. An error becomes the run's.
+  virtual Result<void> end() { return {}; }
+};
+
+} // namespace nendo::session

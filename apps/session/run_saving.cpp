@@ -1,0 +1,45 @@
+#include "session/run_saving.hpp"
+
+#include <utility>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli/output_place.hpp"
+
+namespace nendo::session {
+namespace {
+
+constexpr std::chrono::milliseconds least_between_saves(250);
+
+} // namespace
+
+RunSaving::RunSaving(std::string out, const deform::Mesh& model, RunRecorder& recorder)
+    : out_(std::move(out)), model_(model), recorder_(recorder) {}
+
+void RunSaving::add(const flow::Command& command) noexcept {
+  shape_ = shape_ || std::holds_alternative<flow::SaveShape>(command);
+  recording_ = recording_ || std::holds_alternative<flow::SaveRecording>(command);
+}
+
+std::string RunSaving::save(flow::DeformLoop& loop) {
+  std::string report = std::exchange(shape_, false) ? save_shape(loop) : "";
+  if (std::exchange(recording_, false)) report += (report.empty() ? "" : "; ") + save_recording();
+  next_ = HostClock::now() + least_between_saves;
+  return report;
+}
+
+std::string RunSaving::save_recording() {
+  if (!recorder_.keeps()) return "nothing is kept in memory; start with --keep-last 60s";
+  recorder_.keep();
+  return "what was just done is being kept";
+}
+
+std::string RunSaving::save_shape(flow::DeformLoop& loop) {
+  const std::string file = cli::next_free_name(out_, saved_);
+  deform::Mesh shape = model_;
+  loop.layout().unpack(loop.frames().front().shape, shape.vertices);
+  const auto written = deform::write_mesh(file, shape);
+  return written ? "saved as " + file : written.error().message;
+}
+
+} // namespace nendo::session

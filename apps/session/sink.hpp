@@ -1,0 +1,18 @@
+#pragma once
+// Who takes every frame of a run: other programs, other machines, a browser.
+
+#include <nendo/flow/frame_sink.hpp>
+
+#include "session/place_loop.hpp"
+
+namespace nendo::session {
+
+/// Its show() is called in the tick, on the loop's thread.
+class Sink : public flow::FrameSink {
+public:
+  /// Called before the first tick of each loop, while no loop runs. Returns an error if it cannot
+  /// take this loop's frames.
+  virtual Result<void> begin(const LoopStart& start) = 0;
+};
+
+} // namespace nendo::session
