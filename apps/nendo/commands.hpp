@@ -22,6 +22,9 @@ void add(cli::Command& program);
 namespace deform_command {
 void add(cli::Command& program);
 }
+namespace demo_command {
+void add(cli::Command& program);
+}
 namespace devices_command {
 void add(cli::Command& program);
 }

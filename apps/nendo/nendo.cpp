@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
       "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no such glove or no answer, "
       "4 no permission, 5 bad input file.",
       [](cli::Command& program) {
+        demo_command::add(program);
         run_command::add(program);
         run_command::add_view(program);
         monitor_command::add(program);

@@ -1,0 +1,116 @@
+// nendo demo: two emulated CyberGloves, the real serial driver, and a picture of what both hands
+// shaped.
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/emulator/served_emulator.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+#include "nendo/commands.hpp"
+#include "session/open_hands.hpp"
+#include "session/run_report.hpp"
+#include "session/run_session.hpp"
+
+namespace nendo::app::demo_command {
+namespace {
+
+constexpr double rate_hz = 90.0;
+constexpr double longest_s = 3600.0;
+
+struct Options {
+  std::string mode = "type1";
+  double duration_s = 10.0;
+  std::string out = "nendo-demo.obj";
+  std::string picture = "nendo-demo.png";
+};
+
+/// A glove on a pseudo-terminal, which answers the driver as the real one's electronics would.
+struct DemoGlove {
+  std::unique_ptr<emulator::GloveEmulator> unit;
+  std::unique_ptr<emulator::ServedEmulator> server;
+};
+
+Result<DemoGlove> emulate(Side side) {
+  emulator::EmulatorOptions options;
+  options.side = side;
+  options.sensors = 22;
+  options.rate_hz = rate_hz;
+  options.seed = 7;
+  auto unit = emulator::GloveEmulator::open(options);
+  if (!unit) return unit.error();
+  DemoGlove glove{*std::move(unit), nullptr};
+  glove.server = std::make_unique<emulator::ServedEmulator>(*glove.unit);
+  return glove;
+}
+
+Result<session::RunOptions> run_options(const Options& options) {
+  const auto mode = flow::mode_named(options.mode);
+  if (!mode) return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
+  if (!std::isfinite(options.duration_s) || options.duration_s <= 0.0 ||
+      options.duration_s > longest_s)
+    return Error{Errc::usage, "--duration: use a number of seconds above 0, up to 3600"};
+  if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine)
+    return fine.error();
+  if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine)
+    return fine.error();
+  session::RunOptions run;
+  run.mesh = cli::shipped_model("moai.obj").string();
+  run.out = options.out;
+  run.picture = options.picture;
+  run.duration_s = options.duration_s;
+  run.loop.rate_hz = rate_hz;
+  run.loop.sculptor.mode = *mode;
+  run.loop.sculptor.deformer.injective.emplace();
+  return run;
+}
+
+int demonstrate(const Options& options) {
+  auto run = run_options(options);
+  if (!run) return cli::report(run.error());
+  auto model = deform::read_mesh(run->mesh);
+  if (!model) return cli::report(model.error());
+  cli::install_stop_signals();
+  const auto left = emulate(Side::left);
+  if (!left) return cli::report(left.error());
+  const auto right = emulate(Side::right);
+  if (!right) return cli::report(right.error());
+  run->left = "serial:" + left->unit->tty_path();
+  run->right = "serial:" + right->unit->tty_path();
+  std::cout << "Two emulated CyberGloves stream at " << left->unit->tty_path() << " and "
+            << right->unit->tty_path() << ". Both hands shape the Moai for " << run->duration_s
+            << " s.\n"
+            << std::flush;
+  EventCount event_count;
+  auto opened = session::open_hands(*run, *model, event_count);
+  if (!opened) return cli::report(opened.error());
+  session::RunParticipants participants;
+  participants.progress = session::progress_for(*run);
+  auto outcome =
+      session::run_session(*run, opened->hands, *std::move(model), participants, opened->grants);
+  if (!outcome) return cli::report(outcome.error());
+  session::print_summary(*run, opened->hands, *outcome);
+  std::cout << "\nBefore and after, with the hands: " << options.picture
+            << "\nThe shape, for any 3-D viewer: " << options.out << '\n';
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command(
+      "demo", "Two emulated CyberGloves shape a model through the real driver; leaves a picture");
+  command.add_option("--mode", options->mode,
+                     "type1: the rest shape follows the fingertips; type2: strokes");
+  command.add_option("--duration", options->duration_s, "Seconds to run, above 0, up to 3600");
+  command.add_option("--out", options->out, "Where the shape goes, .obj or .ply");
+  command.add_option("--picture", options->picture, "Where the picture goes, .png");
+  command.on_chosen([options] { return demonstrate(*options); });
+}
+
+} // namespace nendo::app::demo_command
