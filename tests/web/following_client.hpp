@@ -1,6 +1,6 @@
 #pragma once
-// A client of the WebSocket, written from PROTOCOL.md: follows a shape by the steps that it is
-// sent, in float, as a graphics card does.
+// A client of the WebSocket, written from PROTOCOL.md alone. It follows a shape by the steps that
+// it is sent, in float, as a graphics card does.
 
 #include <algorithm>
 #include <array>
@@ -49,17 +49,17 @@ public:
     good = good && in.at + name_bytes == model.size();
   }
 
-  /// False if the message is none.
+  /// Takes a message of the server. False if it is malformed.
   bool take(const std::vector<std::byte>& message) {
     Bytes in{message};
     const auto type = in.take<std::uint8_t>();
     if (type == 1) take_shape(in);
     if (type == 2) take_update(in);
-    if (type == 3) take_words(in);
+    if (type == 3) take_report(in);
     return type >= 1 && type <= 3 && in.at == message.size();
   }
 
-  /// In the mesh's order and units.
+  /// The shape, in the mesh's order and units.
   deform::Points vertices() const {
     std::vector<float> shape = base_;
     for (const Field& field : pending_)
@@ -85,7 +85,7 @@ public:
   std::string name;
   // Of the latest messages.
   std::uint64_t number = 0; ///< the frame that vertices() is of; 0: none
-  std::uint64_t newest = 0; ///< the frame that was told of last
+  std::uint64_t newest = 0; ///< the frame of the last update
   std::uint64_t tick = 0;
   bool held = false;
   std::uint32_t commits = 0, undos = 0, lost = 0, skipped = 0;
@@ -95,8 +95,8 @@ public:
   std::array<bool, 2> present{}, other_bones{};
   std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
-  std::string told;                  ///< to the people who look on
-  std::uint64_t implied_centres = 0; ///< that were left out
+  std::string report;                ///< the last report of the server
+  std::uint64_t implied_centres = 0; ///< centres that were left out
 
 private:
   struct Bytes {
@@ -132,9 +132,9 @@ private:
     std::vector<Function> functions;
   };
 
-  void take_words(Bytes& in) {
+  void take_report(Bytes& in) {
     in.at += 3;
-    told.assign(reinterpret_cast<const char*>(in.bytes.data()) + 4, in.bytes.size() - 4);
+    report.assign(reinterpret_cast<const char*>(in.bytes.data()) + 4, in.bytes.size() - 4);
     in.at = in.bytes.size();
   }
 

@@ -29,14 +29,14 @@ struct Address {
   std::string token;
 };
 
-/// As it stands in what the program said; port 0 before it does.
-Address address_in(const std::string& said) {
+/// The address in the program's output so far; port 0 if it is not there yet.
+Address address_in(const std::string& output) {
   const std::string before = "http://127.0.0.1:";
-  const auto at = said.find(before);
-  if (at == std::string::npos || said.find('\n', at) == std::string::npos) return {};
-  const auto mark = said.find("/#", at) + 2;
-  return {static_cast<std::uint16_t>(std::stoi(said.substr(at + before.size()))),
-          said.substr(mark, said.find_first_of("\r\n", at) - mark)};
+  const auto at = output.find(before);
+  if (at == std::string::npos || output.find('\n', at) == std::string::npos) return {};
+  const auto mark = output.find("/#", at) + 2;
+  return {static_cast<std::uint16_t>(std::stoi(output.substr(at + before.size()))),
+          output.substr(mark, output.find_first_of("\r\n", at) - mark)};
 }
 
 Address address_of(const test::Program& program) {
@@ -53,13 +53,13 @@ std::vector<std::byte> bytes_of(const std::string& text) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// As the page comes: the model, as soon as there is one, and a WebSocket for its frames.
-struct Looker {
+/// Connects as the page does: gets the model as soon as there is one, and opens a WebSocket.
+struct Browser {
   Address address;
   std::optional<FollowingClient> follower;
   std::optional<WebClient> client;
 
-  void come() {
+  void connect() {
     test::Answer model;
     while (model.status != 200 && model.status != 403) {
       WebClient asks(address.port, address.token);
@@ -79,10 +79,10 @@ struct Looker {
       if (frame->opcode == 2) REQUIRE(follower->take(frame->payload));
     }
   }
-  /// Says so; the loop is made anew, and this comes again.
-  void change(const std::string& words) {
+  /// Sends a command with which the loop is made anew, and connects to the new loop.
+  void change(const std::string& command) {
     follow_until([&] { return follower->follows() && follower->updates > 30; });
-    REQUIRE(client->say(words));
+    REQUIRE(client->send_text(command));
     unsigned code = 0;
     while (code == 0) {
       const auto frame = client->next();
@@ -91,7 +91,7 @@ struct Looker {
     }
     CHECK(code == 1012);
     const unsigned before = follower->loop;
-    come();
+    connect();
     CHECK(follower->loop == before + 1);
   }
 };
@@ -111,10 +111,10 @@ TEST_SUITE("run_web") {
       REQUIRE(address.token.size() == 32);
       CHECK(WebClient(address.port, "").get("/").status == 200);
       CHECK(WebClient(address.port, "").get("/model").status == 403);
-      Looker looker{address, {}, {}};
-      looker.come();
-      FollowingClient& follower = *looker.follower;
-      WebClient& client = *looker.client;
+      Browser browser{address, {}, {}};
+      browser.connect();
+      FollowingClient& follower = *browser.follower;
+      WebClient& client = *browser.client;
       CHECK(follower.name == "moai.obj");
       bool asked = false;
       while (!asked || follower.held) {
@@ -122,7 +122,7 @@ TEST_SUITE("run_web") {
         REQUIRE(frame);
         if (frame->opcode == 2) REQUIRE(follower.take(frame->payload));
         if (asked || follower.updates < 100) continue;
-        asked = client.say("let go");
+        asked = client.send_text("let go");
       }
       program.signal(SIGTERM);
       while (const auto frame = client.next())
@@ -145,50 +145,51 @@ TEST_SUITE("run_web") {
     const auto out = folder.path() / "clay.ply";
     test::Program program({"run", "--left", "sim:sculpt?seed=7", "--right", "sim:sculpt?seed=7",
                            "--web", "0", "--out", out.string()});
-    Looker looker{address_of(program), {}, {}};
-    looker.come();
-    const auto rest = looker.follower->rest;
-    const auto radii = looker.follower->radius_m;
+    Browser browser{address_of(program), {}, {}};
+    browser.connect();
+    const auto rest = browser.follower->rest;
+    const auto radii = browser.follower->radius_m;
     CHECK(radii[0] == doctest::Approx(0.16)); // a fifth of the model's longest side, on the stage
-    looker.change("settings type2 c4 0.1 0.1 0.1 0.1 0.05");
-    CHECK(looker.follower->mode == 2);
-    CHECK(looker.follower->kernel == 2);
-    CHECK(looker.follower->radius_m[4] == doctest::Approx(0.05));
-    CHECK(looker.follower->rest != rest); // it goes on from what was shaped
-    looker.change("record");
-    CHECK(looker.follower->recorded);
+    browser.change("settings type2 c4 0.1 0.1 0.1 0.1 0.05");
+    CHECK(browser.follower->mode == 2);
+    CHECK(browser.follower->kernel == 2);
+    CHECK(browser.follower->radius_m[4] == doctest::Approx(0.05));
+    CHECK(browser.follower->rest != rest); // it goes on from what was shaped
+    browser.change("record");
+    CHECK(browser.follower->recorded);
     CHECK(std::filesystem::exists(folder.path() / "clay.nendo"));
-    looker.change("reset");
-    CHECK(looker.follower->rest == rest); // and this loop is recorded, too
-    looker.change("end recording");
-    CHECK_FALSE(looker.follower->recorded);
+    browser.change("reset");
+    CHECK(browser.follower->rest == rest); // and this loop is recorded, too
+    browser.change("end recording");
+    CHECK_FALSE(browser.follower->recorded);
     CHECK(std::filesystem::exists(folder.path() / "clay-2.nendo"));
-    CHECK(looker.client->say("wrist left -0.5 0.25 0.125 0 0 0 1"));
+    CHECK(browser.client->send_text("wrist left -0.5 0.25 0.125 0 0 0 1"));
     const Eigen::Vector3d there(-0.5, 0.25, 0.125);
-    looker.follow_until([&] { return (looker.follower->joints[0][1] - there).norm() < 1e-6; });
-    CHECK(looker.follower->forearms[0].angularDistance(Eigen::Quaterniond::Identity()) < 2e-4);
+    browser.follow_until([&] { return (browser.follower->joints[0][1] - there).norm() < 1e-6; });
+    CHECK(browser.follower->forearms[0].angularDistance(Eigen::Quaterniond::Identity()) < 2e-4);
     program.signal(SIGTERM);
     CHECK(program.wait().exit_code == 0);
   }
 
-  TEST_CASE("a browser's client has the shape saved and the recording kept, and is told where") {
+  TEST_CASE("a browser's client has the shape saved and the recording kept, and a report says where") {
     const test::TemporaryFolder folder;
     const auto out = folder.path() / "clay.ply";
     test::Program program({"run", "--left", "sim:sculpt?seed=7", "--right", "sim:sculpt?seed=7",
                            "--web", "0", "--keep-last", "10s", "--out", out.string()});
-    Looker looker{address_of(program), {}, {}};
-    looker.come();
-    const auto told_after = [&](const std::string& words, const std::string& what) {
-      REQUIRE(looker.client->say(words));
-      looker.follow_until([&] { return looker.follower->told.find(what) != std::string::npos; });
+    Browser browser{address_of(program), {}, {}};
+    browser.connect();
+    const auto expect_report = [&](const std::string& command, const std::string& what) {
+      REQUIRE(browser.client->send_text(command));
+      browser.follow_until(
+          [&] { return browser.follower->report.find(what) != std::string::npos; });
     };
-    looker.follow_until([&] { return looker.follower->updates > 60; });
+    browser.follow_until([&] { return browser.follower->updates > 60; });
     const auto saved = folder.path() / "clay-1.ply";
-    told_after("save", "saved as " + saved.string());
+    expect_report("save", "saved as " + saved.string());
     const auto shape = deform::read_mesh(saved);
     REQUIRE(shape);
-    CHECK(shape->vertices.cols() == static_cast<Eigen::Index>(looker.follower->order.size()));
-    told_after("keep", "is being kept");
+    CHECK(shape->vertices.cols() == static_cast<Eigen::Index>(browser.follower->order.size()));
+    expect_report("keep", "is being kept");
     CHECK(test::eventually([&] {
       return std::any_of(fs::directory_iterator(folder.path()), fs::directory_iterator(),
                          [](const auto& file) { return file.path().extension() == ".nendo"; });
@@ -198,7 +199,7 @@ TEST_SUITE("run_web") {
     CHECK(fs::exists(out));
   }
 
-  TEST_CASE("who looks on from afar is told of what keys in the terminal keep") {
+  TEST_CASE("a browser's client gets a report of what keys in the terminal save") {
     const test::TemporaryFolder folder;
     const auto out = folder.path() / "clay.ply";
     test::TerminalProgram program({"run", "--left", "sim:sculpt?seed=7", "--web", "0",
@@ -209,12 +210,13 @@ TEST_SUITE("run_web") {
       address = address_in(screen.transcript());
       return address.port != 0;
     }));
-    Looker looker{address, {}, {}};
-    looker.come();
+    Browser browser{address, {}, {}};
+    browser.connect();
     for (const auto& answer : {std::pair{'s', "clay-1.ply"}, {'k', "is being kept"}}) {
       const std::string what = answer.second;
       REQUIRE(program.press(answer.first));
-      looker.follow_until([&] { return looker.follower->told.find(what) != std::string::npos; });
+      browser.follow_until(
+          [&] { return browser.follower->report.find(what) != std::string::npos; });
       CHECK(program.tells(what));
     }
     CHECK(program.press('q'));
@@ -225,13 +227,13 @@ TEST_SUITE("run_web") {
     const test::TemporaryFolder folder;
     test::Program program({"run", "--left", "sim:sculpt", "--web", "0", "--out",
                            (folder.path() / "clay.ply").string()});
-    Looker looker{address_of(program), {}, {}};
-    looker.come();
+    Browser browser{address_of(program), {}, {}};
+    browser.connect();
     const auto follow_for = [&](int ticks) { // which take no less than their 90th of a second
-      looker.follow_until([&] { return looker.follower->updates > ticks; });
+      browser.follow_until([&] { return browser.follower->updates > ticks; });
     };
     follow_for(120);
-    looker.change("reset");
+    browser.change("reset");
     follow_for(120);
     CHECK(program.err_so_far().find(" s (Ctrl-C ends)") != std::string::npos); // said each 2 s
   }

@@ -1,4 +1,4 @@
-// What a client may take of the server, and that the loop has nothing to do with it.
+// Tests of ServerLimits, and that no client slows the loop down.
 
 #include <doctest/doctest.h>
 
@@ -8,18 +8,18 @@ namespace server_limits_test {
 
 using namespace nendo;
 using namespace nendo::web;
-using nendo::test::follow_until;
-using nendo::test::FollowingClient;
+using nendo::test::client_frame;
+using nendo::test::eventually;
 using nendo::test::Served;
-using nendo::test::wait_for;
+using nendo::test::Viewer;
 using nendo::test::WebClient;
 using std::chrono::milliseconds;
 
 namespace {
 
-constexpr int small_buffer = 4096; ///< at both ends: what waits in the system is soon full
+constexpr int small_buffer = 4096; ///< of the sockets at both ends, so that they are soon full
 
-/// Limits of which a client meets none, but those that a test sets.
+/// Limits that no client reaches, except for those that a test sets afterwards.
 ServerLimits generous() {
   ServerLimits limits;
   limits.send_buffer_bytes = small_buffer;
@@ -30,7 +30,7 @@ ServerLimits generous() {
   return limits;
 }
 
-/// Of the loop that runs; this thread alone looks at its frames.
+/// The newest frame of the running loop. Only the test's thread may call this.
 const flow::Frame& newest_frame(Served& served) {
   served.streamed.test.loop->frames().update();
   return served.streamed.test.loop->frames().front();
@@ -46,19 +46,17 @@ TEST_SUITE("server_limits") {
     limits.send_buffer_bytes = 4096;
     Served served(flow::Mode::type2, limits);
     served.begin();
-    WebClient client(*served.server, 4096);
-    REQUIRE(client.open_socket() == 101);
-    FollowingClient follower(served.streamed.model);
-    follower.loop = 1;
-    CHECK(follow_until(client, follower, [&] { return follower.follows(); }));
-    CHECK(wait_for([&] { return served.server->counters().skipped > 50; }));
-    const int shapes = follower.shapes;
-    CHECK(follow_until(client, follower, [&] { return follower.shapes > shapes; }));
-    CHECK(follow_until(client, follower, [&] { return follower.number == follower.newest; }));
-    CHECK(follower.skipped > 50);
+    Viewer viewer(served, 4096);
+    CHECK(viewer.follow_until([&] { return viewer.follows(); }));
+    CHECK(eventually([&] { return served.server->counters().skipped > 50; }));
+    const int shapes = viewer.shapes;
+    CHECK(viewer.follow_until([&] { return viewer.shapes > shapes; }));
+    CHECK(viewer.follow_until([&] { return viewer.number == viewer.newest; }));
+    CHECK(viewer.skipped > 50);
   }
 
-  TEST_CASE("who stalls, is silent or does not finish a request is dropped in its time") {
+  TEST_CASE(
+      "clients that are silent or do not finish a request are dropped after their time limit") {
     ServerLimits limits;
     limits.request_timeout = milliseconds(100);
     limits.ping_period = milliseconds(50);
@@ -78,34 +76,28 @@ TEST_SUITE("server_limits") {
     CHECK(served.server->counters().dropped >= 2);
   }
 
-  TEST_CASE("who talks without end is sent away, and who is slower for long is heard") {
+  TEST_CASE("a client that sends too many messages is closed, and one that sends fewer is heard") {
     ServerLimits limits;
     limits.message_burst = 20.0;
     limits.messages_per_second = 50.0;
     Served served(flow::Mode::type1, limits);
     served.begin();
-    WebClient steady(*served.server);
-    REQUIRE(steady.open_socket() == 101);
+    Viewer steady(served);
     for (int n = 0; n < 60; ++n) { // more than at once, and 25 a second
-      CHECK(steady.say("wrist left 0 0 0 0 0 0 1"));
+      CHECK(steady.client.send_text("wrist left 0 0 0 0 0 0 1"));
       std::this_thread::sleep_for(milliseconds(40));
     }
     WebClient flood(*served.server);
     REQUIRE(flood.open_socket() == 101);
     for (int n = 0; n < 500; ++n)
-      flood.say("wrist left 0 0 0 0 0 0 1");
-    unsigned code = 0;
-    while (const auto frame = flood.next())
-      if (frame->opcode == 8) code = frame->close_code();
-    CHECK(code == 1008);
-    CHECK(steady.say("let go"));
-    FollowingClient follower(served.streamed.model);
-    follower.loop = 1;
-    CHECK(follow_until(steady, follower, [&] { return follower.updates > 0 && !follower.held; }));
+      flood.send_text("wrist left 0 0 0 0 0 0 1");
+    CHECK(flood.close_code() == 1008);
+    CHECK(steady.client.send_text("let go"));
+    CHECK(steady.follow_until([&] { return steady.updates > 0 && !steady.held; }));
   }
 
-  TEST_CASE(
-      "who takes nothing of what waits is dropped in its time, and so is who never has it all") {
+  TEST_CASE("a client that takes no byte is dropped after its time limit, and so is one that never "
+            "catches up") {
     ServerLimits no_byte = generous();
     no_byte.stall_timeout = milliseconds(200);
     ServerLimits not_all = generous();
@@ -116,16 +108,16 @@ TEST_SUITE("server_limits") {
       served.begin();
       WebClient client(*served.server, small_buffer);
       REQUIRE(client.open_socket() == 101);
-      CHECK(wait_for([&] { return served.server->counters().updates > 0; }));
-      CHECK(wait_for([&] {
+      CHECK(eventually([&] { return served.server->counters().updates > 0; }));
+      CHECK(eventually([&] {
         if (way.second > 0) client.take(way.second);
         return served.server->counters().dropped == 1;
       }));
-      CHECK(wait_for([&] { return served.server->counters().clients == 0; }));
+      CHECK(eventually([&] { return served.server->counters().clients == 0; }));
     }
   }
 
-  TEST_CASE("who takes what it is sent, however late, is not silent") {
+  TEST_CASE("a client that takes what it is sent, however late, is not silent") {
     ServerLimits limits = generous();
     limits.silence_timeout = milliseconds(1500);
     Served served(flow::Mode::type1, limits);
@@ -143,10 +135,10 @@ TEST_SUITE("server_limits") {
     }
     CHECK(served.server->counters().dropped == 0);
     CHECK(served.server->counters().clients == 1);
-    CHECK(wait_for([&] { return served.server->counters().dropped == 1; })); // it has stopped
+    CHECK(eventually([&] { return served.server->counters().dropped == 1; })); // it has stopped
   }
 
-  TEST_CASE("an answer may take longer than a WebSocket may lag, if it moves") {
+  TEST_CASE("an answer may take longer than a WebSocket may lag, while the client takes bytes") {
     ServerLimits limits = generous();
     limits.lag_timeout = milliseconds(100);
     limits.stall_timeout = milliseconds(5000);
@@ -167,49 +159,43 @@ TEST_SUITE("server_limits") {
       "a client that stops reading while others undo has one shape waiting, not one for each") {
     Served served(flow::Mode::type1, generous());
     served.begin();
-    WebClient client(*served.server, small_buffer);
-    REQUIRE(client.open_socket() == 101);
-    FollowingClient follower(served.streamed.model);
-    follower.loop = 1;
-    REQUIRE(follow_until(client, follower, [&] { return follower.follows() && follower.held; }));
-    client.say("commit");
-    REQUIRE(follow_until(client, follower, [&] { return follower.commits == 1; }));
+    Viewer viewer(served, small_buffer);
+    REQUIRE(viewer.follow_until([&] { return viewer.follows() && viewer.held; }));
+    viewer.client.send_text("commit");
+    REQUIRE(viewer.follow_until([&] { return viewer.commits == 1; }));
     const auto counters = [&] { return served.server->counters(); };
     const auto full = counters().update_bytes + 16 * small_buffer; // takes no more by then
-    REQUIRE(wait_for([&] { return counters().update_bytes > full; }));
+    REQUIRE(eventually([&] { return counters().update_bytes > full; }));
     const auto shapes = counters().shapes;
     for (std::uint64_t turn = 1; turn <= 20; ++turn) {
-      client.say(turn % 2 == 1 ? "undo" : "redo");
-      REQUIRE(wait_for([&] { return newest_frame(served).undos >= turn; }));
+      viewer.client.send_text(turn % 2 == 1 ? "undo" : "redo");
+      REQUIRE(eventually([&] { return newest_frame(served).undos >= turn; }));
       const auto updates = counters().updates + 3;
-      REQUIRE(wait_for([&] { return counters().updates >= updates; }));
+      REQUIRE(eventually([&] { return counters().updates >= updates; }));
     }
     CHECK(counters().shapes > shapes); // they did want one
     CHECK(counters().shapes <= shapes + 2);
-    const int taken = follower.shapes;
-    CHECK(follow_until(client, follower, [&] { return follower.shapes > taken; }));
-    CHECK(follow_until(client, follower,
-                       [&] { return follower.undos == 20 && follower.number == follower.newest; }));
+    const int taken = viewer.shapes;
+    CHECK(viewer.follow_until([&] { return viewer.shapes > taken; }));
+    CHECK(
+        viewer.follow_until([&] { return viewer.undos == 20 && viewer.number == viewer.newest; }));
   }
 
   TEST_CASE("when the last viewer has gone, the tick makes no records") {
     Served served(flow::Mode::type1, generous());
     served.begin();
     {
-      WebClient client(*served.server);
-      REQUIRE(client.open_socket() == 101);
-      FollowingClient follower(served.streamed.model);
-      follower.loop = 1;
-      CHECK(follow_until(client, follower, [&] { return follower.updates > 3; }));
+      Viewer viewer(served);
+      CHECK(viewer.follow_until([&] { return viewer.updates > 3; }));
     }
-    REQUIRE(wait_for([&] { return served.server->counters().clients == 0; }));
+    REQUIRE(eventually([&] { return served.server->counters().clients == 0; }));
     const auto lost = served.streamed.stream->lost();
     const auto later = newest_frame(served).ticks_run + 3000; // more than find room in the ring
-    CHECK(wait_for([&] { return newest_frame(served).ticks_run > later; }));
+    CHECK(eventually([&] { return newest_frame(served).ticks_run > later; }));
     CHECK(served.streamed.stream->lost() == lost);
   }
 
-  TEST_CASE("there are so many places, and a client that has one keeps it") {
+  TEST_CASE("the number of connections is limited, and a client that has a WebSocket keeps it") {
     ServerLimits limits;
     limits.max_connections = 6;
     limits.max_clients = 3;
@@ -230,42 +216,37 @@ TEST_SUITE("server_limits") {
     CHECK(served.server->counters().clients == 3);
   }
 
-  TEST_CASE("ten slow and hostile clients do not touch the loop, nor who looks on quietly") {
+  TEST_CASE("ten slow and hostile clients do not touch the loop, nor another client") {
     ServerLimits limits;
     limits.max_queued_bytes = 16384;
     limits.send_buffer_bytes = 4096;
     Served served(flow::Mode::type2, limits);
-    WebClient quiet(*served.server);
-    REQUIRE(quiet.open_socket() == 101);
+    Viewer quiet(served);
     std::vector<std::unique_ptr<WebClient>> hostile;
     for (int n = 0; n < 10; ++n)
       hostile.push_back(std::make_unique<WebClient>(*served.server, 2048));
     for (std::size_t n = 0; n < 5; ++n)
       hostile[n]->open_socket();
     served.begin();
-    FollowingClient follower(served.streamed.model);
-    follower.loop = 1;
     for (int round = 0; round < 200; ++round) {
-      hostile[0]->send("");                                 // takes nothing
-      hostile[1]->say(std::string(100, 'x'), 0x89);         // pings without end
-      hostile[2]->send(std::string("\x81\xFF\xFF\xFF", 4)); // an endless frame
-      hostile[3]->send(std::string("\x01\x80\0\0\0\0", 6)); // parts of nothing
-      hostile[4]->say("undo");                              // presses a button all the time
-      hostile[5]->send("G");                                // a letter at a time
+      hostile[0]->send("");                                        // takes nothing
+      hostile[1]->send(client_frame(0x89, std::string(100, 'x'))); // pings without end
+      hostile[2]->send(std::string("\x81\xFF\xFF\xFF", 4));        // an endless frame
+      hostile[3]->send(std::string("\x01\x80\0\0\0\0", 6));        // parts of nothing
+      hostile[4]->send_text("undo");                               // presses a button all the time
+      hostile[5]->send("G");                                       // a letter at a time
       hostile[6]->send(std::string(1000, '\r'));
       hostile[7]->send("GET / HTTP/1.1\r\nA: b\r\n");
       hostile[8]->get("/model?token=guess" + std::to_string(round));
       hostile[9] = std::make_unique<WebClient>(*served.server, 2048);
-      const int updates = follower.updates;
-      CHECK(follow_until(quiet, follower, [&] { return follower.updates > updates; }));
+      const int updates = quiet.updates;
+      CHECK(quiet.follow_until([&] { return quiet.updates > updates; }));
     }
     hostile.clear();
-    // A shape that is wanted comes with a tick, so all undos must have been made up for before the
-    // last.
-    const int settled = follower.updates + 50;
-    CHECK(follow_until(quiet, follower, [&] {
-      return follower.updates > settled && follower.number == follower.newest;
-    }));
+    // Shapes come with ticks, so the shapes after all undos must have come before the last tick.
+    const int settled = quiet.updates + 50;
+    CHECK(quiet.follow_until(
+        [&] { return quiet.updates > settled && quiet.number == quiet.newest; }));
     served.end();
     const auto& stats = served.streamed.test.loop->stats();
     CHECK(stats.ticks > 100);
@@ -276,9 +257,9 @@ TEST_SUITE("server_limits") {
     served.streamed.test.loop->frames().update();
     const auto& frame = served.streamed.test.loop->frames().front();
     CHECK(frame.ticks_run == stats.ticks);
-    CHECK(follow_until(quiet, follower, [&] { return follower.number == frame.ticks_run; }));
+    CHECK(quiet.follow_until([&] { return quiet.number == frame.ticks_run; }));
     const auto shape = served.streamed.test.vertices_of(frame);
-    CHECK((follower.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * follower.diagonal);
+    CHECK((quiet.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * quiet.diagonal);
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "web_client.hpp"
+
 namespace socket_frames_test {
 
 using namespace nendo::web;
@@ -11,28 +13,7 @@ using namespace nendo::web;
 namespace {
 
 using Kind = ClientEvent::Kind;
-
-/// As a client sends it, written from RFC 6455, section 5.2.
-std::string client_frame(unsigned first, const std::string& payload, bool masked = true) {
-  const std::string mask = "\x37\xFA\x21\x3D";
-  std::string frame(1, static_cast<char>(first));
-  const auto put = [&](std::size_t value, int bytes) {
-    for (int n = bytes - 1; n >= 0; --n)
-      frame += static_cast<char>(value >> (8 * n) & 0xFFU);
-  };
-  const std::size_t length = payload.size();
-  const std::size_t bit = masked ? 128 : 0;
-  if (length < 126)
-    put(bit | length, 1);
-  else if (length < 65536)
-    put(bit | 126, 1), put(length, 2);
-  else
-    put(bit | 127, 1), put(length, 8);
-  if (masked) frame += mask;
-  for (std::size_t at = 0; at < length; ++at)
-    frame += masked ? static_cast<char>(payload[at] ^ mask[at % 4]) : payload[at];
-  return frame;
-}
+using nendo::test::client_frame;
 
 /// All events of these bytes, given in pieces of so many.
 std::vector<ClientEvent> events_of(const std::string& bytes, std::size_t piece) {
@@ -129,10 +110,10 @@ TEST_SUITE("socket_frames") {
       for (auto count = random() % 64; count > 0; --count)
         bytes += random() % 3 == 0 ? client_frame(random() % 256, std::string(random() % 9, 'x'))
                                    : std::string(1, static_cast<char>(random() % 256));
-      std::size_t told = 0;
+      std::size_t received = 0;
       for (const auto& event : events_of(bytes, 1 + random() % 40))
-        told += event.payload.size();
-      CHECK(told <= bytes.size());
+        received += event.payload.size();
+      CHECK(received <= bytes.size());
     }
   }
 }

@@ -23,6 +23,28 @@ struct Answer {
   std::string head, body;
 };
 
+/// A frame as a client sends it, written from RFC 6455, section 5.2. first: its first byte.
+inline std::string client_frame(unsigned first, const std::string& payload, bool masked = true) {
+  const std::string mask = "\x37\xFA\x21\x3D";
+  std::string frame(1, static_cast<char>(first));
+  const auto put = [&](std::size_t value, int bytes) {
+    for (int n = bytes - 1; n >= 0; --n)
+      frame += static_cast<char>(value >> (8 * n) & 0xFFU);
+  };
+  const std::size_t length = payload.size();
+  const std::size_t bit = masked ? 128 : 0;
+  if (length < 126)
+    put(bit | length, 1);
+  else if (length < 65536)
+    put(bit | 126, 1), put(length, 2);
+  else
+    put(bit | 127, 1), put(length, 8);
+  if (masked) frame += mask;
+  for (std::size_t at = 0; at < length; ++at)
+    frame += masked ? static_cast<char>(payload[at] ^ mask[at % 4]) : payload[at];
+  return frame;
+}
+
 class WebClient {
 public:
   static constexpr int patience_ms = 20'000;
@@ -75,13 +97,7 @@ public:
     accept = head.head.find("s3pPLMBiTxaQ9kYGzzhZRbK+xOo=") != std::string::npos;
     return head.status;
   }
-  bool say(const std::string& text, unsigned first = 0x81) {
-    std::string frame{static_cast<char>(first), static_cast<char>(0x80U | text.size())};
-    frame += "\x01\x02\x03\x04";
-    for (std::size_t at = 0; at < text.size(); ++at)
-      frame += static_cast<char>(text[at] ^ static_cast<char>(1 + at % 4));
-    return send(frame);
-  }
+  bool send_text(const std::string& text) { return send(client_frame(0x81, text)); }
   struct Frame {
     unsigned opcode = 0;
     std::vector<std::byte> payload;
@@ -98,6 +114,13 @@ public:
       if (!receive(wait_ms)) return std::nullopt;
     }
   }
+  /// Takes frames until the connection ends; the code of the close frame, or 0 if there was none.
+  unsigned close_code() {
+    unsigned code = 0;
+    while (const auto frame = next())
+      if (frame->opcode == 8) code = frame->close_code();
+    return code;
+  }
   /// Takes so many bytes at most of what has come by now; how many.
   std::size_t take(std::size_t most) {
     std::string room(most, '\0');
@@ -107,7 +130,7 @@ public:
     return static_cast<std::size_t>(got);
   }
   /// Reads what is left, and says whether the other side has ended the connection.
-  bool is_ended(int wait_ms = patience_ms) {
+  bool is_closed(int wait_ms = patience_ms) {
     while (receive(wait_ms))
       received_.clear();
     return ended_;

@@ -13,7 +13,7 @@ Admission refuse(int status, std::string_view why) noexcept {
 
 bool is_same_origin(std::string_view origin, std::string_view host) noexcept {
   constexpr std::string_view scheme = "http://";
-  return origin.starts_with(scheme) && same_word(origin.substr(scheme.size()), host);
+  return origin.starts_with(scheme) && equal_ignoring_case(origin.substr(scheme.size()), host);
 }
 
 Admission admit_socket(const HttpRequest& request) noexcept {
@@ -27,7 +27,7 @@ Admission admit_socket(const HttpRequest& request) noexcept {
 
 } // namespace
 
-bool same_secret(std::string_view a, std::string_view b) noexcept {
+bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {
   if (a.size() != b.size()) return false;
   unsigned different = 0;
   for (std::size_t at = 0; at < a.size(); ++at)
@@ -47,7 +47,7 @@ Admission admit(const HttpRequest& request, std::string_view token) noexcept {
   if (request.path == "/") return {200, Resource::page, {}};
   if (request.path != "/model" && request.path != "/ws") return refuse(404, "nothing of that name");
   const auto given = request.parameter("token");
-  if (!given || !same_secret(*given, token))
+  if (!given || !equal_in_constant_time(*given, token))
     return refuse(403, "the token is another one: use the whole address that nendo printed");
   if (request.path == "/ws") return admit_socket(request);
   return {200, Resource::model, {}};

@@ -1,5 +1,5 @@
 #pragma once
-// Who gets in. Whatever a browser can be made to do by somebody else's page ends here.
+// Which requests are granted. This is the defence against pages of other sites in the same browser.
 
 #include <string_view>
 
@@ -10,16 +10,17 @@ namespace nendo::web {
 enum class Resource { page, model, socket };
 
 struct Admission {
-  int status = 200; ///< otherwise what to refuse it with
+  int status = 200; ///< 200: granted. Otherwise: the status to refuse it with
   Resource resource = Resource::page;
-  std::string_view why; ///< of a refusal, a line for people
+  std::string_view why; ///< of a refusal; a line for people
 };
 
-/// Host must be an address or localhost (DNS rebinding), Origin the same host, if it is said;
-/// model and socket need `?token=`. A socket must be asked for as RFC 6455, section 4.2.1 says.
+/// Host must be an address in figures or localhost, against DNS rebinding. Origin, if there is one,
+/// must be the same host. The model and the WebSocket need `?token=`. The request for a WebSocket
+/// must be as RFC 6455, section 4.2.1, says.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
 
-/// Takes as long for a text that is nearly the same as for any other of its length.
-bool same_secret(std::string_view a, std::string_view b) noexcept;
+/// Compares two texts in a time that depends on their lengths only.
+bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept;
 
 } // namespace nendo::web

@@ -1,6 +1,6 @@
 #include "answers.hpp"
 
-#include <array>
+#include <utility>
 #include <vector>
 
 #include <sys/random.h>
@@ -11,31 +11,22 @@ namespace nendo::web {
 namespace {
 
 std::string_view reason(int status) noexcept {
-  switch (status) {
-  case 200:
-    return "OK";
-  case 403:
-    return "Forbidden";
-  case 404:
-    return "Not Found";
-  case 405:
-    return "Method Not Allowed";
-  case 413:
-    return "Content Too Large";
-  case 426:
-    return "Upgrade Required";
-  case 431:
-    return "Request Header Fields Too Large";
-  case 503:
-    return "Service Unavailable";
-  case 505:
-    return "HTTP Version Not Supported";
-  default:
-    return "Bad Request";
-  }
+  constexpr std::pair<int, std::string_view> reasons[] = {{200, "OK"},
+                                                          {400, "Bad Request"},
+                                                          {403, "Forbidden"},
+                                                          {404, "Not Found"},
+                                                          {405, "Method Not Allowed"},
+                                                          {413, "Content Too Large"},
+                                                          {426, "Upgrade Required"},
+                                                          {431, "Request Header Fields Too Large"},
+                                                          {503, "Service Unavailable"},
+                                                          {505, "HTTP Version Not Supported"}};
+  for (const auto& [number, text] : reasons)
+    if (number == status) return text;
+  return {};
 }
 
-// Caches keep nothing, frames show nothing, other sites' pages get nothing.
+// The answer is not cached, not shown in another page's frame, and not read by other sites' pages.
 std::string head_of(int status, std::string_view type, std::size_t bytes) {
   return "HTTP/1.1 " + std::to_string(status) + " " + std::string(reason(status)) +
          "\r\nContent-Type: " + std::string(type) + "\r\nContent-Length: " + std::to_string(bytes) +
@@ -56,7 +47,7 @@ std::string refusal(int status, std::string_view why) {
 
 std::string page_head(std::size_t bytes, std::string_view nonce, std::string_view host) {
   const std::string mark = "'nonce-" + std::string(nonce) + "'";
-  // 'self' is http: alone to some browsers. The host has been checked: figures, or localhost.
+  // To some browsers 'self' does not include ws:. The host was checked by admit().
   return head_of(200, "text/html; charset=utf-8", bytes) +
          "Content-Security-Policy: default-src 'none'; script-src " + mark + "; style-src " + mark +
          "; connect-src 'self' ws://" + std::string(host) +
@@ -85,7 +76,7 @@ std::string page_with(std::string_view nonce) {
   return text;
 }
 
-std::string random_figures(std::size_t bytes) {
+std::string random_hex(std::size_t bytes) {
   std::vector<unsigned char> random(bytes);
   if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
     return {};

@@ -14,7 +14,7 @@ namespace nendo::web {
 
 namespace {
 
-constexpr std::chrono::milliseconds most_linger(2000);
+constexpr std::chrono::milliseconds linger_timeout(2000);
 
 } // namespace
 
@@ -24,153 +24,154 @@ SharedBytes shared_bytes(std::string_view text) {
 }
 
 Connection::Connection(Descriptor socket, HostTime now, const ServerLimits& limits)
-    : socket_(std::move(socket)), limits_(limits), since_(now), moved_(now), empty_(now),
-      heard_(now), asked_(now), words_left_(limits.words_at_once), spoke_(now) {}
+    : socket_(std::move(socket)), limits_(limits), stage_since_(now), last_progress_(now),
+      queue_empty_(now), last_heard_(now), last_ping_(now), messages_left_(limits.message_burst),
+      last_message_(now) {}
 
 short Connection::events() const noexcept {
-  return static_cast<short>((heard_end_ ? 0 : POLLIN) | (waiting_.empty() ? 0 : POLLOUT));
+  return static_cast<short>((peer_closed_ ? 0 : POLLIN) | (queue_.empty() ? 0 : POLLOUT));
 }
 
 bool Connection::receive(HostTime now) {
-  const std::size_t most = stage_ == Stage::socket ? ClientReader::most_pending : most_head_bytes;
+  const std::size_t most = stage_ == Stage::socket ? ClientReader::max_pending : max_head_bytes;
   std::array<char, 4096> room;
   for (;;) {
-    const bool keeps = stage_ == Stage::head || (stage_ == Stage::socket && !closes_);
+    const bool keeps = stage_ == Stage::head || (stage_ == Stage::socket && !closing_);
     const std::size_t space =
         keeps ? std::min(room.size(), most - std::min(most, incoming_.size())) : room.size();
-    if (space == 0) return true; // the rest comes when this has been looked at
+    if (space == 0) return true; // the rest is read when this has been parsed
     const ssize_t got = ::recv(fd(), room.data(), space, 0);
     if (got < 0) {
       if (errno == EINTR) continue;
       if (errno == EAGAIN || errno == EWOULDBLOCK) return true;
     }
     const bool may_wait = stage_ == Stage::head || stage_ == Stage::answer;
-    if (got == 0 && may_wait && !heard_end_) { // `nc -N` does so, and waits
-      heard_end_ = true;
+    if (got == 0 && may_wait && !peer_closed_) { // as `nc -N` does, which waits for the answer
+      peer_closed_ = true;
       return true;
     }
     if (got <= 0) {
-      stage_ = Stage::over;
+      stage_ = Stage::ended;
       return false;
     }
-    heard_ = now;
-    if (!keeps) return true; // thrown away, a piece at a time
+    last_heard_ = now;
+    if (!keeps) return true; // discarded, one piece a turn
     incoming_.append(room.data(), static_cast<std::size_t>(got));
   }
 }
 
-void Connection::await_rest() noexcept {
-  if (heard_end_) stage_ = Stage::over;
+void Connection::await_more() noexcept {
+  if (peer_closed_) stage_ = Stage::ended;
 }
 
 void Connection::queue(SharedBytes bytes, bool is_shape, HostTime now) {
   if (bytes->empty()) return;
-  if (waiting_.empty()) moved_ = empty_ = now;
+  if (queue_.empty()) last_progress_ = queue_empty_ = now;
   if (is_shape)
-    ++waiting_shapes_;
+    ++queued_shapes_;
   else
-    small_bytes_ += bytes->size();
-  waiting_.push_back({std::move(bytes), is_shape});
-  if (small_bytes_ > limits_.most_waiting) catching_up_ = true;
+    queued_bytes_ += bytes->size();
+  queue_.push_back({std::move(bytes), is_shape});
+  if (queued_bytes_ > limits_.max_queued_bytes) catching_up_ = true;
 }
 
-// The answer to a ping may be far behind a large shape.
-void Connection::send_on(HostTime now) {
-  heard_ = now;
+// Taking bytes is a sign of life: the answer to a ping may come long after a large shape.
+void Connection::resume_sending(HostTime now) {
+  last_heard_ = now;
   flush(now);
 }
 
 void Connection::flush(HostTime now) {
-  while (!waiting_.empty()) {
-    const auto& bytes = *waiting_.front().bytes;
+  while (!queue_.empty()) {
+    const auto& bytes = *queue_.front().bytes;
     const ssize_t sent = ::send(fd(), bytes.data() + sent_of_first_, bytes.size() - sent_of_first_,
                                 MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0) {
       if (errno == EINTR) continue;
-      if (errno != EAGAIN && errno != EWOULDBLOCK) stage_ = Stage::over;
+      if (errno != EAGAIN && errno != EWOULDBLOCK) stage_ = Stage::ended;
       return;
     }
-    moved_ = now;
+    last_progress_ = now;
     sent_of_first_ += static_cast<std::size_t>(sent);
     if (sent_of_first_ < bytes.size()) continue;
-    if (waiting_.front().is_shape)
-      --waiting_shapes_;
+    if (queue_.front().is_shape)
+      --queued_shapes_;
     else
-      small_bytes_ -= bytes.size();
-    waiting_.pop_front();
+      queued_bytes_ -= bytes.size();
+    queue_.pop_front();
     sent_of_first_ = 0;
   }
-  moved_ = empty_ = now;
+  last_progress_ = queue_empty_ = now;
   catching_up_ = false;
-  if (closes_ && stage_ != Stage::linger && stage_ != Stage::over) end_sending(now);
+  if (closing_ && stage_ != Stage::linger && stage_ != Stage::ended) end_sending(now);
 }
 
-// A socket that is closed with bytes unread is reset, which takes back what was sent last.
+// Closing a socket with unread bytes resets it, and the client would lose what was sent last.
 void Connection::end_sending(HostTime now) {
   ::shutdown(fd(), SHUT_WR);
-  stage_ = heard_end_ ? Stage::over : Stage::linger;
-  since_ = now;
+  stage_ = peer_closed_ ? Stage::ended : Stage::linger;
+  stage_since_ = now;
 }
 
 void Connection::answer(std::string head, SharedBytes body, HostTime now) {
   stage_ = Stage::answer;
-  since_ = now;
-  closes_ = true;
+  stage_since_ = now;
+  closing_ = true;
   queue(shared_bytes(head), false, now);
   if (body) queue(std::move(body), true, now);
   flush(now);
 }
 
 void Connection::upgrade(std::string head, HostTime now) {
-  if (heard_end_) { // could answer no ping, nor say goodbye
-    stage_ = Stage::over;
+  if (peer_closed_) { // it could neither answer a ping nor close the WebSocket
+    stage_ = Stage::ended;
     return;
   }
   stage_ = Stage::socket;
-  since_ = heard_ = asked_ = now;
+  stage_since_ = last_heard_ = last_ping_ = now;
   queue(shared_bytes(head), false, now);
   flush(now);
 }
 
 void Connection::send(Opcode opcode, const SharedBytes& payload, bool is_shape, HostTime now) {
-  if (closes_) return;
+  if (closing_) return;
   queue(shared_bytes(server_head(opcode, payload->size())), is_shape, now);
   queue(payload, is_shape, now);
   flush(now);
 }
 
 void Connection::send_control(std::string frame, HostTime now) {
-  if (closes_ || catching_up_) return; // who floods with pings hears nothing
+  if (closing_ || catching_up_) return; // so pings without end fill no queue
   queue(shared_bytes(frame), false, now);
   flush(now);
 }
 
 void Connection::close(CloseCode code, HostTime now) {
-  if (closes_) return;
+  if (closing_) return;
   queue(shared_bytes(close_frame(code)), false, now);
-  closes_ = true;
+  closing_ = true;
   flush(now);
 }
 
-bool Connection::may_speak(HostTime now) noexcept {
-  const double earned = limits_.words_a_second * to_seconds(now - spoke_);
-  words_left_ = std::min(limits_.words_at_once, words_left_ + earned) - 1.0;
-  spoke_ = now;
-  return words_left_ >= 0.0;
+bool Connection::within_message_rate(HostTime now) noexcept {
+  const double earned = limits_.messages_per_second * to_seconds(now - last_message_);
+  messages_left_ = std::min(limits_.message_burst, messages_left_ + earned) - 1.0;
+  last_message_ = now;
+  return messages_left_ >= 0.0;
 }
 
-bool Connection::is_overdue(HostTime now) const noexcept {
-  if (stage_ == Stage::head) return now - since_ > limits_.head;
-  if (stage_ == Stage::linger) return now - since_ > most_linger;
-  const bool stalls = !waiting_.empty() && now - moved_ > limits_.stalled;
-  if (stage_ != Stage::socket) return stalls; // a large model may take as long as it moves
-  const bool lags = !waiting_.empty() && now - empty_ > limits_.lagging;
-  return stalls || lags || now - heard_ > limits_.silent;
+bool Connection::is_expired(HostTime now) const noexcept {
+  if (stage_ == Stage::head) return now - stage_since_ > limits_.request_timeout;
+  if (stage_ == Stage::linger) return now - stage_since_ > linger_timeout;
+  const bool stalls = !queue_.empty() && now - last_progress_ > limits_.stall_timeout;
+  if (stage_ != Stage::socket) return stalls; // a large model may take long, while it moves
+  const bool lags = !queue_.empty() && now - queue_empty_ > limits_.lag_timeout;
+  return stalls || lags || now - last_heard_ > limits_.silence_timeout;
 }
 
 void Connection::keep_alive(HostTime now) {
-  if (stage_ != Stage::socket || now - asked_ < limits_.ping) return;
-  asked_ = now;
+  if (stage_ != Stage::socket || now - last_ping_ < limits_.ping_period) return;
+  last_ping_ = now;
   send_control(control_frame(Opcode::ping, {}), now);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// One connection: what it has sent so far, what waits for it, and until when it must move. No call
-// blocks.
+// One connection: the bytes that it has sent, the queue of bytes that wait for it, and its
+// deadlines. No call blocks.
 
 #include <deque>
 #include <memory>
@@ -21,47 +21,49 @@ SharedBytes shared_bytes(std::string_view text);
 class Connection {
 public:
   enum class Stage {
-    head,   ///< its request is coming in
-    answer, ///< is sent what it asked for; then it ends
-    socket, ///< a WebSocket
-    linger, ///< all is sent; what it still sends is thrown away until it closes
-    over,
+    head,   ///< its HTTP request is coming in
+    answer, ///< it is sent an HTTP answer, after which the connection ends
+    socket, ///< it is a WebSocket
+    linger, ///< everything is sent; what it still sends is discarded until it closes
+    ended,  ///< it can be destroyed
   };
 
+  /// limits: they must outlive the connection.
   Connection(Descriptor socket, HostTime now, const ServerLimits& limits);
 
   int fd() const noexcept { return socket_.get(); }
   Stage stage() const noexcept { return stage_; }
-  HostTime since() const noexcept { return since_; }
-  /// What poll() is to wait for.
+  /// The events that poll() must wait for.
   short events() const noexcept;
-  /// Reads what is there into incoming(), as far as that has room. False: it has ended. Who sends
-  /// no more may still be waiting for an answer.
+  /// Appends what the socket has to incoming(), as far as there is room. Returns false if the
+  /// connection has ended. A client that has shut down its sending side may still get an answer.
   bool receive(HostTime now);
   std::string& incoming() noexcept { return incoming_; }
-  /// The request is not complete: waits for the rest, if any can come.
-  void await_rest() noexcept;
-  /// The system has room again, because the other side took something: sends on.
-  void send_on(HostTime now);
+  /// Says that the request is incomplete. Ends the connection if no more bytes can come.
+  void await_more() noexcept;
+  /// Sends from the queue, because poll() says that the socket takes bytes again.
+  void resume_sending(HostTime now);
 
-  /// Queues an answer, after which the connection ends.
+  /// Queues an HTTP answer, after which the connection ends. body: may be null.
   void answer(std::string head, SharedBytes body, HostTime now);
-  /// It is a WebSocket from now on.
+  /// Queues the answer that makes it a WebSocket.
   void upgrade(std::string head, HostTime now);
-  /// Queues a message or a control frame of a WebSocket.
+  /// Queues a message of a WebSocket. Shapes are not counted against max_queued_bytes.
   void send(Opcode opcode, const SharedBytes& payload, bool is_shape, HostTime now);
+  /// Queues a control frame, unless the queue is too long.
   void send_control(std::string frame, HostTime now);
-  /// Says so, and ends.
+  /// Queues a close frame, after which the connection ends.
   void close(CloseCode code, HostTime now);
 
-  /// Whether it may say something; counts that it has. False: it talks without end.
-  bool may_speak(HostTime now) noexcept;
-  /// Whether an update may be queued: not while it catches up.
-  bool has_room() const noexcept { return !catching_up_; }
-  /// Whether a shape is still on its way: another one would only be older when it came.
-  bool has_shape_waiting() const noexcept { return waiting_shapes_ > 0; }
-  bool is_overdue(HostTime now) const noexcept;
-  /// Sends a ping if it is time.
+  /// Takes one message from the client's allowance. Returns false if there was none left.
+  bool within_message_rate(HostTime now) noexcept;
+  /// False from when the queue has become too long until it is empty.
+  bool accepts_updates() const noexcept { return !catching_up_; }
+  /// Whether a shape is still in the queue.
+  bool has_queued_shape() const noexcept { return queued_shapes_ > 0; }
+  /// Whether one of its time limits has passed.
+  bool is_expired(HostTime now) const noexcept;
+  /// Sends a ping if it is time for one.
   void keep_alive(HostTime now);
 
   ClientReader reader;
@@ -73,27 +75,28 @@ private:
     bool is_shape = false;
   };
   void queue(SharedBytes bytes, bool is_shape, HostTime now);
-  /// Sends what the system takes.
+  /// Sends as much of the queue as the system takes.
   void flush(HostTime now);
   void end_sending(HostTime now);
 
   Descriptor socket_;
   const ServerLimits& limits_;
   Stage stage_ = Stage::head;
-  HostTime since_; ///< of its stage
+  HostTime stage_since_;
   std::string incoming_;
-  std::deque<Part> waiting_;
-  std::size_t sent_of_first_ = 0;
-  std::size_t small_bytes_ = 0;    ///< of what waits, without shapes
-  std::size_t waiting_shapes_ = 0; ///< parts of such
+  std::deque<Part> queue_;
+  std::size_t sent_of_first_ = 0; ///< bytes of the queue's first part
+  std::size_t queued_bytes_ = 0;  ///< without shapes
+  std::size_t queued_shapes_ = 0; ///< parts that belong to shapes
   bool catching_up_ = false;
-  bool heard_end_ = false; ///< it sends no more
-  bool closes_ = false;    ///< ends when all is sent
-  HostTime moved_;         ///< when it last took a byte, or nothing waited
-  HostTime empty_;         ///< when nothing waited last
-  HostTime heard_, asked_; ///< of a WebSocket: its last sign of life, the last ping
-  double words_left_;      ///< that it may say at once
-  HostTime spoke_;         ///< when it said something last
+  bool peer_closed_ = false; ///< the client has shut down its sending side
+  bool closing_ = false;     ///< the connection ends when the queue is empty
+  HostTime last_progress_;   ///< when the client last took a byte, or the queue was empty
+  HostTime queue_empty_;     ///< when the queue was empty last
+  HostTime last_heard_;      ///< when a WebSocket last gave a sign of life
+  HostTime last_ping_;
+  double messages_left_; ///< of the client's allowance
+  HostTime last_message_;
 };
 
 } // namespace nendo::web

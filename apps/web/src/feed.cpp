@@ -14,11 +14,11 @@ bool has_fields(const Record& record) noexcept {
   return count > 0;
 }
 
-float most_late(std::span<const Record> records) noexcept {
+float max_late(std::span<const Record> records) noexcept {
   float most = 0.0F;
   for (const Record& record : records) {
     UpdateHead head;
-    std::memcpy(&head, record.told.data(), sizeof head);
+    std::memcpy(&head, record.head.data(), sizeof head);
     most = std::max(most, head.late_us);
   }
   return most;
@@ -26,14 +26,14 @@ float most_late(std::span<const Record> records) noexcept {
 
 } // namespace
 
-void Feed::got_shape(std::uint64_t number) noexcept {
+void Feed::shape_sent(std::uint64_t number) noexcept {
   lacks_shape_ = false;
   base_ = shape_ = number;
-  wear_ = 0.0;
+  drift_ = 0.0;
 }
 
-// A drawn step stands for all of its kind before it. The frame of the shape itself is followed for
-// its drawn step alone: the shape is what it baked.
+// Records up to the base are known to the client. The record of the shape's own frame is needed
+// only if its step is drawn: what it baked is in the shape.
 std::span<const Record> Feed::unseen(std::span<const Record> records) noexcept {
   std::size_t first = 0;
   const auto is_needed = [&](const Record& record) {
@@ -46,7 +46,7 @@ std::span<const Record> Feed::unseen(std::span<const Record> records) noexcept {
 
 bool Feed::can_follow(std::span<const Record> records) const noexcept {
   return !lacks_shape_ && std::none_of(records.begin(), records.end(), [&](const Record& record) {
-    return record.broken && record.number > shape_;
+    return record.discontinuous && record.number > shape_;
   });
 }
 
@@ -57,18 +57,18 @@ std::optional<std::vector<std::byte>> Feed::update(std::span<const Record> recor
   lacks_shape_ = !can_follow(news);
   const Record& newest = records.back();
   UpdateHead head;
-  std::memcpy(&head, newest.told.data(), sizeof head);
-  head.most_late_us = most_late(records);
+  std::memcpy(&head, newest.head.data(), sizeof head);
+  head.most_late_us = max_late(records);
   head.lost = static_cast<std::uint32_t>(counters.lost);
   head.skipped = static_cast<std::uint32_t>(skipped_);
   std::copy(counters.bad_records.begin(), counters.bad_records.end(), head.bad_records);
-  std::vector<std::byte> message = newest.told;
+  std::vector<std::byte> message = newest.head;
   for (std::size_t at = 0; !lacks_shape_ && at < news.size(); ++at) {
     const Record& record = news[at];
     if (!record.bakes && at + 1 < news.size()) continue; // the next step replaces it
     message.insert(message.end(), record.step.begin(), record.step.end());
     ++head.steps;
-    wear_ += record.wear;
+    drift_ += record.drift;
   }
   if (!lacks_shape_) base_ = std::max(base_, newest.number);
   std::memcpy(message.data(), &head, sizeof head);

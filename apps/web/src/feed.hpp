@@ -1,6 +1,6 @@
 #pragma once
-// What one client is to be sent: which steps it still needs, and when only the whole shape helps.
-// Pure.
+// Decides what one client is sent: which steps it still needs, and when it needs the whole shape.
+// Nothing here knows of sockets.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,24 +12,25 @@
 
 namespace nendo::web {
 
-/// What the server adds to a frame.
+/// The numbers that the server adds to an update message.
 struct FeedCounters {
-  std::uint64_t lost = 0; ///< frames that found no room in the ring
-  std::array<std::uint32_t, 2> bad_records{};
+  std::uint64_t lost = 0;                     ///< frames that found no room in the ring
+  std::array<std::uint32_t, 2> bad_records{}; ///< by flow::Placement::index_of(side)
 };
 
 class Feed {
 public:
-  /// Whether a shape is to be sent: at first, when steps were missed, when too many were added up.
-  bool wants_shape() const noexcept { return lacks_shape_ || wear_ >= 1.0; }
-  /// It has been sent the shape after that frame.
-  void got_shape(std::uint64_t number) noexcept;
+  /// Whether the client needs a shape: at first, when it has missed steps, and when its rounding
+  /// errors may have become too large.
+  bool wants_shape() const noexcept { return lacks_shape_ || drift_ >= 1.0; }
+  /// To be called when the client has been sent the shape after that frame.
+  void shape_sent(std::uint64_t number) noexcept;
 
-  /// An update message of the records since the last call; nothing if there are none. Without the
-  /// shape that they go on from it has no steps.
+  /// Makes an update message of the records since the last call; nothing if there are none. The
+  /// message has no steps while the client lacks the shape that they continue.
   std::optional<std::vector<std::byte>> update(std::span<const Record> records,
                                                const FeedCounters& counters);
-  /// The same records, where there is no room to send anything.
+  /// To be called instead of update() when nothing can be sent to the client.
   void skip(std::span<const Record> records) noexcept;
 
 private:
@@ -37,9 +38,9 @@ private:
   bool can_follow(std::span<const Record> records) const noexcept;
 
   bool lacks_shape_ = true;
-  std::uint64_t base_ = 0;  ///< the frame whose shape is the base, or that has been followed
+  std::uint64_t base_ = 0;  ///< the last frame that the client knows
   std::uint64_t shape_ = 0; ///< the frame whose shape was sent last
-  double wear_ = 0.0;
+  double drift_ = 0.0;
   std::uint64_t skipped_ = 0;
 };
 

@@ -12,7 +12,7 @@ constexpr std::string_view alphabet =
 
 using State = std::array<std::uint32_t, 5>;
 
-// The message, a bit 1, zeros, and its length in bits, in whole blocks of 64 bytes.
+// Appends a bit 1, zeros, and the length in bits, to fill whole blocks of 64 bytes.
 std::vector<std::byte> padded(std::span<const std::byte> bytes) {
   std::vector<std::byte> blocks(bytes.begin(), bytes.end());
   blocks.push_back(std::byte{0x80});

@@ -23,7 +23,7 @@ bool is_visible(char c) noexcept {
   return c > ' ' && c < '\x7F';
 }
 
-// No control characters but the tab; bytes above ASCII are nobody's business here.
+// No control characters except the tab. Bytes above ASCII are passed on as they are.
 bool is_value(std::string_view text) noexcept {
   return std::none_of(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7F';
@@ -68,15 +68,15 @@ int parse_headers(std::string_view rest, HttpRequest& request) {
     if (colon == std::string_view::npos) return 400;
     const auto name = line.substr(0, colon);
     const auto value = trimmed(line.substr(colon + 1));
-    // A line that begins with a space once went on with the one before; nobody needs that.
+    // Lines that begin with a space (the obsolete folding of headers) have no valid name, either.
     if (!is_token(name) || !is_value(value)) return 400;
-    if (request.headers.size() == most_headers) return 431;
+    if (request.headers.size() == max_headers) return 431;
     request.headers.emplace_back(name, value);
   }
   return 200;
 }
 
-// What follows the head would be taken for another request, so there must be nothing.
+// A request with a body is refused, so that no body is ever taken for a second request.
 bool has_body(const HttpRequest& request) noexcept {
   if (request.count("Transfer-Encoding") > 0) return true;
   return request.count("Content-Length") > 0 && request.header("Content-Length") != "0";
@@ -84,29 +84,30 @@ bool has_body(const HttpRequest& request) noexcept {
 
 } // namespace
 
-bool same_word(std::string_view a, std::string_view b) noexcept {
+bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::size_t HttpRequest::count(std::string_view name) const noexcept {
-  return static_cast<std::size_t>(std::count_if(
-      headers.begin(), headers.end(), [&](const auto& h) { return same_word(h.first, name); }));
+  return static_cast<std::size_t>(std::count_if(headers.begin(), headers.end(), [&](const auto& h) {
+    return equal_ignoring_case(h.first, name);
+  }));
 }
 
 std::optional<std::string_view> HttpRequest::header(std::string_view name) const noexcept {
   if (count(name) != 1) return std::nullopt;
   return std::find_if(headers.begin(), headers.end(),
-                      [&](const auto& h) { return same_word(h.first, name); })
+                      [&](const auto& h) { return equal_ignoring_case(h.first, name); })
       ->second;
 }
 
 bool HttpRequest::lists(std::string_view name, std::string_view word) const noexcept {
   for (const auto& [key, value] : headers) {
-    if (!same_word(key, name)) continue;
+    if (!equal_ignoring_case(key, name)) continue;
     for (std::string_view rest = value;;) {
       const auto comma = rest.find(',');
-      if (same_word(trimmed(rest.substr(0, comma)), word)) return true;
+      if (equal_ignoring_case(trimmed(rest.substr(0, comma)), word)) return true;
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);
     }
@@ -126,8 +127,8 @@ std::optional<std::string_view> HttpRequest::parameter(std::string_view name) co
 }
 
 HttpHead parse_head(std::string_view bytes) {
-  const auto end = bytes.substr(0, most_head_bytes).find("\r\n\r\n");
-  if (end == std::string_view::npos) return {bytes.size() >= most_head_bytes ? 431 : 0, 0, {}};
+  const auto end = bytes.substr(0, max_head_bytes).find("\r\n\r\n");
+  if (end == std::string_view::npos) return {bytes.size() >= max_head_bytes ? 431 : 0, 0, {}};
   HttpHead head{200, end + 4, {}};
   std::string_view rest = bytes.substr(0, end + 2);
   head.status = parse_first_line(take_line(rest), head.request);

@@ -1,6 +1,6 @@
 #pragma once
-// The head of an HTTP/1.1 request (RFC 9112), strictly: a server that guesses what was meant can be
-// talked into a misunderstanding. Pure: bytes in, views into them out.
+// A strict parser for the head of an HTTP/1.1 request (RFC 9112). Whatever can be read in two ways
+// is refused. The result consists of views into the bytes that were parsed.
 
 #include <cstddef>
 #include <optional>
@@ -10,35 +10,38 @@
 
 namespace nendo::web {
 
-inline constexpr std::size_t most_head_bytes = 16384; ///< browsers send cookies of other ports, too
-inline constexpr std::size_t most_headers = 64;
+inline constexpr std::size_t max_head_bytes =
+    16384; ///< room for the cookies of a host's other ports
+inline constexpr std::size_t max_headers = 64;
 
 struct HttpRequest {
   std::string_view method;
-  std::string_view path;  ///< of the target, before "?"
-  std::string_view query; ///< after it
+  std::string_view path;  ///< the part of the target before "?"
+  std::string_view query; ///< the part after it
   std::vector<std::pair<std::string_view, std::string_view>> headers;
 
-  /// By its name, whatever the case of its letters. Nothing if there is none, or several.
+  /// The value of a header, whose name is compared without regard to case. Nothing if there is no
+  /// such header or more than one.
   std::optional<std::string_view> header(std::string_view name) const noexcept;
+  /// How many headers have that name.
   std::size_t count(std::string_view name) const noexcept;
-  /// Whether the header is a list in which that word stands.
+  /// Whether one of the headers of that name is a comma-separated list with that word in it.
   bool lists(std::string_view name, std::string_view word) const noexcept;
-  /// "x" of "?name=x"; nothing if it is not there.
+  /// The "x" of "?name=x" in the query; nothing if that name is not there.
   std::optional<std::string_view> parameter(std::string_view name) const noexcept;
 };
 
-/// Without regard to the case of ASCII letters.
-bool same_word(std::string_view a, std::string_view b) noexcept;
+/// Whether the texts are equal but for the case of ASCII letters.
+bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept;
 
 struct HttpHead {
-  /// 0: the head is not complete; 200: it is; otherwise what to refuse it with.
+  /// 0: the head is incomplete. 200: it was parsed. Otherwise: the status to refuse it with.
   int status = 0;
-  std::size_t bytes = 0; ///< how long a complete head is
-  HttpRequest request{}; ///< views into the bytes
+  std::size_t bytes = 0; ///< length of a complete head
+  HttpRequest request{};
 };
 
-/// Of all bytes that have come so far.
+/// bytes: everything that the client has sent so far.
 HttpHead parse_head(std::string_view bytes);
 
 } // namespace nendo::web

@@ -12,7 +12,7 @@
 namespace nendo::web {
 namespace {
 
-// The system's own calls take any kind of address by a pointer to the shortest.
+// The system's calls take addresses of all families by a pointer to their common head.
 template <class Address>
 sockaddr* as_any(Address& address) noexcept {
   return reinterpret_cast<sockaddr*>(&address);
@@ -49,13 +49,13 @@ Result<Descriptor> listen_at(Endpoint& endpoint) {
   const int family = endpoint.is_ipv6() ? AF_INET6 : AF_INET;
   Descriptor socket(::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket.is_open()) return refused(endpoint, errno);
-  const int yes = 1; // a run that follows another at once gets the same port
+  const int yes = 1; // so that a run can take the port of a run that has just ended
   ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  if (endpoint.is_ipv6()) // 0.0.0.0 is asked for by that name
+  if (endpoint.is_ipv6()) // [::] does not include IPv4
     ::setsockopt(socket.get(), IPPROTO_IPV6, IPV6_V6ONLY, &yes, sizeof yes);
   if (bind_to(socket, endpoint) != 0 || ::listen(socket.get(), 16) != 0)
     return refused(endpoint, errno);
-  sockaddr_in6 bound{}; // its port is where the shorter one has it
+  sockaddr_in6 bound{}; // sockaddr_in has its port in the same place
   socklen_t length = sizeof bound;
   if (::getsockname(socket.get(), as_any(bound), &length) != 0) return refused(endpoint, errno);
   endpoint.port = ntohs(bound.sin6_port);
@@ -65,10 +65,10 @@ Result<Descriptor> listen_at(Endpoint& endpoint) {
 std::optional<Descriptor> accept_from(const Descriptor& listener, std::size_t buffer_bytes) {
   Descriptor socket(::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!socket.is_open()) return std::nullopt;
-  const int yes = 1; // an update is small, and wanted now
+  const int yes = 1; // updates are small, and must not wait for more
   ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  const int most_bytes = static_cast<int>(buffer_bytes);
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &most_bytes, sizeof most_bytes);
+  const int bytes = static_cast<int>(buffer_bytes);
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
   return socket;
 }
 

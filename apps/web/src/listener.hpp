@@ -1,5 +1,5 @@
 #pragma once
-// A socket that listens.
+// The socket that listens for connections.
 
 #include <cstddef>
 #include <optional>
@@ -10,10 +10,11 @@
 
 namespace nendo::web {
 
-/// Its port is written to `endpoint`, if that was 0. Error: failed.
+/// Opens a non-blocking socket that listens at `endpoint`, and writes its port there. Error:
+/// failed.
 Result<Descriptor> listen_at(Endpoint& endpoint);
-/// The next connection, non-blocking, for which the system keeps about so many bytes; nothing if
-/// there is none.
+/// The next connection, as a non-blocking socket; nothing if there is none. buffer_bytes: of the
+/// socket's send buffer.
 std::optional<Descriptor> accept_from(const Descriptor& listener, std::size_t buffer_bytes);
 
 } // namespace nendo::web

@@ -10,7 +10,7 @@
 namespace nendo::web {
 namespace {
 
-// Of triangles, by the vertices' places in the blocks.
+// The corners of all triangles, as the vertices' places in the blocks.
 std::vector<std::uint32_t> corners_of(const deform::BlockLayout& layout, const deform::Mesh& mesh) {
   std::vector<std::uint32_t> place_of(layout.vertex_count());
   for (std::size_t at = 0; at < place_of.size(); ++at)
@@ -64,7 +64,7 @@ std::vector<std::byte> model_message(const deform::BlockLayout& layout, const de
   const auto corners = corners_of(layout, mesh);
   Hands by_side{};
   for (const flow::HandInput& hand : hands)
-    by_side[flow::Placement::index_of(hand.skeleton.side())] = &hand;
+    by_side[flow::Placement::index_of(hand.side)] = &hand;
   ModelHead head = head_of(layout, by_side, facts);
   head.triangles = static_cast<std::uint32_t>(corners.size() / 3);
   std::vector<std::byte> message(sizeof head + hands.size() * bones_bytes +
@@ -74,8 +74,8 @@ std::vector<std::byte> model_message(const deform::BlockLayout& layout, const de
   out.put(head);
   for (const flow::HandInput* hand : by_side) {
     if (hand == nullptr) continue;
-    write_bones(hand->skeleton, out);
-    write_bones(hand->swapped_skeleton.value_or(hand->skeleton), out);
+    write_bones(hand->skeleton(hand->first.side), out);
+    write_bones(hand->skeleton(opposite(hand->first.side)), out);
   }
   const deform::BlockShape shape = layout.pack();
   for (std::size_t at = 0; at < layout.vertex_count(); ++at) {

@@ -39,7 +39,7 @@ struct ClientReader::Head {
     const bool known = opcode <= 2 || (opcode >= 8 && opcode <= 10);
     if (reserved || !masked || !known) return CloseCode::protocol_error;
     if (is_control() && (!last || length > 125)) return CloseCode::protocol_error;
-    if (length > most_client_message) return CloseCode::too_big;
+    if (length > max_client_message) return CloseCode::too_big;
     return std::nullopt;
   }
 };
@@ -79,7 +79,7 @@ ClientEvent ClientReader::take(const Head& head, std::string payload) {
   const bool goes_on = opcode == Opcode::continuation;
   if (goes_on != (kind_ != Opcode::continuation)) return fault(CloseCode::protocol_error);
   if (!goes_on) kind_ = opcode;
-  if (parts_.size() + payload.size() > most_client_message) return fault(CloseCode::too_big);
+  if (parts_.size() + payload.size() > max_client_message) return fault(CloseCode::too_big);
   parts_ += payload;
   if (!head.last) return {};
   const Kind kind =

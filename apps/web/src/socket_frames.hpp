@@ -1,6 +1,6 @@
 #pragma once
-// Frames of a WebSocket (RFC 6455, section 5): a client's, as they come in, and the heads of the
-// server's. Pure. A message's bytes are handed over in a string of their own.
+// Frames of a WebSocket (RFC 6455, section 5): a parser for a client's frames, and the encoding of
+// the server's. Nothing here reads or writes a socket.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace nendo::web {
 
-/// What a client may say at once: the name of a button is far less.
-inline constexpr std::size_t most_client_message = 1024;
+/// The longest message that a client may send, in bytes. Commands are far shorter.
+inline constexpr std::size_t max_client_message = 1024;
 
 enum class Opcode : std::uint8_t {
   continuation = 0,
@@ -22,7 +22,7 @@ enum class Opcode : std::uint8_t {
   pong = 10,
 };
 
-/// Section 7.4.1.
+/// RFC 6455, section 7.4.1, and 1012 of IANA's registry.
 enum class CloseCode : std::uint16_t {
   normal = 1000,
   going_away = 1001,
@@ -35,41 +35,41 @@ enum class CloseCode : std::uint16_t {
 
 struct ClientEvent {
   enum class Kind {
-    nothing, ///< more bytes are needed
+    nothing, ///< there is no whole message or control frame yet
     text,
     binary,
     ping,
     pong,
     close,
-    fault, ///< the connection is to be closed with `code`
+    fault, ///< the client broke the protocol; the connection must be closed with `code`
   };
   Kind kind = Kind::nothing;
-  std::string payload{}; ///< at most most_client_message
+  std::string payload{}; ///< at most max_client_message
   CloseCode code = CloseCode::protocol_error;
 };
 
-/// Puts messages together of what one client sends.
+/// Assembles the messages of one client from its frames.
 class ClientReader {
 public:
-  /// Takes the first whole frame off `bytes`, and goes on until there is an event or no whole
-  /// frame. After a fault there are no more events.
+  /// Removes whole frames from the front of `bytes` until one of them makes an event. After a fault
+  /// there are no more events.
   ClientEvent next(std::string& bytes);
-  /// How many bytes may wait for the rest of their frame.
-  static constexpr std::size_t most_pending = most_client_message + 14;
+  /// How many bytes may be received before a frame is complete.
+  static constexpr std::size_t max_pending = max_client_message + 14;
 
 private:
   struct Head;
   ClientEvent fault(CloseCode code);
   ClientEvent take(const Head& head, std::string payload);
 
-  std::string parts_;                  ///< of a message that is not complete
-  Opcode kind_ = Opcode::continuation; ///< its kind; continuation: there is none
+  std::string parts_;                  ///< of a message that is not complete yet
+  Opcode kind_ = Opcode::continuation; ///< of that message; continuation: there is none
   bool failed_ = false;
 };
 
-/// Of a whole, unmasked message of that length: what stands before its bytes.
+/// The bytes before the payload of a whole, unmasked message; length: of the payload.
 std::string server_head(Opcode opcode, std::uint64_t length);
-/// A whole control frame; payload: at most 125 bytes.
+/// A whole control frame. payload: at most 125 bytes.
 std::string control_frame(Opcode opcode, std::string_view payload);
 std::string close_frame(CloseCode code);
 

@@ -8,20 +8,21 @@
 namespace nendo::web {
 namespace {
 
-// Of the unit, by which a centre may be off that is left out: less than what floats lose anyway.
+// The error, in units, that a centre may have if it is left out. Floats lose more than that.
 constexpr double centre_gap = 1e-7;
 
 float microseconds(HostClock::duration time) noexcept {
   return static_cast<float>(1e6 * to_seconds(time));
 }
 
-// What is not finite, or too large, is sent as something that is drawn, if only in a wrong place.
+// Numbers that are not finite or too large for float become some that a client can draw.
 float as_float(double value) noexcept {
   return std::isfinite(value) ? static_cast<float>(std::clamp(value, -1e30, 1e30)) : 0.0F;
 }
 
-// The largest part of a unit quaternion follows from the other three, which are within 1/sqrt(2):
-// 15 bits each, and in the two first words' highest bits which part that is.
+// The largest part of a unit quaternion follows from the other three, which are within 1/sqrt(2).
+// Each of them is sent in 15 bits. The highest bits of the first two words say which part is left
+// out.
 std::array<std::uint16_t, 3> packed(const Eigen::Matrix3d& rotation) noexcept {
   const Eigen::Vector4d parts = Eigen::Quaterniond(rotation).coeffs(); // x, y, z, w
   Eigen::Index largest = 0;
@@ -62,8 +63,8 @@ bool is_nothing(const deform::CsrbfField& field, Eigen::Index function) noexcept
   return field.coefficients.col(function).isZero(0.0);
 }
 
-// Whether the functions of `field` are those of `before`, each where that field takes its centre:
-// so it is in a chain of links, whose centres are held by the hands, unless two of them pinch.
+// Whether the functions of `field` are those of `before`, with each centre where `before` moves it.
+// So it is in a chain of links, whose centres the hands hold, unless two of them pinch.
 bool goes_on(const deform::CsrbfField& field, const deform::CsrbfField& before,
              double unit) noexcept {
   if (field.radii.size() != before.radii.size() || field.radii != before.radii) return false;
@@ -77,7 +78,7 @@ bool goes_on(const deform::CsrbfField& field, const deform::CsrbfField& before,
   return true;
 }
 
-// before: the step's field before this one, if there is any.
+// before: the field before this one in the step, or null.
 void write_field(const deform::CsrbfField& field, const deform::CsrbfField* before,
                  const Eigen::Vector3d& origin, double unit, WireWriter& out) noexcept {
   const bool follows = before != nullptr && goes_on(field, *before, unit);
@@ -137,7 +138,7 @@ void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept {
     out.put(as_float(wrist[axis]));
   write_turn(hand.T_stage_wrist, out);
   for (std::size_t joint = 0; joint < hand::joint_count; ++joint)
-    if (turns_by_itself(static_cast<hand::Joint>(joint))) write_turn(hand.pose.joints[joint], out);
+    if (rotation_is_sent(static_cast<hand::Joint>(joint))) write_turn(hand.pose.joints[joint], out);
 }
 
 void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,

@@ -1,5 +1,5 @@
 #pragma once
-// The bytes of PROTOCOL.md: written in the tick, into room that is there.
+// The encoding that PROTOCOL.md describes. It is used in the tick, so nothing here allocates.
 
 #include <bit>
 #include <cassert>
@@ -16,10 +16,10 @@ namespace nendo::web {
 
 static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
 
-enum class MessageType : std::uint8_t { shape = 1, update = 2, words = 3 };
+enum class MessageType : std::uint8_t { shape = 1, update = 2, report = 3 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 
-/// Of an update message; its fields are in PROTOCOL.md's order and have no gaps.
+/// The head of an update message, in PROTOCOL.md's order and without gaps.
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
   std::uint8_t held = 0;
@@ -46,13 +46,13 @@ static_assert(sizeof(UpdateHead) == 88);
 struct ShapeHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::shape);
   std::uint8_t spare = 0;
-  std::uint16_t loop = 0; ///< as the model's
+  std::uint16_t loop = 0; ///< as in the model's head
   std::uint32_t vertices = 0;
   std::uint64_t number = 0;
 };
 static_assert(sizeof(ShapeHead) == 16);
 
-/// In front of the model, in PROTOCOL.md's order, without gaps.
+/// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
   std::uint32_t version = 1;
@@ -66,15 +66,16 @@ struct ModelHead {
   double diagonal = 0.0;
   double radius_m[5]{};
   std::uint16_t mode = 1;
-  std::uint16_t loop = 0; ///< which of a run it is; the server counts them
+  std::uint16_t loop = 0; ///< the number of the loop within its run; the server sets it
   std::uint8_t kernel = 0;
   std::uint8_t flags = 0; ///< bits 0, 1: left, right hand's bones follow; bit 2: it is recorded
   std::uint16_t spare = 0;
 };
 static_assert(sizeof(ModelHead) == 128);
 
-/// Whether a joint's turn is told in each frame. The others are fixed to their parents.
-constexpr bool turns_by_itself(hand::Joint joint) noexcept {
+/// Whether a joint's rotation is sent with each frame. The others do not move against their
+/// parents.
+constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
   using hand::Joint;
   for (const Joint fixed :
        {Joint::palm, Joint::index_metacarpal, Joint::middle_metacarpal, Joint::thumb_tip,
@@ -82,20 +83,20 @@ constexpr bool turns_by_itself(hand::Joint joint) noexcept {
     if (joint == fixed) return false;
   return true;
 }
-/// The forearm's turn, and those joints'.
-inline constexpr std::size_t told_turns = 1 + 18;
-inline constexpr std::size_t hand_bytes = 12 + told_turns * 6;
-/// A hand's bones: twice, for the glove that may come in place of the first one; of each joint
-/// place and turn in its parent's axes.
+/// The forearm's rotation, and those of these joints.
+inline constexpr std::size_t sent_rotations = 1 + 18;
+inline constexpr std::size_t hand_bytes = 12 + sent_rotations * 6;
+/// The bones of a hand, twice: of the glove that the loop began with, and of the glove that may
+/// replace it. Each joint has its position and rotation in its parent's axes.
 inline constexpr std::size_t bones_bytes = 2 * hand::joint_count * 7 * 4;
 inline constexpr std::size_t step_head_bytes = 4;
 
-/// The most that a field of so many functions takes.
+/// The most bytes that a field of so many functions takes.
 constexpr std::size_t field_bytes(std::size_t functions) noexcept {
   return 8 + 48 + functions * 28;
 }
 
-/// Writes one after another; there must be room.
+/// Writes values one after another into a buffer, which must be large enough.
 class WireWriter {
 public:
   explicit WireWriter(std::span<std::byte> room) noexcept : room_(room) {}
@@ -113,11 +114,10 @@ private:
   std::size_t used_ = 0;
 };
 
-/// These may run in the tick.
 UpdateHead head_of(const flow::Frame& frame) noexcept;
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
-/// origin and unit: BlockLayout's. Functions without a coefficient are left out, and centres that
-/// follow from the field before.
+/// origin, unit: those of the loop's BlockLayout. Functions whose coefficient is zero are left out,
+/// and so are centres that follow from the field before.
 void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,
                 double unit, WireWriter& out) noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where a server listens: [ADDR:]PORT, as --web takes it.
+// The address and port at which a server listens, as --web takes them: [ADDR:]PORT.
 
 #include <cstdint>
 #include <string>
@@ -11,20 +11,21 @@ namespace nendo::web {
 
 struct Endpoint {
   std::string address = "127.0.0.1"; ///< IPv4 or IPv6 in figures, without brackets
-  std::uint16_t port = 0;            ///< 0: whichever is free
+  std::uint16_t port = 0;            ///< 0: the system chooses a free one
 
   bool is_ipv6() const noexcept { return address.find(':') != std::string::npos; }
-  /// As a browser takes it: "[::1]:8080".
+  /// Address and port as in a URL, for example "[::1]:8080".
   std::string authority() const;
 };
 
-/// "8080", "127.0.0.1:8080", "[::1]:8080": without an address, this machine's own browsers alone. A
-/// name is no address: whoever opens a port to a network says to which. Error: usage.
+/// Takes "8080", "127.0.0.1:8080" or "[::1]:8080". Without an address the server is reached from
+/// this machine only. Names of hosts are refused, so that it is clear to which network a port is
+/// opened. Error: usage.
 Result<Endpoint> parse_endpoint(std::string_view text);
 
 /// Whether the host of an authority ("localhost:8080", "[::1]", "192.168.1.5") is an address in
-/// figures or localhost. A page of somebody else's can have its own name lead here (DNS rebinding),
-/// but neither of those.
+/// figures or localhost. Another site can make its own name lead to this machine (DNS rebinding),
+/// but none of these.
 bool is_address_or_localhost(std::string_view authority);
 
 } // namespace nendo::web

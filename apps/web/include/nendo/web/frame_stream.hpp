@@ -1,7 +1,7 @@
 #pragma once
-// From the tick to the server's thread: a compact record of each frame while somebody looks, and
-// the whole shape when it is asked for. A record is what a client needs to follow the shape with a
-// vertex shader of its own, in the bytes that go to it (PROTOCOL.md).
+// Carries frames from the loop's thread to the server's thread. For each frame it makes a record,
+// from which a client can follow the shape by itself, in the bytes that go to the client
+// (PROTOCOL.md). The whole shape is copied only when the server asks for it.
 
 #include <array>
 #include <atomic>
@@ -17,44 +17,47 @@
 
 namespace nendo::web {
 
-/// A frame as a client is told of it.
+/// One frame, encoded for clients.
 struct Record {
-  std::uint64_t number = 0; ///< of the frame, as the tap counts them, from 1
-  bool broken = false;      ///< its step does not go on from the record before: the shape is needed
-  bool bakes = false;       ///< its step becomes the base
-  /// By how much a follower, who adds up in float, may be off for it: when these add up to 1, it
-  /// wants a fresh shape.
-  double wear = 0.0;
-  std::vector<std::byte> told; ///< head and hands of an update message, `steps` 0
-  std::vector<std::byte> step; ///< one step of it
+  std::uint64_t number = 0; ///< of the frame, counted from 1
+  /// The step does not continue the record before: a client needs the shape again.
+  bool discontinuous = false;
+  bool bakes = false; ///< the step changes the base, it is not only drawn over it
+  /// The rounding errors that a client, which adds up in float, may collect by this step, as a
+  /// share of those that are allowed. When the shares add up to 1 it needs a fresh shape.
+  double drift = 0.0;
+  std::vector<std::byte> head; ///< head and hands of an update message, with `steps` 0
+  std::vector<std::byte> step; ///< one step of an update message
 };
 
 class FrameStream final : public flow::FrameSink {
 public:
-  /// Of a loop that is about to begin. Allocates for everything that show() needs.
-  /// most_fields, most_functions: of a frame, and of a field.
-  FrameStream(const deform::BlockLayout& layout, flow::Mode mode, std::size_t most_fields,
-              std::size_t most_functions);
+  /// layout, mode: those of a loop that has not begun yet. max_fields: of one frame;
+  /// max_functions: of one field. Allocates all that show() needs.
+  FrameStream(const deform::BlockLayout& layout, flow::Mode mode, std::size_t max_fields,
+              std::size_t max_functions);
 
-  /// In the tick. Wait-free: a copy of the shape's changed blocks if it was asked for, and in
-  /// Type-1 another one if the hands committed or undid.
+  /// Called in the tick; wait-free. Writes a record while the stream is active. Copies the shape's
+  /// changed blocks if the shape was requested and, in Type-1, after a commit and after an undo.
   void show(const flow::Frame& frame) noexcept override;
 
-  /// The rest is for one other thread.
-  /// While nobody listens, no records are made. Wait-free.
-  void listen(bool wanted) noexcept { listened_to_.store(wanted, std::memory_order_relaxed); }
+  // All that follows is for one other thread.
+
+  /// While the stream is not active, no records are made. Wait-free.
+  void set_active(bool active) noexcept { active_.store(active, std::memory_order_relaxed); }
   /// Appends the records since the last call. Allocates; does not block.
   void take(std::vector<Record>& records);
-  /// The shape of the next frame is wanted; more calls before it has come change nothing.
-  void ask_for_shape() noexcept;
-  /// A shape message: the base after the record `number`, which take() has not given before.
+  /// Requests a copy of the next frame's shape. Has no effect while one is on its way. Wait-free.
+  void request_shape() noexcept;
+  /// A shape message: the base after the record `number`, which take() has not returned yet.
   struct Shape {
     std::uint64_t number = 0;
     std::vector<std::byte> message;
   };
-  /// To be called after take(). Nothing: it has not come yet. Allocates; does not block.
+  /// The requested shape, or nothing if it has not come yet. To be called after take(). Allocates;
+  /// does not block.
   std::optional<Shape> take_shape();
-  /// Frames that found no room in the ring. Any thread.
+  /// How many frames found no room in the ring. Any thread.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:
@@ -62,30 +65,30 @@ private:
     std::array<std::byte, 64> bytes;
   };
   struct RecordHead;
-  enum class Request : std::uint8_t { none, asked, ready };
+  enum class ShapeRequest : std::uint8_t { none, pending, ready };
 
-  void give_shape(const flow::Frame& frame) noexcept;
+  void copy_shape(const flow::Frame& frame) noexcept;
   void push(const flow::Frame& frame, bool undone, bool committed) noexcept;
-  double wear_of(const flow::Frame& frame) const noexcept;
+  double drift_of(const flow::Frame& frame) const noexcept;
 
   const Eigen::Vector3d origin_;
   const double unit_;
   const std::size_t vertices_;
   const bool type1_;
-  const double most_wear_; ///< squared, in units
-  // The tick's own.
-  deform::BlockShape rest_; ///< of type 1: what fields are applied to
+  const double max_drift_; ///< squared, in units
+  // Used by the tick only.
+  deform::BlockShape rest_; ///< in Type-1, the shape that fields are applied to
   std::uint64_t number_ = 0;
   std::uint64_t commits_ = 0;
   std::uint64_t undos_ = 0;
   std::vector<std::byte> record_;
   // Shared.
   SpscRing<Chunk> ring_;
-  std::atomic<bool> listened_to_{false};
-  std::atomic<Request> request_{Request::none};
-  deform::BlockShape given_; ///< the tick's while asked, the other thread's while ready
-  std::uint64_t given_number_ = 0;
-  // The other thread's own.
+  std::atomic<bool> active_{false};
+  std::atomic<ShapeRequest> request_{ShapeRequest::none};
+  deform::BlockShape shape_copy_; ///< the tick's while pending, the other thread's while ready
+  std::uint64_t shape_copy_number_ = 0;
+  // Used by the other thread only.
   std::uint64_t taken_ = 0;
   std::vector<std::byte> incoming_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What a client needs before it can follow frames: the model's triangles and numbers
+// The message that a client needs before it can follow frames: the model and its numbers
 // (PROTOCOL.md).
 
 #include <cstddef>
@@ -15,17 +15,17 @@
 namespace nendo::web {
 
 struct ModelFacts {
-  std::string name; ///< for people
+  std::string name; ///< for display
   double rate_hz = 0.0;
   double units_per_metre = 1.0;
-  flow::LoopSettings settings; ///< in force
-  bool recorded = false;
+  flow::LoopSettings settings; ///< those that the loop runs with
+  bool recorded = false;       ///< whether the loop is recorded to a file
 };
 
-/// A shape message of more is too much for a browser.
-inline constexpr std::size_t most_vertices = 4'000'000;
+/// A browser cannot be expected to take more.
+inline constexpr std::size_t max_vertices = 4'000'000;
 
-/// layout: the loop's; mesh, hands: what it was made of. Allocates.
+/// layout: of the loop. mesh, hands: those that the loop was made of. Allocates.
 std::vector<std::byte> model_message(const deform::BlockLayout& layout, const deform::Mesh& mesh,
                                      std::span<const flow::HandInput> hands,
                                      const ModelFacts& facts);
