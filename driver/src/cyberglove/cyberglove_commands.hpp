@@ -33,7 +33,7 @@ struct GloveState {
   bool connected = false; ///< a glove is plugged into the unit
 };
 
-/// What quantised values are made with, a pair a sensor; the first `sensors` of each count.
+/// The offsets and gains by which the unit quantises values. The first `sensors` of each are valid.
 struct HardwareCalibration {
   std::size_t sensors = 0;
   std::array<std::uint8_t, sensor_slots> offset{};
@@ -52,7 +52,7 @@ struct RecordBytes {
   std::size_t size = 0; ///< with header and NUL
 };
 
-/// Where a CyberGlove III can send its records to.
+/// The places to which a CyberGlove III can send its records.
 enum class Sink : char { usb = 'u', wifi = 'w', card = 's' };
 
 class Commands {

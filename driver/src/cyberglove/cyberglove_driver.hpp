@@ -17,7 +17,7 @@ namespace nendo::driver::cyberglove {
 
 /// The table's entry for `serial:PATH`. `side` is not needed: the glove says which hand it is.
 Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> side);
-/// The same, done by `deadline`.
+/// Does the same, and gives up at `deadline`.
 Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline);
 
 /// Opens, finds the line rate unless `options` name it, identifies and sets up the glove; the

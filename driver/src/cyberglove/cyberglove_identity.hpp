@@ -35,7 +35,7 @@ struct Identity {
   std::vector<std::string> notes; ///< what was decided for the user, a line each
 };
 
-/// What is to be set up, and what is known already.
+/// What the user wants to be set up, and what is known of the unit already.
 struct Request {
   Options options;
   int baud = 0;                        ///< at which the unit answered
@@ -47,8 +47,8 @@ struct Request {
 /// begins with `source`.
 Result<Identity> identify(Dialogue& dialogue, const std::string& source, const Request& request);
 
-/// What `reply` to ?G means to the user: nothing, or why there is no working glove. `asked` says
-/// how it was asked. Error: no_device, as above.
+/// Judges the reply to ?G: success, or an error that says why there is no working glove. `asked`
+/// says how it was asked. Error: no_device, as above.
 Result<void> judge_state(const std::string& source, const Reply<GloveState>& reply,
                          const std::string& asked);
 

@@ -20,7 +20,7 @@ inline constexpr std::string_view options_grammar =
     "serial:PATH[?baud=N&rate=HZ&mask=0xBITS&stamps=on|off&filter=on|off&quantised=on|off&"
     "sync=on|off&hires=on|off]";
 
-/// What is not given stays as the glove has it.
+/// Options that are not given leave the glove as it is.
 struct Options {
   std::optional<int> baud; ///< otherwise it is looked for
   std::optional<double> rate_hz;

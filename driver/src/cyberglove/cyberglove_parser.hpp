@@ -25,23 +25,23 @@ namespace nendo::driver::cyberglove {
 
 enum class RecordForm : std::uint8_t { plain, hi_res };
 
-/// What a record is expected to hold; `values` is 1 to most_values, in the hi_res form 22. That
-/// form has neither time stamp nor status.
+/// The parts that a record is expected to have; `values` is 1 to most_values, in the hi_res
+/// form 22. That form has neither time stamp nor status.
 struct RecordShape {
   std::size_t values = 22;
   bool time_stamp = false;
   bool status = false;
   RecordForm form = RecordForm::plain;
 
-  /// Without error pairs, with header and NUL.
+  /// Returns the length with header and NUL, without error pairs.
   constexpr std::size_t bytes() const noexcept {
     if (form == RecordForm::hi_res) return hi_res_bytes;
     return 1 + values + (time_stamp ? time_stamp_bytes : 0U) + (status ? 1U : 0U) + 1;
   }
 };
 
-/// What Record::ticks is worth. The parser says `continues` wherever there is a time stamp; a judge
-/// that compares records knows better.
+/// How Record::ticks relates to those before. The parser says `continues` wherever there is a time
+/// stamp; a judge that compares records knows better.
 enum class Stamp : std::uint8_t { none, begins, continues };
 
 struct Record {
@@ -64,7 +64,7 @@ struct Record {
 std::optional<Record> decode_record(std::span<const std::byte> frame,
                                     const RecordShape& shape) noexcept;
 
-/// What a judge makes of a well-formed record.
+/// The judgement on a well-formed record.
 struct Verdict {
   bool plausible = true;
   std::uint64_t missed = 0; ///< records known to have been lost since the last plausible one
@@ -94,7 +94,7 @@ public:
       }
     }
   }
-  /// The same, without a judge.
+  /// Does the same without a judge.
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
     push(

@@ -19,7 +19,7 @@ struct Period {
 double rate_of(Period period) noexcept;
 
 /// The period next to 1/rate_hz: exact to half a tick above 1.76 Hz, to `times` / 2 ticks below.
-/// Nothing above 115200 Hz, below one record in ten hours, and for what is no number.
+/// Returns nullopt above 115200 Hz, below one record in ten hours, and for NaN.
 std::optional<Period> choose_period(double rate_hz) noexcept;
 
 /// Which byte of a word comes first in the reply to ?T. Sources contradict each other: the authors

@@ -34,7 +34,7 @@ public:
   /// ticks do not continue those before them.
   Verdict operator()(Record& record) noexcept;
 
-  /// As given or learnt; 0 while unknown.
+  /// Returns the period that was given or learnt; 0 while it is unknown.
   std::uint32_t period_ticks() const noexcept { return period_; }
 
 private:

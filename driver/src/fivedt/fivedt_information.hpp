@@ -22,7 +22,7 @@ struct Information {
   std::string name; ///< printable, without blanks at its ends; may be empty
 };
 
-/// Nothing if it does not begin as it must.
+/// Returns nullopt if the answer does not begin as it must.
 std::optional<Information> decode_information(std::span<const std::byte, information_bytes> answer);
 
 /// Finds the answer in what a glove sends, cut anywhere: a sample or an answer to another question

@@ -18,7 +18,7 @@ struct Report {
   std::array<std::uint16_t, value_sensors.size()> values{};
 };
 
-/// Nothing if it is of another length; the values cannot be told from damaged ones.
+/// Returns nullopt if the report has another length. Damaged values cannot be told from good ones.
 std::optional<Report> decode_report(std::span<const std::byte> report) noexcept;
 
 using Parser = ReportParser<Report, decode_report>;

@@ -30,7 +30,7 @@ struct Model {
   friend constexpr bool operator==(const Model&, const Model&) = default;
 };
 
-/// Nothing if no glove has this number.
+/// Returns nullopt if no glove has this number.
 constexpr std::optional<Model> model_of(std::uint16_t product_id) noexcept {
   if ((product_id & ~(left_bit | link_bits | five_sensors_bit)) != 0) return std::nullopt;
   const unsigned link = product_id & link_bits;

@@ -17,7 +17,7 @@
 
 namespace nendo::driver::forte {
 
-/// What [S] sets, though at Bluetooth ports only, which have no rate.
+/// The rate that [S] sets, though only at Bluetooth ports, which have no rate.
 inline constexpr int baud = 460'800;
 inline constexpr int other_baud = 115'200; ///< the most common one [?]
 

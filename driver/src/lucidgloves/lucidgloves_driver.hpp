@@ -28,7 +28,7 @@ namespace nendo::driver::lucidgloves {
 /// firmware finds in the curls.
 Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::optional<Side> side);
 
-/// The same for any port, with the range and the wishes that the options hold.
+/// Does the same for any port, with the range and the settings that the options hold.
 Result<std::unique_ptr<Glove>> open_lucidgloves_by(const std::string& source, OpenPort open_port,
                                                    std::uint16_t range, const HandWishes& hands);
 

@@ -16,7 +16,7 @@
 
 namespace nendo::driver::lucidgloves {
 
-/// What one line says. Fingers go from thumb to pinky.
+/// The values of one line. Fingers go from thumb to pinky.
 struct Line {
   using Value = std::optional<std::uint16_t>;
   std::array<Value, fingers> curl;

@@ -32,7 +32,7 @@ struct Report {
   std::size_t light_count = 0;
 };
 
-/// Nothing if it is of another length or another number.
+/// Returns nullopt if the report has another length or another number.
 std::optional<Report> decode_report(std::span<const std::byte> report) noexcept;
 
 using Parser = ReportParser<Report, decode_report>;

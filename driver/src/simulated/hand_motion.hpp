@@ -48,7 +48,7 @@ public:
   /// `time_s` since the start, at least 0. Any thread, no state.
   JointAngles at(double time_s) const noexcept;
 
-  /// What distinguishes one hand from another; drawn from the seed.
+  /// The properties that distinguish one hand from another. They are drawn from the seed.
   struct Character {
     double tempo = 1.0;                ///< how fast it goes through a motion's cycle
     double phase = 0.0;                ///< where in the cycle it starts, in cycles

@@ -18,7 +18,7 @@ namespace nendo::driver {
 /// Opens the device anew; called again from the reader thread whenever it vanished.
 using OpenPort = std::function<Result<std::unique_ptr<Transport>>()>;
 
-/// What an opening is allowed, in all.
+/// How long opening a glove may take in all.
 inline constexpr std::chrono::milliseconds open_budget{4000};
 
 /// Opens the port and identifies the glove, by `deadline`. Errors: those of `open_port` and of

@@ -27,7 +27,7 @@ Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int 
 Result<std::unique_ptr<Transport>> open_termios(const std::string& path);
 /// Takes over a descriptor that is open, non-blocking and, if a terminal, raw.
 std::unique_ptr<Transport> transport_of(int fd);
-/// What a failed attempt to open or lock `path` means to the user.
+/// Returns what a failed attempt to open or lock `path` means to the user.
 Error open_error(const std::string& path, int error_number);
 
 } // namespace nendo::driver

@@ -13,7 +13,7 @@ struct PortAccess {
 
 /// Asks the file system; does not open it. A node that is gone is nobody's: `who` is empty.
 PortAccess port_access(const std::string& path);
-/// The same where an attempt to open it was refused, whatever the file system thinks.
+/// Returns the same for a device that refused to be opened, whatever the file system says.
 PortAccess refused_access(const std::string& path);
 
 } // namespace nendo::driver

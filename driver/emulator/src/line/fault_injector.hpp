@@ -36,7 +36,7 @@ public:
 
   /// Appends to `wire` what is left of a message that the unit sends at `now`.
   void pass(std::span<const std::byte> message, bool record, Time now, Wire& wire);
-  /// What a modem probe leaves: echoes, and the unit's error answers.
+  /// The bytes that a modem probe leaves behind: echoes, and the unit's error answers.
   void pass_junk(Wire& wire);
 
   /// Records passed, and those of them that do not arrive whole or arrive joined to something else.

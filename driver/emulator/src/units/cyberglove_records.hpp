@@ -16,7 +16,7 @@
 
 namespace nendo::emulator::unit {
 
-/// What a record tells besides the sensors.
+/// The parts of a record besides the sensors.
 struct RecordFrame {
   Byte header = 'S'; ///< a small letter makes it a text
   EmulatedUnit::Time now{};
@@ -28,7 +28,7 @@ struct RecordFrame {
 
 class RecordMaker {
 public:
-  /// With a `capture` 8-bit records are its records, one after the other and from the start again.
+  /// If there is a `capture`, its records are sent as the 8-bit records, again and again.
   RecordMaker(driver::Motion motion, Side side, std::uint32_t seed, bool stamp_bit7, bool pattern,
               std::vector<Message> capture);
 

@@ -46,7 +46,7 @@ struct Settings {
   Byte quantise(std::size_t slot, Byte count) const noexcept;
 };
 
-/// As after switching on.
+/// Returns the settings after switching on.
 Settings power_up_settings(double rate_hz, const PluggedGlove& glove) noexcept;
 
 /// How its words go over the wire in the binary command and in its query: the sources disagree.
@@ -59,7 +59,8 @@ std::optional<std::size_t> argument_bytes(Byte letter, const Message& argument,
 /// How many bytes each number of the command's text form stands for.
 std::size_t number_width(Byte letter) noexcept;
 
-/// Obeys a set command whose argument is complete. False: a number is out of range, nothing is set.
+/// Handles a set command whose argument is complete. False: a number is out of range, nothing is
+/// set.
 bool apply(Settings& settings, Byte letter, const Message& argument, WordOrder order,
            const PluggedGlove& glove);
 

@@ -24,8 +24,8 @@ struct ThreeSettings {
 /// empty: there is no such command.
 std::optional<std::size_t> three_bytes(const Message& command);
 
-/// Obeys a complete command; S, which starts the stream, is the caller's. False: a number is out of
-/// range, nothing is set.
+/// Handles a complete command. S, which starts the stream, is left to the caller. False: a number
+/// is out of range, nothing is set.
 bool apply(ThreeSettings& settings, const Message& command);
 
 } // namespace nendo::emulator::unit

@@ -14,7 +14,7 @@ namespace nendo::emulator {
 struct EmulatedKind {
   std::string_view name;
   Result<std::unique_ptr<EmulatedUnit>> (*make)(const EmulatorOptions& options);
-  bool befallible; ///< it does something at an Incident: its glove can be pulled and swapped
+  bool takes_incidents; ///< its glove can be pulled and swapped
 };
 
 /// Error: usage, naming those there are.

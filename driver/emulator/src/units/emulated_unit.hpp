@@ -16,7 +16,7 @@
 
 namespace nendo::emulator {
 
-/// What befalls a unit without the host's doing.
+/// Something that happens to a unit without the host's doing.
 struct Incident {
   enum class Kind : std::uint8_t { glove_out, glove_in, power_cycle, switch_on, switch_off };
   Kind kind = Kind::glove_out;
@@ -46,16 +46,16 @@ public:
   EmulatedUnit& operator=(const EmulatedUnit&) = delete;
   virtual ~EmulatedUnit() = default;
 
-  /// Obeys the bytes that arrive at `now`, one after another. Any bytes are allowed.
+  /// Handles the bytes that arrive at `now`, one after another. Any bytes are allowed.
   virtual void receive(std::span<const std::byte> bytes, Time now) = 0;
   /// Does what is due at `now`, e.g. the records of a stream.
   virtual void advance(Time now) = 0;
   /// When advance() will have something to do; empty if only the host can cause it.
   virtual std::optional<Time> next_due() const noexcept = 0;
-  /// Suffers an incident; a unit whose glove cannot be pulled or swapped does nothing.
+  /// Lets an incident happen. A unit whose glove cannot be pulled or swapped ignores it.
   virtual void inject(const Incident& incident, Time now) { (void)incident, (void)now; }
 
-  /// What waits for the host, at most output_capacity bytes.
+  /// Returns the bytes that wait for the host, at most output_capacity.
   std::span<const std::byte> output() const noexcept { return {output_.data(), output_size_}; }
   /// The messages that output() consists of, or what is left of them.
   std::span<const UnitMessage> messages() const noexcept { return messages_; }
@@ -76,7 +76,7 @@ public:
 protected:
   /// False: the message does not fit and is refused whole.
   bool send(std::span<const std::byte> message) { return put(message, false); }
-  /// The same for a record, which it counts.
+  /// Sends a record, and counts it.
   bool send_record(std::span<const std::byte> message) {
     const bool sent = put(message, true);
     if (sent) ++counters_.records;

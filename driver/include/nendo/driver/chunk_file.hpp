@@ -17,7 +17,7 @@
 
 namespace nendo::driver {
 
-/// Four letters, as they stand in the file.
+/// A chunk's type: four letters, in the order in which they stand in the file.
 using ChunkType = std::uint32_t;
 constexpr ChunkType chunk_type(const char (&letters)[5]) noexcept {
   ChunkType type = 0;
@@ -33,20 +33,21 @@ inline constexpr std::size_t chunk_header_bytes = 20;
 inline constexpr std::size_t chunk_checksum_bytes = 4; ///< after the payload
 inline constexpr std::size_t most_payload_bytes = std::size_t{1} << 24;
 
-/// Pure, as the next; both may be called in a signal handler.
+/// Returns the first bytes of a file. Pure; may be called in a signal handler.
 std::array<std::byte, file_header_bytes> file_header() noexcept;
-/// `number`: of the chunk in its file, from 0; `payload`: at most most_payload_bytes.
+/// Returns what stands before `payload`, which has at most most_payload_bytes. `number` counts the
+/// chunks of the file, from 0. Pure; may be called in a signal handler.
 std::array<std::byte, chunk_header_bytes> chunk_header(ChunkType type, std::uint32_t number,
                                                        std::span<const std::byte> payload) noexcept;
-/// A whole chunk at the end of `out`.
+/// Appends a whole chunk to `out`: header, payload and checksum.
 void append_chunk(std::vector<std::byte>& out, ChunkType type, std::uint32_t number,
                   std::span<const std::byte> payload);
 
 struct Chunk {
   ChunkType type = 0;
   std::uint32_t number = 0;
-  std::uint64_t offset = 0;           ///< of its header, in the file
-  std::span<const std::byte> payload; ///< until the next chunk is asked for
+  std::uint64_t offset = 0;           ///< where its header begins in the file
+  std::span<const std::byte> payload; ///< valid until the next chunk is asked for
 };
 
 struct ChunkDamage {
@@ -59,23 +60,25 @@ struct ChunkDamage {
 /// that the file's size bounds. One thread; blocks for as long as the disk does.
 class ChunkReader {
 public:
-  /// Errors: bad_input (no regular file, no recording, made by a newer nendo).
+  /// Opens a recording. Error: bad_input (not a regular file, not a recording, made by a newer
+  /// nendo).
   static Result<ChunkReader> open(const std::filesystem::path& path);
-  /// To save what can be saved: a header that is no recording's is damage like any other.
+  /// Opens a file to save what can be saved from it: a wrong file header counts as damage. Error:
+  /// bad_input (not a regular file).
   static Result<ChunkReader> open_damaged(const std::filesystem::path& path);
-  /// `bytes` must outlive it; `name` is what errors call them.
+  /// Reads from memory. `bytes` must outlive the reader; errors call them `name`.
   static Result<ChunkReader> of(std::span<const std::byte> bytes, std::string_view name);
 
-  /// The next chunk that is whole; nothing at the end. What is not whole is passed over and told by
-  /// damages(); reading goes on at the next chunk that can be found.
+  /// Returns the next whole chunk, or nullopt at the end. Damaged parts are passed over and listed
+  /// in damages().
   std::optional<Chunk> next();
 
-  /// So far; of more than most_damages, the first ones.
+  /// Returns the damage found so far, the first most_damages pieces of it.
   const std::vector<ChunkDamage>& damages() const noexcept { return damages_; }
   std::uint64_t damage_count() const noexcept { return damage_count_; }
   static constexpr std::size_t most_damages = 100;
   std::uint64_t size() const noexcept { return end_; }
-  /// Where the last good chunk ended.
+  /// Returns where the last good chunk ended.
   std::uint64_t good_end() const noexcept { return good_end_; }
   const std::string& name() const noexcept { return name_; }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What of a recording belongs to gloves (driver/src/replay/FORMAT.md): who they are, and their
-// samples as entries of an input log.
+// The parts of a recording that belong to gloves (driver/src/replay/FORMAT.md): who they are, and
+// their samples as entries of an input log.
 
 #include <cstdint>
 #include <optional>
@@ -27,11 +27,12 @@ struct TapeRecord {
   bool is(RecordKind wanted) const noexcept { return kind == static_cast<std::uint8_t>(wanted); }
 };
 
-/// The entries of an input log chunk's payload, one after another; pure.
+/// Goes through the entries of a TAPE chunk's payload. Pure.
 class TapeRecords {
 public:
   explicit TapeRecords(std::span<const std::byte> payload) noexcept : reader_(payload) {}
-  /// Nothing: the end, or a payload that ends in the middle of an entry, which ended_well() tells.
+  /// Returns the next entry; nullopt at the end. ended_well() then says whether the payload ended
+  /// with a whole entry.
   std::optional<TapeRecord> next() noexcept;
   bool ended_well() const noexcept { return !reader_.overrun(); }
 
@@ -39,7 +40,7 @@ private:
   ByteReader reader_;
 };
 
-/// Every kind's entry begins so.
+/// Writes the kind and length with which every entry begins.
 void put_record_head(ByteWriter& writer, RecordKind kind, std::size_t body_bytes);
 
 struct RecordedSample {
@@ -47,16 +48,17 @@ struct RecordedSample {
   GloveSample sample;
 };
 
-/// Times in a recording are nanoseconds of the host's clock; what lies a century off is refused, so
-/// that differences of times never overflow.
+/// Says whether a time is within 2^61 ns (73 years) of the clock's zero. Readers refuse other
+/// times, so that differences of times never overflow.
 bool is_usable_time(std::chrono::nanoseconds since_epoch) noexcept;
 void put_time(ByteWriter& writer, HostTime time);
 HostTime read_time(ByteReader& reader) noexcept;
 
+/// Writes a sample as a whole entry.
 void put_sample(ByteWriter& writer, const RecordedSample& recorded);
-/// Nothing if the entry is no sample, or holds what no glove sends.
+/// Returns the sample of an entry; nullopt if the entry is no sample, or holds what no glove sends.
 std::optional<RecordedSample> sample_of(const TapeRecord& record) noexcept;
-/// The same of a sample that stands in another chunk, without an entry's head.
+/// Writes or reads a sample without the kind and length of an entry, for other chunks.
 void put_sample_body(ByteWriter& writer, const RecordedSample& recorded);
 std::optional<RecordedSample> read_sample_body(ByteReader& reader) noexcept;
 
@@ -65,9 +67,10 @@ struct RecordedGlove {
   GloveInfo info;
 };
 
+/// Writes the payload of a GLOV chunk.
 void put_glove(ByteWriter& writer, const RecordedGlove& glove);
-/// Nothing if the payload is not what put_glove() writes. In its texts, what is
-/// not printable ASCII becomes '?'.
+/// Returns the glove that the payload of a GLOV chunk describes; nullopt if put_glove() cannot have
+/// written it. In its texts, characters other than printable ASCII become '?'.
 std::optional<RecordedGlove> glove_of(std::span<const std::byte> payload);
 
 } // namespace nendo::driver

@@ -2,9 +2,6 @@
 // A simulated glove. It sends what a typical wearer's glove would, in 8-bit counts, with noise. Its
 // motion is one of those of motion_names(), or comes from the caller.
 
-#include <array>
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,13 +18,14 @@ namespace nendo::driver {
 /// wave, pinch, grasp, sculpt.
 std::vector<std::string_view> motion_names();
 
-/// `sim:MOTION?seed=N&rate=HZ&hand=left|right&sensors=18|22`; all of it may be left out; a hand
-/// that is not named is `side`, or right. Error: usage, naming the option and what is allowed.
+/// Reads `sim:MOTION?seed=N&rate=HZ&hand=left|right&sensors=18|22`, all of which may be left out.
+/// Without `hand` the glove is of `side`, or of the right hand. Error: usage, naming the option and
+/// what is allowed.
 Result<SimulatedGloveOptions> simulated_glove_options(const GloveSpec& spec,
                                                       std::optional<Side> side);
 
-/// Samples come at absolute deadlines from start() on; one that is missed is skipped, the grid
-/// stays.
+/// Makes a glove with the given motion. From start() on, sample n comes n periods later; a deadline
+/// that was missed is skipped.
 std::unique_ptr<Glove> make_simulated_glove(const SimulatedGloveOptions& options,
                                             SensorMotion motion);
 

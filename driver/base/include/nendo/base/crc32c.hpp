@@ -26,8 +26,8 @@ inline constexpr auto crc32c_bytes = crc32c_table();
 
 } // namespace detail
 
-/// `before` is the checksum of what stood before these bytes. Pure; may be called in a signal
-/// handler.
+/// Returns the checksum of `bytes`. `before` is the checksum of what stood before these bytes.
+/// Pure; may be called in a signal handler.
 constexpr std::uint32_t crc32c(std::span<const std::byte> bytes,
                                std::uint32_t before = 0) noexcept {
   std::uint32_t crc = ~before;

@@ -1,5 +1,5 @@
 #pragma once
-// An open file of the system's, closed when nobody holds it any more.
+// Owns a file descriptor and closes it when it goes.
 
 #include <utility>
 
@@ -8,7 +8,7 @@ namespace nendo {
 class Descriptor {
 public:
   Descriptor() = default;
-  /// Takes what open() gave; a negative one is no open file.
+  /// Takes over what open() returned; a negative number is no open file.
   explicit Descriptor(int fd) noexcept : fd_(fd) {}
   ~Descriptor() { close(); }
   Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
@@ -22,7 +22,7 @@ public:
 
   int get() const noexcept { return fd_; }
   bool is_open() const noexcept { return fd_ >= 0; }
-  /// False if the system reports here what an earlier write could not keep.
+  /// Closes the file, if it is open. False: the system reports that an earlier write failed.
   bool close() noexcept;
 
 private:

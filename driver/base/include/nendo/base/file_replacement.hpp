@@ -1,5 +1,5 @@
 #pragma once
-// A whole file out, piece by piece: what is too large to be in memory at once.
+// Writes a whole file piece by piece, for what is too large to be in memory at once.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,8 +11,9 @@
 
 namespace nendo {
 
-/// replace_file(), piece by piece: until finish() everything is in the temporary file, which goes
-/// without it. Its mode is that of the file in whose place it comes, from before the first byte.
+/// Does what replace_file() does, piece by piece. Until finish() everything is in a temporary file,
+/// which the destructor removes. The temporary file has the mode of the file that it replaces from
+/// the beginning.
 class FileReplacement {
 public:
   /// Error: failed (not a regular file, cannot be written).
@@ -21,13 +22,13 @@ public:
   FileReplacement& operator=(FileReplacement&&) = delete;
   ~FileReplacement();
 
-  /// After what was written before. Error: failed (disk full, ...).
+  /// Appends. Error: failed (disk full, ...).
   Result<void> write(std::span<const std::byte> bytes);
   Result<void> write(std::string_view text) { return write(std::as_bytes(std::span(text))); }
-  /// Nothing follows but finish(), which can then hardly fail: for who replaces several files, and
-  /// wants all of them or none. Error: failed (what a disk found full only now).
+  /// Syncs, so that finish() can hardly fail any more. Only finish() may follow. For callers that
+  /// replace several files and want all of them or none. Error: failed (e.g. the disk is full).
   Result<void> sync();
-  /// Syncs and gives the file its name; the last call. Error: failed.
+  /// Syncs and gives the file its name. No call may follow. Error: failed.
   Result<void> finish();
 
   std::uint64_t size() const noexcept { return size_; } ///< bytes written

@@ -1,6 +1,6 @@
 #pragma once
-// A job that one thread offers to another. If that is there, it takes the job; if it is not, the
-// first one takes it back: nobody waits for a thread that has no processor.
+// A job that one thread offers to another. If the other thread runs, it takes the job; if not, the
+// first thread withdraws it. So nobody waits for a thread that has no processor.
 
 #include <atomic>
 #include <cstdint>
@@ -14,18 +14,18 @@ namespace nendo {
 template <class Job, class Atomics = StdAtomics>
 class JobOffer {
 public:
-  /// The offering thread. Not before the last job was withdrawn or is done.
+  /// Offering thread: offers a job. The job before must have been withdrawn or be done.
   void offer(const Job& job) noexcept {
     job_ = job;
     done_.store(0, std::memory_order_relaxed);
     open_.store(1, std::memory_order_release);
   }
-  /// The offering thread, once: true, nobody has taken the job, nor will; false, it is being done.
+  /// Offering thread, once a job: takes the job back. False: the other thread has taken it.
   bool withdraw() noexcept { return open_.exchange(0, std::memory_order_relaxed) == 1; }
-  /// The offering thread, of a job that it could not withdraw.
+  /// Offering thread: says whether a job that could not be withdrawn is done.
   bool is_done() const noexcept { return done_.load(std::memory_order_acquire) == 1; }
 
-  /// The other thread: true, there is one, and it is this thread's until done().
+  /// Other thread: takes the job. False: there is none. The job is this thread's until done().
   bool take(Job& job) noexcept {
     if (open_.load(std::memory_order_relaxed) == 0) return false; // spares others' caches
     if (open_.exchange(0, std::memory_order_acquire) == 0) return false;

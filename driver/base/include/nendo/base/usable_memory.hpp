@@ -1,18 +1,19 @@
 #pragma once
-// How much memory there is for this program.
+// Tells how much memory this program may use.
 
 #include <cstddef>
 #include <filesystem>
 
 namespace nendo {
 
-/// Bytes: the machine's, or less where a control group of this process (cgroup version 2: a
-/// container, a service with MemoryMax=) may have less. Reads files; never fails.
+/// Returns how many bytes of memory this process may use: those of the machine, or fewer if a
+/// control group of this process (cgroup version 2: a container, a service with MemoryMax=) has a
+/// lower limit. Reads files; never fails.
 std::size_t usable_memory();
 
-/// The least memory.max of the group that `membership` names and of those above it, beneath the
-/// file system that is mounted at `root`; as /proc/self/cgroup and /sys/fs/cgroup are. Without any
-/// the greatest number there is.
+/// Returns the least memory.max, in bytes, of the control group that the file `membership` names
+/// and of the groups above it. `root` is where the control groups are mounted. Usually these are
+/// /proc/self/cgroup and /sys/fs/cgroup. Returns the greatest std::size_t if there is no limit.
 std::size_t group_memory_limit(const std::filesystem::path& membership,
                                const std::filesystem::path& root);
 

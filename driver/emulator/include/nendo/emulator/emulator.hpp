@@ -1,7 +1,7 @@
 #pragma once
-// A data glove's electronics on a pseudo-terminal: the protocol from the device's side, written
-// from the published facts and not from the parser, so that it can be its test. Users test their
-// own software against it, with the faults that real lines and real people have.
+// Emulates a data glove's electronics on a pseudo-terminal. It was written from the published facts
+// of each protocol and not from the driver's parser, so that each can test the other. Users test
+// their own software against it, with the faults of real lines and real people.
 
 #include <atomic>
 #include <cstdint>
@@ -30,7 +30,7 @@ enum class EmulatorPace : std::uint8_t {
   host,  ///< a record whenever the host has room for it; the device's clock goes a period further
 };
 
-/// What only a CyberGlove has.
+/// Options for CyberGloves only.
 struct EmulatedCyberGlove {
   unsigned model = 1;              ///< CyberGlove I, II or III
   std::uint32_t hardware_mask = 0; ///< the sensors that the glove has; 0: the usual ones

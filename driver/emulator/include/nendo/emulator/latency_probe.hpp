@@ -1,8 +1,8 @@
 #pragma once
-// How long a record takes from the write of its last byte at the device's end until its sample is
-// visible in the ring: of the real CyberGlove driver, and of the least that any program can do, a
-// thread that poll()s, read()s and pushes. Both in one run, record by record in turn, because the
-// machine's mood changes faster than two runs follow one another.
+// Measures how long a record takes from the write of its last byte at the device's end until its
+// sample is visible in the ring. It measures the real CyberGlove driver and, for comparison, the
+// least that any program can do: a thread that calls poll() and read() and pushes. Both run at once
+// and take records in turn, because a machine's speed changes between two runs.
 
 #include <atomic>
 #include <cstddef>

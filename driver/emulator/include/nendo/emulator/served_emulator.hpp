@@ -1,5 +1,5 @@
 #pragma once
-// An emulated glove on a pseudo-terminal, served by a thread of its own.
+// Serves an emulated glove from a thread of its own.
 
 #include <atomic>
 #include <thread>
@@ -20,9 +20,10 @@ public:
   ServedEmulator& operator=(const ServedEmulator&) = delete;
   ~ServedEmulator() { stop(); }
 
-  /// It was told to end, or failed.
+  /// Says whether serving was told to end, or failed.
   bool is_over() const noexcept { return over_; }
-  /// Lets what was sent go out, and says how serving went. Blocks for a moment.
+  /// Ends serving when all that was sent has gone out. Returns how serving went. Blocks for a
+  /// moment.
   Result<void> finish() {
     stop();
     return served_;
