@@ -8,24 +8,21 @@
 
 #include <doctest/doctest.h>
 
+#include "support/parser_laws.hpp"
+
 namespace cyberglove_parser_test {
 
 using namespace nendo::driver::cyberglove;
 
 namespace {
 
-using Bytes = std::vector<std::byte>;
+using nendo::test::bytes_of;
+using nendo::test::joined;
+using Bytes = nendo::test::StreamBytes;
 
 constexpr RecordShape plain_22{22, false, false};
 constexpr RecordShape full_22{22, true, true};
 constexpr RecordShape plain_18{18, false, false};
-
-Bytes bytes_of(std::string_view text) {
-  Bytes bytes;
-  for (const char c : text)
-    bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
-}
 
 /// Header, values first, first+1 ..., then `tail` and NUL: the layout as published.
 Bytes record_bytes(std::size_t values, int first, std::string_view tail = "") {
@@ -36,13 +33,6 @@ Bytes record_bytes(std::size_t values, int first, std::string_view tail = "") {
   bytes.insert(bytes.end(), end.begin(), end.end());
   bytes.push_back(std::byte{0});
   return bytes;
-}
-
-Bytes joined(std::initializer_list<Bytes> parts) {
-  Bytes all;
-  for (const Bytes& part : parts)
-    all.insert(all.end(), part.begin(), part.end());
-  return all;
 }
 
 struct Outcome {
@@ -57,9 +47,7 @@ Outcome parse(const RecordShape& shape, std::span<const std::byte> input) {
   parser.push(input, [&](const Record& record) { outcome.records.push_back(record); });
   outcome.counters = parser.counters();
   outcome.pending = parser.pending();
-  CHECK(outcome.counters.bytes == input.size());
-  CHECK(outcome.counters.bytes ==
-        outcome.counters.record_bytes + outcome.counters.discarded_bytes + outcome.pending);
+  nendo::test::check_accounted(parser, input.size());
   CHECK(outcome.pending < most_record_bytes);
   CHECK(outcome.counters.records == outcome.records.size());
   return outcome;
@@ -285,19 +273,7 @@ TEST_SUITE("cyberglove_parser") {
             record_bytes(22, static_cast<int>(1 + random() % 200), "\x8A\x02\x01\x01\x01\x87");
         stream.insert(stream.end(), next.begin(), next.end());
       }
-      for (auto k = random() % 40; k > 0; --k) {
-        const auto at = stream.begin() + static_cast<std::ptrdiff_t>(random() % stream.size());
-        switch (random() % 3) {
-        case 0:
-          *at = static_cast<std::byte>(random());
-          break;
-        case 1:
-          stream.erase(at);
-          break;
-        default:
-          stream.insert(at, static_cast<std::byte>(random()));
-        }
-      }
+      nendo::test::mutilate(stream, random() % 40, random);
       const Outcome outcome = parse(full_22, stream);
       CHECK(outcome.records.size() <= 70);
       for (const Record& record : outcome.records) {

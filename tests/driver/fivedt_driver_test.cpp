@@ -111,44 +111,15 @@ TEST_SUITE("fivedt_driver") {
   }
 
   TEST_CASE("a 5DT glove's options that are none are usage errors that name what there is") {
-    struct Case {
-      const char* options;
-      const char* said;
-    };
-    for (const Case& wrong :
-         {Case{"?rate=9", "baud"}, Case{"?baud=115200", "19200, 9600"}, Case{"?hand=up", "left"}}) {
-      const auto glove = open_glove(std::string("5dt:/dev/nendo-none") + wrong.options);
-      REQUIRE_FALSE(glove);
-      CAPTURE(glove.error().message);
-      CHECK(glove.error().code == Errc::usage);
-      CHECK(glove.error().message.find(wrong.said) != std::string::npos);
-    }
-    CHECK(open_glove("5dt:").error().code == Errc::usage);
+    wrong_options_are_usage_errors(
+        "5dt", {{"?rate=9", "baud"}, {"?baud=115200", "19200, 9600"}, {"?hand=up", "left"}});
   }
 
   TEST_CASE("a hand at rest arrives in the slots of its knuckles") {
     FiveDtUnitOptions options;
     options.motion = Motion::rest;
-    const PtyUnit port(make_fivedt_unit(options));
-    SampleRing ring(1U << 14U);
-    auto glove = open_glove("5dt:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    GloveSample sample;
-    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
-    // The relaxed hand in degrees, of the range of a knuckle.
-    struct Joint {
-      Sensor sensor;
-      double angle;
-      double range;
-    };
-    for (const Joint& joint : {Joint{Sensor::thumb_mcp, 15, 55}, Joint{Sensor::index_mcp, 23, 90},
-                               Joint{Sensor::middle_mcp, 25, 90}, Joint{Sensor::ring_mcp, 26, 90},
-                               Joint{Sensor::pinky_mcp, 27, 90}}) {
-      CAPTURE(name_of(joint.sensor));
-      const double degrees = sample[joint.sensor].value * joint.range / 255.0;
-      CHECK(std::abs(degrees - joint.angle) < 2.0); // tremor
-    }
+    const GloveSample sample = sample_at_rest(make_fivedt_unit(options), "5dt");
+    check_at_rest(sample, resting_knuckles, 255.0, 2.0); // tremor
   }
 
   TEST_CASE("what does not answer like a wired 5DT glove is an error that says so") {

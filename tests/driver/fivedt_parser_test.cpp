@@ -8,6 +8,7 @@
 
 #include "fivedt/fivedt_information.hpp"
 #include "support/captures.hpp"
+#include "support/parser_laws.hpp"
 
 namespace fivedt_parser_test {
 
@@ -16,14 +17,9 @@ using namespace nendo::driver::fivedt;
 
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-Bytes bytes_of(std::initializer_list<int> values) {
-  Bytes bytes;
-  for (const int value : values)
-    bytes.push_back(static_cast<std::byte>(value));
-  return bytes;
-}
+using nendo::test::bytes_of;
+using nendo::test::joined;
+using Bytes = nendo::test::StreamBytes;
 
 /// Fingers first, first+1 ..., pitch and roll; the layout as published.
 Bytes sample_bytes_of(int first, int pitch = 90, int roll = 91) {
@@ -38,13 +34,6 @@ Bytes sample_bytes_of(int first, int pitch = 90, int roll = 91) {
   return bytes;
 }
 
-Bytes joined(std::initializer_list<Bytes> parts) {
-  Bytes all;
-  for (const Bytes& part : parts)
-    all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 struct Outcome {
   std::vector<int> firsts; // the thumb's value of each record
   nendo::driver::StreamCounters counters;
@@ -57,9 +46,7 @@ Outcome parse(std::span<const std::byte> input) {
   parser.push(input, [&](const Record& record) { outcome.firsts.push_back(record.flexion[0]); });
   outcome.counters = parser.counters();
   outcome.pending = parser.pending();
-  CHECK(outcome.counters.bytes == input.size());
-  CHECK(outcome.counters.bytes ==
-        outcome.counters.record_bytes + outcome.counters.discarded_bytes + outcome.pending);
+  test::check_accounted(parser, input.size());
   CHECK(outcome.counters.record_bytes == 9 * outcome.counters.records);
   CHECK(outcome.counters.records == outcome.firsts.size());
   CHECK(outcome.pending < 9);
@@ -161,16 +148,11 @@ TEST_SUITE("fivedt_parser") {
                 bytes_of({0x80, 0x80}), sample_bytes_of(4), bytes_of({0x55}), sample_bytes_of(5)});
     const Outcome whole = parse(stream);
     CHECK(whole.firsts == Firsts{1, 2, 4, 5});
-    for (std::size_t first = 0; first <= stream.size(); ++first) {
-      Parser parser;
-      Firsts firsts;
-      const auto sink = [&](const Record& record) { firsts.push_back(record.flexion[0]); };
-      parser.push(std::span(stream).first(first), sink);
-      parser.push(std::span(stream).subspan(first), sink);
-      CHECK(firsts == whole.firsts);
-      CHECK(parser.counters().discarded_bytes == whole.counters.discarded_bytes);
-      CHECK(parser.counters().bad_records == whole.counters.bad_records);
-    }
+    test::cut_makes_no_difference(
+        stream, 9, [] { return Parser(); },
+        [](Firsts& firsts) {
+          return [&firsts](const Record& record) { firsts.push_back(record.flexion[0]); };
+        });
   }
 
   TEST_CASE("every byte of a 5DT stream is accounted for, however it is mutilated") {
@@ -182,19 +164,7 @@ TEST_SUITE("fivedt_parser") {
         const Bytes next = sample_bytes_of(static_cast<int>(random() % 250));
         stream.insert(stream.end(), next.begin(), next.end());
       }
-      for (auto k = random() % 20; k > 0; --k) {
-        const auto at = stream.begin() + static_cast<std::ptrdiff_t>(random() % stream.size());
-        switch (random() % 3) {
-        case 0:
-          *at = static_cast<std::byte>(random());
-          break;
-        case 1:
-          stream.erase(at);
-          break;
-        default:
-          stream.insert(at, static_cast<std::byte>(random()));
-        }
-      }
+      test::mutilate(stream, random() % 20, random);
       samples += parse(stream).counters.records;
     }
     CHECK(samples > 400 * 15); // the damage is local

@@ -80,44 +80,17 @@ TEST_SUITE("forte_driver") {
   }
 
   TEST_CASE("a Forte glove's options that are none are usage errors that name what there is") {
-    struct Case {
-      const char* options;
-      const char* said;
-    };
-    for (const Case& wrong : {Case{"?rate=9", "baud"}, Case{"?baud=9600", "460800, 115200"},
-                              Case{"?hand=up", "left"}, Case{"?link=radio", "usb, bluetooth"}}) {
-      const auto glove = open_glove(std::string("forte:/dev/nendo-none") + wrong.options);
-      REQUIRE_FALSE(glove);
-      CAPTURE(glove.error().message);
-      CHECK(glove.error().code == Errc::usage);
-      CHECK(glove.error().message.find(wrong.said) != std::string::npos);
-    }
-    CHECK(open_glove("forte:").error().code == Errc::usage);
+    wrong_options_are_usage_errors("forte", {{"?rate=9", "baud"},
+                                             {"?baud=9600", "460800, 115200"},
+                                             {"?hand=up", "left"},
+                                             {"?link=radio", "usb, bluetooth"}});
   }
 
   TEST_CASE("a hand at rest arrives in the slots of its joints") {
     ForteUnitOptions options;
     options.motion = Motion::rest;
-    const PtyUnit port(make_forte_unit(options));
-    SampleRing ring(1U << 14U);
-    auto glove = open_glove("forte:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    GloveSample sample;
-    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
-    // The relaxed hand in degrees, of the range of a knuckle.
-    struct Joint {
-      Sensor sensor;
-      double angle;
-      double range;
-    };
-    for (const Joint& joint : {Joint{Sensor::thumb_mcp, 15, 55}, Joint{Sensor::index_mcp, 23, 90},
-                               Joint{Sensor::middle_mcp, 25, 90}, Joint{Sensor::ring_mcp, 26, 90},
-                               Joint{Sensor::pinky_mcp, 27, 90}}) {
-      CAPTURE(name_of(joint.sensor));
-      const double degrees = sample[joint.sensor].value * joint.range / 127.0;
-      CHECK(std::abs(degrees - joint.angle) < 2.5); // tremor, and a count of 0.7 degrees
-    }
+    const GloveSample sample = sample_at_rest(make_forte_unit(options), "forte");
+    check_at_rest(sample, resting_knuckles, 127.0, 2.5); // tremor, and a count of 0.7 degrees
   }
 
   TEST_CASE("each sensor of a frame arrives in its own slot") {

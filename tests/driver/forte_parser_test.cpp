@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "support/captures.hpp"
+#include "support/parser_laws.hpp"
 
 namespace forte_parser_test {
 
@@ -15,14 +16,9 @@ using namespace nendo::driver::forte;
 
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-Bytes bytes_of(std::initializer_list<int> values) {
-  Bytes bytes;
-  for (const int value : values)
-    bytes.push_back(static_cast<std::byte>(value));
-  return bytes;
-}
+using nendo::test::bytes_of;
+using nendo::test::joined;
+using Bytes = nendo::test::StreamBytes;
 
 /// Sensors first, first+1 ...; the layout as published.
 Bytes frame_of(int first, int battery = 100) {
@@ -36,13 +32,6 @@ Bytes frame_of(int first, int battery = 100) {
 
 Bytes motion_frame() {
   return bytes_of({0xF0, 0x02, 0x0C, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0xF7});
-}
-
-Bytes joined(std::initializer_list<Bytes> parts) {
-  Bytes all;
-  for (const Bytes& part : parts)
-    all.insert(all.end(), part.begin(), part.end());
-  return all;
 }
 
 using Firsts = std::vector<int>;
@@ -59,9 +48,7 @@ Outcome parse(std::span<const std::byte> input) {
   parser.push(input, [&](const Record& record) { outcome.firsts.push_back(record.flexion[0]); });
   outcome.counters = parser.counters();
   outcome.pending = parser.pending();
-  CHECK(outcome.counters.bytes == input.size());
-  CHECK(outcome.counters.bytes ==
-        outcome.counters.record_bytes + outcome.counters.discarded_bytes + outcome.pending);
+  test::check_accounted(parser, input.size());
   CHECK(outcome.counters.record_bytes == 15 * outcome.counters.records);
   CHECK(outcome.counters.records == outcome.firsts.size());
   CHECK(outcome.pending < 15);
@@ -182,17 +169,11 @@ TEST_SUITE("forte_parser") {
                 bytes_of({0xF0, 0xF0}), frame_of(4), bytes_of({0xF7}), frame_of(5)});
     const Outcome whole = parse(stream);
     CHECK(whole.firsts == Firsts{1, 2, 4, 5});
-    for (std::size_t first = 0; first <= stream.size(); ++first) {
-      Parser parser;
-      Firsts firsts;
-      const auto sink = [&](const Record& record) { firsts.push_back(record.flexion[0]); };
-      parser.push(std::span(stream).first(first), sink);
-      CHECK(parser.pending() < 15);
-      parser.push(std::span(stream).subspan(first), sink);
-      CHECK(firsts == whole.firsts);
-      CHECK(parser.counters().discarded_bytes == whole.counters.discarded_bytes);
-      CHECK(parser.counters().bad_records == whole.counters.bad_records);
-    }
+    test::cut_makes_no_difference(
+        stream, 15, [] { return Parser(); },
+        [](Firsts& firsts) {
+          return [&firsts](const Record& record) { firsts.push_back(record.flexion[0]); };
+        });
   }
 
   TEST_CASE("every byte of a Forte stream is accounted for, however it is mutilated") {
@@ -205,19 +186,7 @@ TEST_SUITE("forte_parser") {
         stream.insert(stream.end(), next.begin(), next.end());
       }
       const auto damages = random() % 10;
-      for (auto k = damages; k > 0; --k) {
-        const auto at = stream.begin() + static_cast<std::ptrdiff_t>(random() % stream.size());
-        switch (random() % 3) {
-        case 0:
-          *at = static_cast<std::byte>(random());
-          break;
-        case 1:
-          stream.erase(at);
-          break;
-        default:
-          stream.insert(at, static_cast<std::byte>(random()));
-        }
-      }
+      test::mutilate(stream, damages, random);
       const std::uint64_t here = parse(stream).counters.records;
       CHECK(here + damages >= 24); // each costs one frame at most
       records += here;

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/parser_laws.hpp"
+
 namespace hi_res_record_test {
 
 using namespace nendo::driver::cyberglove;
@@ -15,14 +17,11 @@ using namespace std::chrono_literals;
 
 namespace {
 
-using Bytes = std::vector<std::byte>;
+using nendo::test::bytes_of;
+using nendo::test::joined;
+using Bytes = nendo::test::StreamBytes;
 
 constexpr RecordShape shape{22, false, false, RecordForm::hi_res};
-
-Bytes bytes_of(std::string_view text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
 
 /// Time, 22 values first, first + step ..., CR LF NUL: the layout as published.
 Bytes hi_res(std::string_view time, unsigned first, unsigned step = 100) {
@@ -40,13 +39,6 @@ Bytes hi_res(std::string_view time, unsigned first, unsigned step = 100) {
 const Bytes one = hi_res("10:20:30:15:2S", 1); ///< its values hold NULs
 const Bytes two = hi_res("10:20:30:16:0S", 0x0D0A, 0);
 
-Bytes joined(std::initializer_list<Bytes> parts) {
-  Bytes all;
-  for (const Bytes& part : parts)
-    all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 struct Outcome {
   std::vector<Record> records;
   nendo::driver::StreamCounters counters;
@@ -59,9 +51,7 @@ Outcome parse(std::span<const std::byte> input) {
   parser.push(input, [&](const Record& record) { outcome.records.push_back(record); });
   outcome.counters = parser.counters();
   outcome.pending = parser.pending();
-  CHECK(outcome.counters.bytes == input.size());
-  CHECK(outcome.counters.bytes ==
-        outcome.counters.record_bytes + outcome.counters.discarded_bytes + outcome.pending);
+  nendo::test::check_accounted(parser, input.size());
   CHECK(outcome.counters.record_bytes == 61 * outcome.records.size());
   CHECK(outcome.pending < 61);
   CHECK(outcome.counters.records == outcome.records.size());

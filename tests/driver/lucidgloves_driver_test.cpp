@@ -201,20 +201,12 @@ TEST_SUITE("lucidgloves_driver") {
   }
 
   TEST_CASE("a LucidGlove's options that are none are usage errors that name what there is") {
-    struct Case {
-      const char* options;
-      const char* said;
-    };
-    for (const Case& wrong :
-         {Case{"?rate=9", "range"}, Case{"?range=4096", "4095, 1023"}, Case{"?hand=both", "left"},
-          Case{"?baud=1", "115200"}, Case{"?baud=115200x", "115200"}, Case{"?hand=Left", "left"}}) {
-      const auto glove = open_glove(std::string("lucidgloves:/dev/nendo-none") + wrong.options);
-      REQUIRE_FALSE(glove);
-      CAPTURE(glove.error().message);
-      CHECK(glove.error().code == Errc::usage);
-      CHECK(glove.error().message.find(wrong.said) != std::string::npos);
-    }
-    CHECK(open_glove("lucidgloves:").error().code == Errc::usage);
+    wrong_options_are_usage_errors("lucidgloves", {{"?rate=9", "range"},
+                                                   {"?range=4096", "4095, 1023"},
+                                                   {"?hand=both", "left"},
+                                                   {"?baud=1", "115200"},
+                                                   {"?baud=115200x", "115200"},
+                                                   {"?hand=Left", "left"}});
   }
 
   TEST_CASE("feedback reaches the brakes, at most locked, and its end frees them") {
@@ -273,29 +265,13 @@ TEST_SUITE("lucidgloves_driver") {
   TEST_CASE("a hand at rest arrives in the slots of the joints that it bends") {
     LucidGlovesUnitOptions options;
     options.motion = Motion::rest;
-    const PtyUnit port(make_lucidgloves_unit(options));
-    SampleRing ring(1U << 14U);
-    auto glove = open_glove("lucidgloves:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    GloveSample sample;
-    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
-    // The relaxed hand in degrees, of the range of a knuckle or the 20 degrees of a splay.
-    struct Joint {
-      Sensor sensor;
-      double angle;
-      double range;
-    };
-    for (const Joint& joint :
-         {Joint{Sensor::thumb_mcp, 15, 55}, Joint{Sensor::index_mcp, 23, 90},
-          Joint{Sensor::middle_mcp, 25, 90}, Joint{Sensor::ring_mcp, 26, 90},
-          Joint{Sensor::pinky_mcp, 27, 90}, Joint{Sensor::thumb_abduction, 30, 40},
-          Joint{Sensor::index_middle_abduction, 7, 20}, Joint{Sensor::middle_ring_abduction, 6, 20},
-          Joint{Sensor::ring_pinky_abduction, 8, 20}}) {
-      CAPTURE(name_of(joint.sensor));
-      const double degrees = sample[joint.sensor].value * joint.range / 4095.0;
-      CHECK(std::abs(degrees - joint.angle) < 2.0); // tremor
-    }
+    const GloveSample sample = sample_at_rest(make_lucidgloves_unit(options), "lucidgloves");
+    check_at_rest(sample, resting_knuckles, 4095.0, 2.0); // tremor
+    constexpr std::array splays{RestingJoint{Sensor::thumb_abduction, 30, 40},
+                                RestingJoint{Sensor::index_middle_abduction, 7, 20},
+                                RestingJoint{Sensor::middle_ring_abduction, 6, 20},
+                                RestingJoint{Sensor::ring_pinky_abduction, 8, 20}};
+    check_at_rest(sample, splays, 4095.0, 2.0);
   }
 
   TEST_CASE(

@@ -2,10 +2,14 @@
 // What holds for every streamed glove, whatever its protocol: each function is the body of a test
 // case. `Kind` says how to make one and how to open it.
 
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 
@@ -178,6 +182,60 @@ inline void a_glove_that_vanishes_is_found_again(const Kind& kind, bool tells_it
   CHECK(sample.side == (tells_its_hand ? Side::left : Side::right));
   CHECK((*glove)->info().side == Side::right);
   check_conservation((*glove)->stats(), kind.longest_record);
+}
+
+/// An option that a kind of glove does not have, or a value that it does not take, and a part of
+/// the message that it brings.
+struct WrongOption {
+  const char* options;
+  const char* said;
+};
+
+inline void wrong_options_are_usage_errors(const std::string& kind,
+                                           std::initializer_list<WrongOption> cases) {
+  for (const WrongOption& wrong : cases) {
+    const auto glove = driver::open_glove(kind + ":/dev/nendo-none" + wrong.options);
+    REQUIRE_FALSE(glove);
+    CAPTURE(glove.error().message);
+    CHECK(glove.error().code == Errc::usage);
+    CHECK(glove.error().message.find(wrong.said) != std::string::npos);
+  }
+  CHECK(driver::open_glove(kind + ":").error().code == Errc::usage);
+}
+
+/// A sensor, the angle of its joint in the relaxed hand, and the joint's range, in degrees.
+struct RestingJoint {
+  Sensor sensor;
+  double angle;
+  double range;
+};
+
+inline constexpr std::array resting_knuckles{
+    RestingJoint{Sensor::thumb_mcp, 15, 55}, RestingJoint{Sensor::index_mcp, 23, 90},
+    RestingJoint{Sensor::middle_mcp, 25, 90}, RestingJoint{Sensor::ring_mcp, 26, 90},
+    RestingJoint{Sensor::pinky_mcp, 27, 90}};
+
+/// The first sample of the glove that `unit` emulates, which is at rest.
+inline GloveSample sample_at_rest(std::unique_ptr<emulator::EmulatedUnit> unit,
+                                  const std::string& kind) {
+  const PtyUnit port(std::move(unit));
+  SampleRing ring(1U << 14U);
+  auto glove = driver::open_glove(kind + ":" + port.path());
+  REQUIRE_MESSAGE(glove, glove.error().message);
+  REQUIRE((*glove)->start(ring));
+  GloveSample sample;
+  REQUIRE(eventually([&] { return ring.try_pop(sample); }));
+  return sample;
+}
+
+/// `sample` has the angles of `joints`, whose full range is `most` counts, to within `off` degrees.
+inline void check_at_rest(const GloveSample& sample, std::span<const RestingJoint> joints,
+                          double most, double off) {
+  for (const RestingJoint& joint : joints) {
+    CAPTURE(name_of(joint.sensor));
+    const double degrees = sample[joint.sensor].value * joint.range / most;
+    CHECK(std::abs(degrees - joint.angle) < off);
+  }
 }
 
 } // namespace nendo::test
