@@ -48,26 +48,26 @@ Selection EditSession::key_of(const std::optional<StripKey>& key) const {
   return KeyRef{hands[key->lane].side, key->key};
 }
 
-void EditSession::handle(const viewer::EditWishes& wishes) {
-  if (wishes.select) go_to_key(key_of(*wishes.select));
-  if (wishes.seek_s) seek(*wishes.seek_s);
-  if (wishes.speed) head_.set_speed(*wishes.speed);
-  if (wishes.loops) head_.set_loops(*wishes.loops);
-  if (wishes.tried) std::visit([this](const auto& tried) { try_out(tried); }, *wishes.tried);
-  if (wishes.keep) history_.keep();
-  if (wishes.drop) {
+void EditSession::handle(const viewer::EditActions& actions) {
+  if (actions.select) go_to_key(key_of(*actions.select));
+  if (actions.seek_s) seek(*actions.seek_s);
+  if (actions.speed) head_.set_speed(*actions.speed);
+  if (actions.loops) head_.set_loops(*actions.loops);
+  if (actions.tried) std::visit([this](const auto& tried) { try_out(tried); }, *actions.tried);
+  if (actions.keep) history_.keep();
+  if (actions.drop) {
     history_.drop();
     go_to_key(history_.selected());
     tell("given up");
   }
-  if (wishes.retiming) retime(*wishes.retiming);
-  for (const EditCommand command : wishes.commands)
+  if (actions.retiming) retime(*actions.retiming);
+  for (const EditCommand command : actions.commands)
     handle(command);
   follow_history();
   // Who wanted to save before, and could not, stays.
-  const bool saves = std::find(wishes.commands.begin(), wishes.commands.end(), EditCommand::save) !=
-                     wishes.commands.end();
-  ended_ = ended_ || (wishes.quit && !(saves && history_.is_modified()));
+  const bool saves = std::find(actions.commands.begin(), actions.commands.end(),
+                               EditCommand::save) != actions.commands.end();
+  ended_ = ended_ || (actions.quit && !(saves && history_.is_modified()));
 }
 
 void EditSession::handle(EditCommand command) {

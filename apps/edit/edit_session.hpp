@@ -1,5 +1,5 @@
 #pragma once
-// What goes on behind the window of `nendo edit view`: wishes become edits, and the timeline what
+// What goes on behind the window of `nendo edit view`: actions become edits, and the timeline what
 // there is to see. Knows no window.
 
 #include <cstdint>
@@ -26,10 +26,10 @@ public:
   EditSession(timeline::Timeline timeline, deform::Mesh model, std::string out);
 
   /// Does all that a person wants; what cannot be is told in the view's message.
-  void handle(const viewer::EditWishes& wishes);
+  void handle(const viewer::EditActions& actions);
   /// So much time has passed.
   void advance(double elapsed_s);
-  /// As `select` and `seek_s` of wishes.
+  /// As `select` and `seek_s` of actions.
   void select(const timeline::KeyRef& key);
   void seek(double time_s);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The lights of the gloves whose switches do something: lit while the hands hold the model. Given
-// from the main thread, because Glove::set_feedback takes a lock, which is nothing for the loop.
+// Lights the LED of each glove while the hands hold the model, if the wrist switch does something.
+// The main thread does it, because Glove::set_feedback takes a lock.
 
 #include <memory>
 #include <vector>

@@ -34,7 +34,7 @@ struct LoopStart {
   const std::vector<gloves::OpenHand>& hands;
 };
 
-/// What a loop leaves to the next one of the same hands.
+/// The state that a loop hands over to the next one.
 struct Carryover {
   flow::Placement placement;
   std::array<std::optional<hand::LearnedRanges>, 2> learned; ///< DeformLoop::learned()
@@ -47,7 +47,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
                               const deform::Mesh& model,
                               const std::optional<Carryover>& carryover = {});
 
-/// What a frame of that loop may hold, for whoever keeps room for it.
+/// The most that a frame of a loop may hold.
 struct FrameRoom {
   std::size_t fields = 0;
   std::size_t functions = 0; ///< of a field

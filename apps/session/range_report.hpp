@@ -8,10 +8,11 @@
 
 namespace nendo::session {
 
-/// By sensor of `sensors`: low_counts, high_counts and turns, as hand::SensorRange has them.
+/// Returns an object for each sensor of `sensors`, with low_counts, high_counts and turns of its
+/// hand::SensorRange.
 nlohmann::ordered_json ranges_json(const hand::SensorRanges& ranges, SensorMask sensors);
 
-/// A line a sensor on standard output.
+/// Prints one line for each sensor to standard output.
 void print_ranges(const hand::SensorRanges& ranges, SensorMask sensors);
 
 } // namespace nendo::session

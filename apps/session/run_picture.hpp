@@ -24,7 +24,7 @@ private:
   std::filesystem::path path_;
   deform::Mesh before_;
   deform::Supports supports_;
-  viewer::HoldFollower holds_;
+  viewer::HoldTracker holds_;
   viewer::SceneFrame first_, last_;
   double units_per_metre_ = 0.0; ///< 0: no frame has been seen
 };

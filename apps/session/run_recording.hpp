@@ -32,34 +32,36 @@ struct RecordingOptions {
 /// --record and --keep-last.
 void add_recording_options(cli::Command& command, RecordingOptions& options);
 
-/// Of one loop.
+/// What became of one loop's recording.
 struct RecordingOutcome {
   std::string file;                            ///< empty: only kept in memory
   std::optional<recording::Recorded> recorded; ///< nothing: not all was
 };
 
-/// Who, when and with what: the beginning of every recording's setup. By the hands' order.
+/// Begins a recording's setup: the program, the time, the wearer, and the gloves in the order of the
+/// hands.
 recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const std::string& wearer);
 
-/// Each loop of a run is a recording of its own, numbered after the first, with the model that it
-/// began with beside it unless that is the one that was loaded.
+/// Records the loops of a run. Each loop gets a file of its own; from the second on their names are
+/// numbered. If a loop begins with another model than the one that was loaded, that model is
+/// written beside its recording.
 class RunRecorder {
 public:
   /// `loaded`: the model as it is in the run's file.
   explicit RunRecorder(const deform::Mesh& loaded) : loaded_(recording::sum_of(loaded.vertices)) {}
 
-  /// What the next loop is to record on; null: nothing is wanted of it.
+  /// Makes the log that the next loop writes to; returns null if it is not to be recorded.
   flow::InputLog* input_log_for(const RecordingOptions& options);
   /// Before the loop runs. Error: failed, if the files cannot be made; nothing is recorded then.
   Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
                      const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model);
   /// Whether keep() does anything: with --keep-last, from begin() to end().
   bool keeps() const noexcept { return keeps_; }
-  /// What was done last becomes a file. Wait-free.
+  /// Has the recording in memory written to a file. Wait-free.
   void keep() noexcept;
   /// After the loop's last tick.
   void end(const deform::Mesh& shape);
-  /// Of every loop that was to be recorded and has ended, or has not begun.
+  /// Returns one outcome for each loop that was to be recorded.
   const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }
 
 private:

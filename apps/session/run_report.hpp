@@ -1,5 +1,5 @@
 #pragma once
-// What a run tells: a line of progress while it lasts, a summary at its end; for people, or as JSON
+// Reports a run: a line of progress while it lasts and a summary at its end, for people or as JSON
 // lines.
 
 #include "session/run_session.hpp"

@@ -83,7 +83,7 @@ private:
   std::optional<TakeReader> reader_;
   std::unique_ptr<LoopReplay> replay_;
   std::optional<recording::Entry> next_;
-  viewer::HoldFollower holds_;
+  viewer::HoldTracker holds_;
   viewer::SceneFrame moment_;
   double time_s_ = 0.0;
   bool seen_ = false; ///< moment_ is a tick's
@@ -133,7 +133,7 @@ public:
 private:
   std::filesystem::path path_;
   std::unique_ptr<TimelineFrames> frames_;
-  viewer::HoldFollower holds_;
+  viewer::HoldTracker holds_;
   viewer::SceneFrame moment_;
   bool seen_ = false;
 };

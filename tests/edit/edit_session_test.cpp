@@ -18,8 +18,8 @@ namespace edit_session_test {
 using namespace nendo;
 using namespace nendo::edit;
 using namespace nendo::timeline;
+using viewer::EditActions;
 using viewer::EditCommand;
-using viewer::EditWishes;
 using viewer::KeyDrag;
 using viewer::StripKey;
 using viewer::TipDrag;
@@ -34,21 +34,21 @@ struct Edited {
   EditSession session{first, model, out};
 
   void wish(EditCommand command) {
-    EditWishes wishes;
-    wishes.commands = {command};
-    session.handle(wishes);
+    EditActions actions;
+    actions.commands = {command};
+    session.handle(actions);
   }
   void click(StripKey key) {
-    EditWishes wishes;
-    wishes.select.emplace(key);
-    session.handle(wishes);
+    EditActions actions;
+    actions.select.emplace(key);
+    session.handle(actions);
   }
   template <class Tried>
   void try_out(const Tried& tried, bool keep = false) {
-    EditWishes wishes;
-    wishes.tried = tried;
-    wishes.keep = keep;
-    session.handle(wishes);
+    EditActions actions;
+    actions.tried = tried;
+    actions.keep = keep;
+    session.handle(actions);
   }
   const Timeline& now() const { return session.history().timeline(); }
   const Key& key(std::size_t hand, std::size_t key) const { return now().hands[hand].keys[key]; }
@@ -70,7 +70,7 @@ TEST_SUITE("edit_session") {
     Edited edited;
     auto player = Player::make(edited.first, edited.model);
     REQUIRE(player);
-    viewer::HoldFollower holds;
+    viewer::HoldTracker holds;
     while (edited.session.view().computing)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     for (int frame = 0; (*player)->next(); ++frame) {
@@ -112,7 +112,7 @@ TEST_SUITE("edit_session") {
     CHECK(edited.session.view().message == "there is nothing to undo");
     edited.try_out(KeyDrag{{0, 0}, edited.first.hands[0].keys[1].time_s, false});
     CHECK(edited.session.view().refused);
-    EditWishes drop;
+    EditActions drop;
     drop.drop = true;
     edited.session.handle(drop);
     CHECK(test::same_bits(edited.now(), edited.first));
@@ -220,14 +220,14 @@ TEST_SUITE("edit_session") {
 
     EditSession elsewhere(edited.first, edited.model,
                           (edited.folder.path() / "none" / "a.timeline.toml").string());
-    EditWishes wishes;
-    wishes.commands = {EditCommand::mirror, EditCommand::save};
-    wishes.quit = true;
-    elsewhere.handle(wishes);
+    EditActions actions;
+    actions.commands = {EditCommand::mirror, EditCommand::save};
+    actions.quit = true;
+    elsewhere.handle(actions);
     CHECK(elsewhere.view().refused);
     CHECK_FALSE(elsewhere.has_ended());
-    wishes.commands.clear();
-    elsewhere.handle(wishes); // without saving
+    actions.commands.clear();
+    elsewhere.handle(actions); // without saving
     CHECK(elsewhere.has_ended());
   }
 

@@ -34,7 +34,7 @@ public:
 private:
   void look_on(LoopUnderTest& test) {
     const viewer::SceneBuilder builder(test.model, test.placement.units_per_metre);
-    viewer::HoldFollower holds;
+    viewer::HoldTracker holds;
     viewer::SceneFrame moment;
     viewer::Scene scene;
     for (auto next = HostClock::now(); !over_;) {

@@ -48,7 +48,7 @@ TEST_SUITE("scene") {
   TEST_CASE(
       "hands are where the loop has them, and arrows go from where they took hold to the tips") {
     LoopUnderTest test(flow::Mode::type1);
-    HoldFollower holds;
+    HoldTracker holds;
     holds.follow(test.frame_after_tick(0));
     const auto taken = test.loop->frames().front().hands[0].pose.fingertip_positions();
     test.bend(25, HostClock::now());
@@ -82,7 +82,7 @@ TEST_SUITE("scene") {
 
   TEST_CASE("a new hold begins with a grab, a commit and an undo, and ends with letting go") {
     LoopUnderTest test(flow::Mode::type1);
-    HoldFollower holds;
+    HoldTracker holds;
     std::uint64_t tick = 0;
     const auto step = [&](int counts) -> const flow::Frame& {
       test.bend(counts, HostClock::now());

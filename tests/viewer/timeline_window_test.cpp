@@ -49,7 +49,7 @@ struct Seat {
     strip.fit(size.width - 12.0, view.duration_s);
     show();
   }
-  EditWishes show() { return window->show(view, moment); }
+  EditActions show() { return window->show(view, moment); }
   /// The strip stands 6 pixels from the window's edges, below 36 of controls.
   Vector2d on_strip(double time_s, double y) const {
     return {6.0 + strip.x_of(time_s), window->scene_window().scene_size().height + 6.0 + 36.0 + y};
@@ -57,29 +57,29 @@ struct Seat {
   Vector2d on_key(std::size_t lane, std::size_t key) const {
     return on_strip(view.lanes[lane].keys_s[key], DopeSheet::middle_of(lane));
   }
-  EditWishes move(const Vector2d& pointer, bool left) {
+  EditActions move(const Vector2d& pointer, bool left) {
     input.pointer = pointer;
     input.buttons[0] = left;
     window->pretend(input);
     return show();
   }
-  EditWishes press(const Vector2d& pointer) {
+  EditActions press(const Vector2d& pointer) {
     move(pointer, false);
     return move(pointer, true);
   }
-  EditWishes release() { return move(input.pointer, false); }
+  EditActions release() { return move(input.pointer, false); }
   /// A key goes down and up.
-  EditWishes type(int key, bool control = false, bool shift = false) {
+  EditActions type(int key, bool control = false, bool shift = false) {
     input.key = key;
     input.control = control;
     input.shift = shift;
     window->pretend(input);
-    auto wishes = show();
+    auto actions = show();
     input.key = 0;
     input.control = input.shift = false;
     window->pretend(input);
     show();
-    return wishes;
+    return actions;
   }
   Vector2d seen_at(const Vector3d& place_m) const {
     const Camera camera = window->scene_window().stage_camera();
@@ -109,10 +109,10 @@ struct Room {
   }
 };
 
-const KeyDrag& key_drag(const EditWishes& wishes) {
-  REQUIRE(wishes.tried);
-  REQUIRE(std::holds_alternative<KeyDrag>(*wishes.tried));
-  return std::get<KeyDrag>(*wishes.tried);
+const KeyDrag& key_drag(const EditActions& actions) {
+  REQUIRE(actions.tried);
+  REQUIRE(std::holds_alternative<KeyDrag>(*actions.tried));
+  return std::get<KeyDrag>(*actions.tried);
 }
 
 } // namespace
@@ -227,9 +227,9 @@ TEST_SUITE("timeline_window") {
     if (!room.seat) return;
     Seat& seat = *room.seat;
     using enum EditCommand;
-    const auto only = [](const EditWishes& wishes) {
-      REQUIRE(wishes.commands.size() == 1);
-      return wishes.commands.front();
+    const auto only = [](const EditActions& actions) {
+      REQUIRE(actions.commands.size() == 1);
+      return actions.commands.front();
     };
     CHECK(only(seat.type(GLFW_KEY_SPACE)) == play);
     CHECK(only(seat.type(GLFW_KEY_LEFT)) == previous_frame);
@@ -253,8 +253,8 @@ TEST_SUITE("timeline_window") {
     seat.window->pretend(seat.input);
     std::vector<EditCommand> commands;
     for (int picture = 0; picture < 4; ++picture) {
-      const auto wishes = seat.show();
-      commands.insert(commands.end(), wishes.commands.begin(), wishes.commands.end());
+      const auto actions = seat.show();
+      commands.insert(commands.end(), actions.commands.begin(), actions.commands.end());
       seat.input = {};
       seat.window->pretend(seat.input);
     }

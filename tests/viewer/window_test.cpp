@@ -61,7 +61,7 @@ TEST_SUITE("window") {
     window.begin(test.loop->layout(), builder, {});
     const auto blocks = test.loop->layout().block_count();
 
-    HoldFollower holds;
+    HoldTracker holds;
     for (std::uint64_t tick = 0; tick < 4; ++tick) {
       test.bend(static_cast<int>(8 * tick), HostClock::now());
       const flow::Frame& frame = test.frame_after_tick(tick);

@@ -30,8 +30,8 @@ constexpr std::array after_play{
     Control{">|", "to the end (End)", EditCommand::to_end},
 };
 
-void button(const Control& control, float width, EditWishes& wishes) {
-  if (ImGui::Button(control.words, ImVec2(width, 0.0F))) wishes.commands.push_back(control.command);
+void button(const Control& control, float width, EditActions& actions) {
+  if (ImGui::Button(control.words, ImVec2(width, 0.0F))) actions.commands.push_back(control.command);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", control.tells);
   ImGui::SameLine();
 }
@@ -58,7 +58,7 @@ int DopeSheetWidget::height_for(std::size_t lanes) noexcept {
 }
 
 void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retiming>& shaded,
-                           EditWishes& wishes) {
+                           EditActions& actions) {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const auto height = static_cast<float>(height_for(view.lanes.size()));
   ImGui::SetNextWindowPos(ImVec2(0.0F, all.y - height));
@@ -68,7 +68,7 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
   ImGui::Begin("strip", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
-  controls(view, wishes);
+  controls(view, actions);
   const ImVec2 corner(margin, all.y - height + margin + controls_height);
   const ImVec2 size(std::max(64.0F, all.x - 2.0F * margin),
                     static_cast<float>(DopeSheet::height_for(view.lanes.size())));
@@ -80,7 +80,7 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const auto x = static_cast<double>(mouse.x - corner.x);
   const auto y = static_cast<double>(mouse.y - corner.y);
-  follow_mouse(view, x, y, wishes);
+  follow_mouse(view, x, y, actions);
   StripLook look{corner, size, {}, shaded};
   if (ImGui::IsItemHovered()) {
     look.pointed_at = strip_.key_at(view.lanes, x, y);
@@ -91,21 +91,21 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
   ImGui::PopStyleVar(2);
 }
 
-void DopeSheetWidget::controls(const TimelineView& view, EditWishes& wishes) const {
+void DopeSheetWidget::controls(const TimelineView& view, EditActions& actions) const {
   constexpr float narrow = 34.0F;
   for (const Control& control : before_play)
-    button(control, narrow, wishes);
+    button(control, narrow, actions);
   button({view.playing ? "Pause" : "Play", "play, or pause (space)", EditCommand::play}, 64.0F,
-         wishes);
+         actions);
   for (const Control& control : after_play)
-    button(control, narrow, wishes);
+    button(control, narrow, actions);
   bool loops = view.loops;
-  if (ImGui::Checkbox("loop", &loops)) wishes.loops = loops;
+  if (ImGui::Checkbox("loop", &loops)) actions.loops = loops;
   ImGui::SameLine();
   auto speed = static_cast<float>(view.speed);
   ImGui::SetNextItemWidth(110.0F);
   if (ImGui::SliderFloat("##speed", &speed, 0.1F, 4.0F, "speed %.2f", ImGuiSliderFlags_Logarithmic))
-    wishes.speed = static_cast<double>(speed);
+    actions.speed = static_cast<double>(speed);
   ImGui::SameLine();
   ImGui::Text("%.3f s of %.3f s", view.head_s, view.duration_s);
   ImGui::SameLine();
@@ -116,46 +116,46 @@ void DopeSheetWidget::controls(const TimelineView& view, EditWishes& wishes) con
 }
 
 void DopeSheetWidget::follow_mouse(const TimelineView& view, double x, double y,
-                                   EditWishes& wishes) {
+                                   EditActions& actions) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0F)
     strip_.zoom(x, static_cast<double>(io.MouseWheel));
   if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Middle))
     strip_.pan(static_cast<double>(io.MouseDelta.x));
   if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
-    press(view, x, y, wishes);
+    press(view, x, y, actions);
   if (taken_ && pressed(GLFW_KEY_ESCAPE)) {
-    if (taken_->moved) wishes.drop = true;
+    if (taken_->moved) actions.drop = true;
     taken_.reset();
   }
   if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    drag(view, x, wishes);
+    drag(view, x, actions);
     return;
   }
-  if (taken_ && taken_->moved) wishes.keep = true;
+  if (taken_ && taken_->moved) actions.keep = true;
   taken_.reset();
   scrubs_ = false;
 }
 
-void DopeSheetWidget::press(const TimelineView& view, double x, double y, EditWishes& wishes) {
+void DopeSheetWidget::press(const TimelineView& view, double x, double y, EditActions& actions) {
   if (const auto key = strip_.key_at(view.lanes, x, y)) {
-    wishes.select = key;
+    actions.select = key;
     taken_ = Taken{*key, x, false};
   } else if (const auto mark = strip_.mark_at(view.marks, view.lanes.size(), x, y)) {
-    wishes.seek_s = view.marks[*mark].time_s;
+    actions.seek_s = view.marks[*mark].time_s;
   } else {
     scrubs_ = true;
   }
 }
 
-void DopeSheetWidget::drag(const TimelineView& view, double x, EditWishes& wishes) {
-  if (scrubs_) wishes.seek_s = strip_.time_at(x);
+void DopeSheetWidget::drag(const TimelineView& view, double x, EditActions& actions) {
+  if (scrubs_) actions.seek_s = strip_.time_at(x);
   if (!taken_) return;
   if (!taken_->moved) {
     if (std::abs(x - taken_->pressed_x) < drag_begins_px) return;
     taken_->moved = true;
   }
-  wishes.tried = KeyDrag{taken_->key, on_a_frame(strip_.time_at(x), view), ImGui::GetIO().KeyCtrl};
+  actions.tried = KeyDrag{taken_->key, on_a_frame(strip_.time_at(x), view), ImGui::GetIO().KeyCtrl};
 }
 
 } // namespace nendo::viewer

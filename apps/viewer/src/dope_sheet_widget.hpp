@@ -12,7 +12,7 @@ public:
   /// Of a strip with so many lanes, controls included; pixels.
   static int height_for(std::size_t lanes) noexcept;
   /// Over the window's whole width, at its bottom. shaded: times that are to stand out.
-  void draw(const TimelineView& view, const std::optional<Retiming>& shaded, EditWishes& wishes);
+  void draw(const TimelineView& view, const std::optional<Retiming>& shaded, EditActions& actions);
 
 private:
   struct Taken {
@@ -20,10 +20,10 @@ private:
     double pressed_x = 0.0;
     bool moved = false;
   };
-  void controls(const TimelineView& view, EditWishes& wishes) const;
-  void follow_mouse(const TimelineView& view, double x, double y, EditWishes& wishes);
-  void press(const TimelineView& view, double x, double y, EditWishes& wishes);
-  void drag(const TimelineView& view, double x, EditWishes& wishes);
+  void controls(const TimelineView& view, EditActions& actions) const;
+  void follow_mouse(const TimelineView& view, double x, double y, EditActions& actions);
+  void press(const TimelineView& view, double x, double y, EditActions& actions);
+  void drag(const TimelineView& view, double x, EditActions& actions);
 
   DopeSheet strip_;
   std::optional<Taken> taken_; ///< a key that the mouse holds

@@ -1,5 +1,6 @@
-// Words in pictures. A letter is some strokes on a grid; a font file would be one more package, and
-// other pixels wherever another version of it is installed.
+// Captions of pictures. The letters are strokes on a grid, because pictures must have the same bytes
+// on every machine: a font package or a rasteriser library of another version draws other pixels,
+// and Dear ImGui's embedded font is there only in builds with a window.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-// What of the lights and the sky reaches a surface.
+// Shadow maps: how much of the lights and the sky reaches a surface.
 
 #include <vector>
 

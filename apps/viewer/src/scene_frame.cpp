@@ -2,13 +2,13 @@
 
 namespace nendo::viewer {
 
-void HoldFollower::follow(const flow::Frame& frame) noexcept {
+void HoldTracker::follow(const flow::Frame& frame) noexcept {
   if (!watch_.follow(frame)) return;
   for (std::size_t slot = 0; slot < starts_.size(); ++slot)
     starts_[slot] = frame.hands[slot].pose.fingertip_positions();
 }
 
-void see_hands(const flow::Frame& frame, const HoldFollower& holds, SceneFrame& moment) {
+void see_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& moment) {
   moment.held = frame.held;
   for (std::size_t slot = 0; slot < moment.hands.size(); ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];

@@ -73,15 +73,15 @@ void seconds(const char* label, double& value_s, double head_s) {
 
 } // namespace
 
-void TimelineWindow::Panel::draw(const TimelineView& view, EditWishes& wishes) {
+void TimelineWindow::Panel::draw(const TimelineView& view, EditActions& actions) {
   ImGui::SetNextWindowPos(ImVec2(10.0F, 10.0F), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSizeConstraints(ImVec2(panel_width, 0.0F), ImVec2(panel_width, 4096.0F));
   ImGui::Begin("Nendo: edit", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushTextWrapPos(panel_width - 12.0F);
-  file(view, wishes);
-  if (ImGui::CollapsingHeader("Key", ImGuiTreeNodeFlags_DefaultOpen)) key(view, wishes);
+  file(view, actions);
+  if (ImGui::CollapsingHeader("Key", ImGuiTreeNodeFlags_DefaultOpen)) key(view, actions);
   retiming_shown = ImGui::CollapsingHeader("Timeline");
-  if (retiming_shown) whole(view, wishes);
+  if (retiming_shown) whole(view, actions);
   if (!view.message.empty()) {
     ImGui::Separator();
     const ImVec4 colour =
@@ -94,22 +94,22 @@ void TimelineWindow::Panel::draw(const TimelineView& view, EditWishes& wishes) {
   ImGui::End();
 }
 
-void TimelineWindow::Panel::file(const TimelineView& view, EditWishes& wishes) const {
+void TimelineWindow::Panel::file(const TimelineView& view, EditActions& actions) const {
   const std::string name = std::filesystem::path(view.file).filename().string();
   ImGui::Text("%s%s   (? for keys)", name.c_str(), view.modified ? " *" : "");
   const auto ask = [&](const char* words, bool possible, EditCommand command) {
-    if (button(words, possible)) wishes.commands.push_back(command);
+    if (button(words, possible)) actions.commands.push_back(command);
     ImGui::SameLine();
   };
   ask("Undo", view.can_undo, EditCommand::undo);
   ask("Redo", view.can_redo, EditCommand::redo);
   ask("Save", view.modified, EditCommand::save);
   if (button(view.exporting ? "Exporting" : "Export .glb", !view.exporting))
-    wishes.commands.push_back(EditCommand::export_glb);
+    actions.commands.push_back(EditCommand::export_glb);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("as it is now, to %s", view.export_file.c_str());
 }
 
-void TimelineWindow::Panel::key(const TimelineView& view, EditWishes& wishes) {
+void TimelineWindow::Panel::key(const TimelineView& view, EditActions& actions) {
   const bool any = view.selected.has_value();
   if (any) {
     const StripLane& lane = view.lanes[view.selected->lane];
@@ -119,7 +119,7 @@ void TimelineWindow::Panel::key(const TimelineView& view, EditWishes& wishes) {
     ImGui::TextDisabled("click a key on the strip to select it");
   }
   const auto ask = [&](const char* words, bool possible, EditCommand command) {
-    if (button(words, possible)) wishes.commands.push_back(command);
+    if (button(words, possible)) actions.commands.push_back(command);
   };
   ask("Add at head", true, EditCommand::add_key);
   ImGui::SameLine();
@@ -130,13 +130,13 @@ void TimelineWindow::Panel::key(const TimelineView& view, EditWishes& wishes) {
   ImGui::SetNextItemWidth(170.0F);
   if (ImGui::SliderFloat("blend", &blend, 0.0F, 1.0F, "%.2f")) {
     blends = true;
-    wishes.tried = KeyBlend{static_cast<double>(std::clamp(blend, 0.0F, 1.0F))};
+    actions.tried = KeyBlend{static_cast<double>(std::clamp(blend, 0.0F, 1.0F))};
   }
   ImGui::EndDisabled();
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("with its neighbours: what would be without it is 1");
   if (blends && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    wishes.keep = true;
+    actions.keep = true;
     blends = false;
     blend = 0.0F;
   }
@@ -146,20 +146,20 @@ void TimelineWindow::Panel::key(const TimelineView& view, EditWishes& wishes) {
                                   : "the head is elsewhere: click the key to bend its fingers");
 }
 
-void TimelineWindow::Panel::whole(const TimelineView& view, EditWishes& wishes) {
-  if (ImGui::Button("Mirror the hands")) wishes.commands.push_back(EditCommand::mirror);
+void TimelineWindow::Panel::whole(const TimelineView& view, EditActions& actions) {
+  if (ImGui::Button("Mirror the hands")) actions.commands.push_back(EditCommand::mirror);
   if (retiming.to_s <= retiming.from_s) retiming.to_s = view.duration_s;
   seconds("from", retiming.from_s, view.head_s);
   seconds("to", retiming.to_s, view.head_s);
   ImGui::SetNextItemWidth(110.0F);
   ImGui::InputDouble("times as long", &retiming.scale, 0.0, 0.0, "%.3f");
-  if (ImGui::Button("Retime")) wishes.retiming = retiming;
+  if (ImGui::Button("Retime")) actions.retiming = retiming;
 }
 
-void TimelineWindow::Panel::keys(const TimelineView& view, EditWishes& wishes) {
+void TimelineWindow::Panel::keys(const TimelineView& view, EditActions& actions) {
   const ImGuiIO& io = ImGui::GetIO();
   if (!takes_keys()) return;
-  auto& commands = wishes.commands;
+  auto& commands = actions.commands;
   if (io.KeyCtrl) {
     if (pressed(GLFW_KEY_Z, true))
       commands.push_back(io.KeyShift ? EditCommand::redo : EditCommand::undo);
@@ -172,18 +172,18 @@ void TimelineWindow::Panel::keys(const TimelineView& view, EditWishes& wishes) {
   if (pressed(GLFW_KEY_LEFT, true)) commands.push_back(EditCommand::previous_frame);
   if (pressed(GLFW_KEY_RIGHT, true)) commands.push_back(EditCommand::next_frame);
   constexpr double faster = 1.25;
-  if (pressed(GLFW_KEY_MINUS, true)) wishes.speed = view.speed / faster;
-  if (pressed(GLFW_KEY_EQUAL, true)) wishes.speed = view.speed * faster;
-  if (pressed(GLFW_KEY_L)) wishes.loops = !view.loops;
+  if (pressed(GLFW_KEY_MINUS, true)) actions.speed = view.speed / faster;
+  if (pressed(GLFW_KEY_EQUAL, true)) actions.speed = view.speed * faster;
+  if (pressed(GLFW_KEY_L)) actions.loops = !view.loops;
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
-  if (pressed(GLFW_KEY_ESCAPE) && !wishes.drop) wishes.select.emplace();
+  if (pressed(GLFW_KEY_ESCAPE) && !actions.drop) actions.select.emplace();
   if (keys_shown) draw_key_list(timeline_key_table, mouse_words, keys_shown);
 }
 
-void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditWishes& wishes) {
+void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditActions& actions) {
   const bool open = ImGui::IsPopupOpen(question);
   wanted = wanted || (takes_keys() && pressed(GLFW_KEY_Q));
-  if (wanted && !view.modified) wishes.quit = true;
+  if (wanted && !view.modified) actions.quit = true;
   if (wanted && view.modified && !open) ImGui::OpenPopup(question);
   if (!begin_question(question)) return;
   ImGui::Text("Save the changes to %s?", view.file.c_str());
@@ -192,8 +192,8 @@ void TimelineWindow::Panel::leave(const TimelineView& view, bool wanted, EditWis
   const bool discard = ImGui::Button("Quit without saving");
   ImGui::SameLine();
   const bool stay = ImGui::Button("Stay") || pressed(GLFW_KEY_ESCAPE);
-  if (save) wishes.commands.push_back(EditCommand::save);
-  wishes.quit = wishes.quit || save || discard;
+  if (save) actions.commands.push_back(EditCommand::save);
+  actions.quit = actions.quit || save || discard;
   if (save || discard || stay) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }

@@ -17,15 +17,15 @@ struct TimelineWindow::Panel {
   float blend = 0.0F;
   bool blends = false; ///< the mouse holds the slider
 
-  void draw(const TimelineView& view, EditWishes& wishes);
-  void keys(const TimelineView& view, EditWishes& wishes);
+  void draw(const TimelineView& view, EditActions& actions);
+  void keys(const TimelineView& view, EditActions& actions);
   /// Whoever wants to leave does, or is asked first.
-  void leave(const TimelineView& view, bool wanted, EditWishes& wishes);
+  void leave(const TimelineView& view, bool wanted, EditActions& actions);
 
 private:
-  void file(const TimelineView& view, EditWishes& wishes) const;
-  void key(const TimelineView& view, EditWishes& wishes);
-  void whole(const TimelineView& view, EditWishes& wishes);
+  void file(const TimelineView& view, EditActions& actions) const;
+  void key(const TimelineView& view, EditActions& actions);
+  void whole(const TimelineView& view, EditActions& actions);
 };
 
 } // namespace nendo::viewer

@@ -35,25 +35,25 @@ Result<std::unique_ptr<TimelineWindow>> TimelineWindow::open(const std::string& 
   return std::unique_ptr<TimelineWindow>(new TimelineWindow(*std::move(window)));
 }
 
-EditWishes TimelineWindow::show(const TimelineView& view, const SceneFrame& moment) {
-  EditWishes wishes;
+EditActions TimelineWindow::show(const TimelineView& view, const SceneFrame& moment) {
+  EditActions actions;
   window_->leave_below(DopeSheetWidget::height_for(view.lanes.size()));
   window_->begin_picture(moment);
-  if (!move_tip(view, moment, wishes)) window_->move_camera();
+  if (!move_tip(view, moment, actions)) window_->move_camera();
   mark_tips(view, moment);
   panel_->strip.draw(view, panel_->retiming_shown ? std::optional(panel_->retiming) : std::nullopt,
-                     wishes);
-  panel_->draw(view, wishes);
+                     actions);
+  panel_->draw(view, actions);
   window_->follow_part_keys();
-  panel_->keys(view, wishes);
-  panel_->leave(view, window_->take_close_request(), wishes);
+  panel_->keys(view, actions);
+  panel_->leave(view, window_->take_close_request(), actions);
   window_->end_picture();
-  return wishes;
+  return actions;
 }
 
 /// True: the mouse holds a fingertip, and does nothing else.
 bool TimelineWindow::move_tip(const TimelineView& view, const SceneFrame& moment,
-                              EditWishes& wishes) {
+                              EditActions& actions) {
   const ImGuiIO& io = ImGui::GetIO();
   TipMover& tips = panel_->tips;
   const SeenHand* const hand = bendable_hand(view, moment);
@@ -66,7 +66,7 @@ bool TimelineWindow::move_tip(const TimelineView& view, const SceneFrame& moment
   if (!tips.finger()) return false;
   const bool given_up = pressed(GLFW_KEY_ESCAPE);
   if (given_up || hand == nullptr || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    (given_up ? wishes.drop : wishes.keep) = true;
+    (given_up ? actions.drop : actions.keep) = true;
     tips.let_go();
     return true;
   }
@@ -74,7 +74,7 @@ bool TimelineWindow::move_tip(const TimelineView& view, const SceneFrame& moment
              size.height);
   tips.push(camera, static_cast<double>(io.MouseWheel));
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || io.MouseWheel != 0.0F)
-    wishes.tried = TipDrag{*tips.finger(), tips.target_m()};
+    actions.tried = TipDrag{*tips.finger(), tips.target_m()};
   return true;
 }
 

@@ -43,7 +43,7 @@ struct HandInput {
   }
 };
 
-/// What a tick does; some of it, to measure that alone. What is left out stays as it was.
+/// The stages of a tick. A measurement may leave some out; their results then stay as they were.
 struct TickStages {
   bool input = true;   ///< drains the rings
   bool hands = true;   ///< joints and fingertips
@@ -59,12 +59,13 @@ struct LoopOptions : PaceOptions {
   /// What people ask of the loop while it runs; it takes them at the beginning of a tick. Must
   /// outlive it.
   CommandRing* commands = nullptr;
-  /// What is taken goes there, too. Must outlive it.
+  /// The loop logs there what it takes, for a recorder. Must outlive the loop.
   InputLog* input_log = nullptr;
   std::size_t undo_most_bytes = 0; ///< ShapingOptions::undo_most_bytes
   /// Each is shown every frame. Must outlive the loop.
   std::vector<FrameSink*> sinks;
-  /// What the hands' rings ring: needed by OverrunPolicy::sample. Must outlive the loop.
+  /// The hands' rings count their samples there; OverrunPolicy::sample needs it. Must outlive the
+  /// loop.
   EventCount* event_count = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
   SwitchAction switch_action = SwitchAction::none;
@@ -93,12 +94,12 @@ public:
     tick(Pacer::Due{number, scheduled, woke});
   }
 
-  /// Whether the hands could take hold: ok or merged.
+  /// Returns ok or merged if the hands could take hold of the model.
   deform::FieldStatus grab_status() const noexcept { return grab_status_; }
   /// One reader thread may poll it while the loop runs.
   FrameExchange& frames() noexcept { return frames_; }
   const LoopStats& stats() const noexcept { return stats_; }
-  /// Where the hands are; not while the loop runs.
+  /// Returns where the hands are. Must not be called while the loop runs.
   Placement placement() const;
   /// What adaptation has learned of the hands' gloves, by Placement::index_of(); nullopt where it
   /// does not. Not while the loop runs.

@@ -1,5 +1,6 @@
 #pragma once
-// Who wants every frame, where TripleBuffer gives the newest one to a single reader.
+// A sink takes every frame of a loop. A single reader that needs only the newest frame uses
+// DeformLoop::frames() instead.
 
 #include <nendo/flow/frame.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where a hold begins, which frames do not say.
+// Finds the frames in which the fingertips took hold of the model.
 
 #include <nendo/flow/frame.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the loop counts while it runs: in fixed memory, without waiting for anybody.
+// The loop's counters, in memory of fixed size.
 
 #include <array>
 #include <cstdint>

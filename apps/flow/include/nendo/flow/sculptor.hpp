@@ -34,7 +34,7 @@ public:
   /// written again. Wait-free (with a second thread: no longer than that needs); no allocation if
   /// `out` has the size.
   deform::FieldStatus update(const deform::Points& tips, deform::BlockShape& out) noexcept;
-  /// As update(), and nothing of a stroke is left waiting.
+  /// Does what update() does, and completes the stroke up to `tips`.
   deform::FieldStatus finish(const deform::Points& tips, deform::BlockShape& out) noexcept;
   /// To be called after finish() with the same tips: the shape that it gave becomes the rest shape,
   /// and the fingertips hold that where they are. Unless solved, nothing changes. No allocation.
@@ -57,9 +57,10 @@ public:
   /// Makes points in the mesh's order of shapes in blocks.
   const deform::BlockLayout& layout() const noexcept;
 
-  /// Of the last update: type 1, from the rest shape to this one; type 2, from the shape before.
+  /// Returns the fields of the last update: for type 1 they lead from the rest shape to this shape,
+  /// for type 2 from the shape before.
   const deform::FieldSequence& fields() const noexcept;
-  /// What the last update() took to stay injective; all 0 if that is not asked for.
+  /// Returns what the last update() needed to stay injective; all 0 if that is not asked for.
   deform::ChainReport report() const noexcept;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// What people's requests make of a sculptor: whether the hands hold the model, what is kept, undone
-// and done again. The loop has one, and so has whoever shapes without a loop.
+// Applies people's requests to a sculptor: the hands take hold and let go, shapes are committed,
+// undone and redone. The loop has one, and so has whoever shapes without a loop.
 
 #include <memory>
 #include <vector>
@@ -29,9 +29,9 @@ public:
 
   /// The fingertips take hold for the first time (3 by control_points, model units).
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_.grab(tips); }
-  /// What the next shape() is to do. Wait-free.
+  /// The next shape() does it. Wait-free.
   void ask(Request request) noexcept;
-  /// As Request::grab and Request::let_go, the other one than was asked for last.
+  /// Asks for Request::grab if Request::let_go was asked for last, and the other way round.
   void toggle_hold() noexcept { hold_wanted_ = !hold_wanted_; }
   /// A commit that waits until the hands hold the model.
   void commit_when_held() noexcept { commit_due_ = true; }
@@ -40,7 +40,7 @@ public:
   /// fields, chain and `held`; counts in `stats`. Wait-free, no allocation if the frame has the
   /// size.
   deform::FieldStatus shape(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
-  /// Nothing of a stroke left out. 3 by #vertices; allocates.
+  /// Completes the stroke and returns the shape, 3 by #vertices. Allocates.
   deform::Points final_shape(const deform::Points& tips);
 
   bool is_held() const noexcept { return held_; }

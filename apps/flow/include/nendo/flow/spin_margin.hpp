@@ -36,7 +36,7 @@ private:
   HostClock::duration margin_;
   std::uint32_t ticks_in_a_second_;
   std::uint32_t seen_ = 0;
-  /// By whole microseconds; the last one holds all that is longer.
+  /// Counts wake-ups by lateness in whole microseconds; the last entry counts all that are later.
   std::array<std::uint32_t, most.count() + 1> counts_{};
 };
 

@@ -15,7 +15,7 @@
 
 namespace nendo::flow {
 
-/// At the most; a finger that does not reach so far does as much as it reaches.
+/// The depths are upper bounds: a finger that cannot reach so far goes as far as it can.
 struct TouchOptions {
   std::uint32_t seed = 1; ///< of the order of fingers, the tempo and the way of gliding
   double press_m = 0.020;
@@ -23,7 +23,7 @@ struct TouchOptions {
   double glide_m = 0.012;
 };
 
-/// Where a fingertip is to be, on the stage.
+/// The place on the stage that a fingertip is to reach.
 struct TouchTarget {
   Eigen::Vector3d contact_m = Eigen::Vector3d::Zero(); ///< on the surface, as it is undeformed
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the surface there, outwards
@@ -51,9 +51,10 @@ public:
   /// ranges in which joint_angles() leaves angles as they are; the middle finger does not turn
   /// aside, because no glove measures that. Any thread, wait-free.
   hand::JointAngles angles(double time_s) const noexcept;
-  /// What a glove's sensors turn by then: joint_angles() makes angles(time_s) of them.
+  /// Returns the sensors' angles of a glove at that time; joint_angles() turns them into
+  /// angles(time_s).
   hand::SensorAngles sensor_angles(double time_s) const noexcept;
-  /// Nothing (zero) for a finger that cannot reach the surface; it keeps still. Any thread.
+  /// Returns zeros for a finger that cannot reach the surface and keeps still. Any thread.
   TouchTarget target(hand::Finger finger, double time_s) const noexcept;
 
   bool touches(hand::Finger finger) const noexcept;

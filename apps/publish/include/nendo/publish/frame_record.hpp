@@ -11,7 +11,8 @@
 
 namespace nendo::publish {
 
-/// What a loop is made of, told before its first tick. All live until it has ended.
+/// What a publisher must know of a loop before its first tick. The model and the layout must live
+/// until the loop has ended.
 struct LoopOutline {
   const deform::Mesh* model = nullptr; ///< as the loop begins
   const deform::BlockLayout* layout = nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-// Where a run publishes, as `--publish` says it.
+// The places that `--publish` can name.
 
 #include <optional>
 #include <string>
@@ -36,7 +36,7 @@ using Target = std::variant<SegmentTarget, DatagramTarget>;
 /// usage, without the option's name.
 Result<Target> parse_target(std::string_view text);
 
-/// Whether they are one segment, or one address and port.
+/// Returns whether both are the same segment, or the same address and port.
 bool is_same_place(const Target& one, const Target& other) noexcept;
 
 } // namespace nendo::publish

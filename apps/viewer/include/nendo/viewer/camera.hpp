@@ -37,7 +37,7 @@ struct Camera {
   /// World to clip coordinates as OpenGL has them. aspect: width / height.
   Eigen::Matrix4d projection(double aspect) const noexcept;
 
-  /// By pixels of a mouse's way, in a window that is `height` pixels high.
+  /// Turns by the pixels of a mouse's way, in a window that is `height` pixels high.
   void orbit(double dx, double dy) noexcept;
   void pan(double dx, double dy, double height) noexcept;
   void zoom(double steps) noexcept;

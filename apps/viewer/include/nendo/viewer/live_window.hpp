@@ -44,7 +44,7 @@ public:
   /// none. fresh: the frame is another one than at the call before.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
-  /// As SceneWindow's.
+  /// These are SceneWindow's.
   Image screenshot() const { return window_->screenshot(); }
   Image silhouette(Size size) { return window_->silhouette(size); }
   const Camera& camera() const noexcept { return window_->camera(); }
@@ -60,7 +60,7 @@ private:
 
   std::unique_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;
-  HoldFollower holds_;
+  HoldTracker holds_;
   SceneFrame moment_;
   HandMover hand_mover_;
 };

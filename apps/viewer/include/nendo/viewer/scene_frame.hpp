@@ -1,6 +1,6 @@
 #pragma once
-// What there is to see at one moment: of a mesh alone, of a frame of the running loop, or of a
-// recording. A take is a list of moments; whoever draws need not know where they came from.
+// What a picture shows at one moment. It can be made of a mesh alone, of a frame of the running loop
+// or of a recording; the renderers need not know which.
 
 #include <array>
 #include <optional>
@@ -26,9 +26,9 @@ struct SceneFrame {
   std::array<double, 5> radius_m{}; ///< of each fingertip's support, on the stage; 0: not shown
 };
 
-/// Where the fingertips took hold, by flow::HoldWatch. Exact if it sees every frame; otherwise off
-/// by what the fingers moved between two that it saw.
-class HoldFollower {
+/// Remembers where the fingertips took hold. It is exact if it sees every frame; otherwise it is off
+/// by what the fingers moved between two frames that it saw.
+class HoldTracker {
 public:
   void follow(const flow::Frame& frame) noexcept;
   /// On the stage, metres. slot: flow::Placement::index_of(side).
@@ -40,6 +40,6 @@ private:
 };
 
 /// All of a frame but its vertices and its time, which are left as they are.
-void see_hands(const flow::Frame& frame, const HoldFollower& holds, SceneFrame& moment);
+void see_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& moment);
 
 } // namespace nendo::viewer

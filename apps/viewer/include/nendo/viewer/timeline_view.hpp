@@ -75,8 +75,8 @@ struct Retiming {
   double scale = 1.0;
 };
 
-/// What a person wants, since the last picture; in this order.
-struct EditWishes {
+/// What a person has done since the last picture, to be applied in this order.
+struct EditActions {
   std::optional<std::optional<StripKey>> select; ///< that, or none
   std::optional<double> seek_s;
   std::optional<double> speed;

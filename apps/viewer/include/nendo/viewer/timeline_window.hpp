@@ -27,7 +27,7 @@ public:
   void follow(const deform::BlockShape& shape) { window_->follow(shape); }
   /// One picture; waits for the screen, 20 ms at most without one. Of the moment, all but its
   /// vertices. Who wants to leave with unsaved changes is asked first, and then says `quit`.
-  EditWishes show(const TimelineView& view, const SceneFrame& moment);
+  EditActions show(const TimelineView& view, const SceneFrame& moment);
 
   const SceneWindow& scene_window() const noexcept { return *window_; }
   void pretend(const PretendedInput& input) { window_->pretend(input); }
@@ -35,7 +35,7 @@ public:
 private:
   struct Panel;
   explicit TimelineWindow(std::unique_ptr<SceneWindow> window);
-  bool move_tip(const TimelineView& view, const SceneFrame& moment, EditWishes& wishes);
+  bool move_tip(const TimelineView& view, const SceneFrame& moment, EditActions& actions);
   void mark_tips(const TimelineView& view, const SceneFrame& moment) const;
 
   std::unique_ptr<SceneWindow> window_;
