@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "client_words.hpp"
+#include "client_commands.hpp"
 #include "socket_frames.hpp"
 
 using namespace nendo::web;

@@ -7,7 +7,7 @@
 
 #include "feed.hpp"
 #include "following_client.hpp"
-#include "tapped_loop.hpp"
+#include "streamed_loop.hpp"
 
 namespace follow_test {
 

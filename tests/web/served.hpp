@@ -10,7 +10,7 @@
 #include "following_client.hpp"
 #include "support/eventually.hpp"
 #include "support/restraint.hpp"
-#include "tapped_loop.hpp"
+#include "streamed_loop.hpp"
 #include "web_client.hpp"
 
 namespace nendo::test {

@@ -4,7 +4,7 @@
 
 #include "admission.hpp"
 #include "answers.hpp"
-#include "client_words.hpp"
+#include "client_commands.hpp"
 #include "handshake.hpp"
 #include "server_work.hpp"
 

@@ -10,9 +10,9 @@
 
 #include "support/restraint.hpp"
 #include "support/sleep_only.hpp"
-#include "tapped_loop.hpp"
+#include "streamed_loop.hpp"
 
-namespace tapped_loop_test {
+namespace streamed_loop_test {
 
 using namespace nendo;
 using nendo::test::StreamedLoop;
@@ -83,4 +83,4 @@ TEST_SUITE("streamed_loop" * doctest::skip(!nendo::test::restraint_is_counted)) 
   }
 }
 
-} // namespace tapped_loop_test
+} // namespace streamed_loop_test

@@ -1,4 +1,4 @@
-#include "client_words.hpp"
+#include "client_commands.hpp"
 
 #include <charconv>
 #include <cmath>

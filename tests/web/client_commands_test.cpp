@@ -1,11 +1,11 @@
-#include "client_words.hpp"
+#include "client_commands.hpp"
 
 #include <array>
 #include <string>
 
 #include <doctest/doctest.h>
 
-namespace client_words_test {
+namespace client_commands_test {
 
 using namespace nendo;
 using namespace nendo::web;
@@ -21,7 +21,7 @@ std::optional<T> parsed_as(std::string_view text) {
 
 } // namespace
 
-TEST_SUITE("client_words") {
+TEST_SUITE("client_commands") {
   TEST_CASE("every request of the loop is one by its name") {
     for (const auto request : flow::requests)
       CHECK(parsed_as<flow::Request>(flow::name_of(request)) == request);
@@ -114,4 +114,4 @@ TEST_SUITE("client_words") {
   }
 }
 
-} // namespace client_words_test
+} // namespace client_commands_test
