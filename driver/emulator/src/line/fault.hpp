@@ -41,7 +41,7 @@ struct Fault {
 
 std::string_view name_of(FaultKind kind) noexcept;
 /// The unit suffers it, not its line.
-constexpr bool befalls_unit(FaultKind kind) noexcept {
+constexpr bool happens_to_unit(FaultKind kind) noexcept {
   return kind == FaultKind::eg || kind == FaultKind::swap || kind == FaultKind::restart ||
          kind == FaultKind::press;
 }

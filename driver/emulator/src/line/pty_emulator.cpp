@@ -320,7 +320,7 @@ Result<void> check_faults(const EmulatorOptions& options, const EmulatedKind& ki
                           const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
     const std::string name = "fault " + std::string(name_of(fault.kind)) + ": ";
-    if (befalls_unit(fault.kind) && !kind.takes_incidents) {
+    if (happens_to_unit(fault.kind) && !kind.takes_incidents) {
       return Error{Errc::usage, name + "an emulated " + std::string(kind.name) + " has none"};
     }
     if (fault.kind == FaultKind::unplug && options.link.empty()) {

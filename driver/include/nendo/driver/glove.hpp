@@ -43,7 +43,6 @@ enum class GloveKind : std::uint8_t {
 };
 
 struct GloveInfo {
-  GloveKind kind = GloveKind::device;
   std::string source; ///< the GLOVE specification that opened it, e.g. "serial:/dev/ttyUSB0"
   std::string model;  ///< what the glove says it is, one line, e.g. "CyberGlove, 22 sensors"
   Side side = Side::right;
@@ -52,7 +51,8 @@ struct GloveInfo {
   CountScale counts;
   Abilities abilities;
   std::vector<GloveFact> facts; ///< everything else that it says of itself
-  std::string recording;        ///< the recording's path, if it is `recorded`
+  GloveKind kind = GloveKind::device;
+  std::string recording; ///< the recording's path, if it is `recorded`
 };
 
 /// Monotonic counts since start(). bytes = record_bytes + discarded_bytes + a remainder shorter
