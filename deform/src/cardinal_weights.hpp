@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <nendo/deform/block_evaluator.hpp>
 #include <nendo/deform/csrbf.hpp>
 
+#include "block_evaluator.hpp"
 #include "block_field.hpp"
 #include "simd/weight_kernels.hpp"
 

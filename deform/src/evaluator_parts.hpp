@@ -11,8 +11,8 @@
 
 #include <hwy/cache_control.h>
 
-#include <nendo/deform/block_evaluator.hpp>
 
+#include "block_evaluator.hpp"
 #include "block_field.hpp"
 #include "spin_worker.hpp"
 

@@ -1,4 +1,4 @@
-#include <nendo/deform/fingertip_curve.hpp>
+#include "fingertip_curve.hpp"
 
 #include <algorithm>
 #include <cassert>

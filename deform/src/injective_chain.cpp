@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "least_gap.hpp"
 #include "solver_room.hpp"
 #include "usable.hpp"
 
@@ -15,13 +16,21 @@ InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOpti
     : supports_(std::move(supports)), csrbf_(csrbf),
       options_(options), solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)},
       starts_(Points::Zero(3, points)), radii_(least_radii(supports_, points)), places_(starts_),
-      wanted_(starts_), allowed_(starts_), step_(starts_), tips_(starts_), gaps_(options.least_gap),
+      wanted_(starts_), allowed_(starts_), step_(starts_), tips_(starts_), gaps_(std::make_unique<LeastGap>(options.least_gap)),
       field_(room_for_field(supports_, points, csrbf.kernel)), piece_(field_) {
   assert(options.most_bound > 0.0 && options.most_bound < 1.0);
   for (CsrbfSolver& solver : solvers_)
     make_room(solver, supports_, points);
-  gaps_.reserve(points);
+  gaps_->reserve(points);
   probe_.reserve(DeterminantProbe::ring_size * points);
+}
+
+InjectiveChain::~InjectiveChain() = default;
+InjectiveChain::InjectiveChain(InjectiveChain&&) noexcept = default;
+InjectiveChain& InjectiveChain::operator=(InjectiveChain&&) noexcept = default;
+
+std::span<const HeldPair> InjectiveChain::walls() const noexcept {
+  return gaps_->walls();
 }
 
 FieldStatus InjectiveChain::grab(const Points& starts) {
@@ -36,7 +45,7 @@ FieldStatus InjectiveChain::grab(const Points& starts) {
   wanted_ = starts;
   at_start_ = true;
   ended_ = true;
-  gaps_.begin(starts, radii_);
+  gaps_->begin(starts, radii_);
   report_ = {};
   return status;
 }
@@ -47,7 +56,7 @@ FieldStatus InjectiveChain::from_start(const Points& ends) noexcept {
   if (usable) wanted_ = ends;
   places_ = starts_;
   at_start_ = true;
-  gaps_.begin(starts_, radii_);
+  gaps_->begin(starts_, radii_);
   const FieldStatus status = go(options_.most_links);
   if (!usable && is_solved(status)) report_.status = FieldStatus::not_finite;
   return report_.status;
@@ -58,7 +67,7 @@ FieldStatus InjectiveChain::from_here(const Points& ends, int most_links) noexce
   const bool usable = all_usable(ends);
   if (usable) {
     wanted_ = ends;
-    gaps_.release(wanted_);
+    gaps_->release(wanted_);
     return go(most_links);
   }
   report_ = {.status = FieldStatus::not_finite};
@@ -76,7 +85,7 @@ FieldStatus InjectiveChain::go(int most_links) noexcept {
     end(FieldStatus::singular);
     return report_.status;
   }
-  gaps_.project(wanted_, allowed_);
+  gaps_->project(wanted_, allowed_);
   probe_.start_round(places_, radii_, csrbf_.kernel);
   return report_.status;
 }
@@ -122,18 +131,18 @@ FieldStatus InjectiveChain::make_link() noexcept {
     status = std::max(status, solved);
     if (first && report_.links == 0) report_.whole_bound = whole;
     // The field is linear in the displacements, and bounds of sums are at most sums of bounds.
-    const double free = gaps_.free_part(tips_, allowed_);
+    const double free = gaps_->free_part(tips_, allowed_);
     const double room = std::max(options_.most_bound - link_bound_, 0.0);
     const double part = std::min(free, whole > room ? room / whole : 1.0);
     link_bound_ += part * whole;
     extend(part, first);
-    const bool held = part == free && free < 1.0 && gaps_.hold(tips_, allowed_, part);
+    const bool held = part == free && free < 1.0 && gaps_->hold(tips_, allowed_, part);
     if (part < 1.0)
       tips_ += part * step_;
     else
       tips_ = allowed_;
     if (!held) break;
-    gaps_.project(wanted_, allowed_);
+    gaps_->project(wanted_, allowed_);
   }
   return status;
 }
@@ -156,7 +165,7 @@ bool InjectiveChain::end(FieldStatus status) noexcept {
   ended_ = true;
   report_.status = std::max(report_.status, status);
   if (grabbed_) report_.least_determinant = probe_.least();
-  for (const HeldPair& wall : gaps_.walls())
+  for (const HeldPair& wall : gaps_->walls())
     report_.held_pairs += wall.push > 0.0 ? 1 : 0;
   return false;
 }

@@ -1,4 +1,4 @@
-#include <nendo/deform/octree_order.hpp>
+#include "octree_order.hpp"
 
 #include <algorithm>
 #include <cmath>

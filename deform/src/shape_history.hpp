@@ -7,8 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include <nendo/deform/block_evaluator.hpp>
 #include <nendo/deform/undo_memory.hpp>
+
+#include "block_evaluator.hpp"
 
 namespace nendo::deform {
 

@@ -12,20 +12,20 @@ namespace nendo::deform {
 
 Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
                              const DeformerOptions& options)
-    : layout_(std::move(rest)), rest_(layout_.pack()), starts_(Points::Zero(3, control_points)),
+    : layout_(std::move(rest)), rest_(std::make_unique<BoundedShape>(layout_.pack())), starts_(Points::Zero(3, control_points)),
       rounded_(starts_), displacements_(starts_), asked_(starts_),
       supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
       fields_(options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1,
               field_),
-      evaluator_(layout_, field_.centres.cols(), options.evaluation),
+      evaluator_(std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
       weights_(std::make_unique<CardinalWeights>(layout_, control_points, field_,
                                                  options.evaluation.weight_bytes)),
       history_(
-          std::make_unique<ShapeHistory>(rest_.shape, options.undo_bytes, options.undo_memory)) {
+          std::make_unique<ShapeHistory>(rest_->shape, options.undo_bytes, options.undo_memory)) {
   if (options.injective) {
     chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
-    linked_ = rest_;
+    linked_ = std::make_unique<BoundedShape>(*rest_);
   } else {
     make_room(solver_, supports_, control_points);
   }
@@ -34,6 +34,10 @@ Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
 Type1Deformer::~Type1Deformer() = default;
 Type1Deformer::Type1Deformer(Type1Deformer&&) noexcept = default;
 Type1Deformer& Type1Deformer::operator=(Type1Deformer&&) noexcept = default;
+
+const BlockShape& Type1Deformer::rest() const noexcept {
+  return rest_->shape;
+}
 
 FieldStatus Type1Deformer::grab(const Points& starts) {
   assert(starts.cols() == starts_.cols());
@@ -66,7 +70,7 @@ void Type1Deformer::take_hold() {
   field_.coefficients.setZero();
   field_.polynomial.setZero();
   fields_.clear();
-  weights_->build(solver(), rest_, evaluator_);
+  weights_->build(solver(), *rest_, *evaluator_);
 }
 
 FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
@@ -77,7 +81,7 @@ FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
     asked_ = ends - starts_;
     status = solver_.solve(asked_, field_);
     const auto fits = [&] {
-      return weights_->is_built() ? weights_->fits(asked_, rest_) : evaluator_.set_field(field_);
+      return weights_->is_built() ? weights_->fits(asked_, *rest_) : evaluator_->set_field(field_);
     };
     if (is_solved(status) && !fits()) {
       status = FieldStatus::not_finite;
@@ -119,10 +123,10 @@ FieldStatus Type1Deformer::apply_links(const Points& ends, BlockShape& out) {
 /// From the first, which is made.
 FieldStatus Type1Deformer::follow_links() {
   FieldStatus status = FieldStatus::ok;
-  linked_->follow(rest_);
+  linked_->follow(*rest_);
   do {
     const CsrbfField& link = chain_->field();
-    if (evaluator_.set_field(link) && evaluator_.displace(*linked_))
+    if (evaluator_->set_field(link) && evaluator_->displace(*linked_))
       fields_.push(link);
     else
       status = FieldStatus::not_finite;
@@ -136,12 +140,12 @@ void Type1Deformer::draw(BlockShape& out) {
     return;
   }
   if (!weights_->is_built()) {
-    evaluator_.set_field(field_);
-    evaluator_.displace(rest_, out);
+    evaluator_->set_field(field_);
+    evaluator_->displace(*rest_, out);
     return;
   }
-  if (out.block_count() != rest_.shape.block_count()) out = rest_.shape;
-  weights_->apply(displacements_, rest_.shape, out, evaluator_);
+  if (out.block_count() != rest_->shape.block_count()) out = rest_->shape;
+  weights_->apply(displacements_, rest_->shape, out, *evaluator_);
 }
 
 FieldStatus Type1Deformer::commit(const Points& ends) {
@@ -149,15 +153,15 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
   const FieldStatus status = build(ends);
   if (!is_solved(status)) return status;
   if (in_links_) {
-    rest_.follow(*linked_);
+    rest_->follow(*linked_);
   } else if (weights_->is_built()) {
-    weights_->apply(displacements_, rest_.shape, rest_.shape, evaluator_);
-    weights_->update_rest_bounds(displacements_, rest_);
+    weights_->apply(displacements_, rest_->shape, rest_->shape, *evaluator_);
+    weights_->update_rest_bounds(displacements_, *rest_);
   } else {
-    evaluator_.set_field(field_);
-    evaluator_.displace(rest_);
+    evaluator_->set_field(field_);
+    evaluator_->displace(*rest_);
   }
-  history_->keep(rest_.shape);
+  history_->keep(rest_->shape);
   take_hold();
   return status;
 }
@@ -166,7 +170,7 @@ FieldStatus Type1Deformer::undo(const Points& tips) {
   assert(tips.cols() == starts_.cols());
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  history_->undo(rest_);
+  history_->undo(*rest_);
   take_hold();
   return status;
 }
@@ -176,7 +180,7 @@ FieldStatus Type1Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  history_->redo(rest_);
+  history_->redo(*rest_);
   take_hold();
   return status;
 }

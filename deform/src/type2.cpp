@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "fingertip_curve.hpp"
 #include "shape_history.hpp"
 #include "solver_room.hpp"
 #include "usable.hpp"
@@ -22,14 +23,14 @@ std::size_t most_fields(const DeformerOptions& options) {
 
 Type2Deformer::Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                              const DeformerOptions& options)
-    : layout_(std::move(shape)), shape_(layout_.pack()), curve_(control_points, piece_length),
+    : layout_(std::move(shape)), shape_(std::make_unique<BoundedShape>(layout_.pack())), curve_(std::make_unique<FingertipCurve>(control_points, piece_length)),
       current_(Points::Zero(3, control_points)), next_(current_), step_(current_),
       rounded_(current_), supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
       fields_(most_fields(options), field_),
-      evaluator_(layout_, field_.centres.cols(), options.evaluation),
+      evaluator_(std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
       history_(
-          std::make_unique<ShapeHistory>(shape_.shape, options.undo_bytes, options.undo_memory)) {
+          std::make_unique<ShapeHistory>(shape_->shape, options.undo_bytes, options.undo_memory)) {
   make_room(solver_, supports_, control_points);
   if (!options.injective) return;
   chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
@@ -40,8 +41,12 @@ Type2Deformer::~Type2Deformer() = default;
 Type2Deformer::Type2Deformer(Type2Deformer&&) noexcept = default;
 Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
 
+const BlockShape& Type2Deformer::shape() const noexcept {
+  return shape_->shape;
+}
+
 FieldStatus Type2Deformer::begin(const Points& tips) {
-  history_->keep(shape_.shape);
+  history_->keep(shape_->shape);
   return take_hold(tips);
 }
 
@@ -52,7 +57,7 @@ FieldStatus Type2Deformer::take_hold(const Points& tips) {
   const FieldStatus status = chain_ ? chain_->grab(tips) : FieldStatus::ok;
   if (!is_solved(status)) return status;
   current_ = tips;
-  curve_.begin(tips);
+  curve_->begin(tips);
   begun_ = true;
   return status;
 }
@@ -68,8 +73,8 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
 FieldStatus Type2Deformer::undo(const Points& tips) {
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  history_->keep(shape_.shape);
-  history_->undo(shape_);
+  history_->keep(shape_->shape);
+  history_->undo(*shape_);
   fields_.clear();
   return status;
 }
@@ -78,7 +83,7 @@ FieldStatus Type2Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  history_->redo(shape_);
+  history_->redo(*shape_);
   fields_.clear();
   return status;
 }
@@ -103,7 +108,7 @@ StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   if (!all_usable(tips)) return {FieldStatus::not_finite, 0};
   if (!begun_) return {begin(tips), 0};
   StrokeResult result;
-  for ((curve_.*lead)(tips); curve_.next_cut(next_); current_ = next_) {
+  for (((*curve_).*lead)(tips); curve_->next_cut(next_); current_ = next_) {
     const FieldStatus status = chain_ ? apply_links() : apply_piece();
     result.pieces += is_solved(status) ? 1 : 0;
     result.status = std::max(result.status, status); // ordered from good to bad
@@ -122,7 +127,7 @@ FieldStatus Type2Deformer::apply_piece() {
 }
 
 FieldStatus Type2Deformer::apply(const CsrbfField& field) {
-  if (!evaluator_.set_field(field) || !evaluator_.displace(shape_))
+  if (!evaluator_->set_field(field) || !evaluator_->displace(*shape_))
     return FieldStatus::not_finite;
   fields_.push(field);
   return FieldStatus::ok;

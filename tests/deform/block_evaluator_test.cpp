@@ -1,4 +1,4 @@
-#include <nendo/deform/block_evaluator.hpp>
+#include "block_evaluator.hpp"
 
 #include <algorithm>
 #include <cmath>

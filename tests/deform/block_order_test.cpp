@@ -9,9 +9,9 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/deform/octree_order.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
+#include "octree_order.hpp"
 #include "support/test_meshes.hpp"
 
 namespace block_order_test {

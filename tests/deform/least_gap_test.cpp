@@ -1,4 +1,4 @@
-#include <nendo/deform/least_gap.hpp>
+#include "least_gap.hpp"
 
 #include <algorithm>
 #include <cmath>

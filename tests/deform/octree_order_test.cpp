@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include <nendo/deform/octree_order.hpp>
+#include "octree_order.hpp"
 
 namespace octree_order_test {
 

@@ -2,8 +2,8 @@
 #include <chrono>
 #include <numeric>
 
-#include <nendo/deform/octree_order.hpp>
 
+#include "octree_order.hpp"
 #include "solver/csrbf_state.hpp"
 #include "solver/shared_kernel.hpp"
 

@@ -11,16 +11,18 @@
 namespace nendo::deform {
 
 struct ControlVectors {
-  Points starts;               ///< c_i
-  Points displacements;        ///< g_i
+  Points starts;               ///< 3 by #rows, the start points c_i
+  Points displacements;        ///< 3 by #rows, the displacements g_i
   std::vector<OwnSupport> own; ///< one or more a row, or empty if the file has no radius column
 };
 
-/// CSV with the header `x,y,z,dx,dy,dz` and optionally `,radius`, whose cells are what
-/// parse_supports() takes; at most a million rows. Blank lines and lines that start
-/// with # are skipped. Error: bad_input, naming line and column. `name` is what error messages call
-/// it.
+/// Parses CSV with the header `x,y,z,dx,dy,dz`, or `x,y,z,dx,dy,dz,radius`, and at most a million
+/// rows. A cell of the radius column is what parse_supports() takes. Blank lines and lines that
+/// start with # are skipped. `name` is what error messages call the text. Error: bad_input, with
+/// the line and the column.
 Result<ControlVectors> parse_control_vectors(std::string_view text, std::string_view name);
+/// Reads such a file. Blocks for as long as the disk does. Error: bad_input, also for a file that
+/// cannot be read.
 Result<ControlVectors> read_control_vectors(const std::filesystem::path& path);
 
 } // namespace nendo::deform

@@ -12,8 +12,8 @@
 
 namespace nendo::deform {
 
-/// The paper has `linear`. It is global: moving one point moves the whole model, so `none` is the
-/// default; Wendland functions need no polynomial to be solvable.
+/// The polynomial part of the field. The paper has `linear`. A polynomial is global: with it,
+/// moving one point moves the whole model. `none` is the default, and is always solvable.
 enum class Polynomial { none, constant, linear };
 
 std::string_view name_of(Polynomial polynomial) noexcept;
@@ -22,10 +22,10 @@ std::optional<Polynomial> polynomial_named(std::string_view name) noexcept;
 struct CsrbfOptions {
   Wendland kernel = Wendland::c2;
   Polynomial polynomial = Polynomial::none;
-  /// Start points nearer than this fraction of the least shared radius share their displacements,
-  /// the more the nearer they are, and wholly when they coincide: a pinch stays continuous, and
-  /// bounded by some 0.25 / merge_fraction displacements, five times that with several radii (as
-  /// pinch_test.cpp finds). From this distance on, interpolation is exact.
+  /// Start points that are nearer to each other than this fraction of the least shared radius share
+  /// their displacements: partly at first, and wholly when they coincide. A pinch therefore stays
+  /// continuous, and the field stays below about 0.25 / merge_fraction times the displacements, or
+  /// five times that with several radii. Beyond this distance, interpolation is exact.
   double merge_fraction = 1e-6;
 };
 
@@ -37,6 +37,7 @@ enum class FieldStatus {
   not_finite, ///< an input was NaN, infinite or beyond 1e100, a radius or weight not positive; the
               ///< field is unchanged
 };
+/// Returns what the status means, in words for the user.
 std::string_view describe(FieldStatus status) noexcept;
 
 constexpr bool is_solved(FieldStatus status) noexcept {
@@ -45,7 +46,7 @@ constexpr bool is_solved(FieldStatus status) noexcept {
 
 struct SolverChoices; // those of tests and benchmarks: src/solver/solver_choices.hpp
 
-/// What the last build() took. Times are 0 up to lean_size points, where no clock is read.
+/// What the last build() took. Up to lean_size points no clock is read, and the times are 0.
 struct SolverEffort {
   bool sparse = false;
   Eigen::Index matrix_entries = 0; ///< of one triangle
@@ -56,17 +57,18 @@ struct SolverEffort {
   double factor_s = 0.0;
 };
 
-/// Factorises once for a set of start points, then solves for any number of displacements. Up to
-/// `lean_size` points neither build() nor solve() allocates, locks or calls the system once they
-/// have been called with as many points, supports and a field of that size.
+/// Factorises once for a set of start points, and then solves for any number of displacements. Up
+/// to `lean_size` points, build() and solve() do not allocate, lock or call the system once they
+/// have been called with as many points and supports and with a field of that size. A solver
+/// belongs to one thread at a time.
 class CsrbfSolver {
 public:
   static constexpr Eigen::Index lean_size = 32;
-  /// Beyond this, supports that hold more than an eighth of the start points are too_dense; so is a
-  /// factor of more than `most_factor_entries`, which take 800 MB.
+  /// With more points than this, supports that hold more than an eighth of them are too_dense. A
+  /// factor of more than `most_factor_entries`, which take 800 MB, is too_dense as well.
   static constexpr Eigen::Index most_dense_points = 4096;
   static constexpr Eigen::Index most_factor_entries = Eigen::Index{1} << 26;
-  /// So many pairs of an own function and a start point in its reach; more are too_dense, too.
+  /// More pairs of an own function and a start point in its reach than this are too_dense.
   static constexpr std::size_t most_own_values = std::size_t{1} << 23;
 
   explicit CsrbfSolver(CsrbfOptions options);
@@ -74,16 +76,17 @@ public:
   CsrbfSolver(CsrbfSolver&&) noexcept;
   CsrbfSolver& operator=(CsrbfSolver&&) noexcept;
 
-  /// Allocates for this many points with one radius each, so that already the first build() need
-  /// not.
+  /// Allocates for this many points with one radius each, so that the first build() does not.
   void reserve(Eigen::Index points);
-  /// Orders, assembles and factorises: Cholesky of M (supports.hpp), then the Schur complement of
-  /// the polynomial part. starts: 3 by n; the supports' points are below n.
+  /// Orders the start points (3 by n), assembles M (supports.hpp) and factorises it by Cholesky,
+  /// and then the Schur complement of the polynomial part. The points that `supports` names must be
+  /// below n.
   FieldStatus build(const Points& starts, const Supports& supports);
-  /// A radius each, n: with_common() of them.
+  /// Does the same for n radii, one for each start point, with the common radius of with_common().
   FieldStatus build(const Points& starts, const Eigen::VectorXd& radii);
-  /// displacements: 3 by n, g_i. Writes the whole field: the shared functions of the first support,
-  /// a start point each, then those of the next, then the own ones. Needs a successful build().
+  /// Solves for the displacements g_i (3 by n) after a successful build(). Writes the whole field:
+  /// the functions of the first shared support, one for each start point, then those of the next,
+  /// and then the own functions.
   FieldStatus solve(const Points& displacements, CsrbfField& field);
 
   const SolverEffort& effort() const noexcept;

@@ -7,21 +7,22 @@
 
 namespace nendo::deform {
 
-/// All that is needed to deform a copy of the model elsewhere: a few hundred bytes.
+/// A field s(x). A few hundred bytes are enough to deform a copy of the model elsewhere.
 struct CsrbfField {
   Wendland kernel = Wendland::c2;
-  Points centres;
-  Eigen::VectorXd radii; ///< one a centre
+  Points centres;        ///< c_i, 3 by #centres, in model units
+  Eigen::VectorXd radii; ///< r_i, one a centre, in model units
   Points coefficients;   ///< a_i, 3 by #centres
   Eigen::Matrix<double, 3, 4> polynomial =
       Eigen::Matrix<double, 3, 4>::Zero(); ///< p(x) = P (1, x, y, z)
 
+  /// Returns s(x).
   Eigen::Vector3d displacement_at(const Eigen::Vector3d& x) const noexcept;
 };
 
-/// out = points + s(points), column by column; `out` is resized only if its size differs. May be
-/// `points` itself. Fields of 256 functions and more are evaluated by a grid over them, which
-/// allocates and changes no bit.
+/// Computes out = points + s(points) for 3 by #points. `out` may be `points` itself, and is resized
+/// only if its size differs. Fields of 256 functions and more are evaluated with the help of a
+/// grid, which allocates memory; the result is the same to the last bit.
 void displace(const CsrbfField& field, const Points& points, Points& out);
 
 } // namespace nendo::deform

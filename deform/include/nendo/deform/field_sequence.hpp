@@ -1,6 +1,6 @@
 #pragma once
-// Fields that a shape goes through one after another: what a copy of the model elsewhere, on a GPU
-// or another machine, needs to become the same.
+// The fields that a tick applied to a shape, one after another. A copy of the model elsewhere, on a
+// GPU or on another machine, becomes the same by applying them.
 
 #include <cassert>
 #include <cstddef>
@@ -14,23 +14,26 @@ namespace nendo::deform {
 class FieldSequence {
 public:
   FieldSequence() = default;
-  /// Allocates for `most` fields of the size of `like`; nothing does afterwards, for such fields.
+  /// Allocates room for `most` fields of the size of `like`. The other functions do not allocate
+  /// for fields of that size.
   FieldSequence(std::size_t most, const CsrbfField& like) : fields_(most, like) {}
 
   void clear() noexcept { used_ = 0; }
+  /// Appends a field; there must be room for it.
   void push(const CsrbfField& field) noexcept {
     assert(used_ < fields_.size());
     fields_[used_++] = field;
   }
-  /// Becomes equal to `other`, which has no more fields than there is room for.
+  /// Copies `other`, which may have no more fields than there is room for.
   void follow(const FieldSequence& other) noexcept {
     clear();
     for (const CsrbfField& field : other.fields())
       push(field);
   }
 
-  /// First to last.
+  /// Returns the fields in the order in which they are to be applied.
   std::span<const CsrbfField> fields() const noexcept { return {fields_.data(), used_}; }
+  /// Returns how many fields there is room for.
   std::size_t room() const noexcept { return fields_.size(); }
 
 private:

@@ -5,12 +5,24 @@
 // would need a link of no length; points whose paths cross are therefore held apart (LeastGap).
 
 #include <array>
+#include <memory>
+#include <span>
 
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/jacobian.hpp>
-#include <nendo/deform/least_gap.hpp>
 
 namespace nendo::deform {
+
+class LeastGap;
+
+/// Two fingertips between which a wall stands, because their paths cross.
+struct HeldPair {
+  Eigen::Index first = 0; ///< column of the fingertip on the wall's upper side; less than `second`
+  Eigen::Index second = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< unit length, from the second to the first
+  double gap = 0.0;                                 ///< along the normal, in model units
+  double push = 0.0; ///< how far each is kept from where it was told to go, in model units
+};
 
 struct InjectiveOptions {
   double most_bound = 0.9; ///< largest Lipschitz bound of a link; below 1
@@ -20,13 +32,13 @@ struct InjectiveOptions {
 
 struct ChainReport {
   FieldStatus status = FieldStatus::ok;
-  int links = 0;
+  int links = 0;            ///< how many links were made
   double whole_bound = 0.0; ///< Lipschitz bound of the first link's field, had it not been cut
   double bound = 0.0;       ///< the largest of the links'
   double least_determinant =
       1.0;             ///< of the chain's Jacobian, round the points; see DeterminantProbe
-  int held_pairs = 0;  ///< that are kept from where they were told to go
-  bool reached = true; ///< false: `most_links` were not enough, the rest of the way is left
+  int held_pairs = 0;  ///< pairs that are kept from where they were told to go
+  bool reached = true; ///< false if `most_links` were not enough for the whole way
 };
 
 /// Call one of the two ways of going, then apply field() to the shape as long as next() is true:
@@ -37,32 +49,37 @@ class InjectiveChain {
 public:
   InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
                  InjectiveOptions options);
+  ~InjectiveChain();
+  InjectiveChain(InjectiveChain&&) noexcept;
+  InjectiveChain& operator=(InjectiveChain&&) noexcept;
 
-  /// Freezes the start points (3 by points). Not on failure: the last good ones stay.
+  /// Freezes the start points (3 by points). On failure, the last good ones stay.
   FieldStatus grab(const Points& starts);
-  /// Type-1: from the start points straight to `ends`; what is applied to the rest shape depends on
-  /// nothing else. Ends that are not finite are refused: the chain goes where it went last.
+  /// Type-1: goes from the start points straight to `ends` (3 by points). The links are for the
+  /// rest shape and depend on nothing else. If an end is not finite, the chain goes where it went
+  /// last.
   FieldStatus from_start(const Points& ends) noexcept;
-  /// Type-2: on from where the chain has come to, with the walls that stand, to be applied to the
-  /// shape as it is. At most `most_links` links. Ends that are not finite are refused: no link
+  /// Type-2: goes on from where the chain has come to, with the walls that stand, in at most
+  /// `most_links` links. The links are for the shape as it is now. If an end is not finite, no link
   /// follows.
   FieldStatus from_here(const Points& ends, int most_links) noexcept;
   FieldStatus from_here(const Points& ends) noexcept {
     return from_here(ends, options_.most_links);
   }
 
-  /// Makes the next link's field. False: there is none, the report is complete.
+  /// Makes the next link's field. Returns false if there is none; the report is then complete.
   bool next() noexcept;
 
-  /// Built for the start points; whoever solves with it does not disturb the chain.
+  /// Returns the solver that is built for the start points. To solve with it does not disturb the
+  /// chain.
   CsrbfSolver& start_solver() noexcept { return solvers_[kept_]; }
-  /// Of the link made last.
+  /// Returns the field of the link made last.
   const CsrbfField& field() const noexcept { return field_; }
   const ChainReport& report() const noexcept { return report_; }
-  /// Where the chain has come to: of points that are held, not where they were told to go.
+  /// Returns where the chain has come to. Points that are held are not where they were told to go.
   const Points& places() const noexcept { return places_; }
-  /// A pair is held if its `push` is positive.
-  std::span<const HeldPair> walls() const noexcept { return gaps_.walls(); }
+  /// Returns all walls. A pair is held if its `push` is positive.
+  std::span<const HeldPair> walls() const noexcept;
 
 private:
   FieldStatus go(int most_links) noexcept;
@@ -87,7 +104,7 @@ private:
   Points step_;
   Points tips_; ///< where the link leads that is being made
   double link_bound_ = 0.0;
-  LeastGap gaps_;
+  std::unique_ptr<LeastGap> gaps_;
   DeterminantProbe probe_;
   CsrbfField field_;
   CsrbfField piece_; ///< up to the next corner of the way

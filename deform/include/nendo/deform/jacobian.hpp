@@ -1,21 +1,21 @@
 #pragma once
 // How much a field stretches, folds or turns space: the derivative of x -> x + s(x), and bounds on
-// it. All of it without allocation, lock or system call.
+// it. Nothing here allocates, locks or calls the system, except where it says so.
 
 #include <nendo/deform/field.hpp>
 
 namespace nendo::deform {
 
-/// I + ds/dx. At a centre of Wendland::c0, where s has no derivative, that centre's term is left
-/// out.
+/// Returns I + ds/dx at x. At a centre of Wendland::c0, where s has no derivative, that centre's
+/// term is left out.
 Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept;
 
-/// L with |s(x) - s(y)| <= L |x - y| for all x and y; never less than the least such number, and
-/// proportional to the field's coefficients. Below 1, x -> x + s(x) is a homeomorphism of space:
-/// nothing folds, nothing that was apart meets. The lesser of two bounds, both O(n^2):
-///   the sum of |a_i| max |psi'| / r_i, of the supports that can reach where c_j is the nearest
-///   centre; the field's norm in the kernel's native space, which knows how coefficients cancel.
-/// Infinite if the field is not finite.
+/// Returns an L with |s(x) - s(y)| <= L |x - y| for all x and y. It is proportional to the field's
+/// coefficients. If L < 1, x -> x + s(x) is a homeomorphism of space: nothing folds, and nothing
+/// that was apart meets. L is the lesser of two bounds, each of which takes O(n^2) for n centres:
+///   the largest sum of |a_i| max |psi'| / r_i over the supports that reach one place;
+///   the field's norm in the kernel's native space, which accounts for coefficients that cancel.
+/// Returns infinity if the field is not finite.
 double lipschitz_bound(const CsrbfField& field) noexcept;
 
 /// Follows points through fields that are applied one after another, and the determinants of the
@@ -24,14 +24,18 @@ class DeterminantProbe {
 public:
   /// Allocates for this many points.
   void reserve(Eigen::Index points);
-  /// Starts at these points, with determinants of 1. No allocation up to the number reserved.
+  /// Starts at these points (3 by n) with determinants of 1. Does not allocate for up to as many
+  /// points as were reserved.
   void start(const Points& points);
-  /// As start(), but at each start point (3 by n, n radii) and at the six places along the axes
-  /// round it where a lone field of this kernel is steepest. Needs room for `ring_size` n points.
+  /// Starts at each of these points (3 by n, with n radii) and at six places round it: those along
+  /// the axes where a field of this kernel with this centre alone is steepest. reserve() must have
+  /// been called for ring_size * n points.
   void start_round(const Points& starts, const Eigen::VectorXd& radii, Wendland kernel) noexcept;
+  /// Takes the points through this field.
   void advance(const CsrbfField& field) noexcept;
 
-  /// 1 if there are no points.
+  /// Returns the least determinant that any point has had since the start; 1 if there are no
+  /// points.
   double least() const noexcept { return least_; }
 
   static constexpr Eigen::Index ring_size = 7;

@@ -9,7 +9,7 @@
 
 namespace nendo::deform {
 
-/// 3 by #points, in model units (whatever unit the file was in).
+/// Points as columns: 3 by #points, in model units. A model unit is the unit of the file.
 using Points = Eigen::Matrix3Xd;
 
 struct Mesh {
@@ -30,13 +30,15 @@ struct Box {
   Eigen::Vector3d lowest, highest; ///< lowest[0] > highest[0] if there is nothing in it
 };
 
-/// The axis-aligned bounding box of the points that are finite.
+/// Returns the axis-aligned bounding box of the points that are finite.
 Box finite_box_of(const Points& points) noexcept;
 
-/// Length of the diagonal of the axis-aligned bounding box; 0 for no points.
+/// Returns the length of the diagonal of the axis-aligned bounding box, in model units; 0 if there
+/// are no points.
 double diagonal_of(const Points& points) noexcept;
 
-/// 3 by #vertices, unit length, area-weighted; zero where a vertex has no face of any area.
+/// Returns the normals of the vertices, 3 by #vertices, of unit length: the means of the faces'
+/// normals, weighted by area. A vertex without a face of any area has a normal of zero.
 Points vertex_normals(const Mesh& mesh);
 
 } // namespace nendo::deform

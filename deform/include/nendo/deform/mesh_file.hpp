@@ -11,18 +11,21 @@
 
 namespace nendo::deform {
 
-/// By content for PLY ("ply" magic), otherwise OBJ. `name` is what error messages call it. Kept:
-/// vertices, faces of any size, texture coordinates of an OBJ. Not kept: normals (they change),
-/// materials, groups, colours. Error: bad_input with line or byte offset (no vertices, non-finite
-/// coordinates, bad indices, truncated, ...).
+/// Parses a PLY, which begins with "ply", or else an OBJ. It keeps vertices, faces of any size, and
+/// texture coordinates of an OBJ; it drops normals (they change), materials, groups and colours.
+/// `name` is what error messages call the file. Error: bad_input with the line or the byte offset,
+/// for example if there are no vertices, a coordinate is not finite, an index is wrong, or the file
+/// is cut off.
 Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name);
 
-/// Errors: bad_input, also when the file is missing or cannot be read.
+/// Reads and parses a file. Blocks for as long as the disk does. Error: bad_input, also when the
+/// file is missing or cannot be read.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
-/// Format by the ending, .obj or .ply (binary little-endian). Written to a temporary name beside
-/// `path`, synced and renamed, so that a file of that name is always whole. Coordinates survive a
-/// round trip exactly. Errors: usage (unknown ending), failed (cannot be written).
+/// Writes OBJ or PLY (binary little-endian), by the ending of the path. It writes a temporary file
+/// beside `path`, syncs and renames it, so that a file of that name is always whole. Coordinates
+/// survive a round trip exactly. Blocks for as long as the disk does. Errors: usage (unknown
+/// ending), failed (the file cannot be written).
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 
 } // namespace nendo::deform

@@ -7,12 +7,12 @@
 
 namespace nendo::deform {
 
-/// What this program contains and this processor can run, the best first: "AVX3" (AVX-512), "AVX2",
-/// "SSE4", "SSE2", "NEON", "EMU128" (none).
+/// Returns the instruction sets that this program contains and this processor can run, the best
+/// first: "AVX3" (AVX-512), "AVX2", "SSE4", "SSE2", "NEON", "EMU128" (no vector instructions).
 std::vector<std::string_view> simd_names();
 
-/// Uses this one from now on, or the best for an empty name; false if it is not one of
-/// simd_names(). For comparisons: not while another thread evaluates.
+/// Uses this instruction set from now on, or the best one if the name is empty. Returns false if it
+/// is not one of simd_names(). It must not be called while another thread evaluates a field.
 bool use_simd(std::string_view name);
 
 } // namespace nendo::deform

@@ -1,6 +1,6 @@
 #pragma once
-// Of which radial functions a field may be made: of one radius, of several that all start points
-// share, or of some that each start point has for itself (the paper's third open problem).
+// The radial functions of which a field is made. They have one radius, several radii that all start
+// points share, or radii that a start point has for itself (the paper's third open problem).
 //
 // The equations' matrix is M = sum_s w_s A_s + Psi W Psi^T, with A_s the start points' Wendland
 // matrix of the shared radius s, Psi the own functions at the start points, W their weights. Why M
@@ -19,7 +19,8 @@
 
 namespace nendo::deform {
 
-/// psi(|x - c| / radius). Where functions compete, the greater weight takes more of the field.
+/// The function psi(|x - c| / radius). Where several functions reach, those with the greater
+/// weights take the greater part of the field.
 struct Support {
   double radius = 1.0; ///< > 0
   double weight = 1.0; ///< > 0; only ratios of weights matter
@@ -27,47 +28,52 @@ struct Support {
   friend bool operator==(const Support&, const Support&) = default;
 };
 
+/// A function that one start point has for itself.
 struct OwnSupport {
-  Eigen::Index point = 0; ///< whose start point is its centre
+  Eigen::Index point = 0; ///< the column of that start point
   Support support;
 
   friend bool operator==(const OwnSupport&, const OwnSupport&) = default;
 };
 
 struct Supports {
-  /// At every start point, with one coefficient: the kernel sum_s w_s psi(d / r_s). At least one.
+  /// At least one. Every start point has the kernel sum_s w_s psi(d / r_s), with one coefficient.
   std::vector<Support> shared;
-  /// Functions with coefficients of their own. Of all fields through the control vectors, the one
-  /// with the least sum of |a_e|^2 / w_e plus the shared part's energy is taken: a small shared
-  /// weight leaves the field to them as far as they can carry it.
+  /// Functions with coefficients of their own. Of all fields that interpolate the control vectors,
+  /// the solver takes the one with the least energy: the sum of |a_e|^2 / w_e plus the energy of
+  /// the shared part. A small shared weight leaves most of the field to the own functions.
   std::vector<OwnSupport> own;
 
-  /// How many functions the solved field has.
+  /// Returns how many functions the field of so many start points has.
   Eigen::Index functions(Eigen::Index points) const noexcept;
-  /// Whether radii and weights are finite, at most 1e100, and > 0.
+  /// Tells whether all radii and weights are finite, at most 1e100, and > 0.
   bool are_usable() const noexcept;
 };
 
+/// Returns one shared function with this radius in model units, > 0.
 inline Supports one_radius(double radius) {
   return {{Support{radius}}, {}};
 }
 
 inline constexpr double default_common_weight = 0.01;
 
-/// Every start point its own radii beside a common one. Without `common` that is the least of them,
-/// so that no finger reaches farther than it was told, with default_common_weight. Where all radii
-/// are one and the same, the field would be that of this radius alone, and so that is returned.
-/// own: at least one.
+/// Returns supports in which start points have the radii of `own`, at least one, beside a common
+/// radius that all share. Without `common`, the common radius is the least of them, with
+/// default_common_weight, so that no finger reaches farther than it was told to. Where all radii
+/// are equal, the result is that one radius, since the field would be the same.
 Supports with_common(std::vector<OwnSupport> own, std::optional<Support> common = {});
-/// The same, a radius each, without allocation if `out` held as many before.
+/// Writes the same for one radius a start point. Does not allocate if `out` held as many before. An
+/// empty list gives one radius of 1.
 void assign_radii(Supports& out, const Eigen::VectorXd& radii);
 
-/// `10`, or radii with weights like `10+40:0.5`: "+" between supports, ":" before a weight. Nothing
-/// if it is not that, or a number is not finite, above 1e100 or not > 0.
+/// Parses a radius like `10`, or several with weights like `10+40:0.5`: "+" stands between supports
+/// and ":" before a weight. Returns nullopt if the text has another form, or if a number is not
+/// finite, above 1e100, or not > 0.
 std::optional<std::vector<Support>> parse_supports(std::string_view text);
-/// One such text for all start points, which then share it, or several with commas between: each
-/// finger's own, beside a common radius. Their number divides that of the points, and they repeat:
-/// five for the ten fingertips of two hands make both hands alike. Nothing if it is not that.
+/// Parses one such text that all start points share, or several texts with commas between them,
+/// which are the fingers' own supports beside a common radius. The number of texts must divide
+/// `points`; they repeat, so that five texts for the ten fingertips of two hands make both hands
+/// alike. Returns nullopt if the text has another form.
 std::optional<Supports> parse_supports_by_point(std::string_view text, Eigen::Index points);
 
 } // namespace nendo::deform

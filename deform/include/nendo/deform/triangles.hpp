@@ -1,6 +1,6 @@
 #pragma once
-// A mesh's faces as triangles: those with more corners are cut into fans about their first one,
-// those with fewer have none.
+// A mesh's faces as triangles. A face with more than three corners becomes a fan about its first
+// corner; a face with fewer gives no triangle.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ void for_each_triangle(const Mesh& mesh, Visit visit) {
   }
 }
 
-/// Their vertices, one triangle after another.
+/// Returns the vertex indices of all triangles, three for each.
 inline std::vector<std::uint32_t> corners_of_triangles(const Mesh& mesh) {
   std::vector<std::uint32_t> corners;
   for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& triangle) {

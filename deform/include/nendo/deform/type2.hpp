@@ -9,11 +9,14 @@
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/field_sequence.hpp>
-#include <nendo/deform/fingertip_curve.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
 
+class BlockEvaluator;
+class FingertipCurve;
 class ShapeHistory;
+struct BoundedShape;
 
 struct StrokeResult {
   FieldStatus status = FieldStatus::ok;
@@ -21,14 +24,15 @@ struct StrokeResult {
 };
 
 /// The shape is in blocks, in float, and within 1e-5 of the model's diagonal of what displace()
-/// makes in double of the same piece.
+/// makes in double of the same piece. A deformer belongs to one thread at a time.
 class Type2Deformer {
 public:
-  /// shape: 3 by #vertices. piece_length > 0 in model units. With `injective` a piece is made in as
-  /// many links as it takes, at most InjectiveOptions::most_links a call; then the rest waits.
+  /// Allocates for the shape (3 by #vertices) and for `control_points` fingertips. piece_length is
+  /// > 0, in model units. With `injective`, a piece is made in as many links as it takes; a call
+  /// makes at most InjectiveOptions::most_links, and the rest waits for the next call.
   Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                 const DeformerOptions& options);
-  /// One radius > 0 for all, in model units.
+  /// Uses one radius > 0 for all fingertips, in model units.
   Type2Deformer(Points shape, Eigen::Index control_points, double radius, double piece_length,
                 CsrbfOptions csrbf, const EvaluationOptions& evaluation = {})
       : Type2Deformer(std::move(shape), control_points, piece_length,
@@ -37,36 +41,37 @@ public:
   Type2Deformer(Type2Deformer&&) noexcept;
   Type2Deformer& operator=(Type2Deformer&&) noexcept;
 
-  /// Starts a curve at these fingertips (3 by control_points) without deforming anything. singular
-  /// only if injective, when nothing could be held there; not_finite.
+  /// Starts a curve at these fingertips (3 by control_points) without deforming anything. The
+  /// status is ok, not_finite, or, with `injective`, what building a field there gives.
   FieldStatus begin(const Points& tips);
-  /// Extends the curves to `tips` and deforms by the pieces that are whole (FingertipCurve): what
-  /// is left, less than one and a half pieces, waits for the next call; a jump is made in at most
-  /// FingertipCurve::most_pieces, so that the time of a call is bounded. No allocation. A piece
-  /// without a usable field is skipped; fingertips that are not finite are ignored, as not_finite.
+  /// Extends the curves to `tips` and deforms by the pieces that are whole. What is left, less than
+  /// one and a half pieces, waits for the next call. A jump is made in at most 16 pieces, so that
+  /// the time of a call is bounded. Does not allocate. A piece without a usable field is skipped.
+  /// If a fingertip is not finite, nothing happens and the status is not_finite.
   StrokeResult stroke_to(const Points& tips);
-  /// As stroke_to(), but all the way.
+  /// Does the same, but deforms all the way to `tips`.
   StrokeResult end_at(const Points& tips);
-  /// The shape becomes what it was when the last stroke began that changed it, and a new one begins
-  /// at `tips`. Without one that can be undone, as begin().
+  /// Makes the shape what it was before the last stroke that changed it, and begins a new stroke at
+  /// `tips`. If no stroke can be undone, this is begin(tips).
   FieldStatus undo(const Points& tips);
-  /// The shape becomes what it was before the last undo, if no stroke that changed it has ended
-  /// since; the present one is dropped, and a new one begins at `tips`. Without such an undo
-  /// nothing changes, and it is ok.
+  /// Makes the shape what it was before the last undo, drops the present stroke, and begins a new
+  /// one at `tips`. If there is no such undo, or a stroke that changed the shape has ended since,
+  /// nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);
-  /// How many strokes can be undone, without the present one, and how many undos redone.
+  /// How many strokes before the present one can be undone, and how many undone ones can be redone.
   std::size_t undo_steps() const noexcept;
   std::size_t redo_steps() const noexcept;
-  /// How many could be undone once, and went for want of memory.
+  /// How many strokes can no longer be undone because memory ended.
   std::size_t forgotten_steps() const noexcept;
 
   const BlockLayout& layout() const noexcept { return layout_; }
-  /// A copy is brought up to date by BlockShape::follow().
-  const BlockShape& shape() const noexcept { return shape_.shape; }
-  /// What the last call applied to the shape. Centres are the fingertips as float holds them
-  /// (BlockLayout::rounded).
+  /// Returns the shape. BlockShape::follow() brings a copy of it up to date.
+  const BlockShape& shape() const noexcept;
+  /// Returns the fields that the last call applied to the shape. Their centres are the fingertips
+  /// rounded by BlockLayout::rounded().
   const FieldSequence& fields() const noexcept { return fields_; }
-  /// What the last call took, the worst of its pieces; all 0 unless it is injective.
+  /// Returns what the last call took, the worst of its pieces; all is 0 unless the deformer is
+  /// injective.
   const ChainReport& report() const noexcept { return report_; }
 
 private:
@@ -80,8 +85,8 @@ private:
   FieldStatus apply(const CsrbfField& field);
 
   BlockLayout layout_;
-  BoundedShape shape_;
-  FingertipCurve curve_;
+  std::unique_ptr<BoundedShape> shape_;
+  std::unique_ptr<FingertipCurve> curve_;
   Points current_; ///< where the curves have been cut last
   Points next_;    ///< and where the piece leads
   Points step_;
@@ -90,7 +95,7 @@ private:
   CsrbfSolver solver_;
   CsrbfField field_;
   FieldSequence fields_;
-  BlockEvaluator evaluator_;
+  std::unique_ptr<BlockEvaluator> evaluator_;
   std::unique_ptr<ShapeHistory> history_;
   std::optional<InjectiveChain> chain_;
   int most_links_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Memory for undo that grows while it is used: a deformer takes of it without waiting, and another
-// thread sees to it that there is some.
+// Memory for undo that grows while it is used. A deformer takes blocks from it without waiting;
+// another thread allocates them ahead.
 
 #include <atomic>
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace nendo::deform {
 
 struct SavedBlock;
 
-/// Blocks, each of which knows the next.
+/// A linked list of blocks.
 struct SavedChain {
   SavedBlock* first = nullptr;
   SavedBlock* last = nullptr;
@@ -22,24 +22,25 @@ struct SavedChain {
 /// Allocates `count` > 0 blocks and touches them all, so that their first use is no page fault.
 std::unique_ptr<SavedBlock[]> make_saved_blocks(std::size_t count, SavedChain& chain);
 
-/// For one deformer. Blocks that were taken are never given back, but used again.
+/// The memory of one deformer. The deformer keeps the blocks that it has taken and uses them again.
 class UndoMemory {
 public:
-  /// refill() keeps so many blocks free, 832 bytes each, until `most_bytes` have been allocated.
+  /// refill() keeps `blocks_ahead` blocks of 832 bytes free until it has allocated `most_bytes`.
   UndoMemory(std::size_t blocks_ahead, std::size_t most_bytes);
   ~UndoMemory();
   UndoMemory(const UndoMemory&) = delete;
   UndoMemory& operator=(const UndoMemory&) = delete;
 
-  /// Any one thread at a time. Allocates. False: there is no more to be had, and free blocks are
-  /// fewer than they ought to be.
+  /// Allocates blocks until `blocks_ahead` of them are free. One thread at a time may call it.
+  /// Returns false if fewer blocks are free because the bound or the machine's memory is reached.
   bool refill();
-  /// As refill(). What has been allocated.
+  /// Returns how many bytes have been allocated. For the thread that calls refill().
   std::size_t bytes() const noexcept { return bytes_; }
 
-  /// The deformer's thread only, wait-free. Nothing came: count is 0.
+  /// Takes some blocks; none, with a count of 0, if none are ready. Wait-free; for the deformer's
+  /// thread.
   SavedChain take() noexcept;
-  /// The same. How many blocks it has left of those that it took, and had of its own.
+  /// Tells how many free blocks the deformer has itself. Wait-free; for the deformer's thread.
   void tell_free(std::size_t blocks) noexcept { free_.store(blocks, std::memory_order_relaxed); }
 
 private:
@@ -52,8 +53,7 @@ private:
   std::atomic<std::size_t> free_{0};
 };
 
-/// Half of what the program may use, in bytes: so much may be kept for undo where nobody says how
-/// much. As usable_memory().
+/// Returns half of usable_memory() in bytes: the bound of undo's memory where the user sets none.
 std::size_t half_of_memory();
 
 } // namespace nendo::deform

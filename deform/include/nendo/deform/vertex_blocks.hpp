@@ -1,6 +1,6 @@
 #pragma once
-// Vertices for vector units: blocks of 64 that are neighbours in space, coordinates apart, in
-// float. What a field does not reach is seen from a block's bounds, without reading the block.
+// Vertices as vector instructions want them: in float, in blocks of 64 that are neighbours in
+// space, with x, y and z apart. A block's bounds tell whether a field reaches it.
 
 #include <array>
 #include <cstddef>
@@ -36,18 +36,18 @@ public:
   const VertexBlock* data() const noexcept { return blocks_.data(); }
   std::uint64_t stamp(std::size_t block) const noexcept { return stamps_[block]; }
 
-  /// For writing: whoever changes a block must stamp it, with a new stamp for each change.
+  /// Gives access for writing. Whoever changes a block must set a new stamp for each change.
   VertexBlock* data() noexcept { return blocks_.data(); }
   void set_stamp(std::size_t block, std::uint64_t stamp) noexcept { stamps_[block] = stamp; }
   static std::uint64_t new_stamp() noexcept; ///< wait-free, from any thread
 
-  /// Takes the block over if it differs. Both shapes must have it.
+  /// Copies the block of `other` if its stamp differs. Both shapes must have that block.
   void follow(const BlockShape& other, std::size_t block) noexcept {
     if (stamps_[block] == other.stamps_[block]) return;
     blocks_[block] = other.blocks_[block];
     stamps_[block] = other.stamps_[block];
   }
-  /// Becomes equal to `other`. Allocates only where the sizes differ.
+  /// Copies those blocks of `other` whose stamps differ. Allocates only if the sizes differ.
   void follow(const BlockShape& other);
 
 private:
@@ -55,10 +55,10 @@ private:
   std::vector<std::uint64_t> stamps_;
 };
 
-/// Which vertex of a mesh stands where in the blocks (near ones together), and what their numbers
-/// mean: vertex = origin + unit * coordinate. Blocks count from the middle of the model in a power
-/// of two that is about its half size, so that a model far from zero loses nothing, and none is too
-/// large for float. Immutable: any thread may use it.
+/// Where each vertex of a mesh stands in the blocks, and what the numbers there mean: vertex =
+/// origin + unit * coordinate. The origin is the middle of the model and the unit a power of two of
+/// about half its size, so that float is precise enough for models of any size and place. A layout
+/// does not change: any thread may use it.
 class BlockLayout {
 public:
   /// vertices: 3 by #vertices, kept as the original. Allocates.
@@ -73,16 +73,16 @@ public:
   /// The k-th vertex in block order is vertex order()[k] of the mesh.
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
 
-  /// The original in blocks. What the last block has to spare repeats its last vertex.
+  /// Returns the original in blocks. The rest of the last block repeats its last vertex. Allocates.
   BlockShape pack() const;
-  /// out = original + (shape - pack()): a coordinate that nothing moved is the original's, bit for
-  /// bit. `out` is resized only if its size differs.
+  /// Computes out = original + (shape - pack()), 3 by #vertices, so that a coordinate that nothing
+  /// moved is the original's, bit for bit. `out` is resized only if its size differs.
   void unpack(const BlockShape& shape, Points& out) const;
 
-  /// The nearest place that a float holds in these coordinates. A field whose centres are such
-  /// places is evaluated for exactly those centres that it was solved for.
+  /// Returns the nearest place that a float can hold in these coordinates. A field must be solved
+  /// for such centres, so that the evaluation in float has exactly the same ones.
   Eigen::Vector3d rounded(const Eigen::Vector3d& place) const noexcept;
-  /// The same for a radius: of its inverse.
+  /// Returns the nearest radius whose inverse a float can hold.
   double rounded_radius(double radius) const noexcept;
 
 private:
@@ -95,7 +95,7 @@ private:
   std::vector<std::uint32_t> order_;
 };
 
-/// As large as a number in blocks may become: squares of it may overflow, sums may not.
+/// The largest number that may stand in a block. Sums of such numbers do not overflow; squares may.
 inline constexpr double most_units = 1e35;
 
 } // namespace nendo::deform

@@ -6,17 +6,9 @@
 #include <span>
 #include <vector>
 
-#include <nendo/deform/mesh.hpp>
+#include <nendo/deform/injective_chain.hpp>
 
 namespace nendo::deform {
-
-struct HeldPair {
-  Eigen::Index first = 0; ///< column of the fingertip on the wall's upper side; less than `second`
-  Eigen::Index second = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< unit length, from the second to the first
-  double gap = 0.0;                                 ///< along the normal, in model units
-  double push = 0.0; ///< how far each is kept from where it was told to go
-};
 
 /// A wall depends continuously on the path that meets it, and yields to a path that only grazes it:
 /// what the pair is kept from grows from nothing and falls to nothing again. Walls stand until the

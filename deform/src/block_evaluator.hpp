@@ -6,19 +6,11 @@
 #include <memory>
 #include <vector>
 
+#include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/field.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
-
-struct EvaluationOptions {
-  /// 1 or 2. The second one spins from construction on and keeps a core busy; results are the same.
-  /// Models of less than 3072 vertices keep to one, with Type-1's weights of less than 8192.
-  int threads = 1;
-  /// Most memory for Type-1's weights; where they need more, fields are evaluated instead, in about
-  /// twice the time. Weights that leave the processor's caches gain nothing.
-  std::size_t weight_bytes = std::size_t{4} << 20;
-};
 
 /// A shape that knows its blocks' bounds.
 struct BoundedShape {
