@@ -25,7 +25,7 @@ inline constexpr std::array<std::string_view, 9> group_names{
     "finger abduction", "thumb roll", "thumb abduction",
     "thumb flexion",    "palm arch",  "wrist"};
 
-/// What several of these groups are together.
+/// A name for several consecutive groups.
 struct JointFamily {
   std::string_view name;
   std::size_t first_group, end_group;

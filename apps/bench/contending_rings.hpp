@@ -60,7 +60,7 @@ struct SingleContender {
   SpscRing<Element> ring{contenders_capacity};
 };
 
-/// As the loop uses it.
+/// The ring as the loop uses it: all elements at once.
 struct DrainedContender : SingleContender {
   static constexpr const char* name = "SpscRing, drained";
   template <class Sink>

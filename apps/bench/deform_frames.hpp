@@ -15,11 +15,10 @@ inline constexpr std::size_t poses = 16; ///< different ones, so that nothing is
 /// A stroke that end_at() applies in one piece, however long.
 inline constexpr double one_piece = 1e9;
 
-/// Where the fingertips go, at random but always the same.
+/// Random end points of the fingertips, the same in every run.
 std::array<deform::Points, poses> random_ends(const deform::Points& starts);
 
-/// What the processor has given to this thread: what other work takes of the machine does not
-/// count.
+/// The processor time of this thread. Time that other work takes is not counted.
 struct ThreadClock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;
@@ -29,9 +28,9 @@ struct ThreadClock {
   static time_point now() noexcept;
 };
 
-/// The best time of a few frames in a row, over turns that several measurements take. A turn lasts
-/// a millisecond or a hundred frames, but some at least: after the first ones the caches hold what
-/// this one works with, not what the one before it did.
+/// The best time of a few consecutive frames. Several measurements take turns. A turn lasts a
+/// millisecond or a hundred frames, but at least eight frames, so that the caches hold the data of
+/// this measurement and not of the one before it.
 template <class Clock>
 class BestBy {
 public:
@@ -66,14 +65,14 @@ using Best = BestBy<std::chrono::steady_clock>;
 /// For frames that take longer than the scheduler lets a thread alone.
 using BestOfThread = BestBy<ThreadClock>;
 
-/// Type-2: strokes of ten fingertips there and back, each one piece. Back is not quite the inverse
-/// of there: after thousands of strokes the vertices would have gathered in a few places. Each turn
-/// begins with the mesh as it was.
+/// Type-2 strokes of ten fingertips, forth and back, each applied as one piece. The way back is not
+/// quite the inverse of the way forth: after thousands of strokes the vertices would gather in a
+/// few places. So each turn begins with the original mesh.
 class Strokes {
 public:
   Strokes(const deform::Points& mesh, const deform::Points& starts, double radius, int threads = 1);
 
-  /// A turn.
+  /// Measures one turn.
   template <class Clock>
   void measure(BestBy<Clock>& best) {
     begin();

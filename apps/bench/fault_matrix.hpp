@@ -14,7 +14,7 @@
 
 namespace nendo::bench {
 
-/// What a fault may cost at most.
+/// A fault, and what it may cost at most.
 struct FaultCase {
   std::string_view name;
   std::string_view happens;        ///< in a person's words

@@ -1,6 +1,7 @@
 #pragma once
-// What a compiler makes of the field's sum by itself: a plain loop over arrays, for comparison with
-// the library's. Compiled for AVX2; ask the processor before calling.
+// The field's sum as a plain loop over arrays, which the compiler vectorises by itself. It is
+// compared with the library's code. It is compiled for AVX2: check can_run_plain() before calling
+// it.
 
 #include <cstddef>
 

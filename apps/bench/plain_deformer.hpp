@@ -11,7 +11,7 @@
 
 namespace nendo::bench {
 
-/// Whether the processor has the instructions that the plain loop is compiled for.
+/// True if the processor has the instructions for which the plain loop is compiled.
 bool can_run_plain() noexcept;
 
 class PlainDeformer {

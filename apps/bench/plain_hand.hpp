@@ -1,6 +1,6 @@
 #pragma once
-// Forward kinematics as a textbook has it: a homogeneous matrix for each turn and each bone, all
-// multiplied. What nendo::hand does is measured against it, and checked by it.
+// Forward kinematics as in a textbook: the product of a homogeneous matrix for each rotation and
+// each bone. nendo::hand is measured against it, and checked by it.
 
 #include <array>
 

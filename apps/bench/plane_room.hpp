@@ -1,12 +1,12 @@
 #pragma once
-// Whether a large plane is to be measured at all.
+// Checks whether there is memory for the benchmark of a large plane.
 
 #include <string>
 
 namespace nendo::bench {
 
-/// Whether there is memory left for deformers of table1_plane(cells); if not, says so, and in which
-/// benchmark.
+/// Returns true if there is enough free memory for deformers of table1_plane(cells). Otherwise
+/// prints a note that names the benchmark.
 bool has_room_for_plane(int cells, const std::string& benchmark);
 
 } // namespace nendo::bench

@@ -12,7 +12,7 @@ struct GrowthTimes {
   std::size_t influences = 0; ///< vertices within a support, summed over supports
   double type1_us = 0.0;      ///< evaluated: weights of so many vertices leave the caches
   double type2_us = 0.0;
-  /// What a deformer takes of memory, with the shape that it makes and its copy of the vertices.
+  /// The memory of a deformer, with the shape that it makes and its copy of the vertices.
   std::size_t type1_bytes = 0;
   std::size_t type2_bytes = 0;
 };

@@ -8,7 +8,8 @@
 
 namespace nendo::bench {
 
-/// Empty: the best there is. Error: usage, naming those that this machine has.
+/// Chooses the instruction set. An empty name means the best one. Error: usage, naming those that
+/// this machine has.
 inline Result<void> choose_simd(const std::string& name) {
   if (deform::use_simd(name)) return {};
   std::string names;

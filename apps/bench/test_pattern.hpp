@@ -1,8 +1,8 @@
 #pragma once
-// Does a sample hold what the emulated glove sent? Its motion `pattern` sends, in record n, for the
-// sensor of slot k the count 1 + (n + 29 k) mod 255 (16 times as much with 12 bits), so that every
-// sample can be judged by itself: a value that slipped into the neighbour's place, or came from
-// another record, does not fit the others.
+// Judges whether a sample holds what the emulated glove sent. Its motion `pattern` sends, in record
+// n, for the sensor of slot k the count 1 + (n + 29 k) mod 255 (16 times as much with 12 bits), so
+// that every sample can be judged by itself: a value that slipped into the neighbour's place, or
+// came from another record, does not fit the others.
 
 #include <nendo/driver/sample.hpp>
 

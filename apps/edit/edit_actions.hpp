@@ -13,7 +13,7 @@ namespace nendo::edit {
 
 struct MakeOptions {
   std::string take;
-  std::string mesh; ///< empty: the recorded one
+  std::string mesh; ///< empty means the recorded one
   std::string out;
   std::string tolerance = "5mm"; ///< a count of an 8-bit glove moves a fingertip by about one
   bool json = false;
@@ -22,17 +22,17 @@ int make_timeline(const MakeOptions& options);
 
 struct ShowOptions {
   std::string file;
-  std::string finger; ///< whose tip's places are shown; empty: none's
+  std::string finger; ///< its tip's places are shown; empty means no finger
   bool json = false;
 };
 int show_timeline(const ShowOptions& options);
 
 struct PlayOptions {
   std::string file;
-  std::string mesh; ///< empty: the timeline's
-  std::string out;  ///< empty: the shape is not written
+  std::string mesh; ///< empty means the timeline's
+  std::string out;  ///< empty means that the shape is not written
   std::optional<double> until_s;
-  double speed = 0.0; ///< times real time; 0: as fast as it can
+  double speed = 0.0; ///< times real time; 0 means as fast as possible
   bool json = false;
 };
 int play_timeline(const PlayOptions& options);

@@ -32,13 +32,13 @@ EditSession::EditSession(Timeline timeline, deform::Mesh model, std::string out)
   follow_history();
 }
 
-void EditSession::tell(std::string message) {
+void EditSession::report(std::string message) {
   view_.message = std::move(message);
   view_.refused = false;
 }
 
-void EditSession::tell(const Result<void>& done, const std::string& message) {
-  tell(done ? message : done.error().message);
+void EditSession::report(const Result<void>& done, const std::string& message) {
+  report(done ? message : done.error().message);
   view_.refused = !done;
 }
 
@@ -58,7 +58,7 @@ void EditSession::handle(const viewer::EditActions& actions) {
   if (actions.drop) {
     history_.drop();
     go_to_key(history_.selected());
-    tell("given up");
+    report("given up");
   }
   if (actions.retiming) retime(*actions.retiming);
   for (const EditCommand command : actions.commands)
@@ -111,7 +111,7 @@ void EditSession::handle(EditCommand command) {
 
 /// The head goes with the selected key, if it was at it.
 void EditSession::go_back_or_forth(bool went, const char* done, const char* nothing) {
-  tell(went ? done : nothing);
+  report(went ? done : nothing);
   if (went && view_.at_selected) go_to_key(history_.selected());
 }
 
@@ -146,14 +146,14 @@ void EditSession::save() {
   history_.keep();
   const auto written = write_timeline(out_, history_.timeline());
   if (written) history_.saved();
-  tell(written, "saved to " + out_);
+  report(written, "saved to " + out_);
 }
 
 void EditSession::begin_export() {
   if (export_) return;
   history_.keep();
   export_ = std::make_unique<GlbExport>(history_.timeline(), model_, export_file_);
-  tell("exporting to " + export_file_);
+  report("exporting to " + export_file_);
 }
 
 void EditSession::follow_export() {
@@ -161,9 +161,9 @@ void EditSession::follow_export() {
   if (!result) return;
   export_.reset();
   if (*result)
-    tell(export_file_ + ": " + fixed(static_cast<double>((*result)->bytes) / 1e6, 1) + " MB");
+    report(export_file_ + ": " + fixed(static_cast<double>((*result)->bytes) / 1e6, 1) + " MB");
   else
-    tell(Result<void>((*result).error()), {});
+    report(Result<void>((*result).error()), {});
 }
 
 /// What is made of the timeline, of the latest.
@@ -214,7 +214,7 @@ const viewer::TimelineView& EditSession::view() {
   view_.computing = !progress.done;
   view_.computed_s = progress.until_s;
   view_.shape_is_old = !shape().fresh;
-  if (progress.error) tell(Result<void>(*progress.error), {});
+  if (progress.error) report(Result<void>(*progress.error), {});
   return view_;
 }
 

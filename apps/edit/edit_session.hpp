@@ -1,6 +1,6 @@
 #pragma once
-// What goes on behind the window of `nendo edit view`: actions become edits, and the timeline what
-// there is to see. Knows no window.
+// The editing session behind the window of `nendo edit view`. It turns a person's actions into
+// edits of the timeline, and the timeline into what the window shows. It does not know the window.
 
 #include <cstdint>
 #include <memory>
@@ -25,19 +25,19 @@ public:
   /// the model.
   EditSession(timeline::Timeline timeline, deform::Mesh model, std::string out);
 
-  /// Does all that a person wants; what cannot be is told in the view's message.
+  /// Does all that a person asks for. What cannot be done is reported in the view's message.
   void handle(const viewer::EditActions& actions);
-  /// So much time has passed.
+  /// Moves the play head on by the time that has passed.
   void advance(double elapsed_s);
-  /// As `select` and `seek_s` of actions.
+  /// Do what `select` and `seek_s` of EditActions do.
   void select(const timeline::KeyRef& key);
   void seek(double time_s);
 
-  /// Of all as it is now.
+  /// The view of the present state. It is valid until the next call.
   const viewer::TimelineView& view();
-  /// The hands at the play head, exactly, and where they took hold; without vertices.
+  /// The exact hands at the play head, and where they took hold. The frame has no vertices.
   const viewer::SceneFrame& moment();
-  /// The nearest to the play head that there is.
+  /// The shape that is nearest to the play head of those that are made.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
 
@@ -46,9 +46,9 @@ public:
 
 private:
   using Edit = timeline::EditHistory::Edit;
-  void tell(std::string message);
-  /// Of what was done; an error's message in place of it.
-  void tell(const Result<void>& done, const std::string& message);
+  void report(std::string message);
+  /// Reports `message` if it was done, or else the error's message.
+  void report(const Result<void>& done, const std::string& message);
   void handle(viewer::EditCommand command);
   void try_out(const viewer::KeyDrag& drag);
   void try_out(const viewer::TipDrag& drag);

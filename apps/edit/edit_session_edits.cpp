@@ -36,7 +36,7 @@ void EditSession::try_out(const viewer::KeyDrag& drag) {
                                  : move_key(timeline, key->side, key->key, drag.to_s);
     return after(moved, key_at(timeline, key->side, drag.to_s));
   });
-  tell(done, (drag.copy ? "copied to " : "moved to ") + fixed(drag.to_s, 3) + " s");
+  report(done, (drag.copy ? "copied to " : "moved to ") + fixed(drag.to_s, 3) + " s");
   if (done) seek(drag.to_s);
 }
 
@@ -53,25 +53,25 @@ void EditSession::try_out(const viewer::TipDrag& drag) {
     return key;
   });
   constexpr double fine_m = 1e-3;
-  tell(done, std::string(name_of(drag.finger)) +
-                 (set.off_m > fine_m ? " tip: out of reach, " : " tip: ") +
-                 fixed(1e3 * set.off_m, 3) + " mm off");
+  report(done, std::string(name_of(drag.finger)) +
+                   (set.off_m > fine_m ? " tip: out of reach, " : " tip: ") +
+                   fixed(1e3 * set.off_m, 3) + " mm off");
 }
 
 void EditSession::try_out(const viewer::KeyBlend& blend) {
   const Selection key = history_.selected();
-  tell(history_.try_out([&](Timeline& timeline) -> Result<Selection> {
+  report(history_.try_out([&](Timeline& timeline) -> Result<Selection> {
     if (!key) return nothing_selected();
     return after(blend_key(timeline, key->side, key->key, blend.factor), key);
   }),
-       "blended with its neighbours, " + fixed(blend.factor, 2));
+         "blended with its neighbours, " + fixed(blend.factor, 2));
 }
 
 /// Of the selected key's hand; with none selected, of all hands that have none there.
 void EditSession::add_keys() {
   const Selection selected = history_.selected();
   const double at_s = head_.time_s();
-  tell(history_.apply([&](Timeline& timeline) -> Result<Selection> {
+  report(history_.apply([&](Timeline& timeline) -> Result<Selection> {
     Result<Selection> added = nothing_selected(); // replaced, for there is a hand
     for (const HandTrack& hand : std::vector(timeline.hands)) {
       if (selected && selected->side != hand.side) continue;
@@ -83,44 +83,44 @@ void EditSession::add_keys() {
     }
     return added;
   }),
-       "a key more, at " + fixed(at_s, 3) + " s");
+         "a key more, at " + fixed(at_s, 3) + " s");
 }
 
 void EditSession::delete_key() {
   const Selection key = history_.selected();
-  tell(history_.apply([&](Timeline& timeline) -> Result<Selection> {
+  report(history_.apply([&](Timeline& timeline) -> Result<Selection> {
     if (!key) return nothing_selected();
     return after(timeline::delete_key(timeline, key->side, key->key), std::nullopt);
   }),
-       "deleted");
+         "deleted");
 }
 
 void EditSession::copy_key() {
   const Selection key = history_.selected();
   const double to_s = head_.time_s();
-  tell(history_.apply([&](Timeline& timeline) -> Result<Selection> {
+  report(history_.apply([&](Timeline& timeline) -> Result<Selection> {
     if (!key) return nothing_selected();
     const auto copied = timeline::copy_key(timeline, key->side, key->key, to_s);
     return after(copied, key_at(timeline, key->side, to_s));
   }),
-       "copied to " + fixed(to_s, 3) + " s");
+         "copied to " + fixed(to_s, 3) + " s");
 }
 
 void EditSession::mirror() {
   Selection key = history_.selected();
   if (key) key->side = key->side == Side::left ? Side::right : Side::left;
-  tell(history_.apply([&](Timeline& timeline) {
+  report(history_.apply([&](Timeline& timeline) {
     return after(timeline::mirror(timeline, takes::middle_plane_m(timeline, model_)), key);
   }),
-       "mirrored");
+         "mirrored");
 }
 
 void EditSession::retime(const viewer::Retiming& times) {
-  tell(history_.apply([&](Timeline& timeline) {
+  report(history_.apply([&](Timeline& timeline) {
     return after(timeline::retime(timeline, times.scale, times.from_s, times.to_s),
                  history_.selected());
   }),
-       "re-timed, " + fixed(times.scale, 3) + " times as long");
+         "re-timed, " + fixed(times.scale, 3) + " times as long");
 }
 
 } // namespace nendo::edit

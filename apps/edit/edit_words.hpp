@@ -1,5 +1,6 @@
 #pragma once
-// What is said after `nendo edit ...`: hands, fingers, places, tolerances.
+// Parses the arguments of `nendo edit`: hands, fingers, places and tolerances. All errors are usage
+// errors that name the option and its possible values.
 
 #include <string>
 
@@ -8,18 +9,16 @@
 
 namespace nendo::edit {
 
-// Errors: usage, naming the option and what it may be.
-
 Result<Side> parse_hand(const std::string& text);
 Result<hand::Finger> parse_finger(const std::string& text);
-/// "1,-2.5,0" after --to.
+/// Parses three numbers after --to, such as "1,-2.5,0".
 Result<Eigen::Vector3d> parse_place(const std::string& text);
-/// With so many decimals.
+/// Formats a number with the given count of decimals.
 std::string fixed(double number, int decimals);
-/// Where an edited timeline goes: `out`, or `file` itself where that is empty. Errors: as
-/// check_place(); usage, if the file's own name is no timeline's.
+/// Returns the path to which an edited timeline is written: `out`, or `file` itself if `out` is
+/// empty. Errors: those of check_place(); usage if `file` is not named like a timeline.
 Result<std::string> edited_file(const std::string& file, const std::string& out);
-/// "1mm", "0.02rad" or "1deg".
+/// Parses a length or an angle: "1mm", "0.02rad" or "1deg".
 Result<timeline::Tolerance> parse_tolerance(const std::string& text);
 
 } // namespace nendo::edit

@@ -1,5 +1,5 @@
 #pragma once
-// `nendo export FILE --out FILE.glb` of a timeline that is being edited, beside the editing.
+// Exports a timeline as a GLB file on a thread of its own while the timeline is edited further.
 
 #include <atomic>
 #include <optional>
@@ -14,14 +14,14 @@ namespace nendo::edit {
 
 class GlbExport {
 public:
-  /// Begins, on a thread of its own; the file is there as a whole or not at all.
+  /// Starts the export. The file appears as a whole or not at all.
   GlbExport(const timeline::Timeline& timeline, const deform::Mesh& model, const std::string& path);
-  /// Stops it, if it still goes on.
+  /// Stops the export if it is still running, and waits for its thread.
   ~GlbExport();
   GlbExport(const GlbExport&) = delete;
   GlbExport& operator=(const GlbExport&) = delete;
 
-  /// What became of it; nothing: it goes on. Errors: as export_gltf().
+  /// The result of the export, or nothing while it is running. Errors: those of export_gltf().
   std::optional<Result<exporting::Exported>> result() const;
 
 private:

@@ -1,7 +1,7 @@
 #pragma once
-// The frames of a take that an export has: of a part of it, each of them or at an even rate. At a
-// rate the frame nearest to each moment is taken, so that every one is a shape that nendo made and
-// none is a mixture; where frames are missing, the one before stays.
+// Selects the frames of a take that are exported: a part of the take, either every frame or frames
+// at an even rate. At an even rate, the frame nearest to each moment is taken. No frame is
+// interpolated. Where frames are missing, the previous one is repeated.
 
 #include <atomic>
 #include <cstdint>
@@ -15,34 +15,35 @@ namespace nendo::exporting {
 
 struct Choice {
   double from_s = 0.0;             ///< since the take began
-  std::optional<double> to_s{};    ///< nothing: to its end
-  std::optional<double> rate_hz{}; ///< nothing: every frame, at its own time
-  /// True ends the export; must outlive it.
+  std::optional<double> to_s{};    ///< nothing means to its end
+  std::optional<double> rate_hz{}; ///< nothing means every frame, at its own time
+  /// Setting it ends the export. It must outlive the export.
   const std::atomic<bool>* stop = nullptr;
 };
 
 inline constexpr double most_export_rate_hz = 10'000.0;
 inline constexpr std::uint64_t most_export_frames = 1'000'000;
 
-/// Errors: usage (times or a rate that cannot be).
+/// Checks a choice. Errors: usage (impossible times or rate).
 Result<void> check(const Choice& choice);
 
 class ChosenFrames {
 public:
-  /// Goes to the first of them; `source` has had no next() yet and must outlive this. Blocks.
-  /// Errors: as check(); bad_input (no frame in that time), usage (too many frames).
+  /// Moves to the first chosen frame. `source` must be new, without a call of next(), and must
+  /// outlive this. Blocks. Errors: those of check(); bad_input (no frame in that time), usage (too
+  /// many frames).
   static Result<ChosenFrames> make(takes::FrameSource& source, const Choice& choice);
 
-  /// Makes the next frame; false: there is none. Errors: failed (`stop` was set), usage (more than
-  /// most_export_frames). Blocks.
+  /// Makes the next frame. Returns false if there is none. Errors: failed (`stop` was set), usage
+  /// (more than most_export_frames). Blocks.
   Result<bool> next();
   const flow::Frame& frame() const noexcept { return even_ ? held_ : source_->frame(); }
-  /// Since the take began, seconds; even at a rate, and never falling.
+  /// The time of the frame in seconds since the take began. It never decreases.
   double time_s() const noexcept { return time_s_; }
   double first_s() const noexcept { return first_s_; } ///< time_s() of the first
-  /// At a rate: how many there are.
+  /// The number of frames, if they are at an even rate.
   std::optional<std::uint64_t> count() const noexcept { return count_; }
-  double period_s() const noexcept { return 1.0 / *choice_.rate_hz; } ///< at a rate
+  double period_s() const noexcept { return 1.0 / *choice_.rate_hz; } ///< only at an even rate
   std::uint64_t made() const noexcept { return made_; }               ///< by next()
 
   const takes::FrameSource& source() const noexcept { return *source_; }

@@ -16,22 +16,22 @@ namespace nendo::exporting {
 
 class ControlMorphs {
 public:
-  /// A shape that is farther off than this part of the diagonal is not of that kind. (Type-1
-  /// promises as much of its own shapes.)
+  /// A shape that differs by more than this fraction of the model's diagonal is not linear in the
+  /// control vectors. Type-1 keeps its own shapes within the same bound.
   static constexpr double most_error = 1e-5;
 
   explicit ControlMorphs(const deform::BlockLayout& layout);
 
-  /// vertices: the frame's, in the mesh's order. False: the take is not of that kind (commits, ways
-  /// in several links, polynomials, Type-2), and nothing here is of use any more.
+  /// Adds a frame with its vertices, in the mesh's order. Returns false if the take is not linear
+  /// (commits, several links, polynomials, Type-2). This object is then of no further use.
   bool add(const flow::Frame& frame, const deform::Points& vertices);
 
-  /// Of the frames so far; model units. Measured in the floats that a reader of targets has, and as
-  /// GltfModel puts them into the file, which rounds nothing off.
+  /// The greatest error of the frames so far, in model units. It is measured in 32-bit floats, as a
+  /// reader of the targets computes them.
   double greatest_error() const noexcept { return greatest_error_; }
-  /// A row for each control vector, a column a vertex; zero where no support reaches.
+  /// One row for each control vector and one column for each vertex; zero where no support reaches.
   const Eigen::MatrixXf& influences() const noexcept { return influences_; }
-  /// The largest coordinate of all control vectors; 0: nothing ever moved.
+  /// The largest coordinate of all control vectors. It is 0 if nothing ever moved.
   float greatest_vector() const noexcept;
   /// The control vectors of each frame, one after another: x y z of the first, and so on.
   std::vector<float> vectors() const;

@@ -1,5 +1,5 @@
 #pragma once
-// What every export tells of itself, and what those that go through a take more than once need.
+// The report of an export, and how an export opens its frames.
 
 #include <cstdint>
 #include <functional>
@@ -19,8 +19,8 @@ struct MorphReport {
   bool by_control_vectors = false; ///< otherwise by key shapes
   std::size_t targets = 0;
   std::size_t keys = 0; ///< moments between which weights are interpolated
-  /// The farthest that a vertex is from nendo's own, of all exported frames; parts of the model's
-  /// diagonal.
+  /// The greatest distance of a vertex from nendo's own shape, over all exported frames, as a
+  /// fraction of the model's diagonal.
   double greatest_error = 0.0;
 };
 
@@ -34,7 +34,7 @@ struct Exported {
   bool exact = true; ///< nothing was missing in the take up to the last frame
 };
 
-/// Begins the same frames anew.
+/// Opens the same frames again from the beginning. An export may have to read them twice.
 using OpenFrames = std::function<Result<std::unique_ptr<takes::FrameSource>>()>;
 
 } // namespace nendo::exporting

@@ -25,32 +25,34 @@ public:
 
   enum class Use { vertices, indices, animation }; ///< of the numbers in a view
 
-  /// most_bytes: what its numbers and its whole can be; a GLB file counts them in 32 bits.
+  /// `most_bytes` limits the size of the file and of its numbers. A GLB file counts them in 32
+  /// bits.
   explicit GlbFile(std::string_view generator,
                    std::uint64_t most_bytes = std::numeric_limits<std::uint32_t>::max());
 
-  /// The document but for buffers, views and accessors.
+  /// A part of the JSON document. Buffers, views and accessors are added by this class.
   Json& operator[](std::string_view part) { return json_[std::string(part)]; }
-  /// Appends to the list of that name ("nodes") and tells where it stands.
+  /// Appends an item to a list of the document, such as "nodes", and returns its index.
   Index add(std::string_view list, Json item);
 
-  // Each gives an accessor. Numbers are finite; there is at least one.
-  /// 3 by #vectors; with their bounds, as POSITION has to have them.
+  // Each of these adds an accessor and returns its index. There must be at least one number, and
+  // all must be finite.
+  /// `vectors` is 3 by #vectors. `bounded` adds their minimum and maximum, which POSITION requires.
   Index add_vectors(const Eigen::Matrix3Xf& vectors, Use use, bool bounded);
-  /// What is zero in most columns, as a sparse accessor where that takes less room. Bounded.
+  /// For vectors of which most are zero. It uses a sparse accessor if that is smaller. Bounded.
   Index add_sparse_vectors(const Eigen::Matrix3Xf& vectors);
   Index add_quaternions(std::span<const float> xyzw);
   Index add_scalars(std::span<const float> numbers, bool bounded);
-  /// `count` zeros, but ones at `places`, which rise.
+  /// Adds `count` zeros, with ones at `places`, which must increase.
   Index add_ones(std::size_t count, std::span<const std::uint32_t> places);
-  /// As 16 bits where they are enough.
+  /// Uses 16 bits for each index if all of them fit.
   Index add_indices(std::span<const std::uint32_t> indices, Use use);
   Index add_joints(std::span<const std::uint8_t> fours);
   Index add_weights(std::span<const float> fours);
   Index add_matrices(std::span<const float> sixteens); ///< column by column
 
-  /// A file of that name is replaced by the whole one. Blocks. Errors: failed (more than 4 GiB,
-  /// or whatever the limit is; cannot be written).
+  /// Writes the file atomically, replaces an existing one, and returns its size in bytes. Blocks.
+  /// Errors: failed (larger than `most_bytes`, or it cannot be written).
   Result<std::uint64_t> write(const std::filesystem::path& path) const;
 
 private:

@@ -20,18 +20,18 @@
 namespace nendo::exporting {
 
 struct GltfOptions {
-  double tolerance = 1e-4; ///< of key shapes; a part of the model's diagonal
+  double tolerance = 1e-4; ///< of key shapes, as a fraction of the model's diagonal
   bool hands = true;
   std::string generator = "Nendo";
-  /// Of key shapes: each key has a weight for every target, and who reads the file unpacks them to
-  /// 4 bytes each.
+  /// Limits the weights of key shapes. Each key has one weight for each target, and a reader of the
+  /// file needs 4 bytes for each.
   std::uint64_t most_weights = std::uint64_t{1} << 28;
 };
 
-/// Goes through the frames once, or a second time if they are not linear in control vectors after
-/// all. Keeps the file in memory until it is written. Blocks. Errors: as `open`,
-/// ChosenFrames::make(), ChosenFrames::next() and GlbFile::write(); bad_input (numbers that 32-bit
-/// floats cannot hold), failed (too many weights).
+/// Exports the frames to `path`. It reads them once, or twice if they turn out not to be linear in
+/// control vectors. The file is kept in memory until it is written. Blocks. Errors: those of
+/// `open`, ChosenFrames::make(), ChosenFrames::next() and GlbFile::write(); bad_input (numbers that
+/// 32-bit floats cannot hold), failed (too many weights).
 Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path);
 

@@ -17,27 +17,28 @@ class GltfModel {
 public:
   static constexpr GlbFile::Index node = 0; ///< where the model's node stands: it is the first
 
-  /// Puts the rest shape into `file`. The mesh has a vertex, and its vertices fit in floats.
+  /// Puts the rest shape into `file`. The mesh must have a vertex, and its vertices must fit in
+  /// floats.
   GltfModel(const deform::Mesh& mesh, GlbFile& file);
 
-  /// Targets for each influence that reaches a vertex: along each axis, and against it, because
-  /// Blender and others take no weight below 0. That stays linear: on a way from one side to the
-  /// other, one weight falls to 0 as the other rises from it. Gives the weights of all of them,
-  /// moment by moment, 0 to 1.
+  /// Adds two targets for each axis of each influence that reaches a vertex: one along the axis and
+  /// one against it, because Blender and other programs do not accept negative weights. Returns the
+  /// weights of all targets, moment by moment, from 0 to 1.
   std::vector<float> add_control_targets(const ControlMorphs& morphs, GlbFile& file);
 
-  /// The next key's shape, as displacements from the rest shape (3 by #vertices). One like the
-  /// latest, or like the rest shape, needs no target of its own.
+  /// Adds the next key's shape, as displacements from the rest shape (3 by #vertices). A shape that
+  /// equals the latest one, or the rest shape, does not get a target of its own.
   void add_key_target(const Eigen::Matrix3Xf& way, GlbFile& file);
-  /// Of all keys so far, each with one for every target.
+  /// The number of weights of all keys so far. Each key has one for each target.
   std::uint64_t key_weight_count() const noexcept {
     return std::uint64_t{key_targets_.size()} * target_count();
   }
-  /// The weights of all keys: each is its own target alone. Fewer than 2^32.
+  /// Adds the weights of all keys, which must be fewer than 2^32. The weight of a key's own target
+  /// is 1, all others are 0.
   GlbFile::Index add_key_weights(GlbFile& file) const;
 
   std::size_t target_count() const noexcept { return targets_.size(); }
-  /// Node, mesh and material; once, as the last.
+  /// Adds node, mesh and material to the document. Call it once, after everything else.
   void add_to(GlbFile& file, double units_per_metre, const MorphReport& report) const;
 
 private:

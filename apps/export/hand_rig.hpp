@@ -1,5 +1,5 @@
 #pragma once
-// A hand as glTF has them: a tree of 26 nodes, OpenXR's joints, that are turned over time, and a
+// A hand in glTF: a tree of 26 nodes, one for each of OpenXR's joints, which turn over time, and a
 // skin that follows them.
 
 #include <array>
@@ -16,19 +16,20 @@ class HandTrack {
 public:
   explicit HandTrack(Side side) : side_(side) {}
 
-  /// The pose of the next moment, metres. False: it is not finite, and left out.
+  /// Adds the pose of the next moment, in metres. Returns false, and adds nothing, if it is not
+  /// finite.
   bool add(const hand::HandPose& pose);
 
   Side side() const noexcept { return side_; }
   struct JointTrack {
     std::vector<float> places;    ///< x y z a moment, metres
-    std::vector<float> rotations; ///< quaternions x y z w a moment; none turns back on its way
+    std::vector<float> rotations; ///< quaternions x y z w a moment, each on the shorter way
   };
   const JointTrack& operator[](hand::Joint joint) const noexcept {
     return joints_[hand::index_of(joint)];
   }
-  /// In the wrist's frame, each joint turned as in `turns` and as far from its parent as in the
-  /// first pose.
+  /// Returns a pose in the wrist's frame, with the rotations of `turns` and with the bone lengths
+  /// of the first pose.
   hand::HandPose first_as(const hand::HandPose& turns) const;
 
 private:
@@ -36,8 +37,9 @@ private:
   std::array<JointTrack, hand::joint_count> joints_;
 };
 
-/// Adds nodes, skin and mesh to the document, the roots to `roots`, and what moves to the
-/// animation's samplers and channels. times: the accessor of the track's moments, at least one.
+/// Adds nodes, skin and mesh to the document, the root nodes to `roots`, and the motion to the
+/// animation's samplers and channels. `times` is the accessor of the track's moments, of which
+/// there must be at least one.
 void add_hand(const HandTrack& track, GlbFile::Index times, GlbFile& file, GlbFile::Json& animation,
               GlbFile::Json& roots);
 

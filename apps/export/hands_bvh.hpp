@@ -1,5 +1,6 @@
 #pragma once
-// The hands as BVH (nendo/hand/bvh.hpp), a file a hand: the format has one root.
+// Exports the hands as BVH (nendo/hand/bvh.hpp), one file for each hand, because the format has a
+// single root.
 
 #include <array>
 #include <filesystem>
@@ -10,11 +11,12 @@
 
 namespace nendo::exporting {
 
-/// By flow::Placement::index_of(side); nothing: there is no such hand.
+/// Indexed by flow::Placement::index_of(side). An empty element means that there is no such hand.
 using Skeletons = std::array<std::optional<hand::HandSkeleton>, 2>;
 
-/// `frames` are at a rate. One hand goes to `path`, two to NAME-left.bvh and NAME-right.bvh;
-/// neither gets its name before both are written. Blocks. Errors: as ChosenFrames::next(); failed
+/// `frames` must be at an even rate. One hand is written to `path`, two to NAME-left.bvh and
+/// NAME-right.bvh, of which neither appears before both are written. Blocks. Errors: those of
+/// ChosenFrames::next(); failed
 /// (cannot be written), bad_input (no hand, a pose that is not finite).
 Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeletons,
                                   const std::filesystem::path& path);

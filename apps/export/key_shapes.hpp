@@ -1,7 +1,6 @@
 #pragma once
-// A motion of many vertices as a few shapes, between which each vertex goes straight: a shape is
-// kept when going straight on past it would leave some frame in between farther off than the
-// tolerance.
+// Reduces a motion of many vertices to a few key shapes, between which vertices are interpolated
+// linearly. A shape becomes a key where interpolation without it would exceed the tolerance.
 
 #include <functional>
 #include <vector>
@@ -12,21 +11,21 @@ namespace nendo::exporting {
 
 class KeyShapes {
 public:
-  using Shape = Eigen::Matrix3Xf; ///< 3 by #vertices; any place or displacement
-  /// Takes a key, in the order of time.
+  using Shape = Eigen::Matrix3Xf; ///< 3 by #vertices, places or displacements
+  /// Receives the keys in the order of time.
   using Keep = std::function<void(float time_s, const Shape& shape)>;
 
-  /// tolerance: the farthest that a vertex may be off. Frames between two keys are kept in memory,
-  /// at most most_bytes of them and most_between.
+  /// `tolerance` is the greatest error of a vertex. Frames between two keys are kept in memory, at
+  /// most `most_bytes` and `most_between` frames.
   KeyShapes(double tolerance, Keep keep, std::size_t most_bytes = std::size_t{256} << 20);
   static constexpr std::size_t most_between = 62;
 
-  /// The next frame; its time is greater than that of the one before.
+  /// Adds the next frame. Its time must be greater than the previous one.
   void add(float time_s, Shape shape);
-  /// The last frame becomes a key; the last call.
+  /// Makes the last frame a key. Nothing may be added afterwards.
   void finish();
 
-  /// The farthest that a vertex of any frame is off, between the keys; exactly measured.
+  /// The greatest measured error of a vertex over all frames between the keys.
   double greatest_error() const noexcept { return greatest_error_; }
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// A mesh file a frame, numbered from 1.
+// Exports each frame as a mesh file. The files are numbered from 1.
 
 #include <string>
 
@@ -10,12 +10,12 @@
 
 namespace nendo::exporting {
 
-/// A file name with one place for a number, as printf has it: %d, or %04d with leading zeros up to
-/// four digits (1 to 9); %% is a percent sign.
+/// A file name with one placeholder for a number, as in printf: %d, or %04d for four digits with
+/// leading zeros (1 to 9 digits). %% is a percent sign.
 class NumberedName {
 public:
-  /// Error: usage, of --out (it has no such place, or more than one, or something else after a
-  /// percent sign).
+  /// Error: usage, naming --out, if there is not exactly one placeholder or a percent sign is
+  /// followed by something else.
   static Result<NumberedName> parse(const std::string& pattern);
   std::string of(std::uint64_t number) const;
 
@@ -24,9 +24,9 @@ private:
   std::size_t digits_ = 1;
 };
 
-/// `pattern` ends in .obj or .ply. Each file is written as deform::write_mesh() does, whole or not
-/// at all. Blocks. Errors: usage (no place for a number), failed (cannot be written; how many
-/// frames there are is told), as ChosenFrames::next().
+/// `pattern` ends in .obj or .ply. Each file is written atomically, as by deform::write_mesh().
+/// Blocks. Errors: those of ChosenFrames::next(); usage (no placeholder), failed (a file cannot be
+/// written; the message gives the number of finished frames).
 Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& pattern);
 
 } // namespace nendo::exporting

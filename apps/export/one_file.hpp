@@ -1,5 +1,5 @@
 #pragma once
-// An export whose frames stand one after another in a single file.
+// Writes the frames of an export one after another into a single file.
 
 #include <filesystem>
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace nendo::exporting {
 
-/// Writes what stands in the file for the latest of `frames`; before the first, its head too.
+/// Writes the latest frame to the file. Before the first frame it also writes the file's header.
 using PutFrame = std::function<Result<void>(FileReplacement& file)>;
 
-/// The file is there when it is whole, in place of what was there. Errors: as
-/// ChosenFrames::next(), `put`, FileReplacement. Blocks.
+/// Writes the file atomically and replaces an existing one. Blocks. Errors: those of
+/// ChosenFrames::next(), `put` and FileReplacement.
 Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem::path& path,
                                     const PutFrame& put);
 

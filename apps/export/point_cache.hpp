@@ -16,8 +16,8 @@ namespace nendo::exporting {
 
 enum class PointCache { pc2, mdd };
 
-/// `frames` are at a rate. Blocks. Errors: as ChosenFrames::next(); failed (cannot be written),
-/// bad_input (a vertex that 32-bit floats cannot hold).
+/// `frames` must be at an even rate. Blocks. Errors: those of ChosenFrames::next(); failed (cannot
+/// be written), bad_input (a vertex that 32-bit floats cannot hold).
 Result<Exported> export_point_cache(ChosenFrames& frames, PointCache format,
                                     const std::filesystem::path& path);
 

@@ -1,8 +1,8 @@
 #pragma once
-// The benchmark of the paper's Table 1: a plane in four resolutions, with ten control points whose
-// places the paper does not tell. Those of `near` give its counts of vertices within the supports,
-// but for a few; those of `plane` lie in the plane itself, where a linear polynomial is not
-// determined.
+// The planes and control points of the paper's Table 1: a plane in four resolutions and ten control
+// points, whose places the paper does not give. Those of the layout `near` reproduce the paper's
+// counts of vertices within the supports, except for a few. Those of `plane` lie in the plane
+// itself, where a linear polynomial is not determined.
 
 #include <array>
 #include <random>

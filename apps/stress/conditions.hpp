@@ -1,5 +1,5 @@
 #pragma once
-// What --fail-if asks: thresholds on the figures of a report.
+// The conditions of --fail-if: thresholds for the figures of a report.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Where a measurement was taken, without which its figures mean nothing.
+// A description of the machine on which a measurement was taken.
 
 #include <cstdint>
 #include <optional>
@@ -18,12 +18,12 @@ struct Environment {
   std::optional<long> rt_runtime_us; ///< real-time threads' share of each second; -1: no limit
 };
 
-/// Reads /proc and /sys; what they do not say stays empty.
+/// Reads /proc and /sys. Values that the system does not provide stay empty.
 Environment describe_environment();
 
-/// Time that the host gave to others while this machine wanted it, since it began, all CPUs;
-/// nothing if the kernel does not count it. In clock ticks of 10 ms, so that short gaps are not in
-/// it.
+/// The stolen time since boot, summed over all CPUs: time that the host gave to others while this
+/// virtual machine was ready to run. Returns nothing if the kernel does not count it. It is counted
+/// in ticks of 10 ms, so short gaps are not included.
 std::optional<double> stolen_s();
 
 } // namespace nendo::stress

@@ -1,5 +1,5 @@
 #pragma once
-// A tick that came late, or was missed: which phase took the time, and whose fault that was.
+// A tick that was late or missed, with the phase that took the time and the cause.
 
 #include <array>
 #include <chrono>
@@ -35,19 +35,18 @@ struct Incident {
   Cause cause = Cause::unexplained;
 };
 
-/// What a stage usually takes: the time that 99 % of its runs do not exceed. For Phase::wake
-/// unused.
+/// The usual time of each stage: its 99th percentile. The element for Phase::wake is unused.
 using UsualTimes = std::array<std::chrono::nanoseconds, phase_names.size()>;
 
-/// The lateness of `now`, the tick after `before`, and the phase that had most part in it: the wait
-/// for the wake-up, or a stage of the tick before that went on beyond the deadline. Pure.
+/// Returns the lateness of `now`, the tick after `before`, and the phase with the largest share in
+/// it: the wake-up, or a stage of the previous tick that went on beyond the deadline.
 Incident incident_of(const flow::TickRecord& before, const flow::TickRecord& now,
                      std::chrono::nanoseconds period) noexcept;
 
-/// Whose fault it was. `waited`: how long the thread was ready without running since the incident
-/// began; nothing if unknown. A thread that waited for half of the phase was preempted; a stage
-/// within twice its usual time did its own work; what is left stood still without anybody here
-/// running instead. Pure.
+/// Returns the cause of an incident. `waited` is how long the thread was ready without running
+/// since the incident began, or nothing if that is unknown. A thread that waited for half of the
+/// phase was preempted. A stage within twice its usual time did its own work. In all other cases no
+/// thread of this system ran, and the cause is outside of it.
 Cause cause_of(const Incident& incident, const UsualTimes& usual,
                std::optional<std::chrono::nanoseconds> waited) noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Work that competes with the loop, made by this program itself: a process a worker.
+// Worker processes of this program that compete with the loop.
 
 #include <string>
 #include <utility>
@@ -19,7 +19,8 @@ Result<std::vector<std::string>> parse_load(const std::string& text);
 /// that), and are at ordinary priority whatever the caller's is.
 class Load {
 public:
-  /// Of kinds that parse_load() gave. Error: failed. Before other threads exist: it forks.
+  /// Starts workers of the kinds that parse_load() returned. It forks, so call it before there are
+  /// other threads. Error: failed.
   static Result<Load> start(const std::vector<std::string>& kinds);
   ~Load(); ///< ends the workers and waits for them
   Load(Load&& other) noexcept : workers_(std::move(other.workers_)) { other.workers_.clear(); }

@@ -1,6 +1,6 @@
 #pragma once
-// What no program on this machine can be better than: the gaps that a thread sees which does
-// nothing but look at the clock.
+// The latency floor of this machine: the gaps that a thread sees which only reads the clock. No
+// program can be better than that.
 
 #include <atomic>
 
@@ -10,15 +10,15 @@
 namespace nendo::stress {
 
 struct PlatformFloor {
-  /// Between two looks at the clock, as far as longer than a microsecond.
+  /// The times between two readings of the clock that are longer than a microsecond.
   flow::Histogram gaps;
-  double spun_s = 0.0;    ///< how long it looked
+  double spun_s = 0.0;    ///< the duration of the measurement
   double stalled_s = 0.0; ///< the sum of `gaps`
 };
 
-/// Spins for so long, on a thread of its own with the rights of the loop's, in short turns: the
-/// kernel stops real-time threads that take 95 % of a second. Ends early when `stop` is set.
-/// Blocks.
+/// Reads the clock for so many seconds on a thread with the rights of the loop's thread. It spins
+/// in short turns, because the kernel stops real-time threads that use 95 % of a second. Ends early
+/// when `stop` is set. Blocks.
 PlatformFloor measure_floor(double seconds, const flow::RealtimeOptions& realtime,
                             const std::atomic<bool>& stop);
 

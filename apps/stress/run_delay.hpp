@@ -1,6 +1,6 @@
 #pragma once
-// How long a thread has been ready to run while other threads had its CPU, as the kernel counts it:
-// the witness that tells preemption from a machine that stood still.
+// The run delay of a thread: how long it was ready to run while other threads had its CPU, as the
+// kernel counts it. It distinguishes preemption from a machine that stood still.
 
 #include <array>
 #include <chrono>
@@ -21,10 +21,10 @@ std::optional<std::chrono::nanoseconds> parse_run_delay(const std::string& sched
 /// Sampled from another thread, so that the thread itself makes no system call.
 class RunDelay {
 public:
-  /// Of a thread of this process.
+  /// `thread` is a thread of this process.
   explicit RunDelay(pid_t thread);
 
-  /// Reads the kernel's count and remembers it. A file's reading: some microseconds.
+  /// Reads the kernel's count and stores it. That reads a file and takes some microseconds.
   void sample();
   /// How long the thread waited from the last sample before `from` to the newest one: no less than
   /// since `from`. Before the first sample that is all that it ever waited. Nothing if the kernel

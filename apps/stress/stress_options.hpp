@@ -1,5 +1,5 @@
 #pragma once
-// What nendo stress is asked to do, and whether that can be done.
+// The options of nendo stress, and the check of its arguments.
 
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace nendo::stress {
 
-/// As typed.
+/// The arguments as they were typed.
 struct StressArguments {
   double interval_us = 1000.0;
   std::string duration = "10";
@@ -33,7 +33,7 @@ struct StressArguments {
   session::RunOptions run;
 };
 
-/// What they mean. `run` is complete: gloves, model, loop and rights.
+/// The meaning of the arguments. `run` is complete: it has gloves, model, loop and rights.
 struct StressOptions {
   session::RunOptions run;
   std::vector<std::string> load;
@@ -45,7 +45,7 @@ struct StressOptions {
 /// Error: usage, naming the option.
 Result<StressOptions> parse(const StressArguments& arguments);
 
-/// The stages of a list like "sleep,input,hands": sleep is always one. Error: usage.
+/// Parses a list of stages, such as "sleep,input,hands". Sleep is always a stage. Error: usage.
 Result<flow::TickStages> parse_stages(const std::string& text);
 
 } // namespace nendo::stress

@@ -15,7 +15,7 @@
 
 namespace nendo::stress {
 
-/// What the loop's thread cost the system, its set-up not included.
+/// The resources that the loop's thread used, without its set-up.
 struct ThreadCosts {
   long minor_faults = 0;
   long major_faults = 0;

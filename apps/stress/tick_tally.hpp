@@ -1,6 +1,6 @@
 #pragma once
-// What a stress test knows of its ticks: made of the loop's records, on another thread, in constant
-// memory however long it runs.
+// The statistics of a stress test's ticks. Another thread computes them from the loop's records, in
+// constant memory.
 
 #include <array>
 #include <cstdint>
@@ -61,7 +61,7 @@ public:
 
   std::uint64_t ticks() const noexcept { return ticks_; }
   std::uint64_t samples() const noexcept { return samples_; }
-  /// From a tick to the next one, the longest, as they woke.
+  /// The longest time from one wake-up to the next.
   std::chrono::nanoseconds longest_outage() const noexcept { return longest_outage_; }
   const Distribution& operator[](Measure measure) const noexcept {
     return distributions_[static_cast<std::size_t>(measure)];
@@ -78,7 +78,8 @@ public:
     std::chrono::nanoseconds lateness{};
   };
   const std::array<Share, cause_names.size()>& causes() const noexcept { return causes_; }
-  /// Of the lateness of incidents beyond the threshold, the part whose cause is known; 1 if none.
+  /// The fraction of the incidents' lateness whose cause is known. It is 1 if there was no
+  /// incident.
   double explained() const noexcept;
   const LatenessTrace& timeline() const noexcept { return timeline_; }
 
@@ -97,7 +98,7 @@ private:
   std::chrono::nanoseconds longest_outage_{};
   std::array<Distribution, measure_names.size()> distributions_;
   std::array<flow::Histogram, phase_names.size()> stages_;
-  /// Of ticks that took samples alone: those that did not have next to nothing to do.
+  /// Only of ticks that took samples; the others had almost nothing to do.
   std::array<flow::Histogram, phase_names.size()> busy_stages_;
   std::vector<Incident> worst_;
   std::array<Share, cause_names.size()> causes_{};

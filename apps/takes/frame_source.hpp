@@ -1,6 +1,6 @@
 #pragma once
-// Frames of a take, one after another and without a clock, whatever makes them: a recording whose
-// loop runs again, or a timeline of edited keys.
+// The frames of a take, one after another and without a clock. They come from a recording, whose
+// loop runs again, or from a timeline of edited keys.
 
 #include <nendo/flow/frame.hpp>
 
@@ -14,11 +14,11 @@ public:
   virtual const deform::BlockLayout& layout() const = 0; ///< of the frames' shapes
   virtual double rate_hz() const = 0;                    ///< of the frames, as far as it is even
   virtual double duration_s() const = 0;                 ///< time_s() of the last frame
-  /// Makes the next frame; false: there is none. May block and allocate.
+  /// Makes the next frame. Returns false if there is none. May block and allocate.
   virtual bool next() = 0;
   virtual const flow::Frame& frame() const = 0; ///< the latest; not before next()
   virtual double time_s() const = 0;            ///< of the latest, since the take began
-  /// Nothing was missing so far, so that the frames are those that were.
+  /// True while nothing was missing in the source, so that the frames equal the original ones.
   virtual bool is_exact() const { return true; }
 };
 

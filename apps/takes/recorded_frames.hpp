@@ -1,5 +1,5 @@
 #pragma once
-// A recording's frames: its loop runs again, tick by tick.
+// The frames of a recording. Its loop runs again, tick by tick.
 
 #include <filesystem>
 #include <memory>
@@ -13,8 +13,8 @@ namespace nendo::takes {
 
 class RecordedFrames final : public FrameSource {
 public:
-  /// model: as recorded_model() gives it. Reads the recording through once, for its duration.
-  /// Blocks. Errors: bad_input (as TakeReader::open() and LoopReplay::make(); no tick in it).
+  /// `model` comes from recorded_model(). The whole recording is read once to find its duration.
+  /// Blocks. Errors: those of TakeReader::open() and LoopReplay::make(); bad_input (no tick in it).
   static Result<std::unique_ptr<RecordedFrames>> open(const std::filesystem::path& path,
                                                       deform::Mesh model);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The model over which a loop was recorded, and whether what is made of both is as it was.
+// The model over which a loop was recorded.
 
 #include <string>
 
@@ -7,16 +7,16 @@
 
 namespace nendo::takes {
 
-/// Read from the file that `named` says, or from the recorded one where that is empty; says on
-/// standard error if it is another model than was recorded. Errors: as deform::read_mesh();
-/// bad_input, if the recorded file is no longer what it was.
+/// Reads the model from the file `named`, or from the recorded file name if `named` is empty.
+/// Prints a note on standard error if it is not the recorded model. Errors: those of
+/// deform::read_mesh(); bad_input if the recorded file has changed.
 Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop,
                                     const std::string& named = {});
-/// Of the recording in `file`. Error: bad_input also if no loop was recorded.
+/// The same for the recording in `file`. Error: also bad_input if no loop was recorded.
 Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,
                                     const std::string& named = {});
 
-/// Says on standard error that something is missing in the recording.
+/// Prints a note on standard error that something is missing in the recording.
 void note_missing(const std::string& file);
 
 } // namespace nendo::takes

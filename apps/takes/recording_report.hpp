@@ -1,5 +1,5 @@
 #pragma once
-// What a recording is, told to people or as JSON.
+// Reports about a recording, as text and as JSON, on standard output.
 
 #include <string>
 
@@ -7,12 +7,13 @@
 
 namespace nendo::takes {
 
-/// Who, when, how long, gloves with rates, losses and pauses, the loop, gaps and damage.
+/// Prints the program, time and duration, the gloves with rates, losses and pauses, the loop, gaps
+/// and damage.
 void print_take(const std::string& file, const recording::TakeSummary& summary);
-/// The same as one object on standard output.
+/// Prints the same as one JSON object.
 void print_take_json(const std::string& file, const recording::TakeSummary& summary);
 
-/// One line a damage; nothing if there is none.
+/// Prints one line for each damaged place.
 void print_damages(const recording::TakeSummary& summary);
 
 } // namespace nendo::takes

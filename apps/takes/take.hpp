@@ -1,5 +1,6 @@
 #pragma once
-// What there is to draw, wherever it comes from: a mesh is a take of one moment.
+// A take that can be drawn at any time, read from a mesh, a recording or a timeline. A mesh is a
+// take of one moment.
 
 #include <filesystem>
 #include <functional>
@@ -10,16 +11,17 @@
 namespace nendo::takes {
 
 struct Take {
-  deform::Mesh rest;            ///< settles faces, scale and place
-  double units_per_metre = 0.0; ///< from the model to the stage; 0: as the loop would put it there
-  double duration_s = 0.0;      ///< 0: nothing moves
-  /// The moment at a time from 0 to duration_s, in any order. May block. Errors as read_take().
+  deform::Mesh rest;            ///< the model at rest: it defines faces, scale and place
+  double units_per_metre = 0.0; ///< model to stage; 0 means as the loop would place it
+  double duration_s = 0.0;      ///< 0 if nothing moves
+  /// Makes the scene at a time from 0 to duration_s, in any order. May block. Errors: those of
+  /// read_take().
   std::function<Result<viewer::SceneFrame>(double time_s)> moment_at;
 };
 
-/// Of a file, by what is in it: a mesh, a recording, whose loop runs again without a clock, or, by
-/// its name, a timeline. Errors: bad_input, as deform::read_mesh(), TakeReader::open(),
-/// recorded_model() and TimelineFrames::open().
+/// Reads a take from a file. A timeline is known by its name, a mesh or a recording by its content.
+/// The loop of a recording runs again without a clock. Errors: bad_input, as from
+/// deform::read_mesh(), TakeReader::open(), recorded_model() and TimelineFrames::open().
 Result<Take> read_take(const std::filesystem::path& path);
 
 } // namespace nendo::takes

@@ -1,5 +1,5 @@
 #pragma once
-// Frames of a timeline, and the model that it is over.
+// The frames of a timeline, and the model that it shapes.
 
 #include <filesystem>
 #include <memory>
@@ -14,12 +14,13 @@ namespace nendo::takes {
 
 class TimelineFrames final : public FrameSource {
 public:
-  /// The model is read from the file that the timeline names, or from `mesh` unless that is empty.
-  /// Blocks. Errors: as timeline::read_timeline(), recorded_model(), timeline::Player::make().
+  /// Reads the model from the file that the timeline names, or from `mesh` if that is not empty.
+  /// Blocks. Errors: those of timeline::read_timeline(), recorded_model(),
+  /// timeline::Player::make().
   static Result<std::unique_ptr<TimelineFrames>> open(const std::filesystem::path& path,
                                                       const std::string& mesh = {});
 
-  /// Of a timeline that is no file. Errors: as timeline::Player::make().
+  /// Plays a timeline that is in memory. Errors: those of timeline::Player::make().
   static Result<std::unique_ptr<TimelineFrames>> make(timeline::Timeline timeline,
                                                       deform::Mesh model);
 
@@ -41,11 +42,11 @@ private:
   std::unique_ptr<timeline::Player> player_;
 };
 
-/// As TimelineFrames::open().
+/// Reads the model as TimelineFrames::open() does, with the same errors.
 Result<deform::Mesh> timeline_model(const timeline::Timeline& timeline,
                                     const std::string& mesh = {});
 
-/// Where mirror() puts its plane if nobody says: the model's middle. On the stage.
+/// The x of the model's middle on the stage, in metres: the default plane of mirror().
 double middle_plane_m(const timeline::Timeline& timeline, const deform::Mesh& model);
 
 } // namespace nendo::takes

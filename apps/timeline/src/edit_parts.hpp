@@ -1,5 +1,5 @@
 #pragma once
-// What several edits need.
+// Helpers that several edits share.
 
 #include <string>
 
@@ -8,7 +8,7 @@
 
 namespace nendo::timeline {
 
-/// Error: usage, if there is no such hand, or no such key of it.
+/// Error: usage if there is no such hand, or if the hand has no such key.
 Result<HandTrack*> track_of(Timeline& timeline, Side side);
 Result<HandTrack*> track_with_key(Timeline& timeline, Side side, std::size_t key);
 

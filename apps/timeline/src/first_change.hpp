@@ -1,5 +1,5 @@
 #pragma once
-// How much of what was made of a timeline is still true after an edit.
+// Finds how many frames of a timeline are still valid after an edit.
 
 #include <cstdint>
 
@@ -7,9 +7,9 @@
 
 namespace nendo::timeline {
 
-/// So many frames at the beginning are the same in both, bit for bit; perhaps some more are.
-/// frames_before, frames_after: Player::frame_count(). The rates are equal. No more than `most` are
-/// looked at.
+/// Returns a number of frames at the beginning that are the same in both, bit for bit. It may be
+/// too low, but never too high. `frames_before` and `frames_after` are Player::frame_count(). The
+/// rates must be equal. At most `most` frames are compared.
 std::uint64_t unchanged_frames(const Timeline& before, std::uint64_t frames_before,
                                const Timeline& after, std::uint64_t frames_after,
                                std::uint64_t most);

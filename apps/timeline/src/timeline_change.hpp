@@ -1,5 +1,5 @@
 #pragma once
-// What an edit did, as little as it was: a step of EditHistory.
+// The difference that an edit made: a step of EditHistory.
 
 #include <cstddef>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace nendo::timeline {
 
-/// In a list, `before` stood at `at`, and `after` stands there now.
+/// A change of a list: at index `at`, `before` was replaced by `after`.
 template <class T>
 struct Splice {
   std::size_t at = 0;
@@ -27,10 +27,11 @@ struct TimelineChange {
   Splice<Event> events;
 };
 
-/// Of all that edits change: durations, sides, keys and events. Both have as many hands.
+/// Compares all that edits change: durations, sides, keys and events. Both must have the same
+/// number of hands.
 TimelineChange change_between(const Timeline& before, const Timeline& after);
 bool is_empty(const TimelineChange& change) noexcept;
-/// From the one before to the one after, and back, bit for bit.
+/// Apply the change, or take it back, bit for bit.
 void do_change(Timeline& timeline, const TimelineChange& change);
 void undo_change(Timeline& timeline, const TimelineChange& change);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Tables of a TOML file, with complaints that name the line. toml++ stays behind this header, which
-// one source file includes.
+// Reads tables of a TOML file, with error messages that name the line. Only one source file
+// includes this header, because toml++ is slow to compile.
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ inline std::string one_line(std::string_view text) {
   return printable(text.substr(0, 160));
 }
 
-/// Takes tables apart and keeps the first complaint; after it, values are blank.
+/// Reads values and keeps the first error. After an error, all values are empty or zero.
 class TomlReader {
 public:
   explicit TomlReader(std::string_view name) : name_(name) {}
@@ -42,7 +42,7 @@ public:
       if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
         complain(node, "unknown key '" + std::string(key.str()) + "'; leave it out");
   }
-  /// Null, with a complaint, if it is missing.
+  /// Returns null, with an error, if the key is missing.
   const toml::node* find(const toml::table& table, std::string_view key) {
     const toml::node* node = table.get(key);
     if (node == nullptr) complain(table, "has no " + std::string(key) + "; add it");
@@ -86,7 +86,7 @@ public:
     const toml::node* node = find(table, key);
     return node == nullptr ? 0.0 : number(*node, key);
   }
-  /// From 0 to `most`.
+  /// Reads a whole number from 0 to `most`.
   std::uint64_t count(const toml::table& table, std::string_view key, std::uint64_t most) {
     const toml::node* node = find(table, key);
     if (node == nullptr) return 0;
@@ -97,7 +97,7 @@ public:
              std::string(key) + " must be a whole number within 0 and " + std::to_string(most));
     return 0;
   }
-  /// Fills `out` from a list of as many numbers.
+  /// Reads a list of exactly `Size` numbers.
   template <std::size_t Size>
   std::array<double, Size> numbers(const toml::node& node, std::string_view what) {
     std::array<double, Size> values{};
@@ -110,7 +110,8 @@ public:
       values[at] = number((*list)[at], what);
     return values;
   }
-  /// What `find` makes of the text; the first of a kind, with a complaint, if nothing.
+  /// Converts a text by `find_named`. If that finds nothing, returns a default value, with an
+  /// error.
   template <class Named>
   auto named(const toml::table& table, std::string_view key, const Named& find_named) {
     const std::string name = text(table, key);

@@ -1,6 +1,7 @@
 #pragma once
-// What can be done to a timeline. Each leaves it playable; on an error it is as it was. Errors are
-// usage, one line without the file's name; keys are counted from 0.
+// Edits of a timeline. Each edit leaves the timeline playable. On an error the timeline is
+// unchanged. All errors are usage errors, in one line without the file's name. Keys are counted
+// from 0.
 
 #include <array>
 
@@ -9,35 +10,40 @@
 
 namespace nendo::timeline {
 
-/// A key goes to another time, past others if need be. Error: no such hand or key, a key is there
-/// already, the time is outside of the timeline.
+/// Moves a key to another time, which may be beyond other keys. Error: there is no such hand or
+/// key, there is already a key at that time, or the time is outside of the timeline.
 Result<void> move_key(Timeline& timeline, Side side, std::size_t key, double to_s);
+/// Copies a key to another time. Errors: those of move_key().
 Result<void> copy_key(Timeline& timeline, Side side, std::size_t key, double to_s);
-/// Error: no such key, or it is the hand's last.
+/// Error: there is no such key, or it is the hand's last one.
 Result<void> delete_key(Timeline& timeline, Side side, std::size_t key);
-/// A key where the curve is, so that nothing changes but the slopes' freedom.
+/// Adds a key on the curve, so that the pose at that time stays the same.
 Result<void> add_key(Timeline& timeline, Side side, double at_s);
 
-/// Times from from_s to to_s pass `scale` times as slowly, from from_s on; what comes later is
-/// moved. Keys, events and the duration. Error: no part of the timeline, not positive, too long.
+/// Stretches the time between from_s and to_s by `scale`, and shifts all that comes later. This
+/// changes keys, events and the duration. Error: the times are not within the timeline, `scale` is
+/// not positive, or the result is too long.
 Result<void> retime(Timeline& timeline, double scale, double from_s, double to_s);
 
-/// The key becomes a mixture: its own pose at factor 0, at 1 what its neighbours would make of that
-/// moment without it. Error: as above; it is at an end; a factor that is not from 0 to 1.
+/// Blends a key with its neighbours. Factor 0 is its own pose, factor 1 is the pose that the curve
+/// would have there without the key. Error: there is no such key, it is the first or last one, or
+/// the factor is not from 0 to 1.
 Result<void> blend_key(Timeline& timeline, Side side, std::size_t key, double factor);
-/// The hands that both have move between one's curve at factor 0 and other's at 1, with the keys of
-/// both; the rest is one's. Error: no hand in common, a factor that is not from 0 to 1.
+/// Blends `one` with `other`. Hands that both have move between the curve of `one` (factor 0) and
+/// that of `other` (factor 1), with the keys of both. All else stays as in `one`. Error: there is
+/// no common hand, or the factor is not from 0 to 1.
 Result<void> blend(Timeline& one, const Timeline& other, double factor);
 
-/// The left hand does what the right one did, and the other way round, mirrored about the plane x =
-/// plane_x_m of the stage. Error: not finite, too far.
+/// Swaps the left and the right hand, mirrored about the plane x = plane_x_m of the stage. Error:
+/// the plane is not finite or too far away.
 Result<void> mirror(Timeline& timeline, double plane_x_m);
 
 struct TipSet {
-  double off_m = 0.0; ///< of the fingertip, from where it was to be
+  double off_m = 0.0; ///< distance of the fingertip from its target
 };
-/// A key's finger bends so that its tip is at `target_m` on the stage; the wrist stays. Error: as
-/// above; out of reach by more than within_m, which the message then tells.
+/// Bends a key's finger so that its tip is at `target_m` on the stage. The wrist stays. Error:
+/// there is no such key, or the tip stays farther than within_m from the target; the message gives
+/// the distance.
 Result<TipSet> set_tip(Timeline& timeline, Side side, std::size_t key, hand::Finger finger,
                        const Eigen::Vector3d& target_m, double within_m);
 

@@ -1,6 +1,6 @@
 #pragma once
-// A timeline while somebody edits it: which key is selected, what can be undone and redone, and
-// whether it is as it was saved.
+// A timeline that is being edited, with the selected key, the steps that can be undone and redone,
+// and whether it has unsaved changes.
 
 #include <cstdint>
 #include <functional>
@@ -20,33 +20,33 @@ public:
   EditHistory& operator=(EditHistory&&) noexcept;
 
   const Timeline& timeline() const noexcept { return timeline_; }
-  /// Another one after each change of timeline().
+  /// A number that changes with each change of timeline().
   std::uint64_t revision() const noexcept { return revision_; }
 
-  /// The selected key; never one that does not exist.
+  /// The selected key. It always exists.
   const std::optional<KeyRef>& selected() const noexcept { return selected_; }
   void select(std::optional<KeyRef> key) noexcept;
 
-  /// Does what edit.hpp has, and gives which key is to be selected then. What it refuses changes
-  /// nothing, and its error is passed on.
+  /// An edit (edit.hpp) that returns the key to select afterwards. If it returns an error, nothing
+  /// changes, and the error is passed on.
   using Edit = std::function<Result<std::optional<KeyRef>>(Timeline&)>;
-  /// A step of its own. What was being tried becomes one first.
+  /// Does an edit as a step of its own. An edit that is being tried becomes a step first.
   Result<void> apply(const Edit& edit);
-  /// What a mouse does while it drags: each try begins at the timeline as the last step left it, in
-  /// place of the try before. Refused: the try before stays.
+  /// Tries an edit, as while a mouse drags. Each try replaces the previous one and begins at the
+  /// timeline that the last step left. On an error the previous try stays.
   Result<void> try_out(const Edit& edit);
   bool is_trying() const noexcept { return base_ != nullptr; }
-  void keep(); ///< what was tried becomes a step, if it changed anything
-  void drop(); ///< or it does not
+  void keep(); ///< makes the tried edit a step, if it changed anything
+  void drop(); ///< takes the tried edit back
 
-  /// As many steps as there were; what is being tried becomes one first. False: there is
-  /// no step. A new step forgets what was undone.
+  /// Undo and redo are unlimited. An edit that is being tried becomes a step first. They return
+  /// false if there is no step. A new step discards the undone ones.
   bool undo();
   bool redo();
   bool can_undo() const noexcept { return done_ > 0 || is_trying(); }
   bool can_redo() const noexcept;
 
-  /// The timeline is not as it was at first, or at the last saved().
+  /// True if the timeline differs from its first state, or from that of the last saved().
   bool is_modified() const noexcept;
   void saved();
 

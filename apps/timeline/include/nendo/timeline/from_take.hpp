@@ -1,5 +1,5 @@
 #pragma once
-// A recorded run becomes a timeline.
+// Makes a timeline of a recorded run.
 
 #include <filesystem>
 
@@ -14,11 +14,11 @@ struct MadeTimeline {
   bool exact = false;           ///< nothing was missing in the recording
 };
 
-/// Runs the recorded loop over `model`, which ought to be the one that was recorded, and takes its
-/// hands' angles and what became of its model: a switch's doing is an event as a request is. The
-/// key at 0 s is the pose in which a hand took hold, a period before the first tick. Blocks.
-/// Errors: bad_input (as TakeReader::open(), LoopReplay::make(); no tick; more than `most` frames
-/// or events).
+/// Runs the recorded loop again over `model`, which should be the recorded one. The hands' angles
+/// become keys; requests, and what the wrist switch did, become events. The key at 0 s is the pose
+/// in which a hand took hold, one period before the first tick. Blocks. Errors: those of
+/// TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most` frames or
+/// events).
 Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
                                       const Tolerance& tolerance, std::size_t most = most_keys);
 static_assert(most_keys == most_events);

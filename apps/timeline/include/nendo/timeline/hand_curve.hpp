@@ -1,5 +1,5 @@
 #pragma once
-// A hand between its keys.
+// The pose of a hand between its keys.
 
 #include <array>
 #include <vector>
@@ -9,15 +9,16 @@
 namespace nendo::timeline {
 
 /// Joint angles and the wrist's place follow piecewise cubics of continuous slope that stay between
-/// the keys' values (Fritsch and Carlson 1980; their slopes are the harmonic means of Fritsch and
-/// Butland 1984), so that no joint leaves its limits and what rests between two keys does rest. The
-/// wrist turns at an even speed from key to key.
+/// the keys' values (Fritsch and Carlson 1980; the slopes are the harmonic means of Fritsch and
+/// Butland 1984). So no joint leaves its limits, and a joint with equal values at two keys does not
+/// move between them. The wrist turns at a constant speed from key to key.
 class HandCurve {
 public:
-  /// Keys as a HandTrack has them; copied.
+  /// `keys` fulfil the conditions of HandTrack::keys.
   explicit HandCurve(std::vector<Key> keys);
 
-  /// At a key's time, that key bit for bit; before the first and after the last, those. Any thread.
+  /// At a key's time this is that key, bit for bit. Before the first key it is the first one, after
+  /// the last key the last one. Any thread may call it.
   Key at(double time_s) const noexcept;
   const std::vector<Key>& keys() const noexcept { return keys_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Keys by their times.
+// Finds keys of a timeline.
 
 #include <optional>
 
@@ -14,11 +14,11 @@ struct KeyRef {
   friend bool operator==(const KeyRef&, const KeyRef&) = default;
 };
 
-/// Null: there is no such key.
+/// Returns null if there is no such key.
 const Key* find_key(const Timeline& timeline, const KeyRef& key) noexcept;
-/// The hand's key at exactly that time.
+/// Returns the hand's key at exactly that time.
 std::optional<KeyRef> key_at(const Timeline& timeline, Side side, double time_s) noexcept;
-/// The nearest one later, or earlier, than time_s: of the side's hand, or of any.
+/// Return the nearest key after, or before, time_s: of that side's hand, or of any hand.
 std::optional<KeyRef> key_after(const Timeline& timeline, double time_s,
                                 std::optional<Side> side = std::nullopt) noexcept;
 std::optional<KeyRef> key_before(const Timeline& timeline, double time_s,

@@ -1,5 +1,5 @@
 #pragma once
-// Where in a timeline somebody looks, and how that moves on.
+// The play head of a timeline: the present time, and whether and how fast it moves on.
 
 #include <algorithm>
 #include <cmath>
@@ -17,11 +17,11 @@ public:
   double speed() const noexcept { return speed_; }
 
   void set_loops(bool loops) noexcept { loops_ = loops; }
-  /// Times real time; what is not within least_speed and most_speed becomes the nearer of them.
+  /// Sets the speed in times real time, limited to least_speed and most_speed.
   void set_speed(double speed) noexcept {
     if (std::isfinite(speed)) speed_ = std::clamp(speed, least_speed, most_speed);
   }
-  /// Plays, from the beginning if it is at the end, or pauses.
+  /// Starts or pauses. At the end it starts from the beginning.
   void toggle(double duration_s) noexcept {
     if (!playing_ && time_s_ >= duration_s) time_s_ = 0.0;
     playing_ = !playing_;
@@ -30,7 +30,7 @@ public:
   void seek(double time_s, double duration_s) noexcept {
     if (std::isfinite(time_s)) time_s_ = std::clamp(time_s, 0.0, duration_s);
   }
-  /// So much time has passed. At the end it begins anew, or pauses.
+  /// Moves on by the time that has passed. At the end it starts again or pauses.
   void advance(double elapsed_s, double duration_s) noexcept {
     time_s_ = std::clamp(time_s_, 0.0, duration_s); // it may have become shorter
     if (!playing_) return;

@@ -1,6 +1,6 @@
 #pragma once
-// A timeline's frames, one after another and without a clock: poses from its keys, fingertips from
-// poses, and of those the shape, as the loop makes it.
+// Plays a timeline frame by frame, without a clock. Poses come from its keys, fingertips from the
+// poses, and the shape from the fingertips, as in the loop.
 
 #include <memory>
 
@@ -12,23 +12,24 @@ namespace nendo::timeline {
 
 class Player {
 public:
-  /// Over `model`, which ought to be the timeline's (Timeline::mesh_sum). Error: bad_input (a
-  /// complaint_about(), or hands that cannot take hold of the model), without the file's name.
+  /// `model` should be the timeline's (Timeline::mesh_sum). Error: bad_input, without the file's
+  /// name, if complaint_about() has a complaint or the hands cannot take hold of the model.
   static Result<std::unique_ptr<Player>> make(Timeline timeline, const deform::Mesh& model);
 
-  /// Makes the next frame, the first one at 0 s; false: there is none. Allocates for undo.
+  /// Makes the next frame, the first one at 0 s. Returns false if there is none. Allocates for
+  /// undo.
   bool next();
-  /// There is a next frame, and its time is not after this one, but for rounding.
+  /// True if there is a next frame and it is not later than time_s, except for rounding.
   bool has_frame_by(double time_s) const noexcept;
   const flow::Frame& frame() const noexcept { return frame_; } ///< not before next()
   double time_s() const noexcept;                              ///< of it
-  /// Of the frame that comes last.
+  /// The time of the timeline's last frame.
   double last_time_s() const noexcept;
   std::uint64_t frame_count() const noexcept { return frames_; } ///< in all
   const flow::LoopStats& stats() const noexcept { return stats_; }
   const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
   const Timeline& timeline() const noexcept { return timeline_; }
-  /// The shape as it stands, nothing of a stroke left out. 3 by #vertices.
+  /// The present shape, with the whole of a stroke that has not ended. 3 by #vertices.
   deform::Points final_shape() { return shaping_.final_shape(tips_); }
 
 private:

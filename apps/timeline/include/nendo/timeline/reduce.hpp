@@ -1,5 +1,5 @@
 #pragma once
-// From a pose a frame to few keys.
+// Reduces a pose for each frame to a few keys.
 
 #include <limits>
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace nendo::timeline {
 
-/// How far a curve through the keys may be from any frame; 0: every frame that is not on it by
-/// itself is a key.
+/// How far the curve through the keys may be from any frame. With 0, every frame that is not
+/// exactly on the curve becomes a key.
 struct Tolerance {
   double angle_rad =
       std::numeric_limits<double>::infinity();            ///< of any joint, and the wrist's turn
@@ -22,7 +22,7 @@ struct Deviation {
   double tip_m = 0.0;
 };
 
-/// Between two poses of a hand.
+/// Returns the deviation between two poses of a hand.
 Deviation deviation_between(const hand::HandSkeleton& skeleton, const Key& one, const Key& other);
 
 struct Reduction {
@@ -31,8 +31,9 @@ struct Reduction {
   Deviation worst; ///< of any frame from the HandCurve of the keys
 };
 
-/// frames: as a HandTrack's keys. First and last are kept; where the curve is too far off, the
-/// worst frame between two keys becomes one, until none is; what then is not needed goes.
+/// `frames` fulfil the conditions of HandTrack::keys. The first and the last frame become keys. As
+/// long as the curve is too far off, the worst frame between two keys becomes a key. At the end,
+/// keys that are not needed are removed.
 Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
                       const Tolerance& tolerance);
 

@@ -1,7 +1,7 @@
 #pragma once
-// Shapes of a timeline that is being edited, made by a thread of its own, so that a play head can
-// be anywhere at once. They are Player's, one frame after another; every k-th is kept, as many as
-// the memory allows, and the last.
+// Caches the shapes of a timeline that is being edited, so that a play head can jump to any time. A
+// thread of its own plays the timeline frame by frame and keeps every k-th shape, as memory allows,
+// and the last one.
 
 #include <condition_variable>
 #include <cstdint>
@@ -27,30 +27,32 @@ struct CachedShape {
 class ShapeCache {
 public:
   static constexpr std::size_t usual_bytes = std::size_t{256} << 20;
-  /// Shapes over `model` take at most most_bytes, and two of them whatever they take.
+  /// The shapes of `model` take at most `most_bytes`, but two are always kept.
   explicit ShapeCache(deform::Mesh model, std::size_t most_bytes = usual_bytes);
   ~ShapeCache();
   ShapeCache(const ShapeCache&) = delete;
   ShapeCache& operator=(const ShapeCache&) = delete;
 
-  /// From now on this one. Does not wait: what is being made is given up, and what must be the same
-  /// in both is kept. Timelines that follow the first differ from it by edits alone (edit.hpp).
+  /// Caches this timeline from now on. Does not wait. Work on the previous timeline stops, and
+  /// shapes that are the same in both are kept. Later timelines may differ from the first one by
+  /// edits only (edit.hpp).
   void follow(Timeline timeline);
 
   struct Found {
-    std::shared_ptr<const CachedShape> shape; ///< null: there is none yet
-    bool fresh = false; ///< of the timeline as it is; otherwise of one before its last edits
+    std::shared_ptr<const CachedShape> shape; ///< null if there is none yet
+    bool fresh = false;                       ///< false if it was made before the last edits
   };
-  /// The shape that is kept for the moment; while it is not made, an older one, or its neighbour.
+  /// Returns the cached shape for that time. While it is not made, returns an older one or a
+  /// neighbour.
   Found nearest(double time_s) const;
 
   struct Progress {
-    double until_s = 0.0;       ///< fresh ones reach so far
+    double until_s = 0.0;       ///< shapes are fresh up to this time
     double duration_s = 0.0;    ///< of the timeline that is worked on
     std::uint64_t stride = 1;   ///< k
-    bool done = false;          ///< all are there, or there is a complaint
+    bool done = false;          ///< all shapes are made, or there is an error
     std::size_t shapes = 0;     ///< that are kept
-    std::optional<Error> error; ///< as Player::make()
+    std::optional<Error> error; ///< of Player::make()
   };
   Progress progress() const;
   /// Blocks until Progress::done.

@@ -1,6 +1,6 @@
 #pragma once
-// A take as key poses: for each hand its joint angles and its wrist's place at some times, what was
-// asked of the model in between, and everything else that the shape is made of.
+// A take as key poses. For each hand it has joint angles and the wrist's place at some times. It
+// also has the requests to the model, and all options on which the shape depends.
 
 #include <optional>
 #include <string>
@@ -23,7 +23,7 @@ struct Key {
   Eigen::Isometry3d wrist_pose() const noexcept;
 };
 
-/// Whether every number of both has the same bits.
+/// True if all numbers of both have the same bits.
 bool same_bits(double one, double other) noexcept;
 bool same_bits(const Key& one, const Key& other) noexcept;
 
@@ -42,7 +42,7 @@ struct Event {
 
 bool same_bits(const Event& one, const Event& other) noexcept;
 
-/// Times begin at 0, where the hands take hold of the model as it is in its file.
+/// Times begin at 0, when the hands take hold of the unchanged model.
 struct Timeline {
   std::string take;             ///< the recording's file name, for people; may be empty
   std::string mesh;             ///< the model's file
@@ -66,8 +66,8 @@ inline constexpr std::size_t most_events = 1'000'000;
 inline constexpr double longest_s = 1e6;
 inline constexpr double farthest_m = 1e3;
 
-/// What is wrong with it, without the file's name and in one line; empty if it can be played.
-/// Counts, order of times, ranges of all numbers.
+/// Checks counts, the order of times, and the ranges of all numbers. Returns what is wrong, in one
+/// line without the file's name, or an empty text if the timeline can be played.
 std::string complaint_about(const Timeline& timeline);
 std::string complaint_about(const Key& key);
 
