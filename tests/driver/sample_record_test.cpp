@@ -105,9 +105,14 @@ TEST_SUITE("sample_record") {
   TEST_CASE("who a glove is comes back, printable whatever it was") {
     RecordedGlove glove;
     glove.number = 1;
-    glove.info = {
-        "serial:/dev/ttyS0", "CyberGlove\x1b[2J",        Side::left,           sensors_18, 90.5,
-        {1023, true},        {true, false, true, false}, {{"serial", "7\xff"}}};
+    glove.info.source = "serial:/dev/ttyS0";
+    glove.info.model = "CyberGlove\x1b[2J";
+    glove.info.side = Side::left;
+    glove.info.sensors = sensors_18;
+    glove.info.rate_hz = 90.5;
+    glove.info.counts = {1023, true};
+    glove.info.abilities = {true, false, true, false};
+    glove.info.facts = {{"serial", "7\xff"}};
     std::vector<std::byte> payload;
     ByteWriter writer(payload);
     put_glove(writer, glove);
