@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/base/text.hpp>
 #include <nendo/timeline/timeline_file.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/printable.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
 
@@ -107,10 +107,10 @@ int show_timeline(const ShowOptions& options) {
     print_json(options, *timeline);
     return 0;
   }
-  std::printf("%s: %.3f s at %g Hz, %s, of %s over %s\n", cli::printable(options.file).c_str(),
+  std::printf("%s: %.3f s at %g Hz, %s, of %s over %s\n", printable(options.file).c_str(),
               timeline->duration_s, timeline->rate_hz,
               std::string(flow::name_of(timeline->sculptor.mode)).c_str(),
-              cli::printable(timeline->take).c_str(), cli::printable(timeline->mesh).c_str());
+              printable(timeline->take).c_str(), printable(timeline->mesh).c_str());
   for (const HandTrack& hand : timeline->hands)
     print_hand(*timeline, hand, finger);
   for (const auto& event : timeline->events)

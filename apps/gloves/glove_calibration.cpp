@@ -12,8 +12,8 @@
 namespace nendo::gloves {
 namespace {
 
-void tell(const driver::GloveInfo& glove, const hand::StoredCalibration& file,
-          const std::string& doubt) {
+void report_choice(const driver::GloveInfo& glove, const hand::StoredCalibration& file,
+                   const std::string& doubt) {
   cli::note(printable(glove.source) + ": calibrated for " + title_of(file.wearer) + " (" +
             printable(file.path.string()) + ")" + doubt);
 }
@@ -39,7 +39,7 @@ Result<hand::WearerHand> asked_for(const driver::GloveInfo& glove, Side side,
                    printable(glove.source) + " is a " + std::string(name_of(side)) + "-hand glove");
   if (file->wearer.counts.whole_range != glove.counts.whole_range)
     return refused("is of another kind of glove than " + printable(glove.source));
-  tell(glove, *file, "");
+  report_choice(glove, *file, "");
   return hand_of(file->wearer, glove.counts);
 }
 
@@ -53,9 +53,10 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
   };
   const auto own = choose(side, serial_of(glove));
   if (own) {
-    tell(glove, *own->file,
-         own->match == hand::GloveMatch::other_glove ? "; made with another glove of this model"
-                                                     : "");
+    report_choice(glove, *own->file,
+                  own->match == hand::GloveMatch::other_glove
+                      ? "; made with another glove of this model"
+                      : "");
     wearer.of(side) = hand_of(own->file->wearer, glove.counts);
   } else if (!user.empty()) {
     return Error{Errc::bad_input, "--user " + printable(user) + ": no calibration of a " +

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include <nendo/flow/tick_grid.hpp>
+#include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/sensor_gate.hpp>
 
 #include "cli/cli.hpp"

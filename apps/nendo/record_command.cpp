@@ -107,7 +107,7 @@ int record(Options& options) {
   flow::InputLog input_log;
   recording::RecorderOptions wanted;
   wanted.file = options.out;
-  wanted.tell = cli::note;
+  wanted.report = cli::note;
   const HostTime start = HostClock::now();
   auto recorder =
       recording::Recorder::begin(setup_for(*hands, options), input_log, std::move(wanted));

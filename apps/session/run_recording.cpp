@@ -100,7 +100,7 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
   wanted.keep_last = from_seconds(asked.keep_last_s);
   wanted.kept_stem = asked.kept_stem;
   wanted.keep_on_switch = options.loop.switch_action == flow::SwitchAction::keep;
-  wanted.tell = cli::note;
+  wanted.report = cli::note;
   auto recorder = recording::Recorder::begin(setup, *input_log_, std::move(wanted));
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);

@@ -1,10 +1,10 @@
 #include "takes/recorded_model.hpp"
 
+#include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/printable.hpp"
 
 namespace nendo::takes {
 
@@ -12,12 +12,12 @@ Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std:
   auto model = deform::read_mesh(named.empty() ? loop.mesh : named);
   if (!model) {
     if (!named.empty()) return model.error();
-    return Error{Errc::bad_input, cli::printable(model.error().message) +
+    return Error{Errc::bad_input, printable(model.error().message) +
                                       "; that is the model that was recorded, name it with --mesh"};
   }
   if (recording::sum_of(model->vertices) == loop.mesh_sum) return model;
   if (named.empty()) {
-    return Error{Errc::bad_input, cli::printable(loop.mesh) +
+    return Error{Errc::bad_input, printable(loop.mesh) +
                                       ": is not as it was when it was recorded; name the model of "
                                       "then with --mesh, or another"};
   }

@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_file.hpp>
 
 #include "cli/json_line.hpp"
-#include "cli/printable.hpp"
 
 namespace nendo::takes {
 namespace {
@@ -40,7 +40,7 @@ void print_loop(const TakeSummary& summary) {
   const recording::LoopSetup& loop = *summary.setup.loop;
   std::printf("  %-12s %s, %g Hz, %s; %llu ticks, %llu missed;", "loop",
               std::string(flow::name_of(loop.options.sculptor.mode)).c_str(), loop.options.rate_hz,
-              cli::printable(loop.mesh).c_str(), number(summary.ticks), number(summary.missed));
+              printable(loop.mesh).c_str(), number(summary.ticks), number(summary.missed));
   for (const flow::Request request : flow::requests) {
     std::printf(" %llu %s%s", number(summary.requests[static_cast<std::size_t>(request)]),
                 std::string(flow::name_of(request)).c_str(),
@@ -90,8 +90,8 @@ void print_take(const std::string& file, const TakeSummary& summary) {
   const recording::Setup& setup = summary.setup;
   std::printf("%s: begun %s, %.1f s, by %s%s%s; %llu bytes\n", file.c_str(),
               begun_of(summary).c_str(), to_seconds(summary.duration()),
-              cli::printable(setup.program).c_str(), setup.wearer.empty() ? "" : ", worn by ",
-              cli::printable(setup.wearer).c_str(), number(summary.bytes));
+              printable(setup.program).c_str(), setup.wearer.empty() ? "" : ", worn by ",
+              printable(setup.wearer).c_str(), number(summary.bytes));
   for (std::size_t at = 0; at < summary.gloves.size(); ++at)
     print_glove(setup.gloves[at], summary.gloves[at]);
   if (setup.loop) print_loop(summary);

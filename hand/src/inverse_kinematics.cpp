@@ -5,7 +5,7 @@
 
 #include "angle_rows.hpp"
 #include "finger_reach.hpp"
-#include "whole_hand.hpp"
+#include "hand_ik.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -95,7 +95,7 @@ struct Attempt {
 };
 
 /// Fingers one by one, with palm and wrist where they are.
-Attempt reach_all(const WholeHand& hand, const Box<row_size>& box, const AllAngles& from,
+Attempt reach_all(const HandIk& hand, const Box<row_size>& box, const AllAngles& from,
                   double enough_m) noexcept {
   Attempt attempt{from};
   const Matrix3d turn = wrist_turn(from[pitch_at], from[yaw_at]);
@@ -116,7 +116,7 @@ Attempt reach_all(const WholeHand& hand, const Box<row_size>& box, const AllAngl
 }
 
 /// Palm and wrist, too: downhill from `start`, and where that does not arrive, from other fingers.
-Attempt reach_with_hand(const WholeHand& hand, const Box<row_size>& box, const Box<row_size>& free,
+Attempt reach_with_hand(const HandIk& hand, const Box<row_size>& box, const Box<row_size>& free,
                         const AllAngles& start, double enough_m) noexcept {
   const auto try_from = [&](AllAngles at) {
     const int iterations = hand.solve(free, enough_m, at);
@@ -160,11 +160,11 @@ InverseSolution inverse_kinematics(const HandSkeleton& skeleton, const Isometry3
   const double enough_m = options.tolerance_m > 1e-9 ? options.tolerance_m : 1e-9;
   const Box<row_size> box = box_of(options.limits);
   AllAngles at = clamped(row_of(start), box);
-  const WholeHand hand{chains, aims, palm};
+  const HandIk hand{chains, aims, palm};
   int iterations = 0;
   if (palm.weight > 0.0) {
     const Aims none{};
-    iterations += WholeHand{chains, none, palm}.solve(freed(box, at, true, false), enough_m, at);
+    iterations += HandIk{chains, none, palm}.solve(freed(box, at, true, false), enough_m, at);
   }
   const bool whole = options.solve_wrist || options.solve_palm_arch;
   const Attempt reached =

@@ -69,7 +69,7 @@ struct RecordedLoop {
   void record(recording::RecorderOptions options = {}) {
     if (options.file.empty() && options.keep_last == HostClock::duration::zero())
       options.file = path;
-    options.tell = [this](std::string_view line) { told.emplace_back(line); };
+    options.report = [this](std::string_view line) { told.emplace_back(line); };
     auto begun = recording::Recorder::begin(setup, input_log, std::move(options));
     if (!begun) throw std::runtime_error(begun.error().message);
     recorder = *std::move(begun);

@@ -72,13 +72,13 @@ public:
     for (const Side side : sides) {
       auto hand = simulated_hand(side);
       if (!hand) return hand.error();
-      const hand::HandSkeleton skeleton(side);
-      const auto calibration = hand::default_calibration();
+      const flow::HandInput input{&(*hand)->ring, side, {}, (*hand)->first};
       tips[flow::Placement::index_of(side)] =
-          skeleton
-              .pose(hand::joint_angles((*hand)->first, calibration), Eigen::Isometry3d::Identity())
+          input.skeleton(side)
+              .pose(hand::joint_angles(input.first, hand::default_calibration()),
+                    Eigen::Isometry3d::Identity())
               .fingertip_positions();
-      inputs.push_back({&(*hand)->ring, skeleton, calibration, (*hand)->first});
+      inputs.push_back(input);
       shaping->hands_.push_back(*std::move(hand));
     }
     const auto box = deform::finite_box_of(model.vertices);

@@ -123,7 +123,7 @@ private:
     if (lost == recorded_.lost) return;
     put(Gap{lost - recorded_.lost});
     if (recorded_.lost == 0)
-      tell("the recorder cannot keep up; what is missing is marked in the recording");
+      report("the recorder cannot keep up; what is missing is marked in the recording");
     recorded_.lost = lost;
   }
 
@@ -157,7 +157,7 @@ private:
     }
     file->keep();
     ++recorded_.kept;
-    tell("kept as " + path.string());
+    report("kept as " + path.string());
   }
 
   void finish(const std::optional<ShapeSum>& shape) {
@@ -174,10 +174,10 @@ private:
 
   void fail(const Error& error) {
     if (!failure_) failure_ = error;
-    tell(error.message);
+    report(error.message);
   }
-  void tell(std::string_view line) const {
-    if (options_.tell) options_.tell(line);
+  void report(std::string_view line) const {
+    if (options_.report) options_.report(line);
   }
 
   flow::InputLog& input_log_;

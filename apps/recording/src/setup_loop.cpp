@@ -16,9 +16,9 @@ constexpr double most_points = 10.0;          // two hands' fingertips
 constexpr double largest_number = 1e100;      // as the solver takes
 
 /// Reads one value after another and remembers whether all of them were usable.
-class Judge {
+class CheckedReader {
 public:
-  explicit Judge(ByteReader& reader) : reader_(&reader) {}
+  explicit CheckedReader(ByteReader& reader) : reader_(&reader) {}
 
   double number(double least, double most) {
     const double value = reader_->f64_le();
@@ -58,15 +58,15 @@ void put_placement(ByteWriter& writer, const flow::Placement& placement) {
   }
 }
 
-flow::Placement read_placement(Judge& judge) {
+flow::Placement read_placement(CheckedReader& checked) {
   constexpr double least_scale = 1e-100;
   constexpr double farthest_m = 1e6;
   flow::Placement placement;
-  placement.units_per_metre = judge.number(least_scale, largest_number);
+  placement.units_per_metre = checked.number(least_scale, largest_number);
   for (auto& pose : placement.T_stage_wrist) {
     for (Eigen::Index row = 0; row < 3; ++row)
       for (Eigen::Index column = 0; column < 4; ++column)
-        pose(row, column) = judge.number(-farthest_m, farthest_m);
+        pose(row, column) = checked.number(-farthest_m, farthest_m);
   }
   return placement;
 }
@@ -76,9 +76,9 @@ void put_support(ByteWriter& writer, const deform::Support& support) {
   writer.f64_le(support.weight);
 }
 
-deform::Support read_support(Judge& judge) {
-  const double radius = judge.number(0.0, largest_number);
-  return {radius, judge.number(0.0, largest_number)};
+deform::Support read_support(CheckedReader& checked) {
+  const double radius = checked.number(0.0, largest_number);
+  return {radius, checked.number(0.0, largest_number)};
 }
 
 void put_deformer(ByteWriter& writer, const deform::DeformerOptions& options) {
@@ -104,35 +104,35 @@ void put_deformer(ByteWriter& writer, const deform::DeformerOptions& options) {
   writer.f64_le(injective.least_gap);
 }
 
-void read_supports(ByteReader& reader, Judge& judge, deform::Supports& supports) {
+void read_supports(ByteReader& reader, CheckedReader& checked, deform::Supports& supports) {
   supports = {};
-  const std::size_t shared = judge.count(most_supports);
+  const std::size_t shared = checked.count(most_supports);
   for (std::size_t at = 0; at < shared; ++at)
-    supports.shared.push_back(read_support(judge));
-  const std::size_t own = judge.count(most_supports);
+    supports.shared.push_back(read_support(checked));
+  const std::size_t own = checked.count(most_supports);
   for (std::size_t at = 0; at < own; ++at) {
     const Eigen::Index point = reader.u32_le();
-    judge.require(static_cast<double>(point) < most_points);
-    supports.own.push_back({point, read_support(judge)});
+    checked.require(static_cast<double>(point) < most_points);
+    supports.own.push_back({point, read_support(checked)});
   }
-  judge.require(!supports.shared.empty() && supports.are_usable());
+  checked.require(!supports.shared.empty() && supports.are_usable());
 }
 
-void read_deformer(ByteReader& reader, Judge& judge, deform::DeformerOptions& options) {
-  read_supports(reader, judge, options.supports);
-  options.csrbf.kernel = judge.one_of(deform::Wendland::c6);
-  options.csrbf.polynomial = judge.one_of(deform::Polynomial::linear);
-  options.csrbf.merge_fraction = judge.number(0.0, 1.0);
+void read_deformer(ByteReader& reader, CheckedReader& checked, deform::DeformerOptions& options) {
+  read_supports(reader, checked, options.supports);
+  options.csrbf.kernel = checked.one_of(deform::Wendland::c6);
+  options.csrbf.polynomial = checked.one_of(deform::Polynomial::linear);
+  options.csrbf.merge_fraction = checked.number(0.0, 1.0);
   reader.u16_le(); // two bytes that were the solver's order and storage; any are good
-  options.evaluation.weight_bytes = judge.memory();
-  options.undo_bytes = judge.memory();
+  options.evaluation.weight_bytes = checked.memory();
+  options.undo_bytes = checked.memory();
   const bool injects = reader.u8() != 0;
   deform::InjectiveOptions injective;
-  injective.most_bound = judge.number(0.01, 0.999);
+  injective.most_bound = checked.number(0.01, 0.999);
   const std::uint32_t links = reader.u32_le();
-  judge.require(links >= 1 && links <= most_links);
+  checked.require(links >= 1 && links <= most_links);
   injective.most_links = static_cast<int>(links);
-  injective.least_gap = judge.number(0.0, 1.0);
+  injective.least_gap = checked.number(0.0, 1.0);
   if (injects) options.injective = injective;
 }
 
@@ -158,27 +158,27 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
 
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   constexpr double least_piece = 1e-100;
-  Judge judge(reader);
+  CheckedReader checked(reader);
   LoopSetup read;
   flow::LoopOptions& options = read.options;
   read.mesh = reader.text();
   read.mesh_sum.vertices = reader.u64_le();
   read.mesh_sum.crc = reader.u32_le();
-  read.placement = read_placement(judge);
-  options.rate_hz = judge.number(flow::TickGrid::least_rate_hz, flow::TickGrid::most_rate_hz);
-  options.policy = judge.one_of(flow::OverrunPolicy::sample);
+  read.placement = read_placement(checked);
+  options.rate_hz = checked.number(flow::TickGrid::least_rate_hz, flow::TickGrid::most_rate_hz);
+  options.policy = checked.one_of(flow::OverrunPolicy::sample);
   options.most_catch_up = reader.u32_le();
-  judge.require(options.most_catch_up >= 1 && options.most_catch_up <= most_catch_up);
+  checked.require(options.most_catch_up >= 1 && options.most_catch_up <= most_catch_up);
   const std::chrono::nanoseconds silent_after(reader.i64_le());
-  judge.require(silent_after.count() >= 0 && driver::is_usable_time(silent_after));
+  checked.require(silent_after.count() >= 0 && driver::is_usable_time(silent_after));
   options.silent_after = silent_after;
-  options.switch_action = judge.one_of(flow::SwitchAction::keep);
-  options.sculptor.mode = judge.one_of(flow::Mode::type2);
-  options.sculptor.piece_length = judge.number(least_piece, largest_number);
-  read_deformer(reader, judge, options.sculptor.deformer);
+  options.switch_action = checked.one_of(flow::SwitchAction::keep);
+  options.sculptor.mode = checked.one_of(flow::Mode::type2);
+  options.sculptor.piece_length = checked.number(least_piece, largest_number);
+  read_deformer(reader, checked, options.sculptor.deformer);
   read.simd = reader.text();
   if (reader.remaining() > 0) options.undo_most_bytes = reader.u64_le(); // 1.0 had none at first
-  if (loop || !judge.fine()) return false;
+  if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;
 }

@@ -23,9 +23,9 @@ Key key_of(double time_s, const hand::JointAngles& angles, const Eigen::Isometry
 }
 
 // As the loop had it before its first tick.
-hand::JointAngles first_angles(const recording::HandSetup& hand) {
-  auto in_force = hand.input(nullptr).in_force();
-  return hand::joint_angles(hand.first, in_force.follow(hand.first));
+hand::JointAngles first_angles(const flow::HandInput& hand) {
+  hand::ActiveCalibration calibration(hand.wearer);
+  return hand::joint_angles(hand.first, calibration.follow(hand.first));
 }
 
 Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
@@ -41,8 +41,9 @@ Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
   timeline.sculptor.deformer.undo_bytes = 0;
   for (const auto& hand : setup.hands) {
     const auto& T_stage_wrist = loop.placement.T_stage_wrist[flow::Placement::index_of(hand.side)];
-    timeline.hands.push_back(
-        {hand.side, hand.size, {key_of(0.0, first_angles(hand), T_stage_wrist)}});
+    timeline.hands.push_back({hand.side,
+                              hand.wearer.of(hand.first.side).size,
+                              {key_of(0.0, first_angles(hand), T_stage_wrist)}});
   }
   return timeline;
 }

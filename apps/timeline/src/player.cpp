@@ -103,8 +103,7 @@ bool Player::next() {
 
 void Player::describe(std::uint64_t number) {
   const auto time_at = [this](std::uint64_t frame) {
-    return HostTime{} + std::chrono::duration_cast<HostClock::duration>(
-                            std::chrono::duration<double>(time_of(frame)));
+    return HostTime{} + from_seconds(time_of(frame));
   };
   ++stats_.ticks;
   if (!is_solved(frame_.status)) ++stats_.failed;

@@ -23,7 +23,7 @@ struct RecorderOptions {
   std::filesystem::path kept_stem{};
   bool keep_on_switch = false; ///< keep() when a glove's switch is turned on
   /// One line for people, from the recorder's thread: what was kept where, what failed.
-  std::function<void(std::string_view)> tell{};
+  std::function<void(std::string_view)> report{};
   /// A chunk is written, and is on the disk, so often: what a crash can cost.
   HostClock::duration chunk_time = std::chrono::milliseconds(500);
 };

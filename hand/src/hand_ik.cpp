@@ -1,4 +1,4 @@
-#include "whole_hand.hpp"
+#include "hand_ik.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ Vector3d palm_point_m(int point) noexcept {
 }
 
 /// The whole hand, its wrist and its palm included.
-struct HandProblem {
-  const WholeHand& hand;
+struct HandIkProblem {
+  const HandIk& hand;
   AllAngles start;
   Posture posture;
 
@@ -92,8 +92,8 @@ Matrix3d wrist_turn(double pitch_rad, double yaw_rad) noexcept {
   return turn;
 }
 
-int WholeHand::solve(const Box<row_size>& box, double enough_m, AllAngles& at) const noexcept {
-  HandProblem problem{*this, at, forming};
+int HandIk::solve(const Box<row_size>& box, double enough_m, AllAngles& at) const noexcept {
+  HandIkProblem problem{*this, at, forming};
   NormalEquations<row_size> here;
   int iterations = minimise<row_size>(problem, box, to_form, at, here);
   problem.posture = reaching;
@@ -101,7 +101,7 @@ int WholeHand::solve(const Box<row_size>& box, double enough_m, AllAngles& at) c
   return iterations;
 }
 
-double WholeHand::palm_off_m(const Matrix3d& wrist_turn) const noexcept {
+double HandIk::palm_off_m(const Matrix3d& wrist_turn) const noexcept {
   double squares = 0.0;
   for (int point = 0; point < 4; ++point)
     squares += (wrist_turn * (palm.rest * palm_point_m(point)) - palm.wanted * palm_point_m(point))

@@ -1,6 +1,7 @@
 #pragma once
-// The whole hand's part of inverse kinematics: all angles at once, for what the fingers share, the
-// wrist and the palm. Everything stands in the frame of the forearm's end, as a right hand's.
+// Inverse kinematics of the whole hand: solves for all angles at once, because the fingers share
+// the palm's arch and the wrist. Everything is in the frame of the forearm's end, as a right
+// hand's.
 
 #include <array>
 
@@ -9,11 +10,12 @@
 
 namespace nendo::hand {
 
-/// Where the wrist's own angles turn the hand.
+/// Returns the rotation of the palm that the wrist's two angles make.
 Eigen::Matrix3d wrist_turn(double pitch_rad, double yaw_rad) noexcept;
 
 using Chains = std::array<FingerChain, finger_count>;
 
+/// Where a fingertip is to be, in metres.
 struct Aim {
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();
   double weight = 0.0; ///< 1 at most; 0: none
@@ -27,17 +29,18 @@ struct PalmAim {
   double weight = 0.0; ///< beside the fingertips'; 0: none
 };
 
-struct WholeHand {
+/// All members must outlive it.
+struct HandIk {
   const Chains& chains;
   const Aims& aims;
   const PalmAim& palm;
 
-  /// Forms the hand and reaches, from `at`, palm and wrist as far as `box` lets them move. Returns
-  /// its iterations. Wait-free.
+  /// Moves `at`, within `box`, until the fingertips and the palm are within `enough_m` of where
+  /// they are to be, or no nearer pose is found. Returns the number of iterations. Wait-free.
   int solve(const Box<row_size>& box, double enough_m, AllAngles& at) const noexcept;
 
-  /// From where the palm is with the wrist turned so to where it is to be: the root mean square of
-  /// its origin's and axes' ends' distances, half a hand away from it.
+  /// Returns how far the palm is from where it is to be when the wrist is turned so: the root mean
+  /// square distance of its origin and of a point on each axis, half a hand away from the origin.
   double palm_off_m(const Eigen::Matrix3d& wrist_turn) const noexcept;
 };
 
