@@ -12,9 +12,8 @@ void LoopChange::add(const flow::Command& command) noexcept {
 
 flow::LoopSettings settings_of(const PlacedLoop& placed) {
   const auto& sculptor = placed.setup.options.sculptor;
-  return {
-      sculptor.mode, sculptor.deformer.csrbf.kernel,
-      flow::radii_on_stage(sculptor.deformer.supports, placed.setup.placement.units_per_metre)};
+  return {sculptor.mode, sculptor.deformer.csrbf.kernel,
+          flow::radii_on_stage(sculptor.deformer.supports, placed.setup.placement.units_per_metre)};
 }
 
 bool differs(const LoopChange& change, const PlacedLoop& placed, const RunOptions& options) {

@@ -41,8 +41,9 @@ struct Carryover {
 };
 Carryover carryover_of(const flow::DeformLoop& ended);
 
-/// As options.loop says, with the supports that options.supports says. Without a carryover the hands
-/// are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the model).
+/// As options.loop says, with the supports that options.supports says. Without a carryover the
+/// hands are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the
+/// model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model,
                               const std::optional<Carryover>& carryover = {});

@@ -30,9 +30,7 @@ public:
   SegmentSink(std::string text, const publish::SegmentTarget& target)
       : text_(std::move(text)), segment_(target.name, target.group) {}
 
-  Result<void> begin(const LoopStart& start) override {
-    return segment_.begin(outline_of(start));
-  }
+  Result<void> begin(const LoopStart& start) override { return segment_.begin(outline_of(start)); }
   void show(const flow::Frame& frame) noexcept override { segment_.show(frame); }
   PublishedTo end() override {
     segment_.end();

@@ -38,8 +38,8 @@ struct RecordingOutcome {
   std::optional<recording::Recorded> recorded; ///< nothing: not all was
 };
 
-/// Begins a recording's setup: the program, the time, the wearer, and the gloves in the order of the
-/// hands.
+/// Begins a recording's setup: the program, the time, the wearer, and the gloves in the order of
+/// the hands.
 recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const std::string& wearer);
 
 /// Records the loops of a run. Each loop gets a file of its own; from the second on their names are

@@ -96,13 +96,8 @@ void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, dou
   const double inverse = 1.0 / r;
   const Eigen::Vector3d scaled =
       kernel_factor(kernel) * power(inverse, weight_power(kernel)) * coefficient;
-  precise_entries_[at] = {centre[0],
-                          centre[1],
-                          centre[2],
-                          r,
-                          inverse,
-                          1.25 * r,
-                          {scaled[0], scaled[1], scaled[2]}};
+  precise_entries_[at] = {
+      centre[0], centre[1], centre[2], r, inverse, 1.25 * r, {scaled[0], scaled[1], scaled[2]}};
   const FieldEntry<double>& entry = precise_entries_[at];
   entries_[at] = {as_float(centre[0]),
                   as_float(centre[1]),

@@ -11,7 +11,6 @@
 
 #include <hwy/cache_control.h>
 
-
 #include "block_evaluator.hpp"
 #include "block_field.hpp"
 #include "spin_worker.hpp"

@@ -16,7 +16,8 @@ InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOpti
     : supports_(std::move(supports)), csrbf_(csrbf),
       options_(options), solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)},
       starts_(Points::Zero(3, points)), radii_(least_radii(supports_, points)), places_(starts_),
-      wanted_(starts_), allowed_(starts_), step_(starts_), tips_(starts_), gaps_(std::make_unique<LeastGap>(options.least_gap)),
+      wanted_(starts_), allowed_(starts_), step_(starts_), tips_(starts_),
+      gaps_(std::make_unique<LeastGap>(options.least_gap)),
       field_(room_for_field(supports_, points, csrbf.kernel)), piece_(field_) {
   assert(options.most_bound > 0.0 && options.most_bound < 1.0);
   for (CsrbfSolver& solver : solvers_)

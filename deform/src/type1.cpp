@@ -12,13 +12,14 @@ namespace nendo::deform {
 
 Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
                              const DeformerOptions& options)
-    : layout_(std::move(rest)), rest_(std::make_unique<BoundedShape>(layout_.pack())), starts_(Points::Zero(3, control_points)),
-      rounded_(starts_), displacements_(starts_), asked_(starts_),
-      supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
+    : layout_(std::move(rest)), rest_(std::make_unique<BoundedShape>(layout_.pack())),
+      starts_(Points::Zero(3, control_points)), rounded_(starts_), displacements_(starts_),
+      asked_(starts_), supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
       fields_(options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1,
               field_),
-      evaluator_(std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
+      evaluator_(
+          std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
       weights_(std::make_unique<CardinalWeights>(layout_, control_points, field_,
                                                  options.evaluation.weight_bytes)),
       history_(

@@ -23,12 +23,14 @@ std::size_t most_fields(const DeformerOptions& options) {
 
 Type2Deformer::Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                              const DeformerOptions& options)
-    : layout_(std::move(shape)), shape_(std::make_unique<BoundedShape>(layout_.pack())), curve_(std::make_unique<FingertipCurve>(control_points, piece_length)),
+    : layout_(std::move(shape)), shape_(std::make_unique<BoundedShape>(layout_.pack())),
+      curve_(std::make_unique<FingertipCurve>(control_points, piece_length)),
       current_(Points::Zero(3, control_points)), next_(current_), step_(current_),
       rounded_(current_), supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
       fields_(most_fields(options), field_),
-      evaluator_(std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
+      evaluator_(
+          std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
       history_(
           std::make_unique<ShapeHistory>(shape_->shape, options.undo_bytes, options.undo_memory)) {
   make_room(solver_, supports_, control_points);

@@ -13,8 +13,8 @@
 #include <vtkThinPlateSplineTransform.h>
 
 #include "bench/deform_frames.hpp"
-#include "reference/table1.hpp"
 #include "bench/table1_trial.hpp"
+#include "reference/table1.hpp"
 
 namespace {
 

@@ -171,7 +171,8 @@ TEST_SUITE("run_web") {
     CHECK(program.wait().exit_code == 0);
   }
 
-  TEST_CASE("a browser's client has the shape saved and the recording kept, and a report says where") {
+  TEST_CASE(
+      "a browser's client has the shape saved and the recording kept, and a report says where") {
     const test::TemporaryFolder folder;
     const auto out = folder.path() / "clay.ply";
     test::Program program({"run", "--left", "sim:sculpt?seed=7", "--right", "sim:sculpt?seed=7",

@@ -8,9 +8,9 @@
 #include <doctest/doctest.h>
 
 #include "following_client.hpp"
+#include "streamed_loop.hpp"
 #include "support/eventually.hpp"
 #include "support/restraint.hpp"
-#include "streamed_loop.hpp"
 #include "web_client.hpp"
 
 namespace nendo::test {

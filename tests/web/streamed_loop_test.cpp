@@ -8,9 +8,9 @@
 
 #include <nendo/flow/realtime.hpp>
 
+#include "streamed_loop.hpp"
 #include "support/restraint.hpp"
 #include "support/sleep_only.hpp"
-#include "streamed_loop.hpp"
 
 namespace streamed_loop_test {
 

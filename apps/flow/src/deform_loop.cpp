@@ -44,8 +44,13 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     const std::array skeletons{input.skeleton(Side::left), input.skeleton(Side::right)};
     const hand::ActiveCalibration calibration(input.wearer);
     const hand::JointFilter filter(input.filter);
-    hands_.push_back(
-        {std::move(input), slot, placement.T_stage_wrist[slot], skeletons, calibration, {}, filter});
+    hands_.push_back({std::move(input),
+                      slot,
+                      placement.T_stage_wrist[slot],
+                      skeletons,
+                      calibration,
+                      {},
+                      filter});
     hands_.back().follow(hands_.back().input.first);
   }
   compute_hands(frames_.back());

@@ -31,7 +31,8 @@ constexpr std::array after_play{
 };
 
 void button(const Control& control, float width, EditActions& actions) {
-  if (ImGui::Button(control.words, ImVec2(width, 0.0F))) actions.commands.push_back(control.command);
+  if (ImGui::Button(control.words, ImVec2(width, 0.0F)))
+    actions.commands.push_back(control.command);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", control.tells);
   ImGui::SameLine();
 }

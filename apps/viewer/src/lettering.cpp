@@ -1,6 +1,6 @@
-// Captions of pictures. The letters are strokes on a grid, because pictures must have the same bytes
-// on every machine: a font package or a rasteriser library of another version draws other pixels,
-// and Dear ImGui's embedded font is there only in builds with a window.
+// Captions of pictures. The letters are strokes on a grid, because pictures must have the same
+// bytes on every machine: a font package or a rasteriser library of another version draws other
+// pixels, and Dear ImGui's embedded font is there only in builds with a window.
 
 #include <algorithm>
 #include <cmath>

@@ -83,7 +83,8 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
   last_tick = frame.tick;
 }
 
-void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
+void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
+                                Commands& commands) {
   ImGui::TextUnformatted(frame.held ? "The hands hold the model." : "The hands have let go.");
   const auto ask = [&](const char* words, Request request) {
     if (ImGui::Button(words)) commands.emplace_back(request);
@@ -194,7 +195,8 @@ void LiveWindow::Panel::settings_keys(Commands& commands) {
     if (pressed(key, true))
       for (double& radius_m : wanted.radius_m)
         radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
-  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force)) commands.emplace_back(flow::ChangeSettings{wanted});
+  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force))
+    commands.emplace_back(flow::ChangeSettings{wanted});
 }
 
 void LiveWindow::Panel::keys(const Gauges& gauges, Commands& commands) {
@@ -224,7 +226,8 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   ImGui::Begin("Nendo", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::Text("%s   (? for keys)", gauges.model.c_str());
   panel_->buttons(frame, gauges, commands);
-  if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings(commands);
+  if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen))
+    panel_->settings(commands);
   if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
     panel_->timing(frame, gauges);
   if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))

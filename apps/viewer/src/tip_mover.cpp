@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double most_m = 2.0; // from the stage's middle, as far as arms reach
+constexpr double most_tip_m = 2.0; // from the stage's middle, as far as arms reach
 
 } // namespace
 
@@ -32,7 +32,7 @@ void TipMover::take(const hand::HandPose& pose, hand::Finger finger) noexcept {
 }
 
 void TipMover::go_by(const Vector3d& way_m) noexcept {
-  target_m_ = (target_m_ + way_m).cwiseMax(-most_m).cwiseMin(most_m);
+  target_m_ = (target_m_ + way_m).cwiseMax(-most_tip_m).cwiseMin(most_tip_m);
 }
 
 void TipMover::shift(const Camera& camera, double dx, double dy, double height) noexcept {

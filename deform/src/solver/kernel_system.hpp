@@ -37,8 +37,8 @@ public:
 std::unique_ptr<KernelSystem> make_lean_system();
 /// Eigen's blocked Cholesky.
 std::unique_ptr<KernelSystem> make_dense_system();
-/// Finds neighbours by a grid and uses Eigen's simplicial Cholesky. assemble() refuses a matrix that
-/// is so full that the dense way costs less, unless `must` is set.
+/// Finds neighbours by a grid and uses Eigen's simplicial Cholesky. assemble() refuses a matrix
+/// that is so full that the dense way costs less, unless `must` is set.
 std::unique_ptr<KernelSystem> make_sparse_system(bool must);
 
 } // namespace nendo::deform

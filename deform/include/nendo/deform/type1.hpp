@@ -92,7 +92,7 @@ private:
   std::unique_ptr<ShapeHistory> history_;
   std::optional<InjectiveChain> chain_;
   std::unique_ptr<BoundedShape> linked_; ///< the shape that a chain of several links makes
-  bool in_links_ = false;              ///< the last apply() made it so
+  bool in_links_ = false;                ///< the last apply() made it so
   bool grabbed_ = false;
 };
 

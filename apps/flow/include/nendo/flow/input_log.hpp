@@ -1,7 +1,7 @@
 #pragma once
-// What the loop took, in the order in which it took it: samples, commands, and the ticks that closed
-// over them. Whoever gives the same to another loop of the same options gets the same
-// shape, bit for bit.
+// What the loop took, in the order in which it took it: samples, commands, and the ticks that
+// closed over them. Whoever gives the same to another loop of the same options gets the same shape,
+// bit for bit.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
-// What a picture shows at one moment. It can be made of a mesh alone, of a frame of the running loop
-// or of a recording; the renderers need not know which.
+// What a picture shows at one moment. It can be made of a mesh alone, of a frame of the running
+// loop or of a recording; the renderers need not know which.
 
 #include <array>
 #include <optional>
@@ -26,8 +26,8 @@ struct SceneFrame {
   std::array<double, 5> radius_m{}; ///< of each fingertip's support, on the stage; 0: not shown
 };
 
-/// Remembers where the fingertips took hold. It is exact if it sees every frame; otherwise it is off
-/// by what the fingers moved between two frames that it saw.
+/// Remembers where the fingertips took hold. It is exact if it sees every frame; otherwise it is
+/// off by what the fingers moved between two frames that it saw.
 class HoldTracker {
 public:
   void follow(const flow::Frame& frame) noexcept;
