@@ -18,10 +18,8 @@ int main() {
   model.vertices = nendo::deform::Points::Random(3, 100);
   nendo::flow::LoopOptions options;
   options.sculptor.deformer.supports = nendo::deform::one_radius(0.5);
-  nendo::flow::DeformLoop loop(model, {},
-                               {{&ring, nendo::hand::HandSkeleton(nendo::Side::right),
-                                 nendo::hand::default_calibration(), first}},
-                               options);
+  nendo::flow::HandInput hand{&ring, nendo::Side::right, {}, first}; // an average wearer
+  nendo::flow::DeformLoop loop(model, {}, {hand}, options);
   std::atomic<bool> stop{false};
   loop.run(stop, 9);
   (*glove)->stop();
