@@ -1,6 +1,6 @@
 #pragma once
-// The commands of `nendo edit` that do not change a timeline: making, showing, playing, and the
-// window. Each prints, blocks and returns the exit code.
+// The commands of `nendo edit` that do not change a timeline: they make, show and play one, and
+// open the window. Each command prints, blocks and returns the exit code.
 
 #include <optional>
 #include <string>
@@ -15,7 +15,7 @@ struct MakeOptions {
   std::string take;
   std::string mesh; ///< empty means the recorded one
   std::string out;
-  std::string tolerance = "5mm"; ///< a count of an 8-bit glove moves a fingertip by about one
+  std::string tolerance = "5mm"; ///< one count of an 8-bit glove moves a fingertip by about 1 mm
   bool json = false;
 };
 int make_timeline(const MakeOptions& options);
@@ -37,7 +37,7 @@ struct PlayOptions {
 };
 int play_timeline(const PlayOptions& options);
 
-/// `nendo edit view`, the window.
+/// Adds the command `nendo edit view`, which opens the window.
 void add_timeline_view(cli::Command& edit);
 
 } // namespace nendo::edit

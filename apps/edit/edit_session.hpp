@@ -21,23 +21,23 @@ namespace nendo::edit {
 
 class EditSession {
 public:
-  /// out: where the timeline is saved, ending in .timeline.toml. The timeline can be played over
-  /// the model.
+  /// out: the file to which the timeline is saved; its name ends in .timeline.toml. It must be
+  /// possible to play the timeline over the model.
   EditSession(timeline::Timeline timeline, deform::Mesh model, std::string out);
 
   /// Does all that a person asks for. What cannot be done is reported in the view's message.
   void handle(const viewer::EditActions& actions);
   /// Moves the play head on by the time that has passed.
   void advance(double elapsed_s);
-  /// Do what `select` and `seek_s` of EditActions do.
+  /// These do what `select` and `seek_s` of EditActions do.
   void select(const timeline::KeyRef& key);
   void seek(double time_s);
 
-  /// The view of the present state. It is valid until the next call.
+  /// Returns the view of the present state. It is valid until the next call.
   const viewer::TimelineView& view();
-  /// The exact hands at the play head, and where they took hold. The frame has no vertices.
+  /// Returns the exact hands at the play head, and where they took hold. The frame has no vertices.
   const viewer::SceneFrame& moment();
-  /// The shape that is nearest to the play head of those that are made.
+  /// Returns the available shape that is nearest to the play head.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
 
@@ -47,7 +47,7 @@ public:
 private:
   using Edit = timeline::EditHistory::Edit;
   void report(std::string message);
-  /// Reports `message` if it was done, or else the error's message.
+  /// Reports `message` if `done` is no error, or else the message of the error.
   void report(const Result<void>& done, const std::string& message);
   void handle(viewer::EditCommand command);
   void try_out(const viewer::KeyDrag& drag);
@@ -75,8 +75,8 @@ private:
   timeline::ShapeCache cache_;
   timeline::PlayHead head_;
   std::unique_ptr<GlbExport> export_;
-  std::vector<timeline::HandCurve> curves_; ///< by the timeline's hands
-  std::optional<std::uint64_t> followed_;   ///< the history's revision of which they are
+  std::vector<timeline::HandCurve> curves_; ///< in the order of the timeline's hands
+  std::optional<std::uint64_t> followed_; ///< the revision of the history to which curves_ belongs
   viewer::TimelineView view_;
   viewer::SceneFrame moment_;
   bool ended_ = false;

@@ -14,14 +14,15 @@ namespace nendo::edit {
 
 class GlbExport {
 public:
-  /// Starts the export. The file appears as a whole or not at all.
+  /// Starts the export. The file appears only when it is complete.
   GlbExport(const timeline::Timeline& timeline, const deform::Mesh& model, const std::string& path);
   /// Stops the export if it is still running, and waits for its thread.
   ~GlbExport();
   GlbExport(const GlbExport&) = delete;
   GlbExport& operator=(const GlbExport&) = delete;
 
-  /// The result of the export, or nothing while it is running. Errors: those of export_gltf().
+  /// Returns the result of the export, or nothing while it is running. Errors: those of
+  /// export_gltf().
   std::optional<Result<exporting::Exported>> result() const;
 
 private:

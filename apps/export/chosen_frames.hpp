@@ -1,7 +1,7 @@
 #pragma once
-// Selects the frames of a take that are exported: a part of the take, either every frame or frames
-// at an even rate. At an even rate, the frame nearest to each moment is taken. No frame is
-// interpolated. Where frames are missing, the previous one is repeated.
+// Selects the frames of a take that are exported. They are a part of the take, either every frame
+// or frames at an even rate. At an even rate, the frame nearest to each moment is taken. No frame
+// is interpolated. Where frames are missing, the previous one is repeated.
 
 #include <atomic>
 #include <cstdint>
@@ -38,16 +38,17 @@ public:
   /// (more than most_export_frames). Blocks.
   Result<bool> next();
   const flow::Frame& frame() const noexcept { return even_ ? held_ : source_->frame(); }
-  /// The time of the frame in seconds since the take began. It never decreases.
+  /// Returns the time of the frame in seconds since the take began. It never decreases.
   double time_s() const noexcept { return time_s_; }
   double first_s() const noexcept { return first_s_; } ///< time_s() of the first
-  /// The number of frames, if they are at an even rate.
+  /// Returns the number of frames if they are at an even rate.
   std::optional<std::uint64_t> count() const noexcept { return count_; }
   double period_s() const noexcept { return 1.0 / *choice_.rate_hz; } ///< only at an even rate
   std::uint64_t made() const noexcept { return made_; }               ///< by next()
 
   const takes::FrameSource& source() const noexcept { return *source_; }
-  /// The latest frame's shape in the mesh's order, model units; `out` is 3 by #vertices.
+  /// Writes the latest frame's shape to `out`, 3 by #vertices, in the mesh's order and in model
+  /// units.
   void vertices(deform::Points& out) const { source_->layout().unpack(frame().shape, out); }
 
 private:
@@ -65,7 +66,7 @@ private:
   std::optional<std::uint64_t> count_;
   std::uint64_t made_ = 0;
   flow::Frame held_;
-  double held_s_ = 0.0; ///< its own time
+  double held_s_ = 0.0; ///< the own time of held_
 };
 
 } // namespace nendo::exporting

@@ -1,11 +1,12 @@
 #pragma once
-// A take of Type-1 as morph targets, exactly: as long as the fingertips keep hold, the start points
-// are frozen and the rest shape is displaced by sum_j u_j(x) w_j, with an influence u_j for each
-// start point and its control vector w_j (nendo/deform/field.hpp). That is linear in the vectors,
-// so targets along the axes for each, and their weights over time, are the whole take.
+// Exports a take of Type-1 exactly, as morph targets. As long as the fingertips keep hold, the
+// start points are frozen, and the rest shape is displaced by sum_j u_j(x) w_j, with an influence
+// u_j for each start point and its control vector w_j (nendo/deform/field.hpp). The displacement is
+// linear in the vectors, so it is given by targets along the axes for each vector and by their
+// weights over time.
 //
-// With one radius u_j is 1 at its start point and 0 at the others. With several radii there are
-// more functions than start points, and each has its own targets instead.
+// With one radius, u_j is 1 at its start point and 0 at the others. With several radii there are
+// more functions than start points, and each function has its own targets instead.
 
 #include <optional>
 #include <vector>
@@ -26,14 +27,15 @@ public:
   /// (commits, several links, polynomials, Type-2). This object is then of no further use.
   bool add(const flow::Frame& frame, const deform::Points& vertices);
 
-  /// The greatest error of the frames so far, in model units. It is measured in 32-bit floats, as a
-  /// reader of the targets computes them.
+  /// Returns the greatest error of the frames so far, in model units. It is measured in 32-bit
+  /// floats, as a reader of the targets computes them.
   double greatest_error() const noexcept { return greatest_error_; }
-  /// One row for each control vector and one column for each vertex; zero where no support reaches.
+  /// Returns one row for each control vector and one column for each vertex. The influence is zero
+  /// where no support reaches.
   const Eigen::MatrixXf& influences() const noexcept { return influences_; }
-  /// The largest coordinate of all control vectors. It is 0 if nothing ever moved.
+  /// Returns the largest absolute coordinate of all control vectors. It is 0 if nothing ever moved.
   float greatest_vector() const noexcept;
-  /// The control vectors of each frame, one after another: x y z of the first, and so on.
+  /// Returns the control vectors of each frame, one after another: x y z of the first, and so on.
   std::vector<float> vectors() const;
 
 private:
@@ -42,11 +44,11 @@ private:
 
   const deform::BlockLayout& layout_;
   Eigen::Matrix3Xf rest_;
-  deform::Points centres_; ///< of the basis; none: no frame has had a field yet
+  deform::Points centres_; ///< of the basis; empty until a frame has a field
   bool cardinal_ = false;  ///< otherwise the functions themselves are the basis
   Eigen::MatrixXf influences_;
   std::size_t still_ = 0;      ///< frames before the basis was known
-  std::vector<float> vectors_; ///< of those after
+  std::vector<float> vectors_; ///< of the later frames
   double greatest_error_ = 0.0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The report of an export, and how an export opens its frames.
+// The report of an export, and the type of the function that opens its frames.
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
-// A binary glTF 2.0 file (Khronos specification, sections 3.6 "Binary data storage" and 4 "GLB"):
-// numbers are put into one buffer with accessors that tell what they are; the rest of the document
-// is JSON, which whoever uses this fills.
+// Writes a binary glTF 2.0 file (Khronos specification, sections 3.6 "Binary data storage" and 4
+// "GLB"). Numbers are put into one buffer, with accessors that describe them. The caller fills the
+// rest of the document, which is JSON.
 
 #include <cstdint>
 #include <filesystem>
@@ -30,7 +30,7 @@ public:
   explicit GlbFile(std::string_view generator,
                    std::uint64_t most_bytes = std::numeric_limits<std::uint32_t>::max());
 
-  /// A part of the JSON document. Buffers, views and accessors are added by this class.
+  /// Returns a part of the JSON document. This class itself adds buffers, views and accessors.
   Json& operator[](std::string_view part) { return json_[std::string(part)]; }
   /// Appends an item to a list of the document, such as "nodes", and returns its index.
   Index add(std::string_view list, Json item);
@@ -39,7 +39,8 @@ public:
   // all must be finite.
   /// `vectors` is 3 by #vectors. `bounded` adds their minimum and maximum, which POSITION requires.
   Index add_vectors(const Eigen::Matrix3Xf& vectors, Use use, bool bounded);
-  /// For vectors of which most are zero. It uses a sparse accessor if that is smaller. Bounded.
+  /// Adds vectors of which most are zero, with their minimum and maximum. Uses a sparse accessor if
+  /// that is smaller.
   Index add_sparse_vectors(const Eigen::Matrix3Xf& vectors);
   Index add_quaternions(std::span<const float> xyzw);
   Index add_scalars(std::span<const float> numbers, bool bounded);
@@ -64,7 +65,7 @@ private:
   Json json_;
   Json views_ = Json::array();
   Json accessors_ = Json::array();
-  std::vector<std::vector<std::byte>> parts_; ///< a view each, padded to fours
+  std::vector<std::vector<std::byte>> parts_; ///< one for each view, padded to fours
   std::uint64_t bytes_ = 0;                   ///< of all parts
 };
 

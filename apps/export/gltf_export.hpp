@@ -1,14 +1,16 @@
 #pragma once
-// A take as one binary glTF 2.0 file that animates by itself: the model with morph targets, and the
-// hands as skinned skeletons. In metres, y up, as the stage is; a node scales the model to it.
+// Exports a take as one binary glTF 2.0 file that plays without Nendo. It has the model with morph
+// targets, and the hands as skinned skeletons. Units are metres and y points up, as on the stage. A
+// node scales the model to the stage.
 //
-// - Vertices are the mesh's, in its order; faces of more than three corners are fans of triangles.
-// - A take of Type-1 is exact: targets along each axis, and against it, for each control vector
-//   (control_morphs.hpp).
-// - Any other (commits, ways in several links, Type-2) has key shapes (key_shapes.hpp), a target
-//   each, of which at any time two are mixed.
-// - Normals are the rest shape's alone; Blender makes its own of the faces.
-// - Time 0 is the first frame's; weights and joints are interpolated linearly, as players do.
+// - Vertices are those of the mesh, in its order. Faces with more than three corners become fans of
+//   triangles.
+// - A take of Type-1 is exact. For each control vector it has targets along each axis and against
+//   it (control_morphs.hpp).
+// - Any other take (with commits, motion in several links, or Type-2) has key shapes
+//   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed.
+// - Normals are those of the rest shape only. Blender computes its own from the faces.
+// - Time 0 is that of the first frame. Weights and joints are interpolated linearly, as players do.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,5 +1,5 @@
 #pragma once
-// The model in a glTF document: its rest shape, and morph targets of either kind.
+// Puts the model into a glTF document: its rest shape, and morph targets of either kind.
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@ namespace nendo::exporting {
 
 class GltfModel {
 public:
-  static constexpr GlbFile::Index node = 0; ///< where the model's node stands: it is the first
+  static constexpr GlbFile::Index node = 0; ///< the index of the model's node, which is the first
 
   /// Puts the rest shape into `file`. The mesh must have a vertex, and its vertices must fit in
   /// floats.
@@ -29,7 +29,7 @@ public:
   /// Adds the next key's shape, as displacements from the rest shape (3 by #vertices). A shape that
   /// equals the latest one, or the rest shape, does not get a target of its own.
   void add_key_target(const Eigen::Matrix3Xf& way, GlbFile& file);
-  /// The number of weights of all keys so far. Each key has one for each target.
+  /// Returns the number of weights of all keys so far. Each key has one weight for each target.
   std::uint64_t key_weight_count() const noexcept {
     return std::uint64_t{key_targets_.size()} * target_count();
   }
@@ -48,7 +48,7 @@ private:
   GlbFile::Json targets_ = GlbFile::Json::array();
   GlbFile::Json names_ = GlbFile::Json::array();
   Eigen::Matrix3Xf latest_;                               ///< of the targets
-  std::vector<std::optional<std::uint32_t>> key_targets_; ///< nothing: the rest shape
+  std::vector<std::optional<std::uint32_t>> key_targets_; ///< nothing means the rest shape
 };
 
 } // namespace nendo::exporting

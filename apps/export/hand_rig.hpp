@@ -1,6 +1,6 @@
 #pragma once
-// A hand in glTF: a tree of 26 nodes, one for each of OpenXR's joints, which turn over time, and a
-// skin that follows them.
+// Puts a hand into a glTF document: a tree of 26 nodes, one for each joint of OpenXR, that turn
+// over time, and a skin that follows them.
 
 #include <array>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace nendo::exporting {
 
-/// A hand's poses, kept as each joint's place and turn in its parent's frame.
+/// The poses of a hand, kept as the position and rotation of each joint in the frame of its parent.
 class HandTrack {
 public:
   explicit HandTrack(Side side) : side_(side) {}
@@ -22,8 +22,9 @@ public:
 
   Side side() const noexcept { return side_; }
   struct JointTrack {
-    std::vector<float> places;    ///< x y z a moment, metres
-    std::vector<float> rotations; ///< quaternions x y z w a moment, each on the shorter way
+    std::vector<float> places;    ///< x y z for each moment, metres
+    std::vector<float> rotations; ///< quaternions x y z w for each moment, each with the sign
+                                  ///< nearest to the previous one
   };
   const JointTrack& operator[](hand::Joint joint) const noexcept {
     return joints_[hand::index_of(joint)];

@@ -14,10 +14,10 @@ namespace nendo::exporting {
 /// Indexed by flow::Placement::index_of(side). An empty element means that there is no such hand.
 using Skeletons = std::array<std::optional<hand::HandSkeleton>, 2>;
 
-/// `frames` must be at an even rate. One hand is written to `path`, two to NAME-left.bvh and
-/// NAME-right.bvh, of which neither appears before both are written. Blocks. Errors: those of
-/// ChosenFrames::next(); failed
-/// (cannot be written), bad_input (no hand, a pose that is not finite).
+/// `frames` must be at an even rate. One hand is written to `path`. Two hands are written to
+/// NAME-left.bvh and NAME-right.bvh, of which neither appears before both are complete. Blocks.
+/// Errors: those of ChosenFrames::next(); failed (a file cannot be written), bad_input (no hand, or
+/// a pose that is not finite).
 Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeletons,
                                   const std::filesystem::path& path);
 

@@ -25,7 +25,7 @@ public:
   /// Makes the last frame a key. Nothing may be added afterwards.
   void finish();
 
-  /// The greatest measured error of a vertex over all frames between the keys.
+  /// Returns the greatest measured error of a vertex over all frames between the keys.
   double greatest_error() const noexcept { return greatest_error_; }
 
 private:

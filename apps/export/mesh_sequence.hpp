@@ -24,9 +24,10 @@ private:
   std::size_t digits_ = 1;
 };
 
-/// `pattern` ends in .obj or .ply. Each file is written atomically, as by deform::write_mesh().
-/// Blocks. Errors: those of ChosenFrames::next(); usage (no placeholder), failed (a file cannot be
-/// written; the message gives the number of finished frames).
+/// Writes the frames to files that are named by `pattern`, which ends in .obj or .ply. Each file is
+/// written atomically, as by deform::write_mesh(). Blocks. Errors: those of ChosenFrames::next();
+/// usage (no placeholder), failed (a file cannot be written; the message gives the number of
+/// finished frames).
 Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& pattern);
 
 } // namespace nendo::exporting

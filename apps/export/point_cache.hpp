@@ -1,11 +1,12 @@
 #pragma once
-// Point caches: every vertex of every frame as 32-bit floats, in the mesh's order and units, for a
-// modifier over the model that was recorded.
+// Exports point caches. A point cache has every vertex of every frame as 32-bit floats, in the
+// mesh's order and units. A modifier in a 3D program plays it over the recorded model.
 //
-// PC2 (3ds Max, Blender), little-endian: "POINTCACHE2" and a zero byte, int32 version 1, int32
-// points, float first frame, float frames a sample, int32 samples; then x y z of every point,
-// sample by sample. MDD (LightWave, Blender), big-endian: int32 frames, int32 points, a float time
-// in seconds a frame; then x y z likewise.
+// PC2 (3ds Max, Blender) is little-endian: "POINTCACHE2" and a zero byte, int32 version 1, int32
+// number of points, float first frame, float frames per sample, int32 number of samples; then x y z
+// of every point, sample by sample. MDD (LightWave, Blender) is big-endian: int32 number of frames,
+// int32 number of points, a float time in seconds for each frame; then x y z of every point, frame
+// by frame.
 
 #include <filesystem>
 

@@ -9,7 +9,7 @@ namespace nendo::takes {
 class FrameSource {
 public:
   virtual ~FrameSource() = default;
-  /// The model before the first frame. 3 by #vertices, model units.
+  /// Returns the model before the first frame: 3 by #vertices, in model units.
   virtual const deform::Mesh& model() const = 0;
   virtual const deform::BlockLayout& layout() const = 0; ///< of the frames' shapes
   virtual double rate_hz() const = 0;                    ///< of the frames, as far as it is even
@@ -18,7 +18,8 @@ public:
   virtual bool next() = 0;
   virtual const flow::Frame& frame() const = 0; ///< the latest; not before next()
   virtual double time_s() const = 0;            ///< of the latest, since the take began
-  /// True while nothing was missing in the source, so that the frames equal the original ones.
+  /// Returns true while nothing was missing in the source, so that the frames equal the original
+  /// ones.
   virtual bool is_exact() const { return true; }
 };
 

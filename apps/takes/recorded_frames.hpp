@@ -1,5 +1,5 @@
 #pragma once
-// The frames of a recording. Its loop runs again, tick by tick.
+// The frames of a recording, whose loop runs again tick by tick.
 
 #include <filesystem>
 #include <memory>
@@ -13,8 +13,9 @@ namespace nendo::takes {
 
 class RecordedFrames final : public FrameSource {
 public:
-  /// `model` comes from recorded_model(). The whole recording is read once to find its duration.
-  /// Blocks. Errors: those of TakeReader::open() and LoopReplay::make(); bad_input (no tick in it).
+  /// Opens a recording. `model` must come from recorded_model(). The whole recording is read once
+  /// to find its duration. Blocks. Errors: those of TakeReader::open() and LoopReplay::make();
+  /// bad_input (no tick in it).
   static Result<std::unique_ptr<RecordedFrames>> open(const std::filesystem::path& path,
                                                       deform::Mesh model);
 

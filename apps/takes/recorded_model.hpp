@@ -12,7 +12,7 @@ namespace nendo::takes {
 /// deform::read_mesh(); bad_input if the recorded file has changed.
 Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop,
                                     const std::string& named = {});
-/// The same for the recording in `file`. Error: also bad_input if no loop was recorded.
+/// Does the same for the recording in `file`. Error: also bad_input if no loop was recorded.
 Result<deform::Mesh> recorded_model(const std::string& file, const recording::Setup& setup,
                                     const std::string& named = {});
 

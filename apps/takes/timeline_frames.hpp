@@ -46,7 +46,8 @@ private:
 Result<deform::Mesh> timeline_model(const timeline::Timeline& timeline,
                                     const std::string& mesh = {});
 
-/// The x of the model's middle on the stage, in metres: the default plane of mirror().
+/// Returns the x coordinate of the model's middle on the stage, in metres. It is the default plane
+/// of timeline::mirror().
 double middle_plane_m(const timeline::Timeline& timeline, const deform::Mesh& model);
 
 } // namespace nendo::takes

@@ -1,5 +1,5 @@
 #pragma once
-// When the process dies of a crash, the last minute is written first.
+// Writes the last minute to a file when the process crashes.
 
 #include <filesystem>
 
@@ -7,11 +7,11 @@
 
 namespace nendo::recording {
 
-/// From construction to destruction SIGSEGV, SIGBUS, SIGILL, SIGFPE and SIGABRT have `ring` written
-/// to `path`, unless that is there already, and then do what they do by default. Threads that crash
-/// meanwhile wait, 30 s at most. A stack that has overflowed has no room for a handler, so that
-/// nothing is written then. Whoever handled them before does so again afterwards. One at a time: a
-/// second one does nothing.
+/// While this object exists, SIGSEGV, SIGBUS, SIGILL, SIGFPE and SIGABRT write `ring` to `path`,
+/// unless that file exists already, and then take their default action. Other threads that crash
+/// meanwhile wait for at most 30 s. Nothing is written if a stack has overflowed, because the
+/// handler has no other stack. The destructor restores the previous handlers. Only one object at a
+/// time is active; a second one does nothing.
 class CrashKeeper {
 public:
   CrashKeeper(KeptRing& ring, const std::filesystem::path& path);

@@ -1,5 +1,5 @@
 #pragma once
-// A file that is begun where none is, and goes again unless it becomes what it is to be.
+// A new file that is removed again unless it is kept.
 
 #include <filesystem>
 #include <utility>
@@ -11,15 +11,16 @@ namespace nendo::recording {
 
 class NewFile {
 public:
-  /// Error: failed (something of that name is there, or it cannot be made).
+  /// Creates the file. Error: failed (a file of that name exists already, or it cannot be created).
   static Result<NewFile> create(const std::filesystem::path& path);
   NewFile(NewFile&& other) noexcept
       : path_(std::move(other.path_)), file_(std::move(other.file_)),
         provisional_(std::exchange(other.provisional_, false)) {}
   NewFile& operator=(NewFile&&) = delete;
-  ~NewFile(); ///< without keep() it is there no more
+  /// Removes the file unless keep() was called.
+  ~NewFile();
 
-  /// From now on it stays. Its name is on the disk when this returns.
+  /// Makes the file permanent. Its name is on the disk when this returns.
   void keep();
   bool is_kept() const noexcept { return !provisional_; }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The chunks of a setup, one by one, as FORMAT.md has them. Enumerators are written as their
-// numbers: new ones belong at the ends of their lists, here and in the document.
+// Reads and writes the single chunks of a setup, which FORMAT.md describes. Enumerators are written
+// as their numbers, so new ones must be added at the ends of their lists, here and in the document.
 
 #include <nendo/base/byte_reader.hpp>
 #include <nendo/base/byte_writer.hpp>
@@ -22,7 +22,7 @@ void put_head(ByteWriter& writer, const Setup& setup);
 void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand);
 void put_loop(ByteWriter& writer, const LoopSetup& loop);
 
-// False: the payload is not usable, and nothing has changed.
+// These return false if the payload is not usable. Then nothing has changed.
 bool read_head(ByteReader& reader, Setup& setup);
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands);
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop);

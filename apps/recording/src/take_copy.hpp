@@ -1,5 +1,5 @@
 #pragma once
-// A recording that is made of another one's entries.
+// Makes a recording from the entries of another one.
 
 #include <utility>
 #include <vector>
@@ -11,17 +11,18 @@
 
 namespace nendo::recording {
 
-/// There is no new file unless end() went well.
+/// The new file exists only if end() succeeded.
 class TakeCopy {
 public:
-  /// Error: failed (the new file is there already, or cannot be made).
+  /// Creates the file. Error: failed (the file exists already, or cannot be created).
   static Result<TakeCopy> create(const std::filesystem::path& path, const Setup& setup);
 
-  /// Errors of all: failed.
+  /// Appends an entry. Error of this and all other functions: failed.
   Result<void> put(const Entry& entry);
-  /// Behind all entries so far.
+  /// Appends a shape after all entries so far.
   Result<void> put(const RecordedShape& shape);
-  /// `of_original`: what its ending says beside counts.
+  /// Writes the ending. All of it except the counts is taken from `of_original`, if given. `host`
+  /// is its time.
   Result<NewTake> end(HostTime host, const std::optional<Ending>& of_original = {});
 
 private:

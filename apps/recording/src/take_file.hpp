@@ -1,5 +1,5 @@
 #pragma once
-// A recording that is being written: it only grows, chunk by chunk, and is whole after each.
+// Writes a recording. The file only grows, chunk by chunk, and is whole after each chunk.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,20 +15,20 @@ namespace nendo::recording {
 
 class TakeFile {
 public:
-  /// live: what is appended is on the disk, and stays there whatever comes later. copy: the file is
-  /// of use when all of it is there, so that it goes again unless sync() was the last that was
-  /// done.
+  /// live: what is appended is on the disk when append() returns, and the file stays whatever
+  /// happens later. copy: the file is of use only when it is complete, so it is removed again
+  /// unless sync() has succeeded.
   enum class Kind { live, copy };
 
-  /// A new file with these first bytes in it, of so many chunks; there is none after an error.
-  /// Error: failed.
+  /// Creates the file with `setup` as its first bytes, which contain that many chunks. After an
+  /// error there is no file. Error: failed.
   static Result<TakeFile> create(const std::filesystem::path& path,
                                  std::span<const std::byte> setup, std::uint32_t chunks, Kind kind);
 
-  /// After an error a live file ends with the last whole chunk, and nothing is written any more:
-  /// every later call does nothing. Error: failed, once.
+  /// Appends a chunk. After an error, a live file ends with the last whole chunk, and later calls
+  /// do nothing. Error: failed, which is returned only once.
   Result<void> append(driver::ChunkType type, std::span<const std::byte> payload);
-  /// All of a copy is on the disk, and it stays. Error: failed.
+  /// Writes everything to the disk and makes a copy permanent. Error: failed.
   Result<void> sync();
 
   bool has_failed() const noexcept { return failed_; }

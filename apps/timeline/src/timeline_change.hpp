@@ -1,5 +1,5 @@
 #pragma once
-// The difference that an edit made: a step of EditHistory.
+// The difference that an edit made. It is a step of EditHistory.
 
 #include <cstddef>
 #include <vector>
@@ -23,7 +23,7 @@ struct TimelineChange {
   };
   double duration_before_s = 0.0;
   double duration_after_s = 0.0;
-  std::vector<Hand> hands; ///< by the timeline's
+  std::vector<Hand> hands; ///< in the order of the timeline's hands
   Splice<Event> events;
 };
 
@@ -31,7 +31,7 @@ struct TimelineChange {
 /// number of hands.
 TimelineChange change_between(const Timeline& before, const Timeline& after);
 bool is_empty(const TimelineChange& change) noexcept;
-/// Apply the change, or take it back, bit for bit.
+/// These apply the change or take it back, bit for bit.
 void do_change(Timeline& timeline, const TimelineChange& change);
 void undo_change(Timeline& timeline, const TimelineChange& change);
 

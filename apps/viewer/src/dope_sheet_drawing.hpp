@@ -1,5 +1,5 @@
 #pragma once
-// How the strip looks.
+// Draws the strip.
 
 #include <optional>
 
@@ -13,7 +13,7 @@ struct StripLook {
   ImVec2 corner; ///< top left, in the window
   ImVec2 size;
   std::optional<StripKey> pointed_at;
-  std::optional<Retiming> shaded; ///< times that stand out
+  std::optional<Retiming> shaded; ///< highlighted times
 };
 
 void draw_strip(const DopeSheet& strip, const TimelineView& view, const StripLook& look);

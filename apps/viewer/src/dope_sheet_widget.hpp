@@ -1,5 +1,5 @@
 #pragma once
-// The strip below the scene: play head, keys, marks, and the mouse on them.
+// The strip below the scene: play head, keys and marks, which the mouse can move.
 
 #include <optional>
 
@@ -9,9 +9,9 @@ namespace nendo::viewer {
 
 class DopeSheetWidget {
 public:
-  /// Of a strip with so many lanes, controls included; pixels.
+  /// Returns the height in pixels of a strip with that many lanes, controls included.
   static int height_for(std::size_t lanes) noexcept;
-  /// Over the window's whole width, at its bottom. shaded: times that are to stand out.
+  /// Draws the strip at the window's bottom, over its whole width. shaded: times to highlight.
   void draw(const TimelineView& view, const std::optional<Retiming>& shaded, EditActions& actions);
 
 private:

@@ -1,13 +1,13 @@
 #pragma once
-// Sine and cosine by their series: mathematical libraries differ in the last bit, and with it in
-// pixels; additions and products do not.
+// Computes sine and cosine by their series. Mathematical libraries differ in the last bit of these
+// functions, which can change pixels. Additions and products do not differ.
 
 #include <cmath>
 #include <numbers>
 
 namespace nendo::viewer {
 
-/// To 1e-15 for angles up to some turns.
+/// Is exact to 1e-15 for angles up to a few turns.
 inline double exact_sine(double angle_rad) noexcept {
   constexpr double turn = 2.0 * std::numbers::pi;
   const double x = angle_rad - turn * std::floor(angle_rad / turn + 0.5);

@@ -1,5 +1,5 @@
 #pragma once
-// What runs on the graphics card: the lights of light_maps.cpp without shadows.
+// The shaders. They use the same lights as light_maps.cpp, without shadows.
 
 namespace nendo::viewer {
 

@@ -1,7 +1,7 @@
 #pragma once
-// Keys and the pointer as ImGui takes them, by GLFW's numbers. Until 1.86 a program writes their
-// state into ImGuiIO; since 1.87 ImGui has keys of its own and takes events, which NewFrame()
-// applies. All of it is for the main thread.
+// Passes keys and the pointer to ImGui, with GLFW's numbers for keys. Before version 1.87, a
+// program writes their state into ImGuiIO. Since 1.87, ImGui has its own numbers for keys and takes
+// events, which NewFrame() applies. All calls belong to the main thread.
 
 #include <array>
 #include <utility>
@@ -11,8 +11,8 @@
 
 namespace nendo::viewer {
 
-/// Since 1.87 ImGui itself lets each event be seen in a picture of its own, however short the key
-/// was down: what the window's back end tells needs no help.
+/// Since version 1.87, ImGui itself shows each event in a picture of its own, however short the key
+/// was down. Then the events of the window's back end need no help.
 inline constexpr bool imgui_queues_events = IMGUI_VERSION_NUM >= 18700;
 
 #if IMGUI_VERSION_NUM < 18700
@@ -49,7 +49,7 @@ inline void put_wheel(float turns) {
 
 #else
 
-/// ImGuiKey_None: a key that no window here asks for.
+/// Returns ImGuiKey_None for a key that no window here uses.
 inline ImGuiKey imgui_key(int key) {
   if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z)
     return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));

@@ -1,5 +1,5 @@
 #pragma once
-// What `?` shows in every window.
+// The list of keys that `?` shows in every window.
 
 #include <span>
 
@@ -10,8 +10,8 @@ struct KeyLine {
   const char* does;
 };
 
-/// A window's own keys, those that all windows have, and its own uses of the mouse after the
-/// camera's. shown: becomes false when it is closed.
+/// Draws the window's own keys, the keys that all windows have, and the uses of the mouse: those of
+/// the camera, then the window's own. `shown` becomes false when the list is closed.
 void draw_key_list(std::span<const KeyLine> own, const char* mouse, bool& shown);
 
 } // namespace nendo::viewer

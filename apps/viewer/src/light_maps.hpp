@@ -7,16 +7,19 @@
 
 namespace nendo::viewer {
 
-/// How deep a scene is along a direction: the nearest to the light for each sample of a square.
+/// The depth of a scene along a direction. For each sample of a square, it keeps the place that is
+/// nearest to the light.
 class DepthMap {
 public:
-  /// `toward`: unit, to the light. Keeps what casts shadows: the model and what hands wear.
+  /// `toward` is a unit vector to the light, and `side` is the number of samples along each side.
+  /// The map has all that casts shadows: the model and the hands' skins.
   DepthMap(const Scene& scene, const Eigen::Vector3f& toward, int side);
 
-  /// Whether the nearest is farther from the light than `place`, less `slack_m`. Beyond the map,
-  /// everything is lit.
+  /// Returns true if nothing is nearer to the light than `place` by more than slack_m. Outside of
+  /// the map, everything is lit.
   bool is_lit(const Eigen::Vector3f& place, float slack_m) const noexcept;
-  /// The part of a neighbourhood of `reach` samples that is: a soft edge.
+  /// Returns the lit part, 0 to 1, of the samples within `reach` samples of `place`. It gives a
+  /// shadow a soft edge.
   float lit_part(const Eigen::Vector3f& place, float slack_m, int reach) const noexcept;
   float sample_m() const noexcept { return sample_m_; }
 
@@ -28,10 +31,10 @@ private:
   Eigen::Vector2f corner_;
   float sample_m_ = 1.0F;
   int side_;
-  std::vector<float> nearest_; ///< along `toward`; the lowest number where nothing is
+  std::vector<float> nearest_; ///< along `toward`; the lowest float where there is nothing
 };
 
-/// A direction that goes round with the view, about the upright axis. Unit.
+/// Returns the direction turned with the view around the vertical axis, as a unit vector.
 Eigen::Vector3f turned(const Eigen::Vector3f& direction, double azimuth_deg);
 
 struct Light {
@@ -41,8 +44,8 @@ struct Light {
 
 struct Lighting::Maps {
   Light key, fill, rim;
-  std::vector<DepthMap> key_shadow; ///< one
-  std::vector<float> model_sky;     ///< of each vertex, 0 to about 1: what it sees of the sky
+  std::vector<DepthMap> key_shadow; ///< has one element
+  std::vector<float> model_sky;     ///< how much of the sky each vertex sees, 0 to about 1
   std::vector<std::vector<float>> veil_sky;
   std::vector<std::vector<float>> ground_sky;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What stands in the live window's panel.
+// The contents of the live window's panel.
 
 #include <array>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace nendo::viewer {
 
-/// The last of something, for a strip chart.
+/// The latest values of a quantity, for a strip chart.
 class Strip {
 public:
   void add(float value) noexcept {
@@ -31,7 +31,7 @@ struct LiveWindow::Panel {
   std::uint64_t last_tick = 0;
   bool keys_shown = false;
   bool one_radius = true;
-  bool reset_asked = false; ///< and not answered whether it is meant
+  bool reset_asked = false; ///< the question whether to reset is open
 
   void follow(const flow::Frame& frame, double rate_hz);
   void buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands);

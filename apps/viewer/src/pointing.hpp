@@ -1,5 +1,5 @@
 #pragma once
-// A pointer in the picture, and places that it means.
+// Relates pixels of the picture to places in the scene.
 
 #include <optional>
 
@@ -8,15 +8,18 @@
 
 namespace nendo::viewer {
 
-/// Where a place is seen, pixels from the picture's top left; nothing: behind the camera.
+/// Returns the pixel at which a place is visible, from the picture's top left corner. Returns
+/// nothing if the place is behind the camera.
 std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vector3d& place,
                                         Size size) noexcept;
 
-/// How far `place` goes if it stays at its depth while it is seen to go by so many pixels; metres.
+/// Returns the displacement in metres that moves `place` by that many pixels in the picture while
+/// its depth stays the same. `height` is the picture's height in pixels.
 Eigen::Vector3d way_in_picture(const Camera& camera, const Eigen::Vector3d& place, double dx,
                                double dy, double height) noexcept;
 
-/// By steps of the wheel, 1 cm each: forward is away from the viewer.
+/// Returns the displacement for steps of the wheel, 1 cm each. Positive steps go away from the
+/// viewer.
 Eigen::Vector3d way_by_wheel(const Camera& camera, double steps) noexcept;
 
 } // namespace nendo::viewer

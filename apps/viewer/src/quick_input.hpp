@@ -1,27 +1,30 @@
 #pragma once
-// ImGui looks at keyboard and mouse once a picture. Where pictures take long, as without a graphics
-// card, a key is down and up again between two looks, and the pointer is elsewhere when the button
-// is seen to be down. Here a tap waits for the next picture, and a press is where it was.
+// Makes short key presses and clicks visible to ImGui, which looks at keyboard and mouse once for
+// each picture. Where a picture takes long, as without a graphics card, a key can go down and up
+// again between two looks, and the pointer can have moved on before the button is seen to be down.
+// Here a short key press waits for the next picture, and a click keeps its place.
 
 #include <deque>
 #include <optional>
 
 namespace nendo::viewer {
 
-/// All on the main thread.
+/// All calls belong to the main thread.
 class QuickInput {
 public:
-  /// A key went down: GLFW's number of it.
+  /// Reports that a key went down. key: GLFW's number.
   void press(int key, bool control, bool shift);
-  /// The pointer has moved: pixels from the window's top left corner.
+  /// Reports that the pointer has moved, in pixels from the window's top left corner.
   void point(double x, double y) noexcept {
     pointer_ = {static_cast<float>(x), static_cast<float>(y)};
   }
-  /// A button went down, where the pointer was then.
+  /// Reports that a button went down at the place of the pointer.
   void click() noexcept;
-  /// Before a picture of ImGui's begins, when its back end has told what is down now.
+  /// Passes the waiting input to ImGui. It must be called before ImGui begins a picture, after its
+  /// back end has reported the present state.
   void put();
-  /// After it: the keyboard is again as its back end has told; it tells of the pointer each time.
+  /// Sets the keyboard back to the state that the back end reported. It must be called after the
+  /// picture. The back end reports the pointer for each picture, so the pointer needs no reset.
   void take_back();
 
 private:
@@ -37,8 +40,8 @@ private:
   std::deque<Tap> waiting_;
   Place pointer_;
   std::optional<Place> clicked_; ///< since the last picture
-  int last_ = 0;                 ///< put for the latest picture; 0: none
-  std::optional<Tap> beside_;    ///< while a tap is put: what the modifiers really are
+  int last_ = 0;                 ///< the key that was passed for the latest picture; 0 means none
+  std::optional<Tap> beside_;    ///< while a tap is passed: the real state of the modifiers
 };
 
 } // namespace nendo::viewer

@@ -1,6 +1,6 @@
 #pragma once
-// Which samples a triangle covers. In whole numbers, so that two triangles with a common edge leave
-// no gap and share no sample, on any machine.
+// Finds the samples that a triangle covers. It computes in whole numbers, so that two triangles
+// with a common edge leave no gap and share no sample, on any machine.
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace nendo::viewer {
 
-/// A corner on the grid of samples, whose middles are at halves.
+/// A corner on the grid of samples. The middles of samples are at halves.
 struct RasterCorner {
   double x = 0.0;
   double y = 0.0;
@@ -20,10 +20,10 @@ struct Rows {
   int end = 0; ///< one after the last
 };
 
-inline constexpr double farthest_sample = 1 << 20; ///< corners beyond are refused
+inline constexpr double farthest_sample = 1 << 20; ///< triangles with a corner beyond are left out
 
-/// Calls visit(x, y, b) for each covered sample of a grid that is `width` wide and of which only
-/// `rows` are wanted; b are its barycentric coordinates. Either side of the triangle counts.
+/// Calls visit(x, y, b) for each covered sample in `rows` of a grid that is `width` wide. b are the
+/// barycentric coordinates of the sample. The triangle may show either side.
 template <class Visit>
 void each_covered(const std::array<RasterCorner, 3>& corners, int width, Rows rows, Visit&& visit) {
   constexpr double fraction = 256.0;

@@ -1,5 +1,5 @@
 #pragma once
-// What stands in the timeline window's panel, its keys, and the question before leaving.
+// The timeline window's panel, its keys, and the question before leaving.
 
 #include <nendo/viewer/timeline_window.hpp>
 #include <nendo/viewer/tip_mover.hpp>
@@ -19,7 +19,7 @@ struct TimelineWindow::Panel {
 
   void draw(const TimelineView& view, EditActions& actions);
   void keys(const TimelineView& view, EditActions& actions);
-  /// Whoever wants to leave does, or is asked first.
+  /// Quits if `wanted` or the key for it is pressed. If there are unsaved changes, it asks first.
   void leave(const TimelineView& view, bool wanted, EditActions& actions);
 
 private:

@@ -1,11 +1,12 @@
 #pragma once
-// What every window's widgets need of ImGui.
+// Helpers for ImGui that every window uses.
 
 #include "imgui_input.hpp"
 
 namespace nendo::viewer {
 
-/// Whether a key, by GLFW's number, goes down now; repeats: or is held down, now and then.
+/// Returns whether the key, by GLFW's number, has just gone down. With `repeats`, a key that is
+/// held down counts again at intervals.
 inline bool pressed(int key, bool repeats = false) {
   const auto known = imgui_key(key);
 #if IMGUI_VERSION_NUM < 18700
@@ -16,13 +17,14 @@ inline bool pressed(int key, bool repeats = false) {
   return ImGui::IsKeyPressed(known, repeats);
 }
 
-/// Whether keys are the window's: nobody writes, and no question or list is open.
+/// Returns whether keys are meant for the window: no text is being entered, and no question or list
+/// is open.
 inline bool takes_keys() {
   return !ImGui::GetIO().WantTextInput && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
 }
 
-/// A question in the window's middle, if it is open: then its buttons follow, and
-/// ImGui::EndPopup().
+/// Begins a question in the middle of the window. If it returns true, the question's buttons and
+/// ImGui::EndPopup() must follow.
 inline bool begin_question(const char* title) {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(all.x / 2.0F, all.y / 2.0F), ImGuiCond_Appearing,

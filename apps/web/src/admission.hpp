@@ -1,5 +1,6 @@
 #pragma once
-// Which requests are granted. This is the defence against pages of other sites in the same browser.
+// Decides which requests are granted. This is the defence against pages of other sites in the same
+// browser.
 
 #include <string_view>
 
@@ -10,14 +11,14 @@ namespace nendo::web {
 enum class Resource { page, model, socket };
 
 struct Admission {
-  int status = 200; ///< 200: granted. Otherwise: the status to refuse it with
+  int status = 200; ///< 200 if granted, otherwise the status of the refusal
   Resource resource = Resource::page;
-  std::string_view why; ///< of a refusal; a line for people
+  std::string_view why; ///< the reason of a refusal; a line for people
 };
 
-/// Host must be an address in figures or localhost, against DNS rebinding. Origin, if there is one,
-/// must be the same host. The model and the WebSocket need `?token=`. The request for a WebSocket
-/// must be as RFC 6455, section 4.2.1, says.
+/// Decides about a request. Host must be a numeric address or localhost, against DNS rebinding.
+/// Origin, if there is one, must be the same host. The model and the WebSocket need `?token=`. The
+/// request for a WebSocket must conform to RFC 6455, section 4.2.1.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
 
 /// Compares two texts in a time that depends on their lengths only.

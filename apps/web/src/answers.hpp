@@ -6,18 +6,20 @@
 
 namespace nendo::web {
 
-/// A whole answer with an error status. why: a line for people.
+/// Returns a whole answer with an error status. why: a line for people.
 std::string refusal(int status, std::string_view why);
-/// Only scripts and styles with this nonce run in the page, and it connects to no host except the
-/// one that it came from. bytes: of the page. host: the request's, which was checked.
+/// Returns the head of the answer with the page. Only scripts and styles with this nonce run in the
+/// page, and it can connect only to the host that it came from. bytes: the length of the page.
+/// host: that of the request, which must have been checked.
 std::string page_head(std::size_t bytes, std::string_view nonce, std::string_view host);
 std::string model_head(std::size_t bytes);
 std::string switching_head(std::string_view accept);
 
-/// The page with the nonce in its place.
+/// Returns the page with the nonce in its place.
 std::string page_with(std::string_view nonce);
 
-/// Random bytes from the system in hexadecimal figures; empty if it has none.
+/// Returns random bytes from the system in hexadecimal digits, or an empty text if the system has
+/// none.
 std::string random_hex(std::size_t bytes);
 
 } // namespace nendo::web

@@ -28,25 +28,25 @@ public:
     ended,  ///< it can be destroyed
   };
 
-  /// limits: they must outlive the connection.
+  /// `limits` must outlive the connection.
   Connection(Descriptor socket, HostTime now, const ServerLimits& limits);
 
   int fd() const noexcept { return socket_.get(); }
   Stage stage() const noexcept { return stage_; }
-  /// The events that poll() must wait for.
+  /// Returns the events that poll() must wait for.
   short events() const noexcept;
   /// Appends what the socket has to incoming(), as far as there is room. Returns false if the
   /// connection has ended. A client that has shut down its sending side may still get an answer.
   bool receive(HostTime now);
   std::string& incoming() noexcept { return incoming_; }
-  /// Says that the request is incomplete. Ends the connection if no more bytes can come.
+  /// Reports that the request is incomplete. Ends the connection if no more bytes can come.
   void await_more() noexcept;
-  /// Sends from the queue, because poll() says that the socket takes bytes again.
+  /// Sends from the queue. To be called when poll() reports that the socket takes bytes again.
   void resume_sending(HostTime now);
 
-  /// Queues an HTTP answer, after which the connection ends. body: may be null.
+  /// Queues an HTTP answer, after which the connection ends. `body` may be null.
   void answer(std::string head, SharedBytes body, HostTime now);
-  /// Queues the answer that makes it a WebSocket.
+  /// Queues the answer that makes the connection a WebSocket.
   void upgrade(std::string head, HostTime now);
   /// Queues a message of a WebSocket. Shapes are not counted against max_queued_bytes.
   void send(Opcode opcode, const SharedBytes& payload, bool is_shape, HostTime now);
@@ -57,11 +57,11 @@ public:
 
   /// Takes one message from the client's allowance. Returns false if there was none left.
   bool within_message_rate(HostTime now) noexcept;
-  /// False from when the queue has become too long until it is empty.
+  /// Returns false from the moment when the queue has become too long until it is empty.
   bool accepts_updates() const noexcept { return !catching_up_; }
-  /// Whether a shape is still in the queue.
+  /// Returns whether a shape is still in the queue.
   bool has_queued_shape() const noexcept { return queued_shapes_ > 0; }
-  /// Whether one of its time limits has passed.
+  /// Returns whether one of the time limits has passed.
   bool is_expired(HostTime now) const noexcept;
   /// Sends a ping if it is time for one.
   void keep_alive(HostTime now);

@@ -20,17 +20,17 @@ struct FeedCounters {
 
 class Feed {
 public:
-  /// Whether the client needs a shape: at first, when it has missed steps, and when its rounding
-  /// errors may have become too large.
+  /// Returns whether the client needs a shape: at first, when it has missed steps, and when its
+  /// rounding errors may have become too large.
   bool wants_shape() const noexcept { return lacks_shape_ || drift_ >= 1.0; }
-  /// To be called when the client has been sent the shape after that frame.
+  /// Must be called when the client has been sent the shape after that frame.
   void shape_sent(std::uint64_t number) noexcept;
 
-  /// Makes an update message of the records since the last call; nothing if there are none. The
-  /// message has no steps while the client lacks the shape that they continue.
+  /// Makes an update message of the records since the last call. Returns nothing if there are none.
+  /// The message has no steps while the client lacks the shape that they continue.
   std::optional<std::vector<std::byte>> update(std::span<const Record> records,
                                                const FeedCounters& counters);
-  /// To be called instead of update() when nothing can be sent to the client.
+  /// Must be called instead of update() when nothing can be sent to the client.
   void skip(std::span<const Record> records) noexcept;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// The server's part of a WebSocket's handshake (RFC 6455, section 4.2.2), which needs SHA-1 (RFC
-// 3174) and base64 (RFC 4648). Nothing secret depends on SHA-1 here.
+// The server's part of a WebSocket's handshake (RFC 6455, section 4.2.2). It needs SHA-1 (RFC 3174)
+// and base64 (RFC 4648). Nothing secret depends on SHA-1 here.
 
 #include <array>
 #include <cstddef>
@@ -15,9 +15,9 @@ using Sha1Digest = std::array<std::byte, 20>;
 
 Sha1Digest sha1(std::span<const std::byte> bytes);
 std::string base64(std::span<const std::byte> bytes);
-/// Whether the text is a Sec-WebSocket-Key: 16 bytes in base64.
+/// Returns whether the text is a Sec-WebSocket-Key, which is 16 bytes in base64.
 bool is_socket_key(std::string_view text) noexcept;
-/// The Sec-WebSocket-Accept that answers a Sec-WebSocket-Key.
+/// Returns the Sec-WebSocket-Accept that answers a Sec-WebSocket-Key.
 std::string accept_of(std::string_view key);
 
 } // namespace nendo::web

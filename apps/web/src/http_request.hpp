@@ -1,6 +1,6 @@
 #pragma once
-// A strict parser for the head of an HTTP/1.1 request (RFC 9112). Whatever can be read in two ways
-// is refused. The result consists of views into the bytes that were parsed.
+// A strict parser for the head of an HTTP/1.1 request (RFC 9112). It refuses all that can be read
+// in two ways. The result consists of views into the bytes that were parsed.
 
 #include <cstddef>
 #include <optional>
@@ -20,28 +20,29 @@ struct HttpRequest {
   std::string_view query; ///< the part after it
   std::vector<std::pair<std::string_view, std::string_view>> headers;
 
-  /// The value of a header, whose name is compared without regard to case. Nothing if there is no
-  /// such header or more than one.
+  /// Returns the value of a header, whose name is compared without regard to case. Returns nothing
+  /// if there is no such header or more than one.
   std::optional<std::string_view> header(std::string_view name) const noexcept;
-  /// How many headers have that name.
+  /// Returns how many headers have that name.
   std::size_t count(std::string_view name) const noexcept;
-  /// Whether one of the headers of that name is a comma-separated list with that word in it.
+  /// Returns whether one of the headers of that name is a comma-separated list with that word in
+  /// it.
   bool lists(std::string_view name, std::string_view word) const noexcept;
-  /// The "x" of "?name=x" in the query; nothing if that name is not there.
+  /// Returns the "x" of "?name=x" in the query, or nothing if that name is not there.
   std::optional<std::string_view> parameter(std::string_view name) const noexcept;
 };
 
-/// Whether the texts are equal but for the case of ASCII letters.
+/// Returns whether the texts are equal except for the case of ASCII letters.
 bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept;
 
 struct HttpHead {
-  /// 0: the head is incomplete. 200: it was parsed. Otherwise: the status to refuse it with.
+  /// 0 if the head is incomplete, 200 if it was parsed, otherwise the status of the refusal.
   int status = 0;
   std::size_t bytes = 0; ///< length of a complete head
   HttpRequest request{};
 };
 
-/// bytes: everything that the client has sent so far.
+/// Parses the head of a request. `bytes` must be everything that the client has sent so far.
 HttpHead parse_head(std::string_view bytes);
 
 } // namespace nendo::web

@@ -10,11 +10,11 @@
 
 namespace nendo::web {
 
-/// Opens a non-blocking socket that listens at `endpoint`, and writes its port there. Error:
-/// failed.
+/// Opens a non-blocking socket that listens at `endpoint`, and writes the port to `endpoint`.
+/// Error: failed.
 Result<Descriptor> listen_at(Endpoint& endpoint);
-/// The next connection, as a non-blocking socket; nothing if there is none. buffer_bytes: of the
-/// socket's send buffer.
+/// Returns the next connection as a non-blocking socket, or nothing if there is none. buffer_bytes:
+/// the size of the socket's send buffer.
 std::optional<Descriptor> accept_from(const Descriptor& listener, std::size_t buffer_bytes);
 
 } // namespace nendo::web

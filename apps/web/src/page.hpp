@@ -1,11 +1,11 @@
 #pragma once
-// The page, which embed.cmake makes of the files in apps/web/page at build time.
+// The page, which embed.cmake makes from the files in apps/web/page at build time.
 
 #include <string_view>
 
 namespace nendo::web {
 
-/// Stands in the page wherever an answer puts its nonce.
+/// The text in the page that an answer replaces by its nonce.
 inline constexpr std::string_view nonce_mark = "NENDO-NONCE";
 
 std::string_view page() noexcept;

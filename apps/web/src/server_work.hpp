@@ -28,8 +28,9 @@ public:
 
   const Endpoint endpoint;
   const std::string token;
-  // Written by this thread, or shared with it.
-  /// Holds what 16 clients may send in half a second. Commands that find no room are dropped.
+  // The following members are written by this thread, or shared with it.
+  /// Has room for what 16 clients may send in half a second. Commands that find no room are
+  /// dropped.
   flow::CommandRing commands{1024};
   std::atomic<std::uint64_t> bad_records{0}; ///< two counts of 32 bits, the first in the low half
   struct Counts {
@@ -38,7 +39,7 @@ public:
   } counts;
 
 private:
-  /// A loop that is served. The model is shared with the connections that are sent it.
+  /// A loop that is served. Its model is shared with the connections to which it is sent.
   struct Presented {
     std::shared_ptr<FrameStream> stream;
     SharedBytes model;

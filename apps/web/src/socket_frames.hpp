@@ -1,6 +1,6 @@
 #pragma once
-// Frames of a WebSocket (RFC 6455, section 5): a parser for a client's frames, and the encoding of
-// the server's. Nothing here reads or writes a socket.
+// Frames of a WebSocket (RFC 6455, section 5). This is a parser for a client's frames and the
+// encoding of the server's frames. Nothing here reads or writes a socket.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,7 @@ enum class Opcode : std::uint8_t {
   pong = 10,
 };
 
-/// RFC 6455, section 7.4.1, and 1012 of IANA's registry.
+/// The codes of RFC 6455, section 7.4.1, and 1012 of IANA's registry.
 enum class CloseCode : std::uint16_t {
   normal = 1000,
   going_away = 1001,
@@ -54,7 +54,7 @@ public:
   /// Removes whole frames from the front of `bytes` until one of them makes an event. After a fault
   /// there are no more events.
   ClientEvent next(std::string& bytes);
-  /// How many bytes may be received before a frame is complete.
+  /// The most bytes that can be received before a frame is complete.
   static constexpr std::size_t max_pending = max_client_message + 14;
 
 private:
@@ -63,13 +63,14 @@ private:
   ClientEvent take(const Head& head, std::string payload);
 
   std::string parts_;                  ///< of a message that is not complete yet
-  Opcode kind_ = Opcode::continuation; ///< of that message; continuation: there is none
+  Opcode kind_ = Opcode::continuation; ///< of that message; `continuation` if there is none
   bool failed_ = false;
 };
 
-/// The bytes before the payload of a whole, unmasked message; length: of the payload.
+/// Returns the bytes before the payload of a whole, unmasked message. `length` is that of the
+/// payload.
 std::string server_head(Opcode opcode, std::uint64_t length);
-/// A whole control frame. payload: at most 125 bytes.
+/// Returns a whole control frame. `payload` may have at most 125 bytes.
 std::string control_frame(Opcode opcode, std::string_view payload);
 std::string close_frame(CloseCode code);
 

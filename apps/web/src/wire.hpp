@@ -73,8 +73,8 @@ struct ModelHead {
 };
 static_assert(sizeof(ModelHead) == 128);
 
-/// Whether a joint's rotation is sent with each frame. The others do not move against their
-/// parents.
+/// Tells whether a joint's rotation is sent with each frame. The other joints do not move relative
+/// to their parents.
 constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
   using hand::Joint;
   for (const Joint fixed :
@@ -83,15 +83,15 @@ constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
     if (joint == fixed) return false;
   return true;
 }
-/// The forearm's rotation, and those of these joints.
+/// The number of rotations that are sent: that of the forearm and those of these joints.
 inline constexpr std::size_t sent_rotations = 1 + 18;
 inline constexpr std::size_t hand_bytes = 12 + sent_rotations * 6;
-/// The bones of a hand, twice: of the glove that the loop began with, and of the glove that may
-/// replace it. Each joint has its position and rotation in its parent's axes.
+/// The bytes of the bones of a hand, twice: for the glove that the loop began with, and for the
+/// glove that may replace it. Each joint has its position and rotation in the axes of its parent.
 inline constexpr std::size_t bones_bytes = 2 * hand::joint_count * 7 * 4;
 inline constexpr std::size_t step_head_bytes = 4;
 
-/// The most bytes that a field of so many functions takes.
+/// Returns the most bytes that a field of that many functions takes.
 constexpr std::size_t field_bytes(std::size_t functions) noexcept {
   return 8 + 48 + functions * 28;
 }
@@ -116,8 +116,8 @@ private:
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
-/// origin, unit: those of the loop's BlockLayout. Functions whose coefficient is zero are left out,
-/// and so are centres that follow from the field before.
+/// Writes a step. `origin` and `unit` are those of the loop's BlockLayout. Functions whose
+/// coefficient is zero are left out, and so are centres that follow from the previous field.
 void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,
                 double unit, WireWriter& out) noexcept;
 

@@ -1,6 +1,6 @@
 #pragma once
-// Hands and CSRBF updates as UDP datagrams, sent by a thread of their own: the loop leaves each
-// frame in a ring, and neither waits for the other.
+// Sends hands and CSRBF updates as UDP datagrams on a thread of its own. The loop puts each frame
+// into a ring. Neither thread waits for the other.
 
 #include <atomic>
 #include <cstdint>
@@ -18,32 +18,32 @@
 
 namespace nendo::publish {
 
-/// records = sent + lost, once ended.
+/// After DatagramPublisher::end(), records = sent + lost.
 struct DatagramCounts {
   std::uint64_t records = 0;   ///< frames shown
-  std::uint64_t sent = 0;      ///< of those, taken by the sender
-  std::uint64_t lost = 0;      ///< of those, overwritten before it came to them
-  std::uint64_t datagrams = 0; ///< that the system took
-  std::uint64_t refused = 0;   ///< that it did not take; those are lost
-  std::uint64_t bytes = 0;     ///< of the datagrams taken
+  std::uint64_t sent = 0;      ///< of those, processed by the sending thread
+  std::uint64_t lost = 0;      ///< of those, overwritten before the sending thread read them
+  std::uint64_t datagrams = 0; ///< that the system accepted
+  std::uint64_t refused = 0;   ///< that the system did not accept; those are lost
+  std::uint64_t bytes = 0;     ///< of the accepted datagrams
 };
 
 class DatagramPublisher final : public flow::FrameSink {
 public:
-  /// name: the target as it was asked for, for errors.
+  /// name: the target as the user wrote it, for error messages.
   DatagramPublisher(std::string name, const DatagramTarget& target)
       : name_(std::move(name)), target_(target) {}
   ~DatagramPublisher() override { end(); }
 
-  /// Before each loop's first tick, while no loop runs: opens the socket, once, and begins to send.
-  /// Errors: failed (no way to that address), no_permission.
+  /// Begins to send. To be called before each loop's first tick, while no loop runs. The first call
+  /// opens the socket. Errors: failed (no way to that address), no_permission.
   Result<void> begin(const LoopOutline& outline);
-  /// Wait-free: no allocation, lock or system call.
+  /// Puts the frame into the ring. Wait-free: no allocation, lock or system call.
   void show(const flow::Frame& frame) noexcept override;
-  /// Sends what is left. No loop runs.
+  /// Sends the remaining records and joins the thread. To be called while no loop runs.
   void end();
 
-  /// After end().
+  /// Returns the counts. To be called after end().
   DatagramCounts counts() const noexcept { return counts_; }
 
 private:
@@ -58,7 +58,7 @@ private:
   std::string name_;
   DatagramTarget target_;
   Descriptor socket_;
-  // The loop's:
+  // Used by the loop's thread.
   FrameRecord record_;
   std::unique_ptr<AtomicWord[]> memory_;
   RecordRing ring_;
@@ -66,10 +66,10 @@ private:
   std::uint64_t generation_ = 0;
   alignas(2 * cache_line_bytes) std::atomic<std::uint64_t> newest_{0};
   std::atomic<bool> over_{false};
-  // The sender's:
+  // Used by the sending thread.
   alignas(2 * cache_line_bytes) std::uint64_t next_ = 1;
   std::uint64_t session_ = 0;
-  std::vector<std::uint64_t> words_; ///< the record under way, as nendo_publish_record
+  std::vector<std::uint64_t> words_; ///< the present record, as nendo_publish_record
   std::vector<std::byte> update_;
   std::vector<std::byte> datagram_;
   DatagramCounts counts_;

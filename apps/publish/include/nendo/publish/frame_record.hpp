@@ -1,6 +1,6 @@
 #pragma once
-// A frame without its vertices as a record of 64-bit words: both hands and the CSRBF update, as
-// nendo_publish.h lays them out.
+// Encodes a frame without its vertices as a record of 64-bit words. The record has both hands and
+// the CSRBF update, in the layout of nendo_publish.h.
 
 #include <cstdint>
 #include <span>
@@ -11,10 +11,10 @@
 
 namespace nendo::publish {
 
-/// What a publisher must know of a loop before its first tick. The model and the layout must live
-/// until the loop has ended.
+/// The data about a loop that a publisher needs before the first tick. The model and the layout
+/// must exist until the loop has ended.
 struct LoopOutline {
-  const deform::Mesh* model = nullptr; ///< as the loop begins
+  const deform::Mesh* model = nullptr; ///< at the beginning of the loop
   const deform::BlockLayout* layout = nullptr;
   flow::Mode mode = flow::Mode::type1;
   double rate_hz = 0.0;
@@ -23,20 +23,22 @@ struct LoopOutline {
   std::size_t functions = 0;   ///< of a field
 };
 
-/// How long the longest record of such a loop is, with its stage.
+/// Returns the length, in words, of the longest record of such a loop. It includes the word of the
+/// SeqLock.
 std::size_t most_record_words(const LoopOutline& outline) noexcept;
 
 class FrameRecord {
 public:
   FrameRecord() = default;
-  /// Allocates.
+  /// Allocates all that describe() needs.
   FrameRecord(const LoopOutline& outline, std::uint64_t generation);
 
-  /// Wait-free, no allocation. What there is no room for is left out, and marked as such.
+  /// Encodes a frame. Wait-free, without allocation. If there is no room for all fields, they are
+  /// left out and the record is marked.
   void describe(const flow::Frame& frame, std::uint64_t number,
                 std::uint64_t shape_changes) noexcept;
 
-  /// Of the frame described last, without the stage.
+  /// Returns the record of the latest frame, without the word of the SeqLock.
   std::span<const std::uint64_t> words() const noexcept {
     return std::span(words_).subspan(1, used_ - 1);
   }

@@ -1,7 +1,7 @@
 #pragma once
-// Records of a few kilobytes in slots, the newest over the oldest, for readers that the writer
-// never looks at. It lives where it is told to: in memory that other processes map, or in this
-// one's.
+// A ring of slots for records of a few kilobytes. The newest record overwrites the oldest one. The
+// writer never looks at the readers. The ring uses memory that the caller gives, which may be
+// mapped by other processes.
 
 #include <algorithm>
 #include <atomic>
@@ -17,28 +17,30 @@ using AtomicWord = std::atomic<std::uint64_t>;
 static_assert(AtomicWord::is_always_lock_free && sizeof(AtomicWord) == 8);
 static_assert(sizeof(SeqLock<>) == 8);
 
-/// Copies without tearing a word. Wait-free.
+/// Copy words one by one, so that no single word is torn. Wait-free.
 void store_words(std::span<const std::uint64_t> words, AtomicWord* to) noexcept;
 void load_words(const AtomicWord* from, std::span<std::uint64_t> words) noexcept;
 
 class RecordRing {
 public:
   RecordRing() = default;
-  /// Record k is in slot k mod `slots`: a SeqLock, then its words. `memory` has slots *
-  /// slot_words zeros, and outlives this.
+  /// Record k is in slot k mod `slots`, which has a SeqLock and then the words of the record.
+  /// `memory` must have slots * slot_words zeros and must outlive the ring.
   RecordRing(AtomicWord* memory, std::size_t slots, std::size_t slot_words) noexcept
       : memory_(memory), slots_(slots), slot_words_(slot_words) {
     assert(slots > 1 && slot_words > 1);
   }
 
-  /// Writer, wait-free. Numbers begin with 1 and rise by 1; at most slot_words - 1 words.
+  /// Writes a record of at most slot_words - 1 words. Numbers begin with 1 and rise by 1. Only one
+  /// thread may write. Wait-free.
   void write(std::uint64_t number, std::span<const std::uint64_t> words) noexcept {
     auto& stage = stage_of(number);
     stage.open(number);
     store_words(words.first(std::min(words.size(), slot_words_ - 1)), words_of(number));
     stage.close(number);
   }
-  /// Any reader, wait-free: the first words of record `number`. False: it is not there (any more).
+  /// Reads the first words of record `number`. Returns false if the ring does not have the record,
+  /// or no longer has it. Any thread may read. Wait-free.
   bool read(std::uint64_t number, std::span<std::uint64_t> words) const noexcept {
     const auto& stage = stage_of(number);
     if (!stage.holds(number)) return false;

@@ -1,5 +1,6 @@
 #pragma once
-// The segment that `--publish shm:NAME` shows: header, what belongs to the loop, records, shapes.
+// The shared-memory segment of `--publish shm:NAME`. It has a header, the data of the loop, a ring
+// of records and a ring of shapes.
 
 #include <memory>
 #include <optional>
@@ -12,7 +13,7 @@
 
 namespace nendo::publish {
 
-/// Sizes and offsets in bytes, as nendo_publish_header names them.
+/// Sizes and offsets in bytes, with the names of nendo_publish_header.
 struct SegmentPlan {
   std::uint64_t vertices = 0, triangles = 0;
   std::uint64_t record_slots = 0, record_stride = 0;
@@ -22,33 +23,35 @@ struct SegmentPlan {
 
   friend bool operator==(const SegmentPlan&, const SegmentPlan&) = default;
 };
-/// For such a loop: records for a second (4 to 1024, in 16 MiB), four shapes.
+/// Returns the plan for such a loop. It has room for the records of one second, but at least 4, at
+/// most 1024 and, above 4, at most 16 MiB. It has room for four shapes.
 SegmentPlan plan_segment(const LoopOutline& outline) noexcept;
 
 struct SegmentCounts {
   std::uint64_t records = 0;       ///< frames shown
-  std::uint64_t shape_changes = 0; ///< of those, with another shape than the one before
+  std::uint64_t shape_changes = 0; ///< of those, with a shape that differs from the previous one
   std::uint64_t bytes = 0;         ///< of the segment
-  bool is_locked = false;          ///< in memory
+  bool is_locked = false;          ///< in memory, so that it cannot be swapped out
 };
 
 class SegmentPublisher final : public flow::FrameSink {
 public:
   SegmentPublisher(std::string name, std::optional<unsigned> group)
       : name_(std::move(name)), group_(group) {}
-  /// Its readers are told that it has ended.
+  /// Does what end() does.
   ~SegmentPublisher() override { end(); }
 
-  /// Before each loop's first tick, while no loop runs. The segment stays if it has room for this
-  /// loop in the same places, as it has after a renewal; otherwise the old one is ended and another
-  /// one takes its name. Errors: SharedMemory's.
+  /// To be called before each loop's first tick, while no loop runs. The segment stays the same if
+  /// it has room for this loop at the same offsets, as after a change of settings. Otherwise the
+  /// old segment is ended, and a new one takes its name. Errors: those of SharedMemory.
   Result<void> begin(const LoopOutline& outline);
-  /// Wait-free: no allocation, lock or system call.
+  /// Writes a frame. Wait-free: no allocation, lock or system call.
   void show(const flow::Frame& frame) noexcept override;
-  /// Tells the readers that it has ended, and takes its name away. No loop runs.
+  /// Tells the readers that the segment has ended, and removes its name. To be called while no loop
+  /// runs.
   void end() noexcept;
 
-  /// While no loop runs.
+  /// Returns the counts. To be called while no loop runs.
   SegmentCounts counts() const noexcept;
 
 private:

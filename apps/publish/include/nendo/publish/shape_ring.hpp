@@ -1,6 +1,6 @@
 #pragma once
-// Deformed vertices in slots, each whole and in the mesh's own order, of which the writer rewrites
-// only the blocks that changed since that slot's last turn.
+// A ring of slots for deformed vertices. Each slot has all vertices in the order of the mesh. The
+// writer rewrites only the blocks that changed since that slot was written last.
 
 #include <cstdint>
 #include <vector>
@@ -10,24 +10,25 @@
 
 namespace nendo::publish {
 
-/// How long a slot for so many vertices is at least: nendo_publish_shape, then their floats.
+/// Returns the least length, in words, of a slot for that many vertices: nendo_publish_shape and
+/// then the floats.
 std::size_t shape_slot_words(std::size_t vertices) noexcept;
 
 class ShapeRing {
 public:
   ShapeRing() = default;
-  /// `memory` has slots * slot_words zeros, a slot at least shape_slot_words() of them, and
-  /// outlives this. Allocates, which nothing does afterwards.
+  /// `memory` must have slots * slot_words zeros and must outlive the ring. slot_words must be at
+  /// least shape_slot_words(). Allocates; the other functions do not.
   ShapeRing(AtomicWord* memory, std::size_t slots, std::size_t slot_words, std::size_t vertices);
 
-  /// Before a loop's first frame; `layout` is of so many vertices, and lives as long as its shapes
-  /// are written.
+  /// To be called before a loop's first frame. `layout` must have that many vertices, and must
+  /// exist as long as shapes are written.
   void begin(const deform::BlockLayout& layout) noexcept { layout_ = &layout; }
-  /// Wait-free, no allocation: the shape that belongs to record `number`. Numbers begin with 1 and
-  /// rise by 1. Costs a look at each block's stamp, and three stores for each vertex of those that
-  /// changed.
+  /// Writes the shape that belongs to record `number`. Numbers begin with 1 and rise by 1.
+  /// Wait-free, without allocation. The cost is a look at each block's stamp, and three stores for
+  /// each vertex of the changed blocks.
   void write(std::uint64_t number, const deform::BlockShape& shape) noexcept;
-  /// How often a shape was another one than that before.
+  /// Returns how often a shape differed from the previous one.
   std::uint64_t changes() const noexcept { return changes_; }
 
 private:
@@ -37,7 +38,7 @@ private:
   AtomicWord* memory_ = nullptr;
   std::size_t slot_words_ = 0;
   std::size_t vertices_ = 0;
-  std::vector<Stamps> stamps_; ///< by slot: what stands there, remembered here
+  std::vector<Stamps> stamps_; ///< by slot: the stamps of the blocks that are in it
   const deform::BlockLayout* layout_ = nullptr;
   std::uint64_t changes_ = 0;
 };

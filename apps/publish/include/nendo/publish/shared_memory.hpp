@@ -1,5 +1,5 @@
 #pragma once
-// A shared-memory object of this process's: written here, mapped for reading by others.
+// A shared-memory object that this process writes and other processes map for reading.
 
 #include <cstddef>
 #include <optional>
@@ -13,25 +13,25 @@ namespace nendo::publish {
 
 class SharedMemory {
 public:
-  /// Zeros without a name yet, in memory that is already there and, if allowed, locked, so that
-  /// writing it never waits. Readable by this user and, if `group` is one, by that group; writable
-  /// by nobody who opens it. Errors: failed (no room), no_permission (a group that this user is not
-  /// in).
+  /// Makes zeroed memory that has no name yet. All pages are present and, if allowed, locked, so
+  /// that writing never waits. This user can read it, and so can `group`, if given. Nobody who
+  /// opens it can write. Errors: failed (no room), no_permission (this user is not in the group).
   static Result<SharedMemory> create(const std::string& name, std::size_t bytes,
                                      const std::optional<unsigned>& group);
-  /// Shows it as /dev/shm/nendo-`name`, with what is in it by now. What a run that crashed left
-  /// there is replaced, anything else is not; of several runs that want the name at once one gets
-  /// it. Errors: failed (another run's, no segment at all), no_permission (another user's).
+  /// Gives the memory the name /dev/shm/nendo-`name`, with its present contents. Replaces a segment
+  /// that a crashed run left, but nothing else. If several runs want the name at once, one gets it.
+  /// Errors: failed (another run has the name, or the file is no segment), no_permission (it
+  /// belongs to another user).
   Result<void> announce();
-  /// Takes the name away, if it still leads here; who has mapped the memory keeps it.
+  /// Removes the name, if it still belongs to this memory. Whoever has mapped the memory keeps it.
   ~SharedMemory();
   SharedMemory(SharedMemory&& other) noexcept;
   SharedMemory& operator=(SharedMemory&&) = delete;
 
-  /// Aligned to a page.
+  /// Returns the memory, which is aligned to a page.
   AtomicWord* words() const noexcept { return static_cast<AtomicWord*>(memory_); }
   std::size_t bytes() const noexcept { return bytes_; }
-  /// Its pages may not be swapped out.
+  /// Returns true if the pages cannot be swapped out.
   bool is_locked() const noexcept { return locked_; }
 
 private:
@@ -40,7 +40,7 @@ private:
   Result<void> lay_out(const std::optional<unsigned>& group);
 
   std::string path_;
-  Descriptor file_; ///< whose lock says that the writer lives
+  Descriptor file_; ///< its lock shows that the writer is alive
   void* memory_ = nullptr;
   std::size_t bytes_;
   bool locked_ = false;

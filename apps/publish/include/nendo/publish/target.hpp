@@ -15,7 +15,7 @@ namespace nendo::publish {
 
 struct SegmentTarget {
   std::string name;              ///< of /dev/shm/nendo-NAME
-  std::optional<unsigned> group; ///< that may read it, too
+  std::optional<unsigned> group; ///< that may also read it
 };
 
 /// A numeric address and a port, as sendto() takes them.
@@ -31,9 +31,9 @@ struct DatagramTarget {
 
 using Target = std::variant<SegmentTarget, DatagramTarget>;
 
-/// `shm`, `shm:NAME`, `shm:NAME?group=GROUP`; `udp:PORT` (of this machine), `udp:ADDRESS:PORT` with
-/// a numeric address, `udp:[ADDRESS]:PORT` with one of IPv6. Looks nothing up but the group. Error:
-/// usage, without the option's name.
+/// Parses `shm`, `shm:NAME` or `shm:NAME?group=GROUP`; or `udp:PORT` (of this machine),
+/// `udp:ADDRESS:PORT` with a numeric address, or `udp:[ADDRESS]:PORT` with an IPv6 address. It
+/// looks up only the group. Error: usage, in a message without the name of the option.
 Result<Target> parse_target(std::string_view text);
 
 /// Returns whether both are the same segment, or the same address and port.

@@ -1,7 +1,7 @@
 #pragma once
-// The last minute, in memory that is taken beforehand: chunks of an input log, the oldest of which
-// make room for new ones. It can be written at any moment, also by a signal handler in a process
-// that is about to die.
+// The last minute of a recording, in memory that is allocated beforehand. It consists of chunks of
+// an input log, and the oldest chunks make room for new ones. It can be written at any moment, also
+// by a signal handler in a process that is about to die.
 
 #include <atomic>
 #include <chrono>
@@ -16,22 +16,22 @@ namespace nendo::recording {
 
 class KeptRing {
 public:
-  /// `setup`: what a recording begins with, as setup_bytes() makes it, and how many chunks that
-  /// are. Keeps what is younger than `span`, as far as `bytes` of memory hold it.
+  /// `setup` is the beginning of a recording, as setup_bytes() makes it, and `setup_chunks` is its
+  /// number of chunks. The ring keeps what is younger than `span`, as far as `bytes` of memory hold
+  /// it.
   KeptRing(std::vector<std::byte> setup, std::uint32_t setup_chunks, HostClock::duration span,
            std::size_t bytes);
 
-  /// One thread: the payload of an input log chunk with so many entries, which ended at `time`.
-  /// Payloads that are larger than an eighth of the memory are dropped.
+  /// Adds the payload of an input log chunk with that many entries, which ended at `time`. A
+  /// payload larger than an eighth of the memory is dropped. Only one thread may call this.
   void push(std::span<const std::byte> payload, std::uint64_t entries, HostTime time) noexcept;
 
-  /// A whole recording. What was dropped stands as a gap in front. False, with errno, if the system
-  /// refuses. That of the pushing thread, or with freeze(): only calls that are safe in a signal
-  /// handler, no allocation.
+  /// Writes a whole recording. A gap at its beginning stands for what was dropped. Returns false,
+  /// with errno, if the system refuses. To be called by the thread that pushes, or after freeze().
+  /// It allocates nothing and uses only calls that are safe in a signal handler.
   bool write(int fd) const noexcept;
-  /// From any thread or signal handler: nothing is pushed from now on, and this returns when the
-  /// push that is under way has ended, but does not wait for longer than 0.1 s: its thread may be
-  /// the one that died.
+  /// Stops all later pushes, and waits for a push that has begun, but for at most 0.1 s, because
+  /// its thread may be the one that died. May be called by any thread or signal handler.
   void freeze() noexcept;
 
 private:
@@ -52,7 +52,7 @@ private:
   std::vector<std::byte> memory_;
   std::vector<Slot> slots_;
   std::size_t next_offset_ = 0;
-  std::atomic<std::uint64_t> oldest_{0}; ///< these two count slots
+  std::atomic<std::uint64_t> oldest_{0}; ///< oldest_ and end_ count slots
   std::atomic<std::uint64_t> end_{0};
   std::atomic<std::uint64_t> dropped_{0}; ///< entries
   std::atomic<bool> pushing_{false};

@@ -1,6 +1,6 @@
 #pragma once
-// A loop that is fed from a recording, tick by tick and without a clock: the same recording gives
-// the same shape, bit for bit, on the same build and the same kind of processor.
+// Feeds a loop from a recording, tick by tick and without a clock. The same recording gives the
+// same shape, bit for bit, on the same build and the same kind of processor.
 
 #include <memory>
 #include <string_view>
@@ -10,21 +10,22 @@
 
 namespace nendo::recording {
 
-/// What is wrong with a recording of which no shape can be made, behind its file's name.
+/// The message, after the file's name, about a recording from which no shape can be made.
 inline constexpr std::string_view without_loop =
     "gloves were recorded, but no loop that shapes a model; shape one with `nendo run --right "
     "replay:FILE`";
 
 class LoopReplay {
 public:
-  /// A loop as it was when it began, over `model`, which ought to be the one that was recorded
-  /// (LoopSetup::mesh_sum). Error: bad_input (gloves alone were recorded, or what tells of the loop
-  /// is damaged; the hands cannot take hold of the model).
+  /// Makes the recorded loop in its first state, over `model`, which should be the recorded one
+  /// (LoopSetup::mesh_sum). Error: bad_input (no loop was recorded, the data about the loop is
+  /// damaged, or the hands cannot take hold of the model).
   static Result<std::unique_ptr<LoopReplay>> make(const Setup& setup, const deform::Mesh& model);
 
-  /// What comes next in the recording. True: it was a tick, and it has run.
+  /// Feeds the next entry of the recording. Returns true if it was a tick, which has then run.
   bool feed(const Entry& entry) noexcept;
-  /// Nothing was missing so far, so that the shape is the recorded loop's.
+  /// Returns true if nothing was missing so far, so that the shape equals that of the recorded
+  /// loop.
   bool is_exact() const noexcept { return exact_; }
 
   flow::DeformLoop& loop() noexcept { return *loop_; }

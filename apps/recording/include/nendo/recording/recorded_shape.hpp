@@ -1,6 +1,6 @@
 #pragma once
-// A shape in a recording. None is needed for a replay; they are for programs that have no loop, and
-// to compare with what a replay on another machine makes.
+// A shape in a recording. A replay does not need it. It is for programs that have no loop, and for
+// a comparison with the result of a replay on another machine.
 
 #include <cstdint>
 #include <optional>
@@ -19,17 +19,18 @@ struct RecordedShape {
 };
 
 inline constexpr driver::ChunkType shape_chunk = driver::chunk_type("SHAP");
-/// As many as a chunk has room for.
+/// The greatest number of vertices that a chunk has room for.
 inline constexpr std::size_t most_recorded_vertices = (driver::most_payload_bytes - 12) / 12;
 
 RecordedShape shape_of(std::uint64_t tick, const deform::Points& vertices);
-/// The payload of a chunk; at most most_recorded_vertices.
+/// Writes the payload of a chunk. The shape must have at most most_recorded_vertices.
 void put_shape(ByteWriter& writer, const RecordedShape& shape);
-/// Nothing if the payload is not what put_shape() writes, or has a number that is not finite.
+/// Returns nothing if the payload is not what put_shape() writes, or has a number that is not
+/// finite.
 std::optional<RecordedShape> read_shape(std::span<const std::byte> payload);
 
-/// The greatest distance of a vertex from where `vertices` has it, model units; nothing if there
-/// are not as many.
+/// Returns the greatest distance between a vertex of `shape` and the same vertex of `vertices`, in
+/// model units. Returns nothing if the numbers of vertices differ.
 std::optional<double> distance_between(const RecordedShape& shape, const deform::Points& vertices);
 
 } // namespace nendo::recording

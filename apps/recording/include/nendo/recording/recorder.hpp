@@ -1,6 +1,6 @@
 #pragma once
-// Takes what a loop leaves on its input log to a file, or keeps the last of it in memory, on a
-// thread of its own. However slow or full the disk is, the loop does not notice.
+// Writes the entries of a loop's input log to a file, or keeps the latest ones in memory, on a
+// thread of its own. However slow or full the disk is, the loop is not delayed.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,15 +16,16 @@
 namespace nendo::recording {
 
 struct RecorderOptions {
-  std::filesystem::path file{}; ///< empty: none. It may not be there yet
-  /// So much is kept in memory; 0: nothing.
+  std::filesystem::path file{}; ///< empty means no file; the file must not exist yet
+  /// The latest time span that is kept in memory; 0 means nothing is kept.
   HostClock::duration keep_last{};
-  /// "clay" for clay.kept-1.nendo and so on, and for clay.crash.nendo.
+  /// The beginning of the names of kept files: "clay" gives clay.kept-1.nendo and so on, and
+  /// clay.crash.nendo.
   std::filesystem::path kept_stem{};
   bool keep_on_switch = false; ///< keep() when a glove's switch is turned on
-  /// One line for people, from the recorder's thread: what was kept where, what failed.
+  /// Receives one line for people, from the recorder's thread: which file was kept, or what failed.
   std::function<void(std::string_view)> report{};
-  /// A chunk is written, and is on the disk, so often: what a crash can cost.
+  /// The period in which a chunk is written to the disk. A crash can lose that much.
   HostClock::duration chunk_time = std::chrono::milliseconds(500);
 };
 
@@ -39,21 +40,25 @@ struct Recorded {
 
 class Recorder {
 public:
-  /// Makes the file, with the setup in it, and the thread. With keep_last, a crash of the process
-  /// (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT) writes what is in memory, until this is destroyed;
-  /// one recorder at a time does so, and not for a thread whose stack has overflowed: a handler has
-  /// no other to run on. `input log` must outlive it. Blocks for as long as the disk does.
-  /// Error: failed (the file is there already, or cannot be made).
+  /// Creates the file with the setup in it, and starts the thread. `input_log` must outlive the
+  /// recorder. Blocks as long as the disk does. Error: failed (the file exists already or cannot be
+  /// created, or the thread cannot be started).
+  /// With keep_last, a crash of the process (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT) writes what
+  /// is in memory to a file, until the recorder is destroyed. Only one recorder at a time does so.
+  /// It does not do so for a thread whose stack has overflowed, because the handler has no other
+  /// stack.
   static Result<std::unique_ptr<Recorder>> begin(const Setup& setup, flow::InputLog& input_log,
                                                  RecorderOptions options);
-  virtual ~Recorder() = default; ///< as end()
+  virtual ~Recorder() = default; ///< does what end() does
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// The last of it becomes a file, soon. Any thread, wait-free; nothing without keep_last.
+  /// Requests that what is in memory is written to a file soon. Does nothing without keep_last. Any
+  /// thread may call it. Wait-free.
   virtual void keep() noexcept = 0;
-  /// After the loop's last tick: writes the rest and the ending, and joins the thread. Idempotent.
-  /// Error: failed, if anything that was to be written could not be; what is in the file is whole.
+  /// To be called after the loop's last tick. Writes the remaining entries and the ending, and
+  /// joins the thread. Further calls do nothing and return the same. Error: failed, if anything
+  /// could not be written; all that is in the file is whole.
   virtual Result<Recorded> end(const std::optional<ShapeSum>& shape = {}) = 0;
 
 protected:

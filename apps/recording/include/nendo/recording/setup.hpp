@@ -1,6 +1,6 @@
 #pragma once
-// What a recording begins with: who, when, with what, and everything that a loop is made from, so
-// that another one can be made that does the same.
+// The beginning of a recording: who recorded it, when and with what, and all data from which the
+// loop is made, so that a loop that does the same can be made again.
 
 #include <chrono>
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace nendo::recording {
 
-/// By which a model is known again: how many vertices, and CRC-32C of their coordinates, x y z of
-/// one after another, as little-endian doubles.
+/// Identifies a model by its number of vertices and the CRC-32C of their coordinates, which are x y
+/// z of one vertex after another as little-endian doubles.
 struct ShapeSum {
   std::uint64_t vertices = 0;
   std::uint32_t crc = 0;
@@ -28,33 +28,35 @@ struct LoopSetup {
   std::string mesh; ///< the file's name, as it was given
   ShapeSum mesh_sum;
   flow::Placement placement; ///< without the gaps
-  /// Without the pointers, the stages, and `spin`, `longest_wait` and `evaluation.threads`, of
-  /// which no shape depends.
+  /// Has no pointers and no stages, and not `spin`, `longest_wait` and `evaluation.threads`,
+  /// because the shape does not depend on them.
   flow::LoopOptions options;
-  /// Which vector instructions evaluated the field: others may round another way.
+  /// The vector instructions with which the field was evaluated. Others may round differently.
   std::string simd;
 };
 
 struct Setup {
-  std::chrono::sys_time<std::chrono::nanoseconds> begun; ///< by the clock on the wall
-  HostTime begun_host{};                                 ///< the same moment by the other clock
-  std::string program;                                   ///< what recorded it: "nendo 0.1.0"
-  std::string wearer;                                    ///< empty: not told
-  std::vector<driver::GloveInfo> gloves;                 ///< by their numbers
-  /// By their gloves' numbers, also without a loop. Without the rings and measured bones.
+  std::chrono::sys_time<std::chrono::nanoseconds> begun; ///< by the system clock
+  HostTime begun_host{};                                 ///< the same moment by HostClock
+  std::string program;                   ///< the program that recorded it, such as "nendo 0.1.0"
+  std::string wearer;                    ///< empty means unknown
+  std::vector<driver::GloveInfo> gloves; ///< by their numbers
+  /// By the numbers of their gloves, also if there is no loop. They have no rings and no measured
+  /// bones.
   std::vector<flow::HandInput> hands;
-  std::optional<LoopSetup> loop; ///< nothing: gloves alone were recorded
+  std::optional<LoopSetup> loop; ///< nothing if only gloves were recorded
 };
 
-/// A setup that begins now.
+/// Returns a setup that begins now.
 Setup begin_setup(std::string program);
 
-/// The file's header and the chunks of a setup, numbered from 0; as many as `chunks` then says.
+/// Returns the file's header and the chunks of a setup, numbered from 0, and sets `chunks` to the
+/// number of these chunks.
 std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks);
 
-/// Puts what a chunk tells into `setup`. False: it is a setup's, but holds what no nendo writes.
-/// Chunks of other types change nothing and are fine. What comes out is finite, and usable as it
-/// is: enumerators, counts and sizes are judged.
+/// Reads a chunk into `setup`. Returns false if the chunk is of a setup, but holds something that
+/// nendo does not write. Chunks of other types are ignored and give true. The result is finite and
+/// usable without further checks, because enumerators, counts and sizes are checked here.
 bool read_setup_chunk(driver::ChunkType type, std::span<const std::byte> payload, Setup& setup);
 
 } // namespace nendo::recording

@@ -1,5 +1,5 @@
 #pragma once
-// A recording, read entry by entry.
+// Reads a recording entry by entry.
 
 #include <cstdint>
 #include <filesystem>
@@ -18,50 +18,56 @@
 
 namespace nendo::recording {
 
-/// Here something is missing: the recorder could not keep up, a chunk is damaged, or the recording
-/// begins in the middle.
+/// Marks a place where something is missing: the recorder could not keep up, a chunk is damaged, or
+/// the recording begins in the middle.
 struct Gap {
-  std::uint64_t entries = 0; ///< 0: nobody knows how many
+  std::uint64_t entries = 0; ///< 0 means an unknown number
 };
 
 using Entry =
     std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoggedTick, Gap>;
 
-/// What a recorder says when it has come to its end.
+/// What a recorder writes at the end of a recording.
 struct Ending {
   HostTime host{};
   std::uint64_t samples = 0;
   std::uint64_t requests = 0;
   std::uint64_t ticks = 0;
   std::uint64_t lost = 0;        ///< entries that found the input log full
-  std::optional<ShapeSum> shape; ///< the loop's, when it had ended
+  std::optional<ShapeSum> shape; ///< of the loop after its last tick
 };
 
-/// An entry as it stands on an input log chunk. A sample's `hand` is its glove's number.
+/// Writes an entry as it is in an input log chunk. The `hand` of a sample is the number of its
+/// glove.
 void put_entry(ByteWriter& writer, const Entry& entry);
 void put_ending(ByteWriter& writer, const Ending& ending);
 inline constexpr driver::ChunkType ending_chunk = driver::chunk_type("END ");
 
 class TakeReader {
 public:
-  /// Reads up to the first entry. Errors: bad_input (as ChunkReader::open(), nothing in it).
+  /// Opens a recording and reads up to the first entry. Errors: bad_input (as for
+  /// ChunkReader::open(), or there is nothing in it).
   static Result<TakeReader> open(const std::filesystem::path& path);
-  /// `bytes` must outlive it.
+  /// Does the same for a recording in memory. `bytes` must outlive the reader.
   static Result<TakeReader> of(std::span<const std::byte> bytes, std::string_view name);
 
-  /// Complete, as far as it is whole, when this has been made: it does not change any more.
+  /// Returns the setup. It does not change any more, and it is complete as far as the recording is
+  /// whole.
   const Setup& setup() const noexcept { return setup_; }
-  /// The next entry that can be used; nothing at the end. Kinds and chunks that this nendo does not
-  /// know are passed over.
+  /// Returns the next usable entry, or nothing at the end. Entries and chunks of unknown kinds are
+  /// skipped.
   std::optional<Entry> next();
-  /// The shape after the entries up to the latest but one, or up to the latest if there is no
-  /// other; nothing: none is recorded there, or it has been taken.
+  /// Takes the shape that was recorded just before the entry that next() returned last, or, at the
+  /// end, after all entries. Returns nothing if no shape is recorded there, or if it has been taken
+  /// already.
   std::optional<RecordedShape> take_shape() { return std::exchange(shape_, std::nullopt); }
-  /// At the end; nothing: the recording was cut off.
+  /// Returns the ending once next() has reached the end. It stays empty if the recording was cut
+  /// off.
   const std::optional<Ending>& ending() const noexcept { return ending_; }
   const driver::ChunkReader& chunks() const noexcept { return chunks_; }
   std::uint64_t shapes() const noexcept { return shapes_; } ///< so far
-  /// Chunks and entries whose checksum fits, but which no nendo writes.
+  /// Returns the number of chunks and entries so far whose checksum is right, but which nendo does
+  /// not write.
   std::uint64_t strange() const noexcept { return strange_; }
 
 private:
@@ -77,7 +83,7 @@ private:
   std::uint64_t shapes_ = 0;
   std::uint64_t damages_told_ = 0;
   std::uint64_t strange_ = 0;
-  bool setup_done_ = false; ///< at the first input log
+  bool setup_done_ = false; ///< true from the first input log chunk on
   bool gap_due_ = false;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// What may be asked of a recording without a loop: what is in it, whether it is whole, and to have
-// what is whole, or a part of it, as a new file, which is there only if it is complete. All of
-// these block for as long as the disk does.
+// Tools for recordings that need no live loop: a summary, a check whether the recording is whole,
+// and new recordings from the whole parts, or from a part, of another. A new file exists only if it
+// is complete. All functions block as long as the disk does.
 
 #include <array>
 #include <cstdint>
@@ -17,13 +17,13 @@ namespace nendo::recording {
 
 struct GloveSummary {
   std::uint64_t samples = 0;
-  std::uint64_t lost = 0;         ///< that its sequence numbers tell of
+  std::uint64_t lost = 0;         ///< according to the sequence numbers
   std::uint64_t out_of_order = 0; ///< sequence numbers that did not grow
   HostTime first{};
   HostTime last{};
   HostClock::duration longest_pause{}; ///< between two samples
 
-  double rate_hz() const noexcept; ///< 0 of less than two samples
+  double rate_hz() const noexcept; ///< 0 if there are less than two samples
 };
 
 struct TakeSummary {
@@ -36,7 +36,7 @@ struct TakeSummary {
   std::uint64_t missed = 0; ///< deadlines between ticks
   std::uint64_t ticks_out_of_order = 0;
   std::uint64_t gaps = 0;
-  std::uint64_t missing = 0; ///< entries that the gaps know of
+  std::uint64_t missing = 0; ///< entries that the gaps count
   std::optional<Ending> ending;
   HostTime last{}; ///< of any entry
   std::uint64_t bytes = 0;
@@ -44,19 +44,20 @@ struct TakeSummary {
   std::uint64_t damage_count = 0;
   std::vector<driver::ChunkDamage> damages; ///< the first of them
   std::uint64_t strange = 0;                ///< TakeReader::strange()
-  bool counts_agree = true; ///< those of the ending and what there is, where nothing is missing
+  bool counts_agree = true; ///< the counts of the ending match the entries, unless some are missing
 
   HostClock::duration duration() const noexcept;
-  /// No damage, and nothing that a recorder would not write; it may have been cut off.
+  /// Returns true if there is no damage and nothing that a recorder would not write. The recording
+  /// may still have been cut off.
   bool is_whole() const noexcept;
 };
 
-/// Error: bad_input, as TakeReader::open().
+/// Reads a recording and summarises it. Errors: those of TakeReader::open().
 Result<TakeSummary> summarise(const std::filesystem::path& path);
-/// As TakeReader::of().
+/// Does the same for a recording in memory. Errors: those of TakeReader::of().
 Result<TakeSummary> summarise(std::span<const std::byte> bytes, std::string_view name);
 
-/// What was written.
+/// What was written to a new file.
 struct NewTake {
   std::uint64_t bytes = 0;
   std::uint64_t entries = 0; ///< of cut_take() and add_shapes()
@@ -65,19 +66,21 @@ struct NewTake {
   std::uint64_t damages = 0; ///< of repair_take(): places that are gaps now
 };
 
-/// All whole chunks, numbered anew, as a new file; a gap stands for each damage. Errors: bad_input
-/// (nothing in it is whole), failed (the new file is there already, or cannot be written).
+/// Writes all whole chunks to a new file, with new numbers. A gap stands for each damaged place.
+/// Errors: bad_input (nothing is whole), failed (the new file exists already or cannot be written).
 Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// What happened from `begin` to before `end`, counted from the recording's beginning, as a new
-/// file; whole ticks of a loop. Unless it begins with the recording, a gap comes first: the shape
-/// at its beginning is not in it. Errors: as repair_take(); bad_input if nothing happened then.
+/// Writes what happened from `begin` to before `end` to a new file, in whole ticks of a loop. Both
+/// times count from the beginning of the recording. If the part does not begin with the recording,
+/// it begins with a gap, because the shape at that moment is not in it. Errors: those of
+/// repair_take(), and bad_input if nothing happened then.
 Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesystem::path& to,
                          HostClock::duration begin, HostClock::duration end);
 
-/// The same with so many shapes a second, each of a whole tick, the first one's always: replays the
-/// loop over `model`, which ought to be the recorded one. Shapes that it has are left out. Errors:
-/// as repair_take() and LoopReplay::make(); bad_input (too many vertices).
+/// Writes a new file with all entries and with `rate_hz` shapes a second. To make them, it replays
+/// the loop over `model`, which should be the recorded one. Each shape belongs to a whole tick, and
+/// the first tick has one. Shapes that the recording already has are left out. Errors: those of
+/// repair_take() and LoopReplay::make(), and bad_input (too many vertices).
 Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesystem::path& to,
                            const deform::Mesh& model, double rate_hz);
 

@@ -15,7 +15,7 @@ namespace nendo::timeline {
 Result<void> move_key(Timeline& timeline, Side side, std::size_t key, double to_s);
 /// Copies a key to another time. Errors: those of move_key().
 Result<void> copy_key(Timeline& timeline, Side side, std::size_t key, double to_s);
-/// Error: there is no such key, or it is the hand's last one.
+/// Deletes a key. Error: there is no such key, or it is the hand's last one.
 Result<void> delete_key(Timeline& timeline, Side side, std::size_t key);
 /// Adds a key on the curve, so that the pose at that time stays the same.
 Result<void> add_key(Timeline& timeline, Side side, double at_s);
@@ -29,7 +29,7 @@ Result<void> retime(Timeline& timeline, double scale, double from_s, double to_s
 /// would have there without the key. Error: there is no such key, it is the first or last one, or
 /// the factor is not from 0 to 1.
 Result<void> blend_key(Timeline& timeline, Side side, std::size_t key, double factor);
-/// Blends `one` with `other`. Hands that both have move between the curve of `one` (factor 0) and
+/// Blends `one` with `other`. Hands that both have get a curve between that of `one` (factor 0) and
 /// that of `other` (factor 1), with the keys of both. All else stays as in `one`. Error: there is
 /// no common hand, or the factor is not from 0 to 1.
 Result<void> blend(Timeline& one, const Timeline& other, double factor);

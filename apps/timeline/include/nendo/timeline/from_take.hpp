@@ -10,7 +10,7 @@ namespace nendo::timeline {
 
 struct MadeTimeline {
   Timeline timeline;
-  std::vector<Reduction> hands; ///< by the timeline's hands, without their keys
+  std::vector<Reduction> hands; ///< in the order of the timeline's hands, without their keys
   bool exact = false;           ///< nothing was missing in the recording
 };
 

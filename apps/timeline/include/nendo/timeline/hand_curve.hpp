@@ -14,11 +14,12 @@ namespace nendo::timeline {
 /// move between them. The wrist turns at a constant speed from key to key.
 class HandCurve {
 public:
-  /// `keys` fulfil the conditions of HandTrack::keys.
+  /// `keys` must fulfil the conditions of HandTrack::keys.
   explicit HandCurve(std::vector<Key> keys);
 
-  /// At a key's time this is that key, bit for bit. Before the first key it is the first one, after
-  /// the last key the last one. Any thread may call it.
+  /// Returns the pose at that time. At the time of a key it is that key, bit for bit. Before the
+  /// first key it is the first one, and after the last key it is the last one. Any thread may call
+  /// it.
   Key at(double time_s) const noexcept;
   const std::vector<Key>& keys() const noexcept { return keys_; }
 
@@ -32,7 +33,7 @@ private:
   double slope(std::size_t key, std::size_t at) const noexcept;
 
   std::vector<Key> keys_;
-  std::vector<Channels> slopes_; ///< a second, at the keys
+  std::vector<Channels> slopes_; ///< per second, at the keys
 };
 
 } // namespace nendo::timeline

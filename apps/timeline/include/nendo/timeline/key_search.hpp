@@ -18,7 +18,7 @@ struct KeyRef {
 const Key* find_key(const Timeline& timeline, const KeyRef& key) noexcept;
 /// Returns the hand's key at exactly that time.
 std::optional<KeyRef> key_at(const Timeline& timeline, Side side, double time_s) noexcept;
-/// Return the nearest key after, or before, time_s: of that side's hand, or of any hand.
+/// Return the nearest key after or before time_s, either of the hand of that side or of any hand.
 std::optional<KeyRef> key_after(const Timeline& timeline, double time_s,
                                 std::optional<Side> side = std::nullopt) noexcept;
 std::optional<KeyRef> key_before(const Timeline& timeline, double time_s,

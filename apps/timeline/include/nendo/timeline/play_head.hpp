@@ -1,5 +1,5 @@
 #pragma once
-// The play head of a timeline: the present time, and whether and how fast it moves on.
+// The play head of a timeline. It has the present time, and whether and how fast it moves on.
 
 #include <algorithm>
 #include <cmath>

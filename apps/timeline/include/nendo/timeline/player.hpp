@@ -19,17 +19,17 @@ public:
   /// Makes the next frame, the first one at 0 s. Returns false if there is none. Allocates for
   /// undo.
   bool next();
-  /// True if there is a next frame and it is not later than time_s, except for rounding.
+  /// Returns true if there is a next frame that is not later than time_s, except for rounding.
   bool has_frame_by(double time_s) const noexcept;
   const flow::Frame& frame() const noexcept { return frame_; } ///< not before next()
-  double time_s() const noexcept;                              ///< of it
-  /// The time of the timeline's last frame.
+  double time_s() const noexcept;                              ///< of frame()
+  /// Returns the time of the timeline's last frame.
   double last_time_s() const noexcept;
   std::uint64_t frame_count() const noexcept { return frames_; } ///< in all
   const flow::LoopStats& stats() const noexcept { return stats_; }
   const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
   const Timeline& timeline() const noexcept { return timeline_; }
-  /// The present shape, with the whole of a stroke that has not ended. 3 by #vertices.
+  /// Returns the present shape, 3 by #vertices. It includes a stroke that has not ended.
   deform::Points final_shape() { return shaping_.final_shape(tips_); }
 
 private:

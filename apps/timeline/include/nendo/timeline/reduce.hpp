@@ -9,8 +9,8 @@
 
 namespace nendo::timeline {
 
-/// How far the curve through the keys may be from any frame. With 0, every frame that is not
-/// exactly on the curve becomes a key.
+/// The greatest allowed distance between a frame and the curve through the keys. With 0, every
+/// frame that is not exactly on the curve becomes a key.
 struct Tolerance {
   double angle_rad =
       std::numeric_limits<double>::infinity();            ///< of any joint, and the wrist's turn
@@ -31,9 +31,9 @@ struct Reduction {
   Deviation worst; ///< of any frame from the HandCurve of the keys
 };
 
-/// `frames` fulfil the conditions of HandTrack::keys. The first and the last frame become keys. As
-/// long as the curve is too far off, the worst frame between two keys becomes a key. At the end,
-/// keys that are not needed are removed.
+/// Returns keys for the frames, which must fulfil the conditions of HandTrack::keys. The first and
+/// the last frame become keys. As long as the curve is too far off, the worst frame between two
+/// keys becomes a key. At the end, keys that are not needed are removed.
 Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
                       const Tolerance& tolerance);
 

@@ -33,7 +33,7 @@ public:
   ShapeCache(const ShapeCache&) = delete;
   ShapeCache& operator=(const ShapeCache&) = delete;
 
-  /// Caches this timeline from now on. Does not wait. Work on the previous timeline stops, and
+  /// Caches this timeline from now on. Does not block. Work on the previous timeline stops, and
   /// shapes that are the same in both are kept. Later timelines may differ from the first one by
   /// edits only (edit.hpp).
   void follow(Timeline timeline);
@@ -42,7 +42,7 @@ public:
     std::shared_ptr<const CachedShape> shape; ///< null if there is none yet
     bool fresh = false;                       ///< false if it was made before the last edits
   };
-  /// Returns the cached shape for that time. While it is not made, returns an older one or a
+  /// Returns the cached shape for that time. Until that shape is made, it returns an older one or a
   /// neighbour.
   Found nearest(double time_s) const;
 
@@ -70,15 +70,15 @@ private:
 
   const deform::Mesh model_;
   const std::size_t most_bytes_;
-  std::optional<Timeline> made_of_; ///< the worker's alone: of which the fresh ones are
+  std::optional<Timeline> made_of_; ///< the timeline of the fresh shapes; used by the worker only
 
-  mutable std::mutex mutex_; ///< of all below
+  mutable std::mutex mutex_; ///< guards all members below
   mutable std::condition_variable changed_;
-  std::optional<Timeline> wanted_; ///< and not begun yet
-  std::uint64_t number_ = 0;       ///< of the latest that was wanted
-  std::uint64_t settled_ = 0;      ///< of the one that these are about:
+  std::optional<Timeline> wanted_; ///< the next timeline; nothing once work on it has begun
+  std::uint64_t number_ = 0;       ///< of the latest wanted timeline
+  std::uint64_t settled_ = 0;      ///< of the timeline that the following members describe
   std::vector<Shape> slots_;
-  std::size_t fresh_ = 0; ///< so many at the beginning are its own
+  std::size_t fresh_ = 0; ///< the number of fresh shapes, which come first
   std::uint64_t frames_ = 0;
   std::uint64_t stride_ = 1;
   double rate_hz_ = 1.0;

@@ -1,6 +1,6 @@
 #pragma once
-// A take as key poses. For each hand it has joint angles and the wrist's place at some times. It
-// also has the requests to the model, and all options on which the shape depends.
+// A take as key poses. For each hand, it has joint angles and the place of the wrist at some times.
+// It also has the requests to the model, and all options on which the shape depends.
 
 #include <optional>
 #include <string>
@@ -17,20 +17,20 @@ namespace nendo::timeline {
 struct Key {
   double time_s = 0.0;
   hand::JointAngles angles;
-  Eigen::Vector3d wrist_m = Eigen::Vector3d::Zero(); ///< on the stage: where the forearm ends
+  Eigen::Vector3d wrist_m = Eigen::Vector3d::Zero(); ///< where the forearm ends, on the stage
   Eigen::Quaterniond wrist_turn = Eigen::Quaterniond::Identity(); ///< nearly of unit length
 
   Eigen::Isometry3d wrist_pose() const noexcept;
 };
 
-/// True if all numbers of both have the same bits.
+/// These return true if all numbers of both have the same bits.
 bool same_bits(double one, double other) noexcept;
 bool same_bits(const Key& one, const Key& other) noexcept;
 
 struct HandTrack {
   Side side = Side::right;
   hand::HandSize size;
-  std::vector<Key> keys; ///< at least one; times rise
+  std::vector<Key> keys; ///< at least one, in rising order of times
 
   hand::HandSkeleton skeleton() const { return hand::HandSkeleton(side, size); }
 };
@@ -46,15 +46,15 @@ bool same_bits(const Event& one, const Event& other) noexcept;
 struct Timeline {
   std::string take;             ///< the recording's file name, for people; may be empty
   std::string mesh;             ///< the model's file
-  recording::ShapeSum mesh_sum; ///< by which it is known again
+  recording::ShapeSum mesh_sum; ///< identifies the model
   double units_per_metre = 1.0; ///< from the stage to the model
-  double rate_hz = 90.0;        ///< of the frames that are made of it
+  double rate_hz = 90.0;        ///< of the frames that are made from the timeline
   double duration_s = 0.0;      ///< of the last frame
   bool held = true;             ///< the hands hold the model at first
   flow::SculptorOptions sculptor;
-  std::vector<HandTrack>
-      hands;                 ///< one or two, of different sides; own supports count by their order
-  std::vector<Event> events; ///< times do not fall
+  /// One or two, of different sides. Their order numbers the own supports of fingertips.
+  std::vector<HandTrack> hands;
+  std::vector<Event> events; ///< in order of their times, which may be equal
 
   HandTrack* track(Side side) noexcept;
   const HandTrack* track(Side side) const noexcept;

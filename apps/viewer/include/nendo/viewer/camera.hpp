@@ -9,15 +9,15 @@
 
 namespace nendo::viewer {
 
-/// A way of looking: azimuth 0 from +z (the operator's side, which models face), 90 from +x;
-/// elevation 90 from above. Degrees.
+/// A direction of view in degrees. Azimuth 0 looks from +z, the operator's side, which models face;
+/// azimuth 90 looks from +x; elevation 90 looks from above.
 struct View {
   double azimuth_deg = 0.0;
   double elevation_deg = 0.0;
 };
 
-/// front, back, left, right, side, top, or "AZ,EL" in degrees. nullopt if it is not that, or not
-/// within 360 and 90.
+/// Parses front, back, left, right, side, top, or "AZ,EL" in degrees. Returns nullopt if the text
+/// is something else, or if |AZ| exceeds 360 or |EL| exceeds 90.
 std::optional<View> view_named(std::string_view text) noexcept;
 
 struct Camera {
@@ -29,22 +29,25 @@ struct Camera {
   static constexpr double least_distance_m = 0.05;
   static constexpr double most_distance_m = 50.0;
 
-  /// Rows: to the picture's right, up, and towards the camera. Orthonormal.
+  /// Returns an orthonormal matrix whose rows point to the picture's right, up, and towards the
+  /// camera.
   Eigen::Matrix3d axes() const noexcept;
   Eigen::Vector3d eye() const noexcept;
-  /// Half the picture's height at a distance of 1.
+  /// Returns half the picture's height at a distance of 1.
   double tangent() const noexcept;
-  /// World to clip coordinates as OpenGL has them. aspect: width / height.
+  /// Returns the matrix from world coordinates to OpenGL's clip coordinates. aspect: width /
+  /// height.
   Eigen::Matrix4d projection(double aspect) const noexcept;
 
-  /// Turns by the pixels of a mouse's way, in a window that is `height` pixels high.
+  /// Turn and shift the camera by the pixels that the mouse moved, in a window that is `height`
+  /// pixels high. Positive steps of zoom() bring the camera closer.
   void orbit(double dx, double dy) noexcept;
   void pan(double dx, double dy, double height) noexcept;
   void zoom(double steps) noexcept;
 };
 
-/// A camera that has all the points in its picture, with `margin` of its half size to spare, and
-/// what they take up in the middle. Points that are not finite do not count.
+/// Returns a camera that has all the points in the middle of its picture. `margin` is the part of
+/// the picture's half size that stays free. Points that are not finite do not count.
 Camera framing(std::span<const Eigen::Vector3f> points, View view, double aspect,
                double margin = 0.06);
 

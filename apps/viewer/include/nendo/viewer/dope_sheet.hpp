@@ -1,6 +1,7 @@
 #pragma once
-// Times along a strip, and what of it the pointer is at. No drawing, no window: numbers in, numbers
-// out. Pixels count from the strip's top left corner.
+// The geometry of a strip that shows a timeline: which time is at which pixel, and which key or
+// mark the pointer is at. It draws nothing and knows no window. Pixels count from the strip's top
+// left corner.
 
 #include <cstddef>
 #include <optional>
@@ -15,7 +16,7 @@ namespace nendo::viewer {
 /// A hand's keys.
 struct StripLane {
   Side side = Side::right;
-  std::vector<double> keys_s; ///< rising
+  std::vector<double> keys_s; ///< in rising order
 };
 
 struct StripMark {
@@ -29,42 +30,46 @@ struct StripKey {
   friend bool operator==(const StripKey&, const StripKey&) = default;
 };
 
-/// Which part of a timeline is seen, and where. From the top: a ruler, the lanes, the marks.
+/// The visible part of a timeline and its place on the strip. From top to bottom, the strip has a
+/// ruler, the lanes and the marks.
 class DopeSheet {
 public:
-  static constexpr double left = 58.0;    ///< names stand there
-  static constexpr double right = 14.0;   ///< room for half a key
+  static constexpr double left = 58.0;    ///< pixels for the names
+  static constexpr double right = 14.0;   ///< pixels, enough for half a key
   static constexpr double ruler = 24.0;   ///< height
   static constexpr double lane = 26.0;    ///< height
-  static constexpr double reach = 8.0;    ///< a pointer so near to a key or a mark is at it
-  static constexpr double closest = 0.02; ///< of seconds, seen all over
+  static constexpr double reach = 8.0;    ///< pixels from the pointer to a key or mark
+  static constexpr double closest = 0.02; ///< seconds; the shortest part that can fill the strip
 
   static double height_for(std::size_t lanes) noexcept {
     return ruler + lane * static_cast<double>(lanes + 1);
   }
 
-  /// The strip's width, and how long the timeline is now; keeps what is seen, within it.
+  /// Sets the strip's width in pixels and the timeline's duration. The visible part stays the same
+  /// as far as it is within the duration. If all was visible, all stays visible.
   void fit(double width, double duration_s) noexcept;
-  double first_s() const noexcept { return first_s_; } ///< seen
-  double last_s() const noexcept { return last_s_; }   ///< seen
+  double first_s() const noexcept { return first_s_; } ///< of the visible part
+  double last_s() const noexcept { return last_s_; }   ///< of the visible part
   double x_of(double time_s) const noexcept;
-  /// Within 0 and the duration, wherever x is.
+  /// Returns the time at x, limited to 0 and the duration.
   double time_at(double x) const noexcept;
-  /// Of a lane's keys, or with as many as there are lanes, of the marks.
+  /// Returns the y of the middle of that lane. The number of lanes as `lane` gives the row of the
+  /// marks.
   static double middle_of(std::size_t lane) noexcept;
 
-  /// The time under x stays there; forward is closer.
+  /// Zooms while the time under x stays there. Positive steps come closer.
   void zoom(double x, double steps) noexcept;
   void pan(double dx) noexcept;
-  /// What is seen follows a play head that left it.
+  /// Moves the visible part so that it contains time_s, if it does not.
   void follow(double time_s) noexcept;
 
-  /// The key at the pointer, or the nearest of several.
+  /// Returns the key at the pointer, or the nearest if there are several.
   std::optional<StripKey> key_at(std::span<const StripLane> lanes, double x, double y) const;
-  /// Likewise, among the marks.
+  /// Returns the mark at the pointer, or the nearest if there are several.
   std::optional<std::size_t> mark_at(std::span<const StripMark> marks, std::size_t lanes, double x,
                                      double y) const;
-  /// Between the ruler's numbers: 1, 2 or 5 times a power of ten, so that they have room.
+  /// Returns the interval between the ruler's numbers: 1, 2 or 5 times a power of ten, so that the
+  /// numbers have room.
   double ruler_step_s() const noexcept;
 
 private:

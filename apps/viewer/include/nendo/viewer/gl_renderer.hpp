@@ -1,6 +1,6 @@
 #pragma once
-// The same scene in OpenGL 3.3. Of the model, only blocks whose stamps changed go to the graphics
-// card. All of this on the thread whose context it is.
+// Draws a scene with OpenGL 3.3. Only those blocks of the model whose stamps changed are sent to
+// the graphics card. All calls belong to the thread that has the OpenGL context.
 
 #include <array>
 #include <memory>
@@ -15,22 +15,24 @@ namespace nendo::viewer {
 
 class GlRenderer {
 public:
-  /// Needs a current context. Error: failed (no OpenGL 3.3, with what there is instead).
+  /// Needs a current context. Error: failed (no OpenGL 3.3; the message tells what there is
+  /// instead).
   static Result<std::unique_ptr<GlRenderer>> make();
   ~GlRenderer();
   GlRenderer(const GlRenderer&) = delete;
   GlRenderer& operator=(const GlRenderer&) = delete;
 
-  /// Another model: its faces, and what its blocks mean. To be followed before it is drawn.
+  /// Sets another model: its faces and the layout of its blocks. follow() must be called before
+  /// draw().
   void set_model(const deform::BlockLayout& layout, const SceneBuilder& builder);
-  /// Brings the model up to date: blocks that changed, and normals that changed with them.
+  /// Sends the blocks that changed since the last call, and the normals that changed with them.
   void follow(const deform::BlockShape& shape);
-  /// How many blocks follow() has sent since set_model().
+  /// Returns the number of blocks that follow() has sent since set_model().
   std::uint64_t blocks_sent() const noexcept { return blocks_sent_; }
 
   enum class Look { shaded, silhouette };
-  /// The model, and of `beside` everything but its model, into the bound frame buffer, `below`
-  /// pixels from its bottom; all of the buffer is cleared.
+  /// Draws the model, and everything of `beside` except its model, into the bound frame buffer. The
+  /// picture begins `below` pixels above the bottom. The whole buffer is cleared.
   void draw(const Scene& beside, const Camera& camera, Size size, Look look = Look::shaded,
             int below = 0);
 
@@ -43,16 +45,16 @@ private:
   unsigned program_ = 0;
   unsigned vertex_array_ = 0;
   unsigned model_indices_ = 0;
-  std::array<unsigned, 2> model_buffers_{};  ///< places and normals, as blocks
-  std::array<unsigned, 2> model_textures_{}; ///< through which the shader reads them
-  std::array<unsigned, 3> stream_{};         ///< places, normals, corners of other surfaces
-  std::vector<std::uint32_t> corners_;       ///< into blocks
-  deform::BlockShape shape_;                 ///< as the card has it
+  std::array<unsigned, 2> model_buffers_{};  ///< positions and normals, in blocks
+  std::array<unsigned, 2> model_textures_{}; ///< the shader reads the buffers through them
+  std::array<unsigned, 3> stream_{};   ///< positions, normals and corners of the other surfaces
+  std::vector<std::uint32_t> corners_; ///< indices into the blocks
+  deform::BlockShape shape_;           ///< as the graphics card has it
   std::vector<Eigen::Vector3f> places_, normals_, new_normals_;
   std::vector<float> block_;
   Eigen::Vector3f offset_ = Eigen::Vector3f::Zero();
   float scale_ = 1.0F;
-  bool whole_ = false; ///< the card has the model
+  bool whole_ = false; ///< the graphics card has the whole model
   std::uint64_t blocks_sent_ = 0;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
-// The mouse as what tells where a hand is, for people whose gloves, or whose simulated hands, have
-// no tracker.
+// Moves a hand with the mouse, for people whose gloves or simulated hands have no tracker.
 
 #include <cstddef>
 #include <optional>
@@ -12,25 +11,27 @@
 
 namespace nendo::viewer {
 
-/// Holds a hand from the pointer's going down to its coming up.
+/// Holds a hand from the moment the mouse button goes down until it comes up.
 class HandMover {
 public:
-  /// Takes the hand with the joint nearest to the pointer, in pixels from the picture's top left;
-  /// none within `reach`: nothing is held.
+  /// Takes the hand with the joint that is nearest to the pointer, which is in pixels from the
+  /// picture's top left corner. Takes no hand if no joint is within `reach` pixels.
   static constexpr double reach = 60.0;
   void take(const Camera& camera, const flow::Frame& frame, const Eigen::Vector2d& pointer,
             Size size) noexcept;
   void let_go() noexcept { slot_.reset(); }
   bool holds() const noexcept { return slot_.has_value(); }
 
-  /// By pixels of the pointer's way: in the picture's plane, so that the hand stays under it.
+  /// Moves the hand by the pixels that the pointer moved, in the picture's plane, so that the hand
+  /// stays under the pointer. `height` is the picture's height in pixels.
   void shift(const Camera& camera, double dx, double dy, double height) noexcept;
-  /// About its wrist, and the picture's upright and level axes.
+  /// Turns the hand about its wrist, around the picture's vertical and horizontal axes, by the
+  /// pixels that the pointer moved.
   void turn(const Camera& camera, double dx, double dy) noexcept;
-  /// By steps of the wheel, 1 cm each: forward is away from the viewer.
+  /// Moves the hand by steps of the wheel, 1 cm each. Positive steps go away from the viewer.
   void push(const Camera& camera, double steps) noexcept;
 
-  /// Where the hand that is held is to be.
+  /// Returns the pose that the held hand's wrist must take.
   flow::WristMove move() const noexcept;
 
 private:

@@ -1,6 +1,7 @@
 #pragma once
-// A skin for the hand's bones: a closed surface about an open hand, made once, that follows any
-// pose by the bones near it. It shows the pose; it is no measurement of a wearer's flesh.
+// A skin for the hand's bones. It is a closed surface around an open hand, which is made once and
+// then follows any pose by the bones near it. It shows the pose and does not measure a wearer's
+// flesh.
 
 #include <array>
 #include <vector>
@@ -12,36 +13,36 @@ namespace nendo::viewer {
 
 class HandSkin {
 public:
-  /// Takes some ten milliseconds. Allocates.
+  /// Makes the skin, which takes some ten milliseconds. Allocates.
   explicit HandSkin(Side side);
 
-  /// The skin in that pose, moved by -origin_m; places, normals and corners of `surface` are
-  /// replaced. Bones may be of any length: the skin is stretched along each, and as thick as the
-  /// hand is large.
+  /// Computes the skin in that pose, moved by -origin_m, and replaces positions, normals and
+  /// corners of `surface`. Bones may have any length: the skin is stretched along each bone, and
+  /// its thickness follows the size of the hand.
   void drape(const hand::HandPose& pose, const Eigen::Vector3d& origin_m, Surface& surface) const;
 
-  /// The open hand about which the skin was made; its wrist is the origin.
+  /// Returns the pose of the open hand around which the skin was made. Its wrist is the origin.
   static hand::HandPose bind_pose(Side side);
   struct JointShare {
     hand::Joint joint;
-    float weight; ///< sum 1; 0: not used
+    float weight; ///< the sum is 1; 0 means not used
   };
-  /// The joints that carry a place of drape()'s.
+  /// Returns the joints that carry one of the positions that drape() makes.
   std::array<JointShare, 4> influences(std::size_t place) const;
 
 private:
   struct Influence {
     std::array<std::uint8_t, 4> bones{};
-    std::array<float, 4> weights{}; ///< sum 1; 0: not used
+    std::array<float, 4> weights{}; ///< the sum is 1; 0 means not used
   };
 
   hand::HandPose bind_;
-  std::vector<Eigen::Vector3f> places_; ///< in the bind pose, whose wrist is the origin
+  std::vector<Eigen::Vector3f> places_; ///< in the bind pose
   std::vector<Influence> influences_;
   std::vector<std::uint32_t> corners_;
 };
 
-/// Balls at the joints and bones between them, added to `surface`.
+/// Adds balls at the joints, and the bones between them, to `surface`.
 void add_bones(const hand::HandPose& pose, const Eigen::Vector3d& origin_m, Surface& surface);
 
 } // namespace nendo::viewer

@@ -1,5 +1,5 @@
 #pragma once
-// A picture in memory, and as a PNG file.
+// A picture in memory, and its PNG files.
 
 #include <array>
 #include <cstdint>
@@ -13,17 +13,18 @@
 
 namespace nendo::viewer {
 
-using Pixel = std::array<std::uint8_t, 3>; ///< red, green, blue, encoded as sRGB is
+using Pixel = std::array<std::uint8_t, 3>; ///< red, green, blue in sRGB
 
 struct Size {
   int width = 0;  ///< pixels
   int height = 0; ///< pixels
   friend bool operator==(Size, Size) = default;
 
-  static constexpr int most = 8192; ///< of either
+  static constexpr int most = 8192; ///< of width and height
 };
 
-/// "WxH" in pixels, 16 to Size::most each; nullopt if it is not that.
+/// Parses "WxH" in pixels, each from 16 to Size::most. Returns nullopt if the text is something
+/// else.
 std::optional<Size> size_named(std::string_view text) noexcept;
 
 class Image {
@@ -33,9 +34,10 @@ public:
   Size size() const noexcept { return size_; }
   Pixel& at(int x, int y) noexcept { return pixels_[index(x, y)]; }
   const Pixel& at(int x, int y) const noexcept { return pixels_[index(x, y)]; }
-  /// Row by row from the top.
+  /// Returns the pixels row by row from the top.
   const std::vector<Pixel>& pixels() const noexcept { return pixels_; }
-  /// What of `other` has a place here when its corner is at (x, y).
+  /// Copies `other` to the place with its top left corner at (x, y). Parts outside of this image
+  /// are left out.
   void paste(const Image& other, int x, int y) noexcept;
 
   friend bool operator==(const Image&, const Image&) = default;
@@ -49,16 +51,17 @@ private:
   std::vector<Pixel> pixels_;
 };
 
-/// Replaces the file as a whole. Blocks. Errors: failed.
+/// Writes the file atomically and replaces an existing one. Blocks. Error: failed.
 Result<void> write_png(const std::filesystem::path& path, const Image& image);
-/// Blocks. Errors: bad_input (no PNG, too large).
+/// Reads a PNG file. Blocks. Error: bad_input (no PNG, or too large).
 Result<Image> read_png(const std::filesystem::path& path);
 
-/// Words in a plain upright hand of strokes, `height` pixels from baseline to the top of capitals;
-/// (x, y) is where the baseline begins. What has no letter here is a box.
+/// Writes words in a plain upright stroke font. `height` is the height of capitals above the
+/// baseline in pixels, and (x, y) is where the baseline begins. A character that the font does not
+/// have appears as a box.
 void write_words(Image& image, double x, double y, double height, std::string_view words,
                  Pixel colour);
-/// How wide they become, in pixels.
+/// Returns the width of the words in pixels.
 double width_of_words(std::string_view words, double height) noexcept;
 
 } // namespace nendo::viewer

@@ -1,7 +1,7 @@
 #pragma once
-// The live window: the scene, a camera for the mouse, and a panel that shows how the loop does and
-// has buttons for every command. It reads frames; it never waits for the loop, and the loop never
-// waits for it. All calls belong to the main thread.
+// The live window: the scene, a camera that the mouse moves, and a panel that shows the state of
+// the loop and has buttons for every command. The window reads frames. It never waits for the loop,
+// and the loop never waits for it. All calls belong to the main thread.
 
 #include <memory>
 #include <string>
@@ -14,37 +14,38 @@
 
 namespace nendo::viewer {
 
-/// What the panel shows beside the frame.
+/// What the panel shows in addition to the frame.
 struct Gauges {
   std::string model;                 ///< its name
   double rate_hz = 0.0;              ///< wanted
-  std::array<std::string, 2> gloves; ///< their names; empty: none
+  std::array<std::string, 2> gloves; ///< their names; empty means no glove
   std::array<std::uint64_t, 2> bad_records{};
   std::array<std::uint64_t, 2> lost{}; ///< samples that found no room
   bool recording = false;              ///< to a file
-  double restart_ms = 0.0;             ///< of the last change of settings; 0: none yet
-  std::string report;                  ///< what became of the last command to save something
+  double restart_ms = 0.0;             ///< of the last change of settings; 0 means none yet
+  std::string report;                  ///< the result of the last command that saved something
 };
 
-/// What a person has asked for since the last picture, in that order.
+/// The commands that a person has given since the last picture, in their order.
 using Commands = std::vector<flow::Command>;
 
 class LiveWindow {
 public:
-  /// Opens a window. Errors: failed (no screen, no OpenGL 3.3), with what to do without.
+  /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message tells what to do
+  /// instead.
   static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, Size size);
   ~LiveWindow();
   LiveWindow(const LiveWindow&) = delete;
   LiveWindow& operator=(const LiveWindow&) = delete;
 
-  /// Begins to show another loop, over this model. The camera stays where it was.
+  /// Begins to show another loop over this model. The camera stays where it was.
   void begin(const deform::BlockLayout& layout, const SceneBuilder& builder,
              const flow::LoopSettings& settings);
-  /// Draws one picture of the latest frame and waits for the screen, for 20 ms at most if there is
-  /// none. fresh: the frame is another one than at the call before.
+  /// Draws one picture of the latest frame and waits for the screen, or for at most 20 ms if there
+  /// is none. fresh: the frame differs from that of the previous call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
-  /// These are SceneWindow's.
+  /// The following functions are those of SceneWindow.
   Image screenshot() const { return window_->screenshot(); }
   Image silhouette(Size size) { return window_->silhouette(size); }
   const Camera& camera() const noexcept { return window_->camera(); }

@@ -1,7 +1,7 @@
 #pragma once
-// Pictures of scenes, drawn by the processor: no screen, no GPU, the same bytes for the same input
-// whatever the machine and however many threads. For documents and tests; a picture of a thousand
-// pixels takes about a second.
+// Draws pictures of scenes on the processor, without a screen or a GPU. The same input gives the
+// same bytes on any machine and with any number of threads. It is meant for documents and tests: a
+// picture of a thousand pixels takes about a second.
 
 #include <memory>
 #include <optional>
@@ -14,11 +14,13 @@
 
 namespace nendo::viewer {
 
-/// Shadows of the key light and what of the sky each vertex sees; they do not depend on the camera.
+/// The shadows of the key light, and how much of the sky each vertex sees. Neither depends on the
+/// camera.
 class Lighting {
 public:
-  /// The lights stand about a camera that looks from that azimuth, so that any view has its form
-  /// shown. The scene must not change while this is used. Takes some tenths of a second. Allocates.
+  /// Places the lights relative to a camera that looks from that azimuth, so that every view shows
+  /// the shapes well. The scene must not change while this is used. Takes some tenths of a second.
+  /// Allocates.
   explicit Lighting(const Scene& scene, double azimuth_deg = 0.0);
   ~Lighting();
   Lighting(Lighting&&) noexcept;
@@ -32,21 +34,22 @@ private:
   std::unique_ptr<Maps> maps_;
 };
 
-/// Four samples a pixel. Triangles that reach behind the camera are left out. Uses `threads`
-/// threads; blocks.
+/// Draws a picture with four samples for each pixel. Triangles that reach behind the camera are
+/// left out. Uses `threads` threads. Blocks.
 Image draw(const Lighting& lighting, const Camera& camera, Size size, unsigned threads = 2);
 
-/// White where the model or a hand covers a pixel's middle, black elsewhere: what tests compare
-/// renderers by.
+/// Returns a picture that is white where the model or a hand covers the middle of a pixel, and
+/// black elsewhere. Tests compare renderers by it.
 Image silhouette(const Scene& scene, const Camera& camera, Size size);
 
-/// One picture of a sheet, and what is written under it.
+/// One picture of a sheet and the caption below it.
 struct Panel {
   Image image;
   std::string caption; ///< may be empty
 };
 
-/// All panels, which are of one size, row by row, `columns` in each; 0: as square as may be.
+/// Arranges the panels, which must have the same size, row by row with `columns` in each row. With
+/// 0 columns the sheet is as square as possible.
 Image contact_sheet(const std::vector<Panel>& panels, int columns = 0);
 
 } // namespace nendo::viewer

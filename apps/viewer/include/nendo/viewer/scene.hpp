@@ -1,7 +1,7 @@
 #pragma once
-// What both renderers draw, the one on the processor and the one in OpenGL: surfaces of triangles,
-// made of a moment and the model's faces. In metres; the model stands on the ground, y = 0, about
-// x = z = 0, as large as it is on the stage.
+// The scene that the renderers draw, one on the processor and one with OpenGL. It consists of
+// surfaces of triangles, made from a moment and the model's faces. Lengths are in metres. The model
+// stands on the ground, y = 0, around x = z = 0, as large as it is on the stage.
 
 #include <cstdint>
 #include <vector>
@@ -13,40 +13,40 @@
 namespace nendo::viewer {
 
 struct SceneParts {
-  bool hands = true;   ///< skin
-  bool bones = true;   ///< seen through the skin
+  bool hands = true;   ///< the skin
+  bool bones = true;   ///< visible through the skin
   bool vectors = true; ///< control vectors, as arrows
-  bool radii = true;   ///< how far each fingertip's support reaches
+  bool radii = true;   ///< the radius of each fingertip's support
   bool ground = true;
 };
 
 struct Scene {
   Surface model;
-  std::vector<Surface> solids;  ///< opaque, beside the model
+  std::vector<Surface> solids;  ///< opaque surfaces other than the model
   std::vector<Surface> veils;   ///< translucent
   std::vector<Surface> grounds; ///< one or none
-  /// What a camera ought to have in its picture: the model and the hands.
+  /// Returns the points that a camera should have in its picture: the model's and the hands'.
   std::vector<Eigen::Vector3f> outline() const;
 };
 
 class SceneBuilder {
 public:
-  /// `rest` settles scale and place for all moments of a take; its faces are kept. With no
-  /// units_per_metre, the model is as large as on the loop's stage. Allocates.
+  /// `rest` defines the scale and the place for all moments of a take. Its faces are kept. If
+  /// units_per_metre is 0, the model is as large as on the loop's stage. Allocates.
   explicit SceneBuilder(const deform::Mesh& rest, double units_per_metre = 0.0);
 
-  /// Off the loop: allocates where `scene` has not had as much before. The moment's vertices are as
-  /// many as the mesh's.
+  /// Makes the scene of a moment, which must have as many vertices as the mesh. Allocates where
+  /// `scene` has too little room, so it must not be called in the loop's thread.
   void build(const SceneFrame& moment, const SceneParts& parts, Scene& scene) const;
-  /// The parts beside the model alone; of scene.model only the material.
+  /// Makes only the parts other than the model. Of scene.model, only the material is set.
   void build_beside(const SceneFrame& moment, const SceneParts& parts, Scene& scene) const;
 
   double units_per_metre() const noexcept { return units_per_metre_; }
-  /// scene = vertex / units_per_metre - origin.
+  /// Returns the origin of the scene: place in the scene = vertex / units_per_metre - origin.
   const Eigen::Vector3d& origin_m() const noexcept { return origin_m_; }
-  /// Three a triangle; the faces, cut into fans.
+  /// Returns the faces as triangles, three corners for each. Larger faces are cut into fans.
   const std::vector<std::uint32_t>& corners() const noexcept { return corners_; }
-  /// Of the rest shape on the stage, x, y, z.
+  /// Returns the size of the rest shape on the stage along x, y and z.
   const Eigen::Vector3d& size_m() const noexcept { return size_m_; }
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// What a picture shows at one moment. It can be made of a mesh alone, of a frame of the running
-// loop or of a recording; the renderers need not know which.
+// What a picture shows at one moment. It is made from a mesh, from a frame of the running loop, or
+// from a recording. The renderers need not know from which.
 
 #include <array>
 #include <optional>
@@ -14,7 +14,8 @@ using TipPlaces = Eigen::Matrix<double, 3, 5>; ///< thumb to little finger
 
 struct SeenHand {
   hand::HandPose pose; ///< on the stage, metres
-  TipPlaces starts;    ///< of its control vectors, on the stage, metres; equal to the tips: none
+  /// Where the control vectors begin, on the stage, metres; no vectors if equal to the tips.
+  TipPlaces starts;
   bool silent = false; ///< its glove has stopped sending
 };
 
@@ -23,15 +24,16 @@ struct SceneFrame {
   deform::Points vertices;                      ///< 3 by #vertices, model units
   std::array<std::optional<SeenHand>, 2> hands; ///< by flow::Placement::index_of(side)
   bool held = false; ///< the hands hold the model; otherwise there are no control vectors
-  std::array<double, 5> radius_m{}; ///< of each fingertip's support, on the stage; 0: not shown
+  /// The radius of each fingertip's support, on the stage; 0 means not shown.
+  std::array<double, 5> radius_m{};
 };
 
-/// Remembers where the fingertips took hold. It is exact if it sees every frame; otherwise it is
-/// off by what the fingers moved between two frames that it saw.
+/// Remembers where the fingertips took hold. The places are exact if the tracker sees every frame.
+/// Otherwise they are off by the distance that the fingers moved between two frames that it saw.
 class HoldTracker {
 public:
   void follow(const flow::Frame& frame) noexcept;
-  /// On the stage, metres. slot: flow::Placement::index_of(side).
+  /// Returns the places on the stage in metres. slot: flow::Placement::index_of(side).
   const TipPlaces& starts(std::size_t slot) const noexcept { return starts_[slot]; }
 
 private:
@@ -39,7 +41,7 @@ private:
   flow::HoldWatch watch_;
 };
 
-/// All of a frame but its vertices and its time, which are left as they are.
+/// Sets everything of `moment` from a frame except its vertices and its time.
 void see_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& moment);
 
 } // namespace nendo::viewer

@@ -1,6 +1,6 @@
 #pragma once
-// A window with the scene in it, a camera for the mouse, and room for widgets. All of this on the
-// main thread, as windows demand.
+// A window with the scene, a camera that the mouse moves, and room for widgets. All calls belong to
+// the main thread, as window systems demand.
 
 #include <array>
 #include <memory>
@@ -16,22 +16,23 @@ namespace nendo::viewer {
 
 class QuickInput;
 
-/// A mouse and a keyboard that are not there: for tests.
+/// Simulated input of a mouse and a keyboard, for tests.
 struct PretendedInput {
   Eigen::Vector2d pointer{-1.0, -1.0}; ///< pixels from the window's top left corner
   std::array<bool, 3> buttons{};       ///< left, right, middle
   double wheel = 0.0;
   bool control = false;
   bool shift = false;
-  int key = 0; ///< GLFW's number of the one that is down; 0: none
+  int key = 0; ///< GLFW's number of the key that is down; 0 means none
   // Since the last picture:
-  std::vector<int> taps;                     ///< keys that went down, and up again
+  std::vector<int> taps;                     ///< keys that went down and up again
   std::optional<Eigen::Vector2d> clicked_at; ///< where the pointer was when a button went down
 };
 
 class SceneWindow {
 public:
-  /// Errors: failed (no screen, no OpenGL 3.3), with `instead`, which says what to do without.
+  /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`,
+  /// which must tell what to do without a window.
   static Result<std::unique_ptr<SceneWindow>> open(const std::string& title, Size size,
                                                    const std::string& instead);
   ~SceneWindow();
@@ -41,31 +42,34 @@ public:
   void set_model(const deform::BlockLayout& layout, const SceneBuilder& builder);
   void follow(const deform::BlockShape& shape) { renderer_->follow(shape); }
 
-  /// A picture begins: what has happened since the last, and what stands beside the model. The
-  /// first one that is whole chooses the camera for good. Widgets may follow.
+  /// Begins a picture: processes the input since the last one and builds the scene's parts other
+  /// than the model. The camera is chosen anew for each moment until the first one with is_whole.
+  /// Widgets may follow.
   void begin_picture(const SceneFrame& moment, bool is_whole = true);
-  /// The mouse turns, shifts and zooms, unless it is over a widget.
+  /// Turns, shifts and zooms the camera by the mouse, unless the mouse is over a widget.
   void move_camera();
-  /// h, b, v and d show and hide the scene's parts, unless somebody writes or is asked something.
+  /// Lets the keys h, b, v and d show and hide parts of the scene, unless a text is being entered
+  /// or a question is open.
   void follow_part_keys();
-  /// Draws it all; waits for the screen, 20 ms at most without one.
+  /// Draws the picture and waits for the screen, or for at most 20 ms if there is none.
   void end_picture();
 
-  /// Whether the person has asked to close the window since the last call.
+  /// Returns whether the person has asked to close the window since the last call.
   bool take_close_request() noexcept;
-  /// So many pixels at the bottom are not the scene's.
+  /// Reserves that many pixels at the bottom of the window, which the scene does not use.
   void leave_below(int pixels) noexcept { below_ = pixels; }
-  Size scene_size() const noexcept; ///< of what is left; its corner is the window's top left one
+  Size scene_size() const noexcept; ///< from the window's top left corner
   const Camera& camera() const noexcept { return camera_; }
-  /// The same camera for places on the stage, as hands' are; the scene's are seen from its middle.
+  /// Returns the same camera for places on the stage, such as those of hands. camera() is for
+  /// places in the scene.
   Camera stage_camera() const noexcept;
-  const Scene& scene() const noexcept { return scene_; } ///< but for its model's places
+  const Scene& scene() const noexcept { return scene_; } ///< without the model's positions
   std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
 
   Image screenshot() const; ///< of what was shown last
-  /// As viewer::silhouette(), of what was shown last, by OpenGL.
+  /// Does the same as viewer::silhouette() with OpenGL, for the scene that was shown last.
   Image silhouette(Size size);
-  /// From the next picture on, in place of the mouse and the keyboard that are there.
+  /// Replaces the real mouse and keyboard by `input` from the next picture on.
   void pretend(const PretendedInput& input);
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// What a window about a timeline tells, and what a person at it wants. Plain data: the window knows
-// no timelines, and who edits them no window.
+// What a window for editing a timeline shows, and what a person wants to do there. These are plain
+// data: the window does not know timelines, and the editor does not know the window.
 
 #include <optional>
 #include <string>
@@ -13,9 +13,9 @@
 namespace nendo::viewer {
 
 struct TimelineView {
-  std::string file; ///< where it is saved
+  std::string file; ///< where the timeline is saved
   double duration_s = 0.0;
-  double rate_hz = 90.0; ///< of its frames
+  double rate_hz = 90.0; ///< of the frames
   std::vector<StripLane> lanes;
   std::vector<StripMark> marks;
 
@@ -24,18 +24,18 @@ struct TimelineView {
   bool loops = false;
   double speed = 1.0;
   std::optional<StripKey> selected;
-  bool at_selected = false; ///< the head is at its time, so that its fingers can be bent
+  bool at_selected = false; ///< the play head is at the selected key, whose fingers can be bent
 
   bool modified = false;
   bool can_undo = false;
   bool can_redo = false;
-  double computed_s = 0.0; ///< so far there are shapes
+  double computed_s = 0.0; ///< shapes exist up to this time
   bool computing = false;
-  bool shape_is_old = false; ///< the shape that is shown is of before the last edits
+  bool shape_is_old = false; ///< the visible shape was made before the last edits
   bool exporting = false;
   std::string export_file; ///< where "Export" writes
-  std::string message;     ///< of the last thing that was done; may be empty
-  bool refused = false;    ///< it was not, and `message` says why
+  std::string message;     ///< about the last action; may be empty
+  bool refused = false;    ///< the action was refused, and `message` tells why
 };
 
 enum class EditCommand {
@@ -56,9 +56,9 @@ enum class EditCommand {
   export_glb,
 };
 
-/// Tries, each in place of the one before, until `keep` or `drop`.
+/// A trial edit. Each one replaces the previous one, until EditActions::keep or EditActions::drop.
 struct KeyDrag {
-  StripKey key; ///< as it was numbered when it was taken
+  StripKey key; ///< with its number at the beginning of the drag
   double to_s = 0.0;
   bool copy = false;
 };
@@ -75,18 +75,18 @@ struct Retiming {
   double scale = 1.0;
 };
 
-/// What a person has done since the last picture, to be applied in this order.
+/// What a person has done since the last picture. It must be applied in this order.
 struct EditActions {
-  std::optional<std::optional<StripKey>> select; ///< that, or none
+  std::optional<std::optional<StripKey>> select; ///< that key, or no key
   std::optional<double> seek_s;
   std::optional<double> speed;
   std::optional<bool> loops;
   std::optional<std::variant<KeyDrag, TipDrag, KeyBlend>> tried;
-  bool keep = false; ///< what was tried is as it should be
+  bool keep = false; ///< the tried edit becomes a step
   bool drop = false;
   std::optional<Retiming> retiming;
   std::vector<EditCommand> commands;
-  bool quit = false; ///< after all these; without saving, unless that is among them
+  bool quit = false; ///< after all others; saves only if `commands` has EditCommand::save
 };
 
 } // namespace nendo::viewer

@@ -1,6 +1,7 @@
 #pragma once
-// A window to edit a timeline in: the scene at the play head's time, and below it a strip with the
-// hands' keys. It only shows and asks; on the main thread, as windows demand.
+// A window for editing a timeline. It has the scene at the play head's time and, below it, a strip
+// with the hands' keys. It only shows the timeline and returns what a person wants to do. All calls
+// belong to the main thread, as window systems demand.
 
 #include <memory>
 #include <string>
@@ -12,8 +13,8 @@ namespace nendo::viewer {
 
 class TimelineWindow {
 public:
-  /// Opens a window. Errors: failed (no screen, no OpenGL 3.3), with `instead`, which says what to
-  /// do without.
+  /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`,
+  /// which must tell what to do without a window.
   static Result<std::unique_ptr<TimelineWindow>> open(const std::string& title, Size size,
                                                       const std::string& instead);
   ~TimelineWindow();
@@ -23,10 +24,11 @@ public:
   void set_model(const deform::BlockLayout& layout, const SceneBuilder& builder) {
     window_->set_model(layout, builder);
   }
-  /// The model, from the next picture on.
+  /// Sets the shape of the model from the next picture on.
   void follow(const deform::BlockShape& shape) { window_->follow(shape); }
-  /// One picture; waits for the screen, 20 ms at most without one. Of the moment, all but its
-  /// vertices. Who wants to leave with unsaved changes is asked first, and then says `quit`.
+  /// Draws one picture and waits for the screen, or for at most 20 ms if there is none. The
+  /// vertices of `moment` are not used. If a person wants to leave with unsaved changes, the window
+  /// asks first and then returns `quit`.
   EditActions show(const TimelineView& view, const SceneFrame& moment);
 
   const SceneWindow& scene_window() const noexcept { return *window_; }

@@ -1,5 +1,5 @@
 #pragma once
-// The mouse as what tells where a fingertip is to be.
+// Moves a fingertip with the mouse.
 
 #include <optional>
 
@@ -9,11 +9,11 @@
 
 namespace nendo::viewer {
 
-/// Holds a fingertip from the pointer's going down to its coming up.
+/// Holds a fingertip from the moment the mouse button goes down until it comes up.
 class TipMover {
 public:
-  /// The fingertip of a hand nearest to the pointer, in pixels from the picture's top left; nothing
-  /// if none is within `reach`.
+  /// Returns the fingertip of a hand that is nearest to the pointer, which is in pixels from the
+  /// picture's top left corner. Returns nothing if none is within `reach` pixels.
   static constexpr double reach = 14.0;
   static std::optional<hand::Finger> tip_at(const Camera& camera, const hand::HandPose& pose,
                                             const Eigen::Vector2d& pointer, Size size) noexcept;
@@ -22,11 +22,13 @@ public:
   void let_go() noexcept { finger_.reset(); }
   std::optional<hand::Finger> finger() const noexcept { return finger_; } ///< that is held
 
-  /// By pixels of the pointer's way: in the picture's plane, so that it stays under it.
+  /// Moves the tip by the pixels that the pointer moved, in the picture's plane, so that the tip
+  /// stays under the pointer. `height` is the picture's height in pixels.
   void shift(const Camera& camera, double dx, double dy, double height) noexcept;
-  /// By steps of the wheel, 1 cm each: forward is away from the viewer.
+  /// Moves the tip by steps of the wheel, 1 cm each. Positive steps go away from the viewer.
   void push(const Camera& camera, double steps) noexcept;
-  /// Where the tip that is held is to be; on the stage, metres, within 2 m of its middle.
+  /// Returns the place on the stage to which the held tip must go, in metres. Each coordinate is
+  /// within 2 m of the stage's middle.
   const Eigen::Vector3d& target_m() const noexcept { return target_m_; }
 
 private:

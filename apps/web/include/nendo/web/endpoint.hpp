@@ -10,21 +10,21 @@
 namespace nendo::web {
 
 struct Endpoint {
-  std::string address = "127.0.0.1"; ///< IPv4 or IPv6 in figures, without brackets
-  std::uint16_t port = 0;            ///< 0: the system chooses a free one
+  std::string address = "127.0.0.1"; ///< numeric IPv4 or IPv6 address, without brackets
+  std::uint16_t port = 0;            ///< 0 means that the system chooses a free one
 
   bool is_ipv6() const noexcept { return address.find(':') != std::string::npos; }
-  /// Address and port as in a URL, for example "[::1]:8080".
+  /// Returns address and port as in a URL, for example "[::1]:8080".
   std::string authority() const;
 };
 
-/// Takes "8080", "127.0.0.1:8080" or "[::1]:8080". Without an address the server is reached from
-/// this machine only. Names of hosts are refused, so that it is clear to which network a port is
-/// opened. Error: usage.
+/// Parses "8080", "127.0.0.1:8080" or "[::1]:8080". Without an address, the server can be reached
+/// from this machine only. Names of hosts are refused, so that it is clear to which network a port
+/// is opened. Error: usage.
 Result<Endpoint> parse_endpoint(std::string_view text);
 
-/// Whether the host of an authority ("localhost:8080", "[::1]", "192.168.1.5") is an address in
-/// figures or localhost. Another site can make its own name lead to this machine (DNS rebinding),
+/// Returns whether the host of an authority ("localhost:8080", "[::1]", "192.168.1.5") is a numeric
+/// address or localhost. Another site can make its own name lead to this machine (DNS rebinding),
 /// but none of these.
 bool is_address_or_localhost(std::string_view authority);
 

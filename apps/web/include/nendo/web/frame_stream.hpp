@@ -1,7 +1,7 @@
 #pragma once
 // Carries frames from the loop's thread to the server's thread. For each frame it makes a record,
-// from which a client can follow the shape by itself, in the bytes that go to the client
-// (PROTOCOL.md). The whole shape is copied only when the server asks for it.
+// which is encoded as PROTOCOL.md describes. From the records a client can follow the shape by
+// itself. The whole shape is copied only when the server asks for it.
 
 #include <array>
 #include <atomic>
@@ -20,11 +20,11 @@ namespace nendo::web {
 /// One frame, encoded for clients.
 struct Record {
   std::uint64_t number = 0; ///< of the frame, counted from 1
-  /// The step does not continue the record before: a client needs the shape again.
+  /// The step does not continue the previous record, so a client needs the shape again.
   bool discontinuous = false;
-  bool bakes = false; ///< the step changes the base, it is not only drawn over it
+  bool bakes = false; ///< the step changes the base, and is not only drawn over it
   /// The rounding errors that a client, which adds up in float, may collect by this step, as a
-  /// share of those that are allowed. When the shares add up to 1 it needs a fresh shape.
+  /// share of the allowed errors. When the shares add up to 1, the client needs a fresh shape.
   double drift = 0.0;
   std::vector<std::byte> head; ///< head and hands of an update message, with `steps` 0
   std::vector<std::byte> step; ///< one step of an update message
@@ -37,13 +37,14 @@ public:
   FrameStream(const deform::BlockLayout& layout, flow::Mode mode, std::size_t max_fields,
               std::size_t max_functions);
 
-  /// Called in the tick; wait-free. Writes a record while the stream is active. Copies the shape's
-  /// changed blocks if the shape was requested and, in Type-1, after a commit and after an undo.
+  /// Writes a record while the stream is active. Copies the changed blocks of the shape if the
+  /// shape was requested and, in Type-1, after a commit and after an undo. Called in the tick;
+  /// wait-free.
   void show(const flow::Frame& frame) noexcept override;
 
-  // All that follows is for one other thread.
+  // All functions that follow are for one other thread.
 
-  /// While the stream is not active, no records are made. Wait-free.
+  /// Switches the stream on or off. While it is not active, no records are made. Wait-free.
   void set_active(bool active) noexcept { active_.store(active, std::memory_order_relaxed); }
   /// Appends the records since the last call. Allocates; does not block.
   void take(std::vector<Record>& records);
@@ -54,10 +55,10 @@ public:
     std::uint64_t number = 0;
     std::vector<std::byte> message;
   };
-  /// The requested shape, or nothing if it has not come yet. To be called after take(). Allocates;
-  /// does not block.
+  /// Returns the requested shape, or nothing if it has not come yet. To be called after take().
+  /// Allocates; does not block.
   std::optional<Shape> take_shape();
-  /// How many frames found no room in the ring. Any thread.
+  /// Returns how many frames found no room in the ring. Any thread may call it.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:

@@ -22,10 +22,11 @@ struct ModelFacts {
   bool recorded = false;       ///< whether the loop is recorded to a file
 };
 
-/// A browser cannot be expected to take more.
+/// The greatest number of vertices that a browser can be expected to show.
 inline constexpr std::size_t max_vertices = 4'000'000;
 
-/// layout: of the loop. mesh, hands: those that the loop was made of. Allocates.
+/// Returns the message. `layout` is that of the loop, and the loop was made from `mesh` and
+/// `hands`. Allocates.
 std::vector<std::byte> model_message(const deform::BlockLayout& layout, const deform::Mesh& mesh,
                                      std::span<const flow::HandInput> hands,
                                      const ModelFacts& facts);

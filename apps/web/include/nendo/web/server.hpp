@@ -1,7 +1,7 @@
 #pragma once
-// An HTTP server that sends browsers one page, and over WebSockets the frames of a running loop to
-// those that have the token. PROTOCOL.md describes the bytes. One thread owns all sockets; no call
-// on a socket blocks it.
+// An HTTP server. It sends one page to browsers, and the frames of a running loop over WebSockets
+// to clients that have the token. PROTOCOL.md describes the bytes. One thread owns all sockets, and
+// no call on a socket blocks it.
 
 #include <array>
 #include <chrono>
@@ -21,7 +21,7 @@ namespace nendo::web {
 
 /// What the server grants to each client, hostile ones included.
 struct ServerLimits {
-  /// Open connections. A new one beyond this closes the oldest that is not a WebSocket.
+  /// Open connections. A new one beyond this limit closes the oldest that is not a WebSocket.
   std::size_t max_connections = 32;
   std::size_t max_clients = 16; ///< open WebSockets; the next one is answered with 503
   /// Bytes queued for a client, shapes not counted. A client that has more queued misses frames
@@ -65,26 +65,30 @@ public:
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Where the server listens. The port is the one that the system chose if 0 was asked for.
+  /// Returns where the server listens. The port is the one that the system chose if 0 was asked
+  /// for.
   const Endpoint& endpoint() const noexcept;
-  /// 128 random bits in hexadecimal figures. Whoever has them may watch and send commands.
+  /// Returns the token: 128 random bits in hexadecimal digits. Whoever has it may watch and send
+  /// commands.
   const std::string& token() const noexcept;
-  /// The address for a browser. The token stands behind "#", which browsers do not send.
+  /// Returns the address for a browser. The token stands behind "#", a part that browsers do not
+  /// send.
   std::string url() const;
 
-  /// Serves another loop, which must not have begun yet: its frames and its model_message().
-  /// Clients of the loop before are closed with code 1012 and may connect again. Any thread; does
-  /// not wait for the network.
+  /// Serves another loop, which must not have begun yet, by its frames and its model_message().
+  /// Clients of the previous loop are closed with code 1012 and may connect again. Any thread may
+  /// call it; does not wait for the network.
   void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model);
-  /// The next command of any client, in the order in which they came; nothing if there is none now.
-  /// To be called by one thread only; wait-free.
+  /// Returns the next command of any client, in the order in which they came, or nothing if there
+  /// is none now. Only one thread may call it; wait-free.
   std::optional<flow::Command> next_command() noexcept;
-  /// Sends a text to all clients, for people to read. Any thread; does not wait for the network.
+  /// Sends a text for people to all clients. Any thread may call it; does not wait for the network.
   void report(std::string message);
-  /// Sets how many bad records the gloves have sent, by flow::Placement::index_of(side), for the
-  /// page to show. Any thread, wait-free.
+  /// Sets how many bad records each glove has sent, for the page to show. The counts are indexed by
+  /// flow::Placement::index_of(side). Any thread may call it; wait-free.
   void set_bad_records(std::array<std::uint32_t, 2> counts) noexcept;
-  /// Any thread, wait-free. Each number is right by itself; together they are no snapshot.
+  /// Returns the counters. Each number is right by itself, but they are not all of the same moment.
+  /// Any thread may call it; wait-free.
   ServerCounters counters() const noexcept;
 
 private:
