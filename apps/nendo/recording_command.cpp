@@ -63,9 +63,8 @@ int repair(const Options& options) {
   if (!made) return cli::report(made.error());
   print_made(options, made->chunks, "whole chunks", made->bytes);
   if (made->damages > 0)
-    cli::note(std::to_string(made->damages) +
-              " damages are gaps now; a replay from there on need not "
-              "be the same");
+    cli::note("damaged places that are gaps now: " + std::to_string(made->damages) +
+              "; a replay from there on need not be the same");
   return 0;
 }
 

@@ -138,7 +138,11 @@ TEST_SUITE("recording_command") {
     CHECK(is_one_line_about(checked.err, "repair"));
     CHECK(checked.out.find("at byte") != std::string::npos);
     const std::string mended = run.path("mended.nendo");
-    CHECK(test::nendo({"recording", "repair", bad, "--out", mended}).exit_code == 0);
+    const auto repaired = test::nendo({"recording", "repair", bad, "--out", mended});
+    CHECK(repaired.exit_code == 0);
+    CHECK(repaired.out.find("whole chunks") != std::string::npos);
+    CHECK(repaired.out.find(" 0 whole chunks") == std::string::npos);
+    CHECK(is_one_line_about(repaired.err, "gap"));
     CHECK(test::nendo({"recording", "check", mended}).exit_code == 0);
     CHECK(contents(bad) == bytes);
     const auto replayed = test::nendo({"replay", mended, "--no-clock", "--json"});

@@ -161,6 +161,9 @@ TEST_SUITE("take_tools") {
         const auto mended = summarise(take.made);
         REQUIRE(mended);
         CHECK(mended->damage_count == 0);
+        if (summary) CHECK(repaired->damages == summary->damage_count);
+        CHECK(repaired->chunks > 0);
+        CHECK(repaired->shapes == 0);
         const auto saved = entries_of(take.made);
         CHECK(saved.size() <= whole + 1);
         // One chunk's worth at most: of the setup, which may leave the gloves unknown, or an input

@@ -73,7 +73,7 @@ Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesy
   const auto chunks = append_all(*file, *reader, *first);
   if (!chunks) return chunks.error();
   if (const auto synced = file->sync(); !synced) return synced.error();
-  return NewTake{file->bytes(), 0, *chunks, reader->damage_count()};
+  return NewTake{.bytes = file->bytes(), .chunks = *chunks, .damages = reader->damage_count()};
 }
 
 Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesystem::path& to,
