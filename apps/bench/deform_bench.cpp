@@ -2,6 +2,7 @@
 // on the meshes and radii of the paper's Table 1, and models of a million and ten million vertices
 // beside two floors.
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <memory>

@@ -51,6 +51,10 @@ function(nendo_settings target scope)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Wno-restrict -Wno-array-bounds -Wno-stringop-overread
       -Wno-maybe-uninitialized>)
   endif()
+  # Of a precompiled standard library, GCC warns as if it were the project's own code.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NENDO_PCH)
+    target_compile_options(${target} PRIVATE -Wno-stringop-overflow)
+  endif()
   if(NENDO_SANITIZE)
     # Bad pointers are the address sanitizer's to find; the other's checks of them would double the time that Eigen's
     # templates take to compile.
@@ -60,15 +64,49 @@ function(nendo_settings target scope)
   endif()
 endfunction()
 
-# nendo_precompile(<target> <header>...): reads the standard library, and these, once for all of the target's sources.
-# Only where NENDO_PCH is on, as in the sanitizers' presets: Clang gains by it, GCC does not, and GCC's build shows that
-# every file includes what it uses.
-function(nendo_precompile target)
+# nendo_kind(<target> <kind>): what differs between a `library`, a `room` of the program, a `test` and an `optimised_test`.
+# A debugging build optimises rooms as little as tests, because libraries do what takes long. Where NENDO_PCH is on, the
+# headers that most files see are read once for all targets of a kind. The preset dev has it off, and clang-tidy and clangd
+# read that preset's flags: they show whether each file includes what it uses.
+function(nendo_kind target kind)
+  nendo_kind_options(${target} ${kind})
+  if(NENDO_PCH)
+    target_precompile_headers(${target} REUSE_FROM nendo_headers_${kind})
+  endif()
+endfunction()
+
+function(nendo_kind_options target kind)
+  if(kind MATCHES "library|room")
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  if(kind STREQUAL "library" AND NENDO_FUZZ) # coverage, for the fuzz targets that link it
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    target_link_options(${target} PUBLIC -fsanitize=fuzzer-no-link)
+  elseif(kind STREQUAL "room")
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Debug>:-O0>)
+  elseif(kind STREQUAL "test")
+    target_compile_options(${target} PRIVATE -O0)
+  elseif(kind STREQUAL "optimised_test")
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+endfunction()
+
+# nendo_precompiled_headers(<kind> [HEADERS ...] [LIBRARIES ...]): makes the headers that nendo_kind() lets targets use.
+function(nendo_precompiled_headers kind)
   if(NOT NENDO_PCH)
     return()
   endif()
-  target_precompile_headers(${target} PRIVATE <algorithm> <array> <atomic> <chrono> <cstdint> <filesystem> <fstream>
-    <functional> <map> <memory> <mutex> <optional> <random> <span> <sstream> <string> <thread> <variant> <vector> ${ARGN})
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
+  set(target nendo_headers_${kind})
+  set(empty ${PROJECT_BINARY_DIR}/${target}.cpp) # CMake precompiles headers for a target that has a file to compile
+  file(CONFIGURE OUTPUT ${empty} CONTENT "")
+  add_library(${target} OBJECT ${empty})
+  nendo_settings(${target} PRIVATE)
+  nendo_kind_options(${target} ${kind})
+  target_link_libraries(${target} PRIVATE Eigen3::Eigen ${ARG_LIBRARIES})
+  target_precompile_headers(${target} PRIVATE <algorithm> <array> <atomic> <charconv> <chrono> <cstdint> <filesystem> <fstream>
+    <functional> <iostream> <map> <memory> <mutex> <optional> <random> <span> <sstream> <string> <thread> <variant> <vector>
+    <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> ${ARG_HEADERS})
 endfunction()
 
 function(nendo_library name)
@@ -82,13 +120,9 @@ function(nendo_library name)
   if(ARG_SOURCES)
     add_library(${target} ${kind} ${ARG_SOURCES})
     nendo_settings(${target} PUBLIC)
-    nendo_precompile(${target})
-    if(NENDO_FUZZ) # coverage, for the fuzz targets that link it
-      target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
-      target_link_options(${target} PUBLIC -fsanitize=fuzzer-no-link)
-    endif()
+    nendo_kind(${target} library)
     target_include_directories(${target} PRIVATE src)
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION}
+    set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
       SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   else()
     add_library(${target} INTERFACE)
@@ -106,21 +140,22 @@ function(nendo_library name)
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 endfunction()
 
-# nendo_room(<name> SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not installed. Its
-# includes are quoted and begin with the room's folder.
+# nendo_room(<name> [OPTIMISED] SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not
+# installed. Its includes are quoted and begin with the room's folder. OPTIMISED: a debugging build optimises it, too.
 function(nendo_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMISED" "" "SOURCES;LIBRARIES" ${ARGN})
   set(target nendo_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(nendo::${name} ALIAS ${target})
   nendo_settings(${target} PRIVATE)
-  nendo_precompile(${target})
+  if(ARG_OPTIMISED OR NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+    nendo_kind(${target} library)
+  else()
+    nendo_kind(${target} room)
+  endif()
   target_compile_definitions(${target} PRIVATE NENDO_VERSION="${PROJECT_VERSION}")
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/apps)
   if(ARG_LIBRARIES)
     target_link_libraries(${target} ${ARG_LIBRARIES})
-  endif()
-  if(NENDO_HARDEN AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
 endfunction()

@@ -1,7 +1,7 @@
-# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [PROGRAM] [ALONE] [UNOPTIMISED]): one doctest program
+# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [PROGRAM] [ALONE] [OPTIMISED]): one doctest program
 # test_<name>, one ctest case per TEST_CASE. INCLUDES names private src/ folders of the unit under test. PROGRAM: the tests
-# run nendo, whose path is NENDO_PROGRAM. ALONE: nothing else is tested meanwhile. UNOPTIMISED halves the compile time; not
-# for tests of templates: the linker may prefer their slow copies.
+# run nendo, whose path is NENDO_PROGRAM. ALONE: nothing else is tested meanwhile. OPTIMISED doubles the compile time; it is
+# for tests that compute much themselves, or test templates, which are compiled with the test.
 include(doctest)
 
 # doctest's own implementation, compiled once for all test programs.
@@ -9,8 +9,14 @@ add_library(nendo_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tests/
 nendo_settings(nendo_test_main PRIVATE)
 target_link_libraries(nendo_test_main PUBLIC doctest::doctest)
 
+# What is tested is optimised as users have it; what tests it need not be.
+foreach(kind test optimised_test)
+  nendo_precompiled_headers(${kind} HEADERS <doctest/doctest.h> <nlohmann/json.hpp>
+    LIBRARIES doctest::doctest nlohmann_json::nlohmann_json)
+endforeach()
+
 function(nendo_test name)
-  cmake_parse_arguments(ARG "PROGRAM;ALONE;UNOPTIMISED" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
+  cmake_parse_arguments(ARG "PROGRAM;ALONE;OPTIMISED" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
   set(target test_${name})
   add_executable(${target} ${ARG_SOURCES})
   # These replace malloc and the like, or stand before a program's own libraries: each is compiled alone.
@@ -20,12 +26,11 @@ function(nendo_test name)
     endif()
   endforeach()
   nendo_settings(${target} PRIVATE)
-  if(ARG_UNOPTIMISED)
-    target_compile_options(${target} PRIVATE -O0)
-  else() # what is tested is optimised as users have it; what tests it need not be
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(ARG_OPTIMISED)
+    nendo_kind(${target} optimised_test)
+  else()
+    nendo_kind(${target} test)
   endif()
-  nendo_precompile(${target} <doctest/doctest.h>)
   target_link_libraries(${target} PRIVATE nendo_test_main ${ARG_LIBRARIES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${ARG_INCLUDES})
   if(ARG_PROGRAM)

@@ -1,5 +1,6 @@
 #include <nendo/viewer/surface.hpp>
 
+#include <algorithm>
 #include <numbers>
 
 #include "exact_trig.hpp"
