@@ -91,7 +91,7 @@ Carryover carryover_of(const flow::DeformLoop& ended) {
 Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
   if (text.empty()) return std::optional<deform::Supports>();
   auto supports = flow::parse_finger_supports(text);
-  if (!supports) return bad_radius(" " + text, "is none");
+  if (!supports) return bad_radius(" " + text, "is no radius");
   return supports;
 }
 
