@@ -1,5 +1,5 @@
 #pragma once
-// The commands of nendo bench, one a file and each in a namespace of its own.
+// The commands of nendo bench. Each has a file and a namespace of its own.
 
 #include "cli/command.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
-// One synthetic wearer calibrated in four ways, and how far each leaves the joints' angles from
-// the true ones.
+// Calibrates one synthetic wearer in several ways, and measures how far each leaves the joints'
+// angles from the true ones.
 
 #include <array>
 #include <cstdint>
@@ -41,8 +41,8 @@ struct TrialErrors {
   std::vector<double> touch_gap_m; ///< of the performed touches, the truth
 };
 
-/// Adds the errors of the wearer with this seed over a fresh minute of free motion. Error: no
-/// capture or no fit came about.
+/// Adds the errors of the wearer with this seed over another minute of free motion. Fails if a
+/// capture or a fit fails.
 Result<void> try_wearer(std::uint64_t seed, TrialErrors& errors);
 
 } // namespace nendo::bench

@@ -1,7 +1,7 @@
 #pragma once
-// The rings of `nendo bench rt`, behind one face: send() waits until all of a batch is in the ring,
-// receive() hands over what it finds, and tells how much. Other libraries' take part where their
-// headers are installed.
+// The rings of `nendo bench rt`, behind one interface. send() waits until the whole batch is in the
+// ring. receive() hands over the elements that it finds, and returns how many. Rings of other
+// libraries take part if their headers are installed.
 
 #include <array>
 #include <cstdint>
@@ -60,7 +60,7 @@ struct SingleContender {
   SpscRing<Element> ring{contenders_capacity};
 };
 
-/// The ring as the loop uses it: all elements at once.
+/// The ring as the loop uses it, with all elements taken at once.
 struct DrainedContender : SingleContender {
   static constexpr const char* name = "SpscRing, drained";
   template <class Sink>

@@ -1,6 +1,6 @@
 #pragma once
-// cyclictest of Debian's rt-tests as a neighbour: the measure of wake-ups that everybody knows. It
-// is run, if it is installed, and its histogram read.
+// Runs cyclictest of Debian's rt-tests, the usual measure of wake-ups, if it is installed, and
+// reads its histogram.
 
 #include <string>
 
@@ -11,17 +11,18 @@
 
 namespace nendo::bench {
 
-/// A running cyclictest: one thread, SCHED_FIFO 80, memory locked. It is ended with this.
+/// A running cyclictest with one thread, SCHED_FIFO 80 and locked memory. The destructor ends it.
 class Cyclictest {
 public:
-  /// On that CPU, for so many seconds, every `interval_us`. Error: failed, with the package's name,
-  /// if there is none.
+  /// Starts it on that CPU, for that many seconds, with a wake-up every `interval_us`. Error:
+  /// failed, with the package's name, if it is not installed.
   static Result<Cyclictest> start(unsigned cpu, unsigned seconds, unsigned interval_us);
   ~Cyclictest();
   Cyclictest(Cyclictest&& other) noexcept;
   Cyclictest& operator=(Cyclictest&&) = delete;
 
-  /// Waits for its end. Its latencies, in whole microseconds as it counts them. Error: failed.
+  /// Waits for its end. Returns its latencies, in whole microseconds as it counts them. Error:
+  /// failed.
   Result<flow::Histogram> finish();
 
 private:
@@ -31,7 +32,7 @@ private:
   int file_; ///< where it writes its report: a nameless file
 };
 
-/// The histogram in a report that cyclictest wrote with --json. Error: failed.
+/// Returns the histogram in a report that cyclictest wrote with --json. Error: failed.
 Result<flow::Histogram> parse_cyclictest(const std::string& json);
 
 } // namespace nendo::bench

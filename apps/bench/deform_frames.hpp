@@ -1,6 +1,6 @@
 #pragma once
-// How frames of the deformation are timed: poses of ten fingertips, strokes there and back, and the
-// best time of many.
+// Times frames of the deformation, with poses of ten fingertips and strokes there and back. The
+// best time of many counts.
 
 #include <algorithm>
 #include <array>
@@ -12,13 +12,13 @@
 namespace nendo::bench {
 
 inline constexpr std::size_t poses = 16; ///< different ones, so that nothing is learnt by heart
-/// A stroke that end_at() applies in one piece, however long.
+/// The piece length with which end_at() applies any stroke in one piece.
 inline constexpr double one_piece = 1e9;
 
 /// Random end points of the fingertips, the same in every run.
 std::array<deform::Points, poses> random_ends(const deform::Points& starts);
 
-/// The processor time of this thread. Time that other work takes is not counted.
+/// A clock that counts this thread's processor time, without the time of other work.
 struct ThreadClock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;
@@ -34,7 +34,7 @@ struct ThreadClock {
 template <class Clock>
 class BestBy {
 public:
-  /// frame(n) makes the n-th frame of a turn.
+  /// Measures one turn. frame(n) makes the n-th frame of the turn.
   template <class Frame>
   void measure(std::size_t vertices, const Frame& frame) {
     constexpr std::chrono::milliseconds turn(1);
@@ -53,7 +53,7 @@ public:
       last = now;
     }
   }
-  /// 0 if nothing was measured.
+  /// Returns the best time in microseconds, or 0 if nothing was measured.
   double us() const noexcept { return us_ < 1e300 ? us_ : 0.0; }
   double per_second() const noexcept { return us_ < 1e300 ? 1e6 / us_ : 0.0; }
 
@@ -62,7 +62,7 @@ private:
 };
 
 using Best = BestBy<std::chrono::steady_clock>;
-/// For frames that take longer than the scheduler lets a thread alone.
+/// For frames that take longer than the scheduler lets a thread run without interruption.
 using BestOfThread = BestBy<ThreadClock>;
 
 /// Type-2 strokes of ten fingertips, forth and back, each applied as one piece. The way back is not

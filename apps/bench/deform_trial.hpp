@@ -1,6 +1,7 @@
 #pragma once
-// What `nendo bench deform` measures: the deformers beside a plain loop, on the plane of the
-// paper's Table 1, and on models of a million and more beside what the machine can do at best.
+// The measurements of `nendo bench deform`: the deformers beside a plain loop on the plane of the
+// paper's Table 1, and, on models of a million vertices and more, beside the best that the machine
+// can do.
 
 #include <cstddef>
 
@@ -8,8 +9,8 @@
 
 namespace nendo::bench {
 
-/// Microseconds a frame, the best of many: new displacements, solving, and all vertices; for Type-2
-/// assembling and factorising, too.
+/// The microseconds of a frame, the best of many. A frame has new displacements, solving, and all
+/// vertices; one of Type-2 has assembling and factorising, too.
 struct CellTimes {
   double plain1_us = 0.0; ///< 0 if the processor has no AVX2
   double plain2_us = 0.0;

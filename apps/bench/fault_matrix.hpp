@@ -1,7 +1,7 @@
 #pragma once
-// Every fault that a line, a box or a person can cause, against every model of CyberGlove, through
-// the real driver over a pseudo-terminal: what it cost, how soon it was over, and whether anything
-// wrong was delivered.
+// Runs every fault that a line, an interface unit or a person can cause against every model of
+// CyberGlove, through the real driver over a pseudo-terminal. Tells what it cost, how soon it was
+// over, and whether anything wrong was delivered.
 
 #include <atomic>
 #include <cstdint>
@@ -48,8 +48,8 @@ struct FaultOutcome {
   std::string complaint{};    ///< empty: as it should be
 };
 
-/// Runs all pairs, `at_once` of them at a time, each for `seconds` (at least 4). Blocks. Error: an
-/// emulator or a glove could not be opened.
+/// Runs all pairs, `at_once` of them at a time, each for `seconds` (at least 4). Blocks. Fails if
+/// an emulator or a glove cannot be opened.
 Result<std::vector<FaultOutcome>> run_fault_matrix(double seconds, unsigned at_once,
                                                    const std::atomic<bool>& stop);
 

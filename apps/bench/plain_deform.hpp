@@ -13,15 +13,15 @@ struct PlainCentre {
   float coefficient_x, coefficient_y, coefficient_z; ///< times 4
 };
 
-/// Coordinates apart.
+/// Points as separate arrays of coordinates.
 struct PlainPoints {
   float* x;
   float* y;
   float* z;
 };
 
-/// to = from + s(from) by Wendland's C2 function, for all of `count` vertices, whether a support
-/// reaches them or not. `to` may be `from`.
+/// Computes to = from + s(from) by Wendland's C2 function for all `count` vertices, also for those
+/// that no support reaches. `to` may be `from`.
 void plain_displace(const PlainCentre* centres, std::size_t centre_count, const PlainPoints& from,
                     const PlainPoints& to, std::size_t count) noexcept;
 

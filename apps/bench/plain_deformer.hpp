@@ -1,5 +1,6 @@
 #pragma once
-// Both types of deformation by the plain loop (plain_deform.hpp), solved as the deformers do it.
+// Both types of deformation by the plain loop (plain_deform.hpp). The equations are solved as the
+// deformers do it.
 
 #include <array>
 #include <vector>
@@ -11,7 +12,7 @@
 
 namespace nendo::bench {
 
-/// True if the processor has the instructions for which the plain loop is compiled.
+/// Returns true if the processor has the instructions for which the plain loop is compiled.
 bool can_run_plain() noexcept;
 
 class PlainDeformer {
@@ -20,7 +21,7 @@ public:
 
   void type1(const deform::Points& ends);
   void type2(const deform::Points& from, const deform::Points& to);
-  /// The n-th stroke of Type-2, there and back like stroke()'s.
+  /// Makes the n-th stroke of Type-2, there and back as Strokes makes them.
   void stroke(const std::array<deform::Points, poses>& ends, std::size_t n) {
     const deform::Points& end = ends[n / 2 % poses];
     n % 2 == 0 ? type2(starts_, end) : type2(end, starts_);

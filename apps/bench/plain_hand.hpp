@@ -1,6 +1,6 @@
 #pragma once
 // Forward kinematics as in a textbook: the product of a homogeneous matrix for each rotation and
-// each bone. nendo::hand is measured against it, and checked by it.
+// each bone. nendo::hand is compared with it in speed and result.
 
 #include <array>
 
@@ -8,7 +8,7 @@
 
 namespace nendo::bench {
 
-/// T_world_joint of every joint, by index_of(Joint).
+/// The T_world_joint of every joint, by index_of(Joint).
 using PlainPose = std::array<Eigen::Matrix4d, hand::joint_count>;
 
 PlainPose plain_pose(const hand::HandSkeleton& skeleton, const hand::JointAngles& angles,

@@ -1,9 +1,9 @@
 #pragma once
-// The baseline of `nendo bench rt`: a ring as published designs have it. Indices wrap, one slot
-// stays empty to tell full from empty, each side caches the other's index, and every index has a
-// cache line of its own. Such designs leave to the allocator where the slots lie: glibc puts a
-// large block 16 bytes behind a cache line's beginning, a smaller one anywhere. Here it is said, so
-// that all runs are alike.
+// The baseline of `nendo bench rt`: a ring like published designs. Indices wrap, one slot stays
+// empty to tell full from empty, each side caches the other's index, and every index has a cache
+// line of its own. Such designs let the allocator decide where the slots lie: glibc puts a large
+// block 16 bytes behind a cache line's beginning, and a smaller one anywhere. Here the place is a
+// parameter, so that all runs are alike.
 
 #include <atomic>
 #include <cstddef>
@@ -38,7 +38,7 @@ public:
     return true;
   }
 
-  /// The oldest element, in its place; null: there is none.
+  /// Returns the oldest element, in its place, or null if there is none.
   const T* front() noexcept {
     const std::size_t read = read_.load(std::memory_order_relaxed);
     if (read == cached_write_) {

@@ -14,15 +14,17 @@ struct RtOptions {
   bool json = false;          ///< one object a line in place of text
 };
 
-/// SpscRing, one element at a time and in batches, beside other rings. Takes some 0.2 s a round.
+/// Measures SpscRing, one element at a time and in batches, beside other rings. Takes some 0.2 s a
+/// round.
 Result<void> measure_rings(const RtOptions& options);
-/// What publishing a frame costs its writer: TripleBuffer beside a mutex and a condition variable.
-/// Takes some 0.6 s a round.
+/// Measures what publishing a frame costs its writer, by TripleBuffer and by a mutex with a
+/// condition variable. Takes some 0.6 s a round.
 Result<void> measure_handoff(const RtOptions& options);
 
-/// The loop beside cyclictest in the same seconds, its spin tail, all of a tick's work, each held
-/// against its goal. Takes six times `seconds`. Errors: no_permission where real-time rights are
-/// refused; without cyclictest (package rt-tests); stopped by a signal.
+/// Measures the loop beside cyclictest in the same seconds, its spin tail, and all of a tick's
+/// work, and compares each with its goal. Takes six times `seconds`. Errors: no_permission if
+/// real-time rights are refused. It also fails without cyclictest (package rt-tests), and if a
+/// signal stops it.
 Result<void> measure_loop(const RtOptions& options);
 
 } // namespace nendo::bench

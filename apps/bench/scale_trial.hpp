@@ -1,26 +1,26 @@
 #pragma once
-// How the deformation's cost grows: with the vertices, up to ten millions of them, and with the
-// control points, up to a thousand. Times are the thread's, the best of many.
+// Measures how the deformation's cost grows with the vertices, up to ten millions of them, and with
+// the control points, up to a thousand. Times are the thread's processor time, the best of many.
 
 #include <cstddef>
 
 namespace nendo::bench {
 
-/// Ten supports that each reach a fifth of the model.
+/// The times with ten supports that each reach a fifth of the model.
 struct GrowthTimes {
   std::size_t vertices = 0;
   std::size_t influences = 0; ///< vertices within a support, summed over supports
   double type1_us = 0.0;      ///< evaluated: weights of so many vertices leave the caches
   double type2_us = 0.0;
-  /// The memory of a deformer, with the shape that it makes and its copy of the vertices.
+  /// The memory of a deformer in bytes, with the shape that it makes and its copy of the vertices.
   std::size_t type1_bytes = 0;
   std::size_t type2_bytes = 0;
 };
 
-/// The plane of Table 1 in so many cells a side.
+/// Measures on the plane of Table 1 with that many cells a side.
 GrowthTimes measure_growth(int cells, int repetitions);
 
-/// Many small supports beside ten that reach every vertex.
+/// The times with many small supports, beside ten supports that reach every vertex.
 struct CrowdTimes {
   std::size_t vertices = 0;
   std::size_t centres = 0;
@@ -36,7 +36,7 @@ struct CrowdTimes {
   }
 };
 
-/// Centres at random over the plane, about `overlap` of which reach a vertex.
+/// Measures with random centres over the plane, of which about `overlap` reach a vertex.
 CrowdTimes measure_crowd(int cells, std::size_t centres, double overlap, int repetitions);
 
 } // namespace nendo::bench

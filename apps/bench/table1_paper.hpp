@@ -1,6 +1,6 @@
 #pragma once
-// What the paper's Table 1 says (Sato, Savchenko, Ohbuchi 2004): on an Athlon 64 3400+, drawing
-// included. Rows are meshes, columns radii, as in table1.hpp.
+// The figures of the paper's Table 1 (Sato, Savchenko, Ohbuchi 2004), measured on an Athlon 64
+// 3400+ with drawing. Rows are meshes and columns are radii, as in table1.hpp.
 
 #include <array>
 #include <cstddef>
@@ -12,8 +12,8 @@ using Table1Figures = std::array<std::array<T, 5>, 4>;
 
 inline constexpr std::array<std::size_t, 4> table1_triangles{2048, 8192, 32768, 65536};
 
-/// For 60 and the third mesh the paper prints 115812, less than a third of what its row and column
-/// lead one to expect; 155812 is one digit from it and fits both.
+/// For radius 60 and the third mesh the paper prints 115812, which does not fit its row and column;
+/// 155812 differs in one digit and fits both.
 inline constexpr Table1Figures<std::size_t> paper_evaluations{{
     {698, 2414, 7342, 10124, 10890},
     {2646, 9526, 28686, 39476, 42250},
@@ -21,7 +21,7 @@ inline constexpr Table1Figures<std::size_t> paper_evaluations{{
     {20790, 74482, 225714, 309476, 330250},
 }};
 
-/// Frames a second.
+/// The frames a second.
 inline constexpr Table1Figures<double> paper_type1{{
     {496.3, 502.1, 499.2, 427.4, 423.6},
     {162.6, 138.0, 119.7, 113.1, 112.0},

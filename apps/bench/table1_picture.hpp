@@ -1,5 +1,5 @@
 #pragma once
-// The paper's Table 1 and ours as a picture.
+// Draws the paper's Table 1 and ours as a picture.
 
 #include <string>
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace nendo::bench {
 
-/// A cell and where in the paper's table it stands.
+/// A cell, and its place in the paper's table.
 struct Table1Entry {
   std::size_t plane;  ///< in table1_planes
   std::size_t radius; ///< in table1_radii
   Table1Cell cell;
 };
 
-/// An SVG of frames a second on a logarithmic scale, one panel a type: for each entry the paper's
-/// below, the plain loop's and ours with one thread and two above.
+/// Returns an SVG of frames a second on a logarithmic scale, with a panel for each type. Each entry
+/// has the paper's figure below, and the plain loop's and ours with one thread and two above.
 std::string table1_picture(const std::vector<Table1Entry>& entries, const std::string& layout);
 
 } // namespace nendo::bench

@@ -1,5 +1,5 @@
 #pragma once
-// One cell of the paper's Table 1, measured: both types with one thread and two, and both by the
+// Measures one cell of the paper's Table 1: both types with one thread and two, and both by the
 // plain loop.
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace nendo::bench {
 
-/// Frames a second, the best of many; a frame takes new displacements, solves, and moves all
-/// vertices; one of Type-2 assembles and factorises, too. Nothing is drawn.
+/// The frames a second, the best of many. A frame takes new displacements, solves, and moves all
+/// vertices; one of Type-2 also assembles and factorises. Nothing is drawn.
 struct Table1Cell {
   using Types = std::array<double, 2>; ///< Type-1, Type-2
 
@@ -20,7 +20,7 @@ struct Table1Cell {
   Types plain_loop{}; ///< 0 if the processor has no AVX2
 };
 
-/// Takes about so many seconds, but at least one repetition of each measurement.
+/// Measures for about that many seconds, but with at least one repetition of each measurement.
 Table1Cell measure_table1_cell(const deform::Points& plane, const deform::Points& starts,
                                double radius, double seconds);
 

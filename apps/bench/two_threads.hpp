@@ -1,7 +1,7 @@
 #pragma once
-// Two threads, each on a processor of its own, and how long a cache line takes from one to the
-// other and back. On a virtual machine that changes under one's feet, so it is measured beside
-// everything that depends on it.
+// Runs two threads, each on a processor of its own, and measures how long a cache line takes from
+// one to the other and back. On a virtual machine that time changes during a run, so it is measured
+// beside everything that depends on it.
 
 #include <atomic>
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace nendo::bench {
 
-/// Runs each on its processor, at the same time, and returns when both are done.
+/// Runs both functions at the same time, each on its processor, and returns when both are done.
 void run_on(const cli::TwoProcessors& processors, const std::function<void()>& on_first,
             const std::function<void()>& on_second);
 
 /// One cache line that goes to and fro.
 class PingPong {
 public:
-  /// The one side; as often as the other one calls measure_ns().
+  /// One side. It must be called as often as the other side calls measure_ns().
   void answer() noexcept;
-  /// The other: the median time of a round trip.
+  /// The other side. Returns the median time of a round trip.
   double measure_ns();
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// A command of the program and what may be said after its name. CLI11 stands behind it in one
-// source file, because its headers take longer to compile than any command.
+// A command of the program, with the arguments that may follow its name. Only one source file uses
+// CLI11 for it, because CLI11's headers take longer to compile than any command.
 
 #include <functional>
 #include <initializer_list>
@@ -21,11 +21,11 @@ public:
   explicit Option(CLI::Option& option) noexcept : option_(&option) {}
 
   Option& required();
-  /// The heading of --help under which it stands.
+  /// Puts the option under this heading of --help.
   Option& under(const std::string& heading);
   Option& one_of(std::initializer_list<const char*> words);
-  /// Each use of it takes one value, which --help calls `type`; without this, a list takes all that
-  /// follow.
+  /// Lets each use of the option take one value, which --help calls `type`. Otherwise a list takes
+  /// all values that follow.
   Option& once_each(const std::string& type);
 
 private:
@@ -39,23 +39,23 @@ public:
   Command(CLI::App& app, std::function<int()>& chosen) noexcept : app_(&app), chosen_(&chosen) {}
 
   Command add_command(const std::string& name, const std::string& summary);
-  /// `value` must outlive parsing; what it holds is the default, shown by --help unless it is empty
-  /// or zero. A name without dashes is a positional argument. T: string, double, a whole number, an
-  /// optional or a list of strings, as command.cpp instantiates.
+  /// Adds an option. `value` must outlive parsing; what it holds is the default, which --help shows
+  /// unless it is empty or zero. A name without dashes is a positional argument. T is string,
+  /// double, a whole number, an optional, or a list of strings, as command.cpp instantiates.
   template <class T>
   Option add_option(const std::string& names, T& value, const std::string& summary);
   Option add_flag(const std::string& names, bool& value, const std::string& summary);
-  /// -h may then be another option's; --help stays.
+  /// Lets another option have -h. --help stays.
   void free_short_help();
-  /// The text after the options in --help.
+  /// Sets the text after the options in --help.
   void set_footer(const std::string& text);
-  /// Has `command` run when this one is chosen; what it returns becomes the exit code.
+  /// Sets the function that runs when this command is chosen. Its result becomes the exit code.
   void on_chosen(std::function<int()> command);
-  /// It does nothing by itself: one of its commands must follow.
+  /// Requires that one of its commands follows, since this one does nothing by itself.
   void require_command();
-  /// It is in no list of commands: not for users.
+  /// Leaves the command out of all lists, because it is not for users.
   void hide();
-  /// All that was described so far, as --help says it.
+  /// Returns everything that was described so far, as --help shows it.
   CommandModel model() const;
 
 private:
@@ -63,8 +63,8 @@ private:
   std::function<int()>* chosen_;
 };
 
-/// Describes the program by `add_commands`, runs what the arguments choose, and returns the exit
-/// code. Wrong usage is one line on standard error.
+/// Describes the program by `add_commands`, runs the command that the arguments choose, and returns
+/// the exit code. Wrong usage prints one line on standard error.
 int run_program(int argc, char** argv, const std::string& summary,
                 const std::function<void(Command&)>& add_commands);
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a command and its options are, in plain data: --help, manual pages and completions are made
-// of the same description, so they cannot disagree.
+// A description of a command and its options in plain data. --help, manual pages and completions
+// are made of it, so they cannot disagree.
 
 #include <string>
 #include <vector>

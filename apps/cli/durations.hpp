@@ -1,5 +1,5 @@
 #pragma once
-// Times as people type them.
+// Parses times as people type them.
 
 #include <string>
 
@@ -7,7 +7,8 @@
 
 namespace nendo::cli {
 
-/// Seconds of "90", "90s", "10m", "2h" or "1d", more than 0. Error: usage, naming the option.
+/// Returns the seconds of "90", "90s", "10m", "2h" or "1d", which must be more than 0. Error:
+/// usage, naming the option.
 Result<double> parse_duration(const std::string& text, const std::string& option = "--duration");
 
 } // namespace nendo::cli

@@ -1,5 +1,5 @@
 #pragma once
-// JSON for other programs, on standard output.
+// Writes JSON for other programs on standard output.
 
 #include <string>
 
@@ -7,10 +7,10 @@
 
 namespace nendo::cli {
 
-/// In one line, whatever it holds: bytes that are no UTF-8, as the names of files and devices may
-/// have, become U+FFFD.
+/// Returns the object in one line. Bytes that are no UTF-8, as names of files and devices may have,
+/// become U+FFFD.
 std::string json_text(const nlohmann::ordered_json& object);
-/// That line, at once, for who reads a pipe.
+/// Prints that line and flushes it, so that a program at a pipe gets it at once.
 void print_line(const nlohmann::ordered_json& object);
 
 } // namespace nendo::cli

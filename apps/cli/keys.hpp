@@ -1,6 +1,6 @@
 #pragma once
-// Keys that need no Return, while standard input is a terminal. Whatever ends the command, the
-// terminal is as it was before.
+// Reads keys that need no Return, if standard input is a terminal. However the command ends, the
+// terminal is then as it was before.
 
 #include <chrono>
 #include <optional>
@@ -18,14 +18,14 @@ public:
   Keys(const Keys&) = delete;
   Keys& operator=(const Keys&) = delete;
 
-  /// Whether any can come.
+  /// Tells whether keys can come.
   bool are_there() const noexcept { return saved_.has_value(); }
-  /// The next key, waiting for it at most so long, which is slept through where none can come;
-  /// returns early at a signal.
+  /// Returns the next key, and waits for it at most so long. If no keys can come, it sleeps for
+  /// that time. A signal ends the wait.
   std::optional<char> next(std::chrono::milliseconds patience) noexcept;
-  /// True once standard input has ended: a closed window.
+  /// Returns true once standard input has ended, as when the window was closed.
   bool are_gone() const noexcept { return gone_; }
-  /// Idempotent.
+  /// Gives the terminal back. Idempotent.
   void give_back() noexcept;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// Where files go. An hour of work must not end in one that cannot be written, so that is asked
-// before, and what is already there stays.
+// Checks where files go. It is done before the work, so that an hour of work does not end in a file
+// that cannot be written. Existing files stay.
 
 #include <initializer_list>
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace nendo::cli {
 
-/// Of the path given with `option`; an empty one is not wanted, and fine. The name must end in one
-/// of `endings` (".png"), if any are given. Errors: usage (its ending, a folder), failed (not there
-/// or not yours).
+/// Checks the path given with `option`. An empty path means that no file is wanted, and is right.
+/// The name must end in one of `endings` (".png"), if any are given. Errors: usage (wrong ending,
+/// or a folder), failed (the folder is missing or not writable).
 Result<void> check_place(std::string_view option, const std::string& path,
                          std::initializer_list<std::string_view> endings = {});
 
-/// Whether all outputs that are wanted, by their options, are different files. Error: usage.
+/// Checks that all wanted outputs, given with their options, are different files. Error: usage.
 Result<void>
 check_distinct(std::initializer_list<std::pair<std::string_view, std::string_view>> outputs);
 
-/// "a/shape-2.obj" of "a/shape.obj" and 2.
+/// Returns "a/shape-2.obj" for "a/shape.obj" and 2.
 std::string numbered(const std::string& path, int number);
-/// The next number, after `number`, whose name no file has; that name.
+/// Sets `number` to the next number whose name no file has, and returns that name.
 std::string next_free_name(const std::string& path, int& number);
 
 } // namespace nendo::cli

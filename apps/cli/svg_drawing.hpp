@@ -1,5 +1,6 @@
 #pragma once
-// A drawing as SVG, element by element. Lengths in pixels, y downwards; colours as SVG names them.
+// A drawing as SVG, made element by element. Lengths are in pixels, y goes downwards, and colours
+// have SVG's names.
 
 #include <string>
 
@@ -16,13 +17,13 @@ class SvgDrawing {
 public:
   SvgDrawing(double width, double height);
 
-  /// Any text: what means something to XML is escaped.
+  /// Draws any text. Characters with a meaning in XML are escaped.
   void words(double x, double y, const std::string& words, const SvgText& style);
   void line(double x0, double y0, double x1, double y1, const char* colour, double width = 1.0,
             const char* dashes = "none");
   void box(double x, double y, double width, double height, const char* colour, double opacity);
   void dot(double x, double y, double radius, const char* fill, const char* edge);
-  /// points: of svg_point().
+  /// Draws a path. `points` is made of svg_point()s.
   void path(const std::string& points, const char* colour, double width);
 
   std::string finished() &&;
@@ -31,7 +32,7 @@ private:
   std::string text_;
 };
 
-/// A corner of a path.
+/// Returns a corner of a path.
 std::string svg_point(double x, double y);
 
 } // namespace nendo::cli

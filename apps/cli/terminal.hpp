@@ -1,6 +1,6 @@
 #pragma once
-// A terminal as a page that is drawn again and again, and as keys that need no Return. Whatever
-// ends the command, the terminal is as it was before.
+// A terminal that shows a page, which is drawn repeatedly, and reads keys that need no Return.
+// However the command ends, the terminal is then as it was before.
 
 #include <chrono>
 #include <optional>
@@ -18,24 +18,25 @@ struct ScreenSize {
 
 class Terminal {
 public:
-  /// Takes standard output, which must be a terminal: the alternate screen, the cursor hidden. And
-  /// keys, if there can be any.
+  /// Takes standard output, which must be a terminal, with its alternate screen and a hidden
+  /// cursor. Takes keys, too, if they can come.
   Terminal();
   ~Terminal(); ///< leave()
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// As the terminal tells it now; 80 by 24 if it does not.
+  /// Returns the size that the terminal tells now, or 80 by 24 if it tells none.
   ScreenSize size() const noexcept;
-  /// Replaces the page, in one write. Lines are of printable ASCII; what exceeds the screen is cut.
-  /// Blocks while the terminal does not read; an interrupted write is left unfinished.
+  /// Replaces the page, in one write. Lines must be printable ASCII; what exceeds the screen is
+  /// cut. Blocks while the terminal does not read. An interrupted write stays unfinished.
   void draw(const std::vector<std::string>& lines);
   bool has_keys() const noexcept { return keys_.are_there(); }
-  /// As Keys::next().
+  /// Returns the next key. See Keys::next().
   std::optional<char> key(std::chrono::milliseconds patience) noexcept {
     return keys_.next(patience);
   }
-  /// True once the terminal cannot be written or read any more: a closed window.
+  /// Returns true once the terminal cannot be written or read any more, as when the window was
+  /// closed.
   bool is_gone() const noexcept { return gone_ || keys_.are_gone(); }
   /// Gives the terminal back. Idempotent.
   void leave() noexcept;

@@ -1,5 +1,5 @@
 #pragma once
-// For what two threads do at once.
+// Chooses processors for two threads that work at once.
 
 #include <nendo/base/result.hpp>
 
@@ -10,7 +10,7 @@ struct TwoProcessors {
   int second = 0;
 };
 
-/// The first two that this process may use; an error if there is only one.
+/// Returns the first two processors that this process may use. Fails if there is only one.
 Result<TwoProcessors> two_processors();
 
 } // namespace nendo::cli

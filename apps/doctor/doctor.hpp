@@ -1,6 +1,6 @@
 #pragma once
-// What `nendo doctor` looks for. A check is a function from the machine's facts to findings; its
-// place is one of the tables of checks, by subject. A new subject is a file and a line in
+// The checks of `nendo doctor`. A check is a function from the machine's facts to findings. Checks
+// are listed in tables, one for each subject. A new subject needs a file and a line in
 // doctor_command.cpp.
 
 #include <cstdint>
@@ -29,18 +29,18 @@ struct Finding {
   std::string remedy; ///< the command or deed that mends it
 };
 
-/// What the checks of ports judge.
+/// The facts that the checks of ports use.
 struct PortFacts {
   std::vector<driver::GloveCandidate> candidates;
   std::vector<std::string> grabbers; ///< as running_port_grabbers() names them
 };
 
-/// All findings about ports and USB devices. Pure.
-std::vector<Finding> judge_ports(const PortFacts& facts);
-/// The same for this machine, now. Blocks for less than a second.
+/// Returns all findings about ports and USB devices. Pure.
+std::vector<Finding> diagnose_ports(const PortFacts& facts);
+/// Returns the findings about this machine's ports now. Blocks for less than a second.
 std::vector<Finding> check_ports();
 
-/// What the checks of the machine judge; what could not be found out is no finding.
+/// The facts that the checks of the machine use. A fact that is unknown gives no finding.
 struct MachineFacts {
   std::optional<std::uint64_t> priority_limit; ///< RLIMIT_RTPRIO, of this process
   std::optional<std::uint64_t> memory_limit;   ///< RLIMIT_MEMLOCK in bytes; the largest: unlimited
@@ -53,11 +53,11 @@ struct MachineFacts {
   std::vector<udev::RuleFile> rules;
 };
 
-/// Reads /proc, /sys, /run and /etc below `root`. Blocks briefly.
+/// Reads the facts from /proc, /sys, /run and /etc below `root`. Blocks briefly.
 MachineFacts read_machine(const std::filesystem::path& root);
-/// All findings about the machine: limits, clocks, rules. Pure.
-std::vector<Finding> judge_machine(const MachineFacts& facts);
-/// The same for this machine, now.
+/// Returns all findings about the machine: limits, clocks, rules. Pure.
+std::vector<Finding> diagnose_machine(const MachineFacts& facts);
+/// Returns the findings about this machine now.
 std::vector<Finding> check_machine();
 
 } // namespace nendo::doctor

@@ -87,7 +87,7 @@ constexpr std::array machine_checks{check_priority, check_memory, check_governor
 
 } // namespace
 
-std::vector<Finding> judge_machine(const MachineFacts& facts) {
+std::vector<Finding> diagnose_machine(const MachineFacts& facts) {
   Findings found;
   for (const auto check : machine_checks)
     check(facts, found);
@@ -95,7 +95,7 @@ std::vector<Finding> judge_machine(const MachineFacts& facts) {
 }
 
 std::vector<Finding> check_machine() {
-  return judge_machine(read_machine("/"));
+  return diagnose_machine(read_machine("/"));
 }
 
 } // namespace nendo::doctor

@@ -111,7 +111,7 @@ constexpr std::array port_checks{check_presence, check_permission, check_portles
 
 } // namespace
 
-std::vector<Finding> judge_ports(const PortFacts& facts) {
+std::vector<Finding> diagnose_ports(const PortFacts& facts) {
   Findings found;
   for (const auto check : port_checks)
     check(facts, found);
@@ -119,7 +119,7 @@ std::vector<Finding> judge_ports(const PortFacts& facts) {
 }
 
 std::vector<Finding> check_ports() {
-  return judge_ports({driver::find_gloves(), driver::running_port_grabbers()});
+  return diagnose_ports({driver::find_gloves(), driver::running_port_grabbers()});
 }
 
 } // namespace nendo::doctor

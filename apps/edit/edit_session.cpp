@@ -230,7 +230,7 @@ const viewer::SceneFrame& EditSession::moment() {
       const Key key = curves_[at].at(time_s);
       return skeleton.pose(key.angles, key.wrist_pose());
     };
-    viewer::SeenHand seen{pose_at(moment_.time_s), {}};
+    viewer::SceneHand seen{pose_at(moment_.time_s), {}};
     seen.starts =
         (moment_.held ? pose_at(found.shape->held_since_s) : seen.pose).fingertip_positions();
     moment_.hands[flow::Placement::index_of(hands[at].side)] = seen;

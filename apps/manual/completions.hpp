@@ -1,5 +1,5 @@
 #pragma once
-// Completion of the program's command line, for three shells.
+// Makes the completion of the program's command line for three shells.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace nendo::manual {
 
-/// Words of the commands, options and their choices; file names where any value will do.
+/// These complete commands, options and their choices, and file names where any value is allowed.
 std::string bash_completion(const cli::CommandModel& program);
 std::string zsh_completion(const cli::CommandModel& program);
 std::string fish_completion(const cli::CommandModel& program);

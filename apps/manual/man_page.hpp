@@ -1,5 +1,5 @@
 #pragma once
-// Manual pages of commands, in the language of man(7).
+// Makes manual pages of commands, in the language of man(7).
 
 #include <string>
 #include <string_view>
@@ -9,15 +9,15 @@
 
 namespace nendo::manual {
 
-/// Where a page comes from, as its head and foot say.
+/// The origin of a page, as its head and foot show it.
 struct PageOrigin {
   std::string date;    ///< "2026-11-22"
   std::string version; ///< "0.1.0"
 };
 
-/// nendo.1: the program and its commands.
+/// Returns nendo.1, the page of the program and its commands.
 std::string program_page(const cli::CommandModel& program, const PageOrigin& origin);
-/// nendo-COMMAND.1: one of its commands, with the commands that this has.
+/// Returns nendo-COMMAND.1, the page of one command with the commands below it.
 std::string command_page(const cli::CommandModel& program, const cli::CommandModel& command,
                          const PageOrigin& origin);
 

@@ -1,6 +1,6 @@
 #pragma once
-// A description of a command as JSON text. By it, a program that another one starts takes part in
-// the other's manual and completions.
+// Converts the description of a command to JSON text and back. By that text, a program that another
+// one starts gets into the other's manual and completions.
 
 #include <string>
 
@@ -10,7 +10,7 @@
 
 namespace nendo::manual {
 
-/// The description with all of its options and commands, in one line.
+/// Returns the description with all of its options and commands, in one line.
 std::string model_json(const cli::CommandModel& command);
 /// Reads what model_json() returned. Error: bad_input.
 Result<cli::CommandModel> parse_model(const std::string& json);

@@ -1,11 +1,11 @@
 #pragma once
-// nendo calibration import, export: to and from other programs' formats.
+// nendo calibration import and export, which convert from and to other programs' formats.
 
 #include "cli/command.hpp"
 
 namespace nendo::app::calibration_exchange {
 
-/// Describes both to `nendo calibration`.
+/// Adds both commands to `nendo calibration`.
 void add(cli::Command& calibration);
 
 } // namespace nendo::app::calibration_exchange

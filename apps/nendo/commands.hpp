@@ -1,5 +1,5 @@
 #pragma once
-// The commands of the program, one a file and each in a namespace of its own. add() describes the
+// The commands of the program. Each has a file and a namespace of its own. add() describes the
 // command to the program.
 
 #include "cli/command.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// nendo deform --injective: deforms without folding, and says what it took.
+// nendo deform --injective, which deforms without folding and reports how.
 
 #include <string>
 
@@ -13,9 +13,8 @@ struct InjectiveDeformation {
   std::string report; ///< one line: links, bound, least determinant at the vertices, held pairs
 };
 
-/// Deforms the vertices in place. Error: bad_input if the vectors
-/// have no usable solution, or are too long; the vertices are then spoilt. `name` is what messages
-/// call the vectors.
+/// Deforms the vertices in place. `name` is what messages call the vectors. Error: bad_input if the
+/// vectors have no usable solution, or are too long; the vertices are then undefined.
 Result<InjectiveDeformation> deform_injectively(deform::Points& vertices,
                                                 const deform::ControlVectors& vectors,
                                                 const deform::Supports& supports,

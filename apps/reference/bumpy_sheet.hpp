@@ -1,5 +1,5 @@
 #pragma once
-// Points as control points on a surface are: many, and in no order.
+// Points like control points on a surface: many, and in no order.
 
 #include <cmath>
 #include <random>
@@ -8,7 +8,7 @@
 
 namespace nendo::reference {
 
-/// Over a square of side 1.
+/// Returns `count` points over a square of side 1.
 inline deform::Points bumpy_sheet(std::mt19937& random, Eigen::Index count) {
   std::uniform_real_distribution<double> place(0.0, 1.0);
   deform::Points points(3, count);

@@ -13,7 +13,8 @@ namespace nendo::reference {
 
 inline constexpr std::array<double, 5> table1_radii{10.0, 20.0, 40.0, 60.0, 80.0};
 
-/// Cells a side; with a vertex in each cell's middle, four triangles a cell instead of two.
+/// A plane of so many cells a side. With a vertex in each cell's middle, it has four triangles a
+/// cell instead of two.
 struct Table1Plane {
   int cells;
   bool with_middles;
@@ -27,7 +28,7 @@ struct Table1Layout {
 };
 inline constexpr std::array<Table1Layout, 2> table1_layouts{{{"near", 2.0}, {"plane", 0.0}}};
 
-/// The vertices alone: 50 by 50 in z = 0.
+/// Returns the vertices of the plane, which is 50 by 50 in z = 0.
 inline deform::Points table1_plane(int cells, bool with_middles = false) {
   const int side = cells + 1;
   deform::Points plane(3, side * side + (with_middles ? cells * cells : 0));
@@ -42,7 +43,7 @@ inline deform::Points table1_plane(int cells, bool with_middles = false) {
   return plane;
 }
 
-/// With its triangles, which face upwards.
+/// Returns the plane with its triangles, which face upwards.
 deform::Mesh table1_mesh(const Table1Plane& plane);
 
 inline deform::Points table1_starts(double height = table1_layouts[0].height) {
@@ -54,12 +55,12 @@ inline deform::Points table1_starts(double height = table1_layouts[0].height) {
   return starts;
 }
 
-/// Pairs of a vertex and a control point that are less than the radius apart: what has to be
-/// evaluated a frame. Looks at every pair.
+/// Returns how many pairs of a vertex and a control point are less than the radius apart. A frame
+/// has to evaluate these. Looks at every pair.
 std::size_t count_evaluations(const deform::Points& vertices, const deform::Points& starts,
                               double radius);
 
-/// Two hands over the plane, fingertips 3 to 8 apart.
+/// Returns the fingertips of two hands over the plane, 3 to 8 apart.
 inline deform::Points crowded_starts() {
   deform::Points starts(3, 10);
   starts << 12, 14, 18, 22, 26, 38, 36, 32, 28, 27, //
@@ -68,7 +69,7 @@ inline deform::Points crowded_starts() {
   return starts;
 }
 
-/// All within the plane: supports of radius 10 each reach a fifth of it at most.
+/// Returns control points in the plane. Supports of radius 10 each reach a fifth of it at most.
 inline deform::Points spread_starts() {
   deform::Points starts(3, 10);
   for (Eigen::Index i = 0; i < 10; ++i)
@@ -76,7 +77,7 @@ inline deform::Points spread_starts() {
   return starts;
 }
 
-/// About 1.5 across the plane and 4 out of it.
+/// Returns random displacements of about 1.5 along the plane and 4 out of it.
 inline deform::Points table1_displacements(std::mt19937& random) {
   std::normal_distribution<double> normal;
   deform::Points moves(3, 10);

@@ -1,7 +1,7 @@
 #pragma once
-// Synthetic wearers of a 22-sensor glove, whose true joints and sensors are known. They are as
-// unlike the calibration's assumptions as published gloves are unlike each other: their gains,
-// offsets and habits are drawn about other means, wider, and from other shapes.
+// Synthetic wearers of a 22-sensor glove, whose true joints and sensors are known. They differ from
+// the calibration's assumptions as much as published gloves differ from each other: their gains,
+// offsets and habits have other means, wider spreads and other distributions.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,8 @@ struct AngleRange {
 };
 using Ranges = std::array<AngleRange, sensor_slots>;
 
-/// A wearer moving freely: every joint to and fro over nearly its whole range, none like another.
+/// The motion of a wearer who moves freely: every joint goes to and fro over nearly its whole
+/// range, each at its own pace.
 class FreeMotion {
 public:
   FreeMotion(std::uint64_t seed, const Ranges& ranges);
@@ -36,22 +37,24 @@ private:
 
 class Wearer {
 public:
-  /// The same wearer for the same seed; odd seeds are left hands.
+  /// Makes the same wearer for the same seed. Odd seeds are left hands.
   explicit Wearer(std::uint64_t seed);
 
   Side side() const noexcept { return side_; }
   hand::HandSize size() const noexcept { return size_; }
   const Ranges& ranges() const noexcept { return ranges_; }
-  /// Lines and couplings; each sensor also bends away from its line by up to a degree.
+  /// Returns the true lines and couplings. Each sensor also deviates from its line by up to a
+  /// degree.
   const hand::Calibration& truth() const noexcept { return truth_; }
 
-  /// The joints as this wearer holds them when asked for a pose: off by habit and by chance, each
-  /// time anew. Touches do touch, but for a few millimetres that pads slip. What lies against a
-  /// table is as sure as a flat hand, but for a habit of its own where it is bent over the edge.
+  /// Returns the joints as this wearer holds them when asked for a pose. They are off by habit and
+  /// by chance, differently each time. Pads that shall touch do so, except that they slip by a few
+  /// millimetres. Poses against a table are as exact as a flat hand, with a habit of their own
+  /// where the hand bends over the edge.
   hand::SensorAngles perform(hand::PoseId pose);
-  /// The glove's counts, noisy and rounded to 8 bits.
+  /// Returns the glove's counts, noisy and rounded to 8 bits.
   GloveSample read(const hand::SensorAngles& angles_rad);
-  /// How far apart the pads are that touch in `pose`.
+  /// Returns how far apart the pads are that shall touch in `pose`.
   double gap_m(hand::PoseId pose, const hand::SensorAngles& angles_rad) const;
 
 private:
@@ -60,7 +63,7 @@ private:
   double uniform(double low, double high);
   void draw_sensors();
   void make_touch(hand::PoseId pose, hand::SensorAngles& angles);
-  /// One step of the joints that bring the pads together.
+  /// Makes one step of the joints that bring the pads together.
   void approach(const hand::Touch& touch, const std::vector<std::size_t>& slots,
                 const Eigen::Vector3d& slip_m, hand::SensorAngles& angles) const;
   Eigen::Vector3d gap(const hand::Touch& touch, const hand::SensorAngles& angles) const;
@@ -74,14 +77,15 @@ private:
   hand::Calibration truth_;
   std::array<double, sensor_slots> bow_rad_{};
   std::array<double, sensor_slots> habit_rad_{};
-  /// Against an edge, where flesh gives way: as large as habits are, and of another kind.
+  /// The habit against an edge, where flesh gives way. It is as large as other habits, but
+  /// independent of them.
   std::array<double, sensor_slots> edge_habit_rad_{};
   double pad_depth_m_ = 0.0;
   double pad_behind_tip_m_ = 0.0;
   double palm_depth_m_ = 0.0;
 };
 
-/// The joints of these sensors' angles, with a straight middle finger.
+/// Returns the joint angles for these sensors' angles, with a straight middle finger.
 hand::JointAngles joints_of(const hand::SensorAngles& angles_rad) noexcept;
 
 } // namespace nendo::reference

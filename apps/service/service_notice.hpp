@@ -1,6 +1,6 @@
 #pragma once
-// Tells systemd how a service fares, by its protocol (sd_notify(3)): datagrams to the socket that
-// the environment names. Outside a service nothing is sent.
+// Tells systemd the state of a service by sd_notify(3): it sends datagrams to the socket that the
+// environment names. Outside a service nothing is sent.
 
 #include <string>
 #include <string_view>
@@ -9,15 +9,17 @@ namespace nendo::service {
 
 class ServiceNotice {
 public:
-  /// Reads NOTIFY_SOCKET, and takes it out of the environment: it is not for child processes.
+  /// Reads NOTIFY_SOCKET and removes it from the environment, because it is not for child
+  /// processes.
   ServiceNotice();
-  /// STOPPING=1, if it was ready.
+  /// Sends STOPPING=1, if READY=1 was sent.
   ~ServiceNotice();
   ServiceNotice(const ServiceNotice&) = delete;
   ServiceNotice& operator=(const ServiceNotice&) = delete;
 
-  /// A frame came: READY=1 the first time, and each time WATCHDOG=1. To be called several times
-  /// within the service's WatchdogSec. Never blocks: a notice that finds no room is left out.
+  /// Reports that a frame came: sends WATCHDOG=1, and READY=1 the first time. It must be called
+  /// several times within the service's WatchdogSec. Never blocks: a notice that finds no room is
+  /// dropped.
   void alive() noexcept;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// The view in a browser: takes every frame in the tick, and watches from the main thread.
+// The view in a browser. It takes every frame in the tick, and is an observer on the main thread.
 
 #include <memory>
 #include <string>
@@ -13,11 +13,11 @@ namespace nendo::session {
 
 class BrowserView final : public Sink, public Observer {
 public:
-  /// model_name: as the page shows it.
+  /// model_name is the name that the page shows.
   BrowserView(std::unique_ptr<web::Server> server, std::string model_name) noexcept
       : server_(std::move(server)), model_name_(std::move(model_name)) {}
 
-  /// Error: bad_input (a model with more vertices than browsers take).
+  /// Begins with a loop. Error: bad_input (a model with more vertices than browsers take).
   Result<void> begin(const LoopStart& start) override;
   void show(const flow::Frame& frame) noexcept override { stream_->show(frame); }
   void update(const RunStatus& status, flow::CommandRing& commands) override;
@@ -29,8 +29,8 @@ private:
   std::string model_name_;
 };
 
-/// Opens the server that --web asks for, and says on standard error where it is to be found. Errors
-/// as web::parse_endpoint() and web::Server::open().
+/// Opens the server that --web asks for, and prints its address on standard error. Errors: those of
+/// web::parse_endpoint() and web::Server::open().
 Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
                                                        const std::string& mesh);
 

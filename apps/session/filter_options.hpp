@@ -16,7 +16,7 @@ struct FilterArguments {
   std::optional<double> min_cutoff_hz; ///< nullopt: hand::FilterOptions' own
   std::optional<double> beta;          ///< Hz a rad/s; nullopt: hand::FilterOptions' own
 
-  /// Error: usage, naming what can be used.
+  /// Parses the options. Error: usage, naming what can be used.
   Result<hand::FilterOptions> parse() const;
 };
 

@@ -14,7 +14,7 @@ struct KernelOptions {
   std::string kernel = "wendland-c2";
   std::string polynomial = "none";
 
-  /// Error: usage, naming what is known.
+  /// Parses the options. Error: usage, naming the known names.
   Result<deform::CsrbfOptions> parse() const;
 };
 

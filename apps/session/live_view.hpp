@@ -15,8 +15,8 @@ struct ViewOptions {
   std::uint32_t frames = 0; ///< pictures after which the run ends; 0: as the person likes
 };
 
-/// Opens the window, on the main thread, where all of its calls belong. Errors: failed
-/// (no screen, no OpenGL, or built without), with what to do without it.
+/// Opens the window. This and all calls of the window belong to the main thread. Errors: failed (no
+/// screen, no OpenGL, or built without the view); the message says what to do instead.
 Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options, const RunOptions& run);
 
 } // namespace nendo::session

@@ -1,6 +1,6 @@
 #pragma once
-// The commands that a running loop cannot obey: they are collected, and the next loop is made with
-// them. It goes on from the shape as it is, with the hands where they are; undo begins anew.
+// The commands that a running loop cannot obey. They are collected, and the next loop is made with
+// them. It goes on from the present shape, with the hands where they are; undo begins anew.
 
 #include <optional>
 
@@ -10,25 +10,27 @@
 
 namespace nendo::session {
 
-/// What the next loop is to have that this one has not.
+/// What the next loop has to do differently from this one.
 struct LoopChange {
   std::optional<flow::LoopSettings> settings{};
   bool reset = false;           ///< begin with the model as it was loaded
   std::optional<bool> record{}; ///< whether it is recorded to a file
 
   bool is_empty() const noexcept { return !settings && !reset && !record; }
-  /// Of two commands of a kind, the later one counts. Commands of other kinds change nothing.
+  /// Adds a command. Of two commands of a kind, the later one counts. Commands that a running loop
+  /// obeys change nothing.
   void add(const flow::Command& command) noexcept;
 };
 
-/// The settings with which a loop was made.
+/// Returns the settings with which a loop was made.
 flow::LoopSettings settings_of(const PlacedLoop& placed);
 
-/// Whether a new loop would differ at all from the one that runs.
+/// Tells whether a new loop would differ at all from the one that runs.
 bool differs(const LoopChange& change, const PlacedLoop& placed, const RunOptions& options);
 
-/// Makes the next loop's options; the shape is left to the caller. A radius that nobody gave stays
-/// what the model's size made of it at first, however the model has been pulled about since.
+/// Makes the next loop's options. The caller provides the shape. A radius that the user did not
+/// give stays what it was computed from the model's first size, even if the model has changed its
+/// size since.
 void apply(const LoopChange& change, const PlacedLoop& placed, RunOptions& options);
 
 } // namespace nendo::session

@@ -1,6 +1,6 @@
 #pragma once
-// The options of the commands that run the loop: how it is paced, what it asks of the system, and
-// whether a second thread helps.
+// The options of the commands that run the loop: the pace, the rights that it asks of the system,
+// and whether a second thread helps.
 
 #include <string>
 #include <vector>
@@ -22,17 +22,18 @@ struct LoopArguments {
   std::string spin = "auto";
   std::uint32_t threads = 1;
 
-  /// Names as cyclictest has them. `short_names`: -p, -a and -m, too.
+  /// Adds the options, with the names that cyclictest gives them. With `short_names`, adds -p, -a
+  /// and -m, too.
   void add_to(cli::Command& command, bool short_names = false);
-  /// Reads them into `loop` and `realtime`. Errors: usage, naming the option and what it may be;
-  /// failed (no processor for a second thread).
+  /// Reads the options into `loop` and `realtime`. Errors: usage, naming the option and what it may
+  /// be; failed (no processor for a second thread).
   Result<void> parse(flow::LoopOptions& loop, flow::RealtimeOptions& realtime) const;
 
 private:
   Result<void> check_threads() const;
 };
 
-/// An object for each right that was asked for: name, wanted, granted, why, remedy.
+/// Returns an object for each right that was asked for, with name, wanted, granted, why and remedy.
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants);
 
 } // namespace nendo::session

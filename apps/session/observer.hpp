@@ -1,5 +1,6 @@
 #pragma once
-// Who watches a run from the main thread and may ask for something: the keys, a window, a browser.
+// An observer watches a run from the main thread and may send commands: the keys, a window, a
+// browser.
 
 #include <array>
 #include <cstdint>
@@ -18,9 +19,9 @@ struct GloveStatus {
   std::uint64_t bad_records = 0;
   std::uint64_t lost = 0; ///< samples that found the ring full
 };
-/// By flow::Placement::index_of(side).
+/// The states of both gloves, by flow::Placement::index_of(side).
 using GloveStatuses = std::array<GloveStatus, 2>;
-/// Asks each glove, which may take a lock.
+/// Asks each glove for its state, which may take a lock.
 GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands);
 
 struct RunStatus {
@@ -29,17 +30,18 @@ struct RunStatus {
   const GloveStatuses& gloves;
 };
 
-/// All calls come from the main thread. None may block for longer than 30 ms.
+/// All calls come from the main thread. No call may block for longer than 30 ms.
 class Observer {
 public:
   virtual ~Observer() = default;
-  /// A loop is about to begin. Its model and hands live until the next call.
+  /// Called before a loop begins. Its model and hands live until the next call of this function.
   virtual void loop_begins(const LoopStart& start) { static_cast<void>(start); }
-  /// Called over and over while the loop runs; pushes whatever is asked for since the last call.
+  /// Called repeatedly while the loop runs. Pushes the commands that were given since the last
+  /// call.
   virtual void update(const RunStatus& status, flow::CommandRing& commands) = 0;
-  /// What became of a command, for the person who watches.
+  /// Tells the person who watches what became of a command.
   virtual void report(const std::string& message) { static_cast<void>(message); }
-  /// Whether update() waits by itself, as a window waits for its screen.
+  /// Tells whether update() waits by itself, as a window waits for its screen.
   virtual bool sets_pace() const noexcept { return false; }
   /// Called after the last loop, when the shape has been written. An error becomes the run's.
   virtual Result<void> end() { return {}; }

@@ -1,5 +1,5 @@
 #pragma once
-// The gloves of a run: those that were named, or what the machine has.
+// Opens the gloves of a run: those that were named, or those that the machine has.
 
 #include <vector>
 
@@ -15,11 +15,12 @@ struct RunHands {
   std::vector<flow::Grant> grants; ///< what the system said to the readers' priority
 };
 
-/// Opens and starts the gloves and waits for the first sample of each. With none named it uses what
-/// is identified, and simulated hands, saying so, if there is nothing. `model` is what hands of
-/// sim:touch touch. The readers get the priority that goes with the loop's. With
-/// OverrunPolicy::sample, `event_count` is what wakes the loop; it must outlive both. Errors as
-/// open_glove(), known_hands() and touching_context(); no_device if no sample comes.
+/// Opens and starts the gloves and waits for the first sample of each. If none is named, it uses
+/// the gloves that are identified or, if there are none, simulated hands, and says so. Hands of
+/// sim:touch touch `model`. The readers get the priority that belongs to the loop's. With
+/// OverrunPolicy::sample, `event_count` wakes the loop; it must outlive the loop and the gloves.
+/// Errors: those of open_glove(), known_hands() and touching_context(); no_device if no sample
+/// comes.
 Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
                             EventCount& event_count);
 

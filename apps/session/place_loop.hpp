@@ -1,5 +1,5 @@
 #pragma once
-// A loop over the hands that are open, placed so that they hold the model between them.
+// Makes a loop over the open hands, which are placed so that they hold the model between them.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace nendo::session {
 
-/// What a loop was made of, besides its model's file.
+/// The parameters of which a loop was made, besides its model's file.
 struct PlacedSetup {
   std::vector<flow::HandInput> inputs;
   flow::Placement placement;
@@ -27,7 +27,7 @@ struct PlacedLoop {
   bool recorded = false; ///< to a file, as long as it runs
 };
 
-/// What a loop begins with. All of it outlives the loop.
+/// The things with which a loop begins. All of them outlive the loop.
 struct LoopStart {
   const PlacedLoop& placed;
   const deform::Mesh& model;
@@ -41,9 +41,9 @@ struct Carryover {
 };
 Carryover carryover_of(const flow::DeformLoop& ended);
 
-/// As options.loop says, with the supports that options.supports says. Without a carryover the
-/// hands are put to the model. Errors: usage (radius), failed (the hands cannot take hold of the
-/// model).
+/// Makes the loop that options.loop describes, with the supports of options.supports. Without a
+/// carryover, the hands are placed at the model. Errors: usage (radius), failed (the hands cannot
+/// take hold of the model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model,
                               const std::optional<Carryover>& carryover = {});
@@ -55,7 +55,7 @@ struct FrameRoom {
 };
 FrameRoom room_of_frames(const PlacedLoop& placed);
 
-/// The supports that --radius asks for; empty text asks for none. Error: usage.
+/// Returns the supports that --radius asks for, or nothing if the text is empty. Error: usage.
 Result<std::optional<deform::Supports>> parse_radius(const std::string& text);
 
 } // namespace nendo::session

@@ -1,5 +1,5 @@
 #pragma once
-// What adaptation has learned of a glove's sensors, for the end of `nendo run --adapt`.
+// Reports what adaptation has learned of a glove's sensors, at the end of `nendo run --adapt`.
 
 #include <nlohmann/json_fwd.hpp>
 

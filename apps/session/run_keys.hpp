@@ -11,12 +11,12 @@ namespace nendo::session {
 
 class RunKeys final : public Observer {
 public:
-  /// Says on standard error what the keys are, if any can come. patience: how long update() waits
-  /// for a key. keeps: a recording is kept in memory.
+  /// Prints the keys on standard error, if keys can come. `patience` is how long update() waits for
+  /// a key. `keeps` says that a recording is kept in memory.
   RunKeys(std::chrono::milliseconds patience, bool keeps);
 
   void update(const RunStatus& status, flow::CommandRing& commands) override;
-  /// Writes to standard error, whether keys can come or not.
+  /// Writes to standard error, also if no keys can come.
   void report(const std::string& message) override;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// What a run is asked for on the command line.
+// The options of a run on the command line.
 
 #include <optional>
 #include <string>
@@ -20,8 +20,8 @@ struct RunOptions {
   std::string out;         ///< empty: a name made of date and time
   std::string picture;     ///< empty: none
   double duration_s = 0.0; ///< 0: until a stop signal
-  /// Of both hands' fingertips, model units (flow::parse_finger_supports); nullopt: one radius for
-  /// all, made of the model's size.
+  /// The supports of both hands' fingertips in model units (flow::parse_finger_supports). nullopt
+  /// means one radius for all, computed from the model's size.
   std::optional<deform::Supports> supports{};
   bool json = false;
   std::optional<double> undo_memory_mb{}; ///< nothing: half of what there is

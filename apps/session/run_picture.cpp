@@ -26,7 +26,7 @@ RunPicture::RunPicture(std::filesystem::path path, const deform::Mesh& model,
 void RunPicture::see(const flow::Frame& frame) {
   if (path_.empty()) return;
   holds_.follow(frame);
-  see_hands(frame, holds_, last_);
+  set_hands(frame, holds_, last_);
   if (units_per_metre_ > 0.0) return;
   units_per_metre_ = frame.units_per_metre;
   first_ = last_;

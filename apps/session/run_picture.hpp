@@ -1,6 +1,5 @@
 #pragma once
-// The picture that a run leaves behind: the model in the hands as they took hold, and as they left
-// it.
+// Draws the picture of a run: the model in the hands as they took hold of it, and as they left it.
 
 #include <filesystem>
 
@@ -11,13 +10,14 @@ namespace nendo::session {
 
 class RunPicture {
 public:
-  /// Follows nothing and writes nothing if `path` is empty.
+  /// Does nothing, and writes nothing, if `path` is empty.
   RunPicture(std::filesystem::path path, const deform::Mesh& model, const flow::LoopOptions& loop);
 
-  /// Each frame that the main thread sees, the first one soon. Allocates.
+  /// Takes a frame. Call it for each frame that the main thread sees, from the beginning on.
+  /// Allocates.
   void see(const flow::Frame& frame);
-  /// After the last frame, with the final shape. Draws and writes; blocks for some seconds. Errors:
-  /// failed.
+  /// Draws and writes the picture. Call it after the last frame, with the final shape. Blocks for
+  /// some seconds. Error: failed.
   Result<void> write(const deform::Points& final_shape);
 
 private:

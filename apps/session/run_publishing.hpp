@@ -10,8 +10,8 @@
 
 namespace nendo::session {
 
-/// What became of one --publish. `lost` are records that were overwritten before they were sent, or
-/// datagrams that the system refused.
+/// The result of one --publish. `lost` counts records that were overwritten before they were sent,
+/// or datagrams that the system refused.
 struct PublishedTo {
   std::string target; ///< as it was asked for
   std::uint64_t records = 0;
@@ -27,13 +27,13 @@ struct PublishedTo {
 /// Publishes to one place.
 class PublishingSink : public Sink {
 public:
-  /// Ends it, if it has not ended, and returns what it has counted.
+  /// Ends publishing, if it has not ended, and returns the counts.
   virtual PublishedTo end() = 0;
 };
 
 void add_publish_option(cli::Command& command, std::vector<std::string>& targets);
 
-/// Makes one sink for each target; none publishes before its begin(). Error: usage.
+/// Makes one sink for each target. None publishes before its begin(). Error: usage.
 Result<std::vector<std::unique_ptr<PublishingSink>>>
 publish_to(const std::vector<std::string>& targets);
 

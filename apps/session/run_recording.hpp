@@ -1,5 +1,5 @@
 #pragma once
-// A run that is recorded: its options, the input log and the recorder beside the loop.
+// Records a run: the options, the input log, and the recorder beside the loop.
 
 #include <memory>
 #include <optional>
@@ -24,15 +24,15 @@ struct RecordingOptions {
   std::string kept_stem; ///< what kept files are called by
 
   bool wanted() const noexcept { return on || keep_last_s > 0.0; }
-  /// Reads `keep_last`; what has no name stands beside `out`. Errors: usage; failed (the file is
-  /// there).
+  /// Checks the options and reads `keep_last`. Files without a name get one beside `out`. Errors:
+  /// usage; failed (the file exists).
   Result<void> check(const std::string& out, flow::SwitchAction action);
 };
 
-/// --record and --keep-last.
+/// Adds --record and --keep-last.
 void add_recording_options(cli::Command& command, RecordingOptions& options);
 
-/// What became of one loop's recording.
+/// The result of one loop's recording.
 struct RecordingOutcome {
   std::string file;                            ///< empty: only kept in memory
   std::optional<recording::Recorded> recorded; ///< nothing: not all was
@@ -47,19 +47,20 @@ recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const s
 /// written beside its recording.
 class RunRecorder {
 public:
-  /// `loaded`: the model as it is in the run's file.
+  /// `loaded` is the model as it is in the run's file.
   explicit RunRecorder(const deform::Mesh& loaded) : loaded_(recording::sum_of(loaded.vertices)) {}
 
   /// Makes the log that the next loop writes to; returns null if it is not to be recorded.
   flow::InputLog* input_log_for(const RecordingOptions& options);
-  /// Before the loop runs. Error: failed, if the files cannot be made; nothing is recorded then.
+  /// Begins to record. Call it before the loop runs. Error: failed, if the files cannot be made;
+  /// nothing is recorded then.
   Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
                      const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model);
-  /// Whether keep() does anything: with --keep-last, from begin() to end().
+  /// Tells whether keep() does anything. It does with --keep-last, from begin() to end().
   bool keeps() const noexcept { return keeps_; }
-  /// Has the recording in memory written to a file. Wait-free.
+  /// Asks for the recording in memory to be written to a file. Wait-free.
   void keep() noexcept;
-  /// After the loop's last tick.
+  /// Ends the recording. Call it after the loop's last tick.
   void end(const deform::Mesh& shape);
   /// Returns one outcome for each loop that was to be recorded.
   const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }

@@ -6,8 +6,9 @@
 
 namespace nendo::session {
 
-/// Rewrites one line of standard error in a terminal; elsewhere a line every two seconds. With
-/// `json`, an object a second on standard output.
+/// Returns what reports progress. In a terminal it rewrites one line of standard error, and
+/// elsewhere it prints a line every two seconds. With `json` it prints an object a second on
+/// standard output.
 Progress progress_for(const RunOptions& options);
 
 void print_summary(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,

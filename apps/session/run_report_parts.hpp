@@ -1,16 +1,16 @@
 #pragma once
-// A run's report in its two forms.
+// The two forms of a run's report.
 
 #include "session/run_report.hpp"
 
 namespace nendo::session {
 
-/// Objects, a line each, on standard output.
+/// Print objects on standard output, a line each.
 void print_progress_json(const flow::Frame& frame, double elapsed_s);
 void print_summary_json(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                         const RunOutcome& outcome);
 
-/// A table on standard output.
+/// Prints a table on standard output.
 void print_summary_text(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                         const RunOutcome& outcome);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Saving while a run goes on, without a pause of its loop.
+// Saves while a run goes on, without a pause of its loop.
 
 #include <string>
 
@@ -10,20 +10,21 @@
 
 namespace nendo::session {
 
-/// Saves several times a second at most, however often it is asked for.
+/// Saves a few times a second at most, even if it is asked more often.
 class RunSaving {
 public:
   /// Saved shapes are named after `out` and numbered. `model` and `recorder` must outlive this.
   RunSaving(std::string out, const deform::Mesh& model, RunRecorder& recorder);
 
-  /// flow::SaveShape and flow::SaveRecording wait for save(); other commands change nothing.
+  /// Takes note of flow::SaveShape and flow::SaveRecording for save(). Other commands change
+  /// nothing.
   void add(const flow::Command& command) noexcept;
-  /// Whether anything waits.
+  /// Tells whether anything waits to be saved.
   bool is_due() const noexcept { return shape_ || recording_; }
-  /// Whether anything waits, and the last save() was long enough ago.
+  /// Tells whether anything waits to be saved and the last save() was long enough ago.
   bool is_due_now() const noexcept { return is_due() && HostClock::now() >= next_; }
-  /// Saves what waits, the shape as the frame at the front has it. Blocks while it writes. Returns
-  /// what became of it, in words for people.
+  /// Saves what waits. The shape is that of the newest frame. Blocks while it writes. Returns a
+  /// message for people that says what was saved.
   std::string save(flow::DeformLoop& loop);
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// Who takes every frame of a run: other programs, other machines, a browser.
+// A sink takes every frame of a run, for other programs, other machines or a browser.
 
 #include <nendo/flow/frame_sink.hpp>
 

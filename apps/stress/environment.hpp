@@ -21,9 +21,9 @@ struct Environment {
 /// Reads /proc and /sys. Values that the system does not provide stay empty.
 Environment describe_environment();
 
-/// The stolen time since boot, summed over all CPUs: time that the host gave to others while this
-/// virtual machine was ready to run. Returns nothing if the kernel does not count it. It is counted
-/// in ticks of 10 ms, so short gaps are not included.
+/// Returns the stolen time since boot, summed over all CPUs: the time that the host gave to others
+/// while this virtual machine was ready to run. Returns nothing if the kernel does not count it. It
+/// is counted in ticks of 10 ms, so short gaps are not included.
 std::optional<double> stolen_s();
 
 } // namespace nendo::stress

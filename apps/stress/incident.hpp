@@ -1,5 +1,5 @@
 #pragma once
-// A tick that was late or missed, with the phase that took the time and the cause.
+// An incident is a tick that was late or missed, with the phase that took the time and the cause.
 
 #include <array>
 #include <chrono>

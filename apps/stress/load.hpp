@@ -11,12 +11,12 @@
 
 namespace nendo::stress {
 
-/// The kinds of --load: "cpu" (arithmetic, a worker a CPU), "mem" (copies 64 MiB to and fro), "io"
-/// (writes and syncs a temporary file). Error: usage.
+/// Parses the kinds of --load: "cpu" (arithmetic, a worker for each CPU), "mem" (copies 64 MiB to
+/// and fro), "io" (writes and syncs a temporary file). Error: usage.
 Result<std::vector<std::string>> parse_load(const std::string& text);
 
-/// The workers run while this lives. They die with this process however it ends (the kernel sees to
-/// that), and are at ordinary priority whatever the caller's is.
+/// The workers run while this lives. The kernel ends them with this process, however that ends.
+/// They have ordinary priority, whatever the caller's is.
 class Load {
 public:
   /// Starts workers of the kinds that parse_load() returned. It forks, so call it before there are

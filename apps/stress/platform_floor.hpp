@@ -1,6 +1,6 @@
 #pragma once
-// The latency floor of this machine: the gaps that a thread sees which only reads the clock. No
-// program can be better than that.
+// The latency floor of this machine: the gaps that a thread sees that only reads the clock. No
+// program can be better.
 
 #include <atomic>
 
@@ -16,7 +16,7 @@ struct PlatformFloor {
   double stalled_s = 0.0; ///< the sum of `gaps`
 };
 
-/// Reads the clock for so many seconds on a thread with the rights of the loop's thread. It spins
+/// Reads the clock for that many seconds on a thread with the rights of the loop's thread. It spins
 /// in short turns, because the kernel stops real-time threads that use 95 % of a second. Ends early
 /// when `stop` is set. Blocks.
 PlatformFloor measure_floor(double seconds, const flow::RealtimeOptions& realtime,

@@ -10,8 +10,8 @@
 
 namespace nendo::stress {
 
-/// Everything that was measured, with the environment. Times are in microseconds unless a key says
-/// otherwise. Keys are stable: an earlier one is what --compare reads.
+/// Returns everything that was measured, with the environment. Times are in microseconds unless a
+/// key says otherwise. Keys are stable, because --compare reads earlier reports.
 nlohmann::ordered_json stress_json(const StressOptions& options, const StressOutcome& outcome);
 
 /// Prints the same figures as a table. `earlier` is the JSON report of another test, which is
@@ -19,14 +19,15 @@ nlohmann::ordered_json stress_json(const StressOptions& options, const StressOut
 void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,
                   const nlohmann::ordered_json& earlier);
 
-/// The lateness as cyclictest prints it: a line a microsecond, up to `most_us`, and what is beyond.
+/// Prints the lateness as cyclictest does: a line for each microsecond up to `most_us`, and what is
+/// beyond.
 void print_histogram(const flow::Histogram& lateness, unsigned most_us);
 
-/// The lateness of each scheduled tick as an HdrHistogram percentile file, in microseconds: a line
-/// for each class of values.
+/// Returns the lateness of each scheduled tick as an HdrHistogram percentile file, in microseconds,
+/// with a line for each class of values.
 std::string hgrm(const flow::Histogram& lateness);
 
-/// Histogram and course of the lateness, as SVG.
+/// Returns the histogram and the course of the lateness as SVG.
 std::string stress_picture(const StressOptions& options, const StressOutcome& outcome);
 
 } // namespace nendo::stress

@@ -23,10 +23,10 @@ struct Figures {
 /// Returns nothing if nothing was recorded.
 std::optional<Figures> figures_of(const flow::Histogram& histogram);
 
-/// The names of the stages that a tick runs, with "sleep" first.
+/// Returns the names of the stages that a tick runs, with "sleep" first.
 std::vector<std::string> stage_names(const flow::TickStages& stages);
 
-/// A time of the run as ISO 8601 in UTC, with microseconds.
+/// Returns a time of the run as ISO 8601 in UTC, with microseconds.
 std::string wall_time(const StressOutcome& outcome, HostTime time);
 
 } // namespace nendo::stress

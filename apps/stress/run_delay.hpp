@@ -14,11 +14,11 @@
 
 namespace nendo::stress {
 
-/// The time in a line of /proc/<pid>/task/<tid>/schedstat: "time on the CPU, time waiting for it,
-/// time slices", in nanoseconds. Pure.
+/// Returns the waiting time in a line of /proc/<pid>/task/<tid>/schedstat, which has the time on
+/// the CPU, the time waiting for it, both in nanoseconds, and the time slices. Pure.
 std::optional<std::chrono::nanoseconds> parse_run_delay(const std::string& schedstat);
 
-/// Sampled from another thread, so that the thread itself makes no system call.
+/// Another thread takes the samples, so that the thread itself makes no system call.
 class RunDelay {
 public:
   /// `thread` is a thread of this process.
@@ -26,9 +26,10 @@ public:
 
   /// Reads the kernel's count and stores it. That reads a file and takes some microseconds.
   void sample();
-  /// How long the thread waited from the last sample before `from` to the newest one: no less than
-  /// since `from`. Before the first sample that is all that it ever waited. Nothing if the kernel
-  /// does not say, or `from` is before the samples kept.
+  /// Returns how long the thread waited from the last sample before `from` to the newest one, which
+  /// is no less than since `from`. If `from` is before the first sample, that is all the time that
+  /// it ever waited. Returns nothing if the kernel does not say, or if `from` is before the samples
+  /// that are kept.
   std::optional<std::chrono::nanoseconds> since(HostTime from) const noexcept;
 
 private:

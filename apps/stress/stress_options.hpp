@@ -42,7 +42,7 @@ struct StressOptions {
   double floor_s = 0.0;
 };
 
-/// Error: usage, naming the option.
+/// Checks the arguments. Error: usage, naming the option.
 Result<StressOptions> parse(const StressArguments& arguments);
 
 /// Parses a list of stages, such as "sleep,input,hands". Sleep is always a stage. Error: usage.

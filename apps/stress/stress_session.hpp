@@ -1,5 +1,5 @@
 #pragma once
-// A stress test from the first look at the machine to the last tick.
+// Runs a stress test, from the description of the machine to the last tick.
 
 #include <functional>
 #include <memory>
@@ -52,9 +52,9 @@ struct StressOutcome {
 using StressProgress = std::function<void(const TickTally& tally, double elapsed_s)>;
 
 /// Measures the floor, starts the load, and runs the loop for its time, until a stop signal, or
-/// until a tick is later than `break_at`. An observer watches as it does in a run, but only a
-/// loop's own commands and the end are done for it. Blocks. Errors: as open_hands(), place_loop(),
-/// Load::start().
+/// until a tick is later than `break_at`. An observer watches as it does in a run, but only
+/// commands to the loop and the end are obeyed. Blocks. Errors: those of open_hands(), place_loop()
+/// and Load::start().
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
                                                   const StressProgress& progress,
                                                   session::Observer* observer = nullptr);

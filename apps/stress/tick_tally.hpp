@@ -20,16 +20,16 @@ enum class Measure : std::uint8_t { lateness, period_error, work, input_age, end
 inline constexpr std::array<std::string_view, 5> measure_names{"lateness", "period_error", "work",
                                                                "input_age", "end_to_end"};
 
-/// `raw`: a value for each tick that ran. `corrected`: for each tick that was scheduled, so that a
-/// long stall counts for all the ticks that it swallowed (coordinated omission). Of the lateness
-/// that is exact: a missed deadline waited for the next tick. For the others it is HdrHistogram's
-/// rule: a value v beyond the period T stands for v - T, v - 2T, ... as well.
+/// `raw` has a value for each tick that ran. `corrected` has one for each tick that was scheduled,
+/// so that a long stall counts for all the ticks that it prevented (coordinated omission). For the
+/// lateness that is exact, since a missed deadline waited for the next tick. For the others it is
+/// HdrHistogram's rule: a value v beyond the period T also stands for v - T, v - 2T, and so on.
 struct Distribution {
   flow::Histogram raw;
   flow::Histogram corrected;
 };
 
-/// The lateness over time, in at most so many slices; they get longer as time goes on.
+/// The lateness over time in a limited number of slices, which get longer as time goes on.
 class LatenessTrace {
 public:
   static constexpr std::size_t most_slices = 512;
@@ -50,35 +50,36 @@ private:
 
 class TickTally {
 public:
-  /// Later than this is an incident that has to be explained.
+  /// A tick that is later than this is an incident that has to be explained.
   static constexpr std::chrono::milliseconds incident_threshold{1};
   static constexpr std::size_t most_worst = 10;
 
   explicit TickTally(const flow::PaceOptions& pace);
 
-  /// The next record. `delay` must have been sampled after it was made; null: unknown.
+  /// Adds the next record. `delay` must have been sampled after the record was made; null means
+  /// unknown.
   void add(const flow::TickRecord& record, const RunDelay* delay);
 
   std::uint64_t ticks() const noexcept { return ticks_; }
   std::uint64_t samples() const noexcept { return samples_; }
-  /// The longest time from one wake-up to the next.
+  /// Returns the longest time from one wake-up to the next.
   std::chrono::nanoseconds longest_outage() const noexcept { return longest_outage_; }
   const Distribution& operator[](Measure measure) const noexcept {
     return distributions_[static_cast<std::size_t>(measure)];
   }
-  /// The time that a stage took; of Phase::wake the time spun.
+  /// Returns the times that a stage took; for Phase::wake the times spun.
   const flow::Histogram& stage(Phase phase) const noexcept {
     return stages_[static_cast<std::size_t>(phase)];
   }
-  /// Latest first, no more than most_worst.
+  /// Returns the incidents with the greatest lateness, the greatest first, at most most_worst.
   const std::vector<Incident>& worst() const noexcept { return worst_; }
-  /// Incidents beyond the threshold, by cause, and their lateness together.
+  /// The incidents of a cause that are beyond the threshold, and the sum of their lateness.
   struct Share {
     std::uint64_t incidents = 0;
     std::chrono::nanoseconds lateness{};
   };
   const std::array<Share, cause_names.size()>& causes() const noexcept { return causes_; }
-  /// The fraction of the incidents' lateness whose cause is known. It is 1 if there was no
+  /// Returns the fraction of the incidents' lateness whose cause is known; 1 if there was no
   /// incident.
   double explained() const noexcept;
   const LatenessTrace& timeline() const noexcept { return timeline_; }
@@ -98,7 +99,7 @@ private:
   std::chrono::nanoseconds longest_outage_{};
   std::array<Distribution, measure_names.size()> distributions_;
   std::array<flow::Histogram, phase_names.size()> stages_;
-  /// Only of ticks that took samples; the others had almost nothing to do.
+  /// The stages of ticks that took samples only; other ticks had almost nothing to do.
   std::array<flow::Histogram, phase_names.size()> busy_stages_;
   std::vector<Incident> worst_;
   std::array<Share, cause_names.size()> causes_{};

@@ -71,7 +71,7 @@ private:
     if (!frames.update()) return;
     const flow::Frame& frame = frames.front();
     holds_.follow(frame);
-    viewer::see_hands(frame, holds_, moment_);
+    viewer::set_hands(frame, holds_, moment_);
     replay_->loop().layout().unpack(frame.shape, moment_.vertices);
     moment_.radius_m = flow::radii_on_stage(
         reader_->setup().loop->options.sculptor.deformer.supports, frame.units_per_metre);
@@ -122,7 +122,7 @@ public:
       seen_ = true;
     }
     const flow::Frame& frame = frames_->frame();
-    viewer::see_hands(frame, holds_, moment_);
+    viewer::set_hands(frame, holds_, moment_);
     frames_->layout().unpack(frame.shape, moment_.vertices);
     moment_.radius_m = flow::radii_on_stage(frames_->player().timeline().sculptor.deformer.supports,
                                             frame.units_per_metre);

@@ -1,6 +1,5 @@
 #pragma once
-// Evaluates fields on shapes in blocks, with vector instructions: what Type-1 and Type-2 have in
-// common.
+// Evaluates fields on shapes in blocks, with vector instructions: Type-1 and Type-2 share it.
 
 #include <cstddef>
 #include <memory>
@@ -23,30 +22,31 @@ struct BoundedShape {
   double extent = 0.0;             ///< no coordinate is larger
 };
 
-/// Not for two threads at a time. Functions without a word on it neither allocate nor wait.
+/// An evaluator belongs to one thread at a time. Its functions neither allocate nor wait, except
+/// where they say so.
 class BlockEvaluator {
 public:
-  /// Allocates for fields of so many entries.
+  /// Allocates for fields of that many entries.
   BlockEvaluator(const BlockLayout& layout, Eigen::Index entries, const EvaluationOptions& options);
   ~BlockEvaluator();
   BlockEvaluator(BlockEvaluator&&) noexcept;
   BlockEvaluator& operator=(BlockEvaluator&&) noexcept;
 
-  /// The field for the next calls; false, and the zero field, if it has a number that is not finite
-  /// or too large for float. Allocates only for more entries than ever before.
+  /// Sets the field for the next calls. Returns false, and sets the zero field, if a number in it
+  /// is not finite or is too large for float. Allocates only for more entries than ever before.
   bool set_field(const CsrbfField& field) noexcept;
-  /// to = from + s(from). Blocks that nothing reaches are copied only where `to` differs from
-  /// `from`. False, and `to` is `from`, if the result might not be finite.
+  /// Computes to = from + s(from). Blocks that nothing reaches are copied only where `to` differs
+  /// from `from`. Returns false, and makes `to` equal to `from`, if the result might not be finite.
   bool displace(const BoundedShape& from, BlockShape& to) noexcept;
-  /// shape += s(shape), bounds and stamps included. Returns false, and does nothing, if the result
-  /// might not be finite.
+  /// Computes shape += s(shape), with its bounds and stamps. Returns false, and does nothing, if
+  /// the result might not be finite.
   bool displace(BoundedShape& shape) noexcept;
-  /// How many pairs of a block and a support that reaches its bounds there are: what displace()
-  /// lists before it evaluates, 64 influences each.
+  /// Returns the number of pairs of a block and a support that reaches its bounds. displace() lists
+  /// these pairs before it evaluates; each has 64 influences.
   std::size_t count_pairs(const BoundedShape& shape) noexcept;
 
   struct Parts;
-  /// Of the library's own: what Type-1's weights share.
+  /// Returns the parts that Type-1's weights share. For this library only.
   Parts& parts() noexcept { return *parts_; }
 
 private:

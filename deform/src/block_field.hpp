@@ -1,5 +1,5 @@
 #pragma once
-// A field in a layout's coordinates, as the vector code takes it.
+// A field in a layout's coordinates, in the form that the vector code takes.
 
 #include <array>
 #include <cstdint>
@@ -14,28 +14,28 @@
 
 namespace nendo::deform {
 
-/// Numbers for whole vectors.
+/// An array of numbers, aligned for whole vectors.
 template <class T>
 using VectorArray = hwy::AlignedFreeUniquePtr<T[]>;
 
 class BlockField {
 public:
-  /// Reserves for so many entries.
+  /// Allocates for that many entries.
   BlockField(const BlockLayout& layout, Eigen::Index entries);
 
-  /// Functions whose coefficients are all zero: fingertips that rest, out of reach of those that
-  /// move.
+  /// What becomes of functions whose coefficients are all zero. They belong to fingertips that
+  /// rest, out of reach of those that move.
   enum class Zeros { left_out, kept };
 
-  /// Takes a field over. False if a number in it is not finite, or too large for float: then it is
-  /// the zero field. Allocates only for more entries than ever before.
+  /// Takes over a field. Returns false if a number in it is not finite or is too large for float;
+  /// this is then the zero field. Allocates only for more entries than ever before.
   bool assign(const CsrbfField& field, Zeros zeros);
-  /// Whether sums are made in double, because in float the coefficients' rounding errors would be
-  /// seen.
+  /// Tells whether sums are made in double, because in float the coefficients' rounding errors
+  /// would be visible.
   bool is_precise() const noexcept { return view_.precise_entries != nullptr; }
   const FieldView& view() const noexcept { return view_; }
   const FieldEntry<double>* precise_entries() const noexcept { return precise_entries_.data(); }
-  /// No coordinate of s(x) is larger, where none of x is larger than `extent`.
+  /// Returns a bound of the coordinates of s(x), for all x whose coordinates are at most `extent`.
   double bound(double extent) const noexcept;
 
 private:

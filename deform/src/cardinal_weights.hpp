@@ -1,6 +1,6 @@
 #pragma once
-// Type-1's weights (simd/weight_kernels.hpp): built when the start points are frozen, applied each
-// tick.
+// Type-1's weights (simd/weight_kernels.hpp). They are built when the start points are frozen, and
+// applied each tick.
 
 #include <array>
 #include <cstdint>
@@ -16,25 +16,27 @@ namespace nendo::deform {
 
 class CardinalWeights {
 public:
-  /// Takes all memory that it will ever use: at most weight_bytes, and what the start points need.
-  /// field: as large as those that the solver makes.
+  /// Allocates all memory that it will ever use: at most weight_bytes, and what the start points
+  /// need. `field` must be as large as those that the solver makes.
   CardinalWeights(const BlockLayout& layout, Eigen::Index starts, CsrbfField field,
                   std::size_t weight_bytes);
 
-  /// Makes the weights of the rest shape for what `solver` was built for. False if there is no room
-  /// for them, or none for so many start points.
+  /// Makes the weights of the rest shape for the start points of `solver`. Returns false if there
+  /// is no room for them, or for so many start points.
   bool build(CsrbfSolver& solver, const BoundedShape& rest, BlockEvaluator& evaluator) noexcept;
   bool is_built() const noexcept { return built_; }
   std::size_t bytes_used() const noexcept {
     return cache_.used_bytes + cache_.used_entries * sizeof(WeightEntry);
   }
 
-  /// Whether displacements (3 by #starts, model units) keep the rest shape finite.
+  /// Tells whether displacements (3 by #starts, model units) keep the rest shape finite.
   bool fits(const Points& displacements, const BoundedShape& rest) const noexcept;
-  /// to = rest + W displacements, which must fit. `to` may be the rest's own blocks.
+  /// Computes to = rest + W displacements. The displacements must fit. `to` may be the rest's own
+  /// blocks.
   void apply(const Points& displacements, const BlockShape& rest, BlockShape& to,
              BlockEvaluator& evaluator) noexcept;
-  /// After apply() to the rest shape itself.
+  /// Updates the bounds of the rest shape. Call it after apply() has written to the rest shape
+  /// itself.
   void update_rest_bounds(const Points& displacements, BoundedShape& rest) const noexcept;
 
 private:

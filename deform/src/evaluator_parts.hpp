@@ -1,6 +1,6 @@
 #pragma once
-// What evaluates a field and what computes weights share: the field, lists for each thread, and the
-// second thread.
+// The parts that evaluation and weights share: the field, lists for each thread, and the second
+// thread.
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace nendo::deform {
 
-/// Whether a shape is too large to be expected to stay in the caches: 350 000 vertices.
+/// Tells whether a shape is too large to be expected to stay in the caches (350 000 vertices).
 inline bool leaves_caches(const BlockShape& shape) noexcept {
   return shape.block_count() * sizeof(VertexBlock) > std::size_t{4} << 20;
 }
@@ -41,7 +41,7 @@ private:
   std::array<VectorArray<float>, 8> numbers_;
 };
 
-/// So many blocks at a time are one thread's: enough to be worth the asking.
+/// A thread takes this many blocks at a time, so that taking them costs little.
 inline constexpr std::size_t blocks_a_piece = 16;
 
 struct BlockEvaluator::Parts {
@@ -52,11 +52,12 @@ struct BlockEvaluator::Parts {
   std::vector<std::uint8_t> reached;
   std::optional<SpinWorker> worker;
 
-  /// Calls range(begin, end, thread) for pieces of `count` blocks: one thread's from the front, the
-  /// other's from the back, until they meet, so that next time each finds most of its pieces in its
-  /// own core's caches. Fewer pieces than least_shared are done before the other thread has begun:
-  /// they are not shared. Each piece's result must depend on nothing but the piece. What it writes
-  /// past the caches is flushed once a thread: a flush takes as long as many blocks.
+  /// Calls range(begin, end, thread) for pieces of `count` blocks. One thread takes them from the
+  /// front and the other from the back until they meet, so that each finds most of its pieces in
+  /// its own core's caches the next time. Fewer than least_shared pieces are not shared, since they
+  /// are done before the other thread has begun. The result of a piece must depend on the piece
+  /// alone. Writes past the caches are flushed once a thread, because a flush takes as long as many
+  /// blocks.
   template <class Range>
   void in_pieces(std::size_t count, std::size_t least_shared, const Range& range) noexcept;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// The terms of a field's sum, one way to write them for all who add them up.
+// The terms of a field's sum, written once for all functions that add them up.
 
 #include <cmath>
 
@@ -11,7 +11,7 @@ inline Eigen::Vector3d polynomial_at(const CsrbfField& field, const Eigen::Vecto
   return field.polynomial.col(0) + field.polynomial.rightCols<3>() * x;
 }
 
-/// sum += the field's i-th function at x.
+/// Adds the field's i-th function at x to `sum`.
 inline void add_term(const CsrbfField& field, Eigen::Index i, const Eigen::Vector3d& x,
                      Eigen::Vector3d& sum) noexcept {
   const double radius = field.radii[i];

@@ -1,8 +1,8 @@
 #pragma once
-// Type-2's curves (the paper, 2.4): samples of all fingertips joined by one smooth curve, cut at
-// constant arc length. A piece of Hermite's cubic leads from each sample to the next; its end
-// tangent is that of the parabola through the last three samples, so that no sample has to be
-// waited for, and the next piece begins with it.
+// Type-2's curves (the paper, 2.4): one smooth curve joins the samples of all fingertips and is cut
+// at constant arc length. A cubic Hermite piece leads from each sample to the next. Its end tangent
+// is that of the parabola through the last three samples, so that the curve need not wait for a
+// later sample; the next piece begins with that tangent.
 
 #include <array>
 
@@ -10,27 +10,28 @@
 
 namespace nendo::deform {
 
-/// Lengths are those of the fingertip that goes farthest: none goes farther than a piece between
-/// two cuts. A fingertip that turns back has a corner there, and one that stops, stops: no curve
-/// leads beyond its samples. Nothing allocates after the constructor, or takes other than bounded
-/// time.
+/// Lengths are those of the fingertip that goes farthest, so that between two cuts no fingertip
+/// goes farther than a piece. A curve has a corner where its fingertip turns back, and it never
+/// leads beyond its samples. After the constructor nothing allocates, and every call takes a
+/// bounded time.
 class FingertipCurve {
 public:
-  /// piece_length: > 0, in model units.
+  /// piece_length is > 0, in model units.
   FingertipCurve(Eigen::Index points, double piece_length);
 
   /// Starts at these fingertips, 3 by points.
   void begin(const Points& tips);
-  /// Goes on to `tips`, if a fingertip is at least half a piece from where the curve ends; those
-  /// that are nearer than a quarter rest there: trembling makes no way. More than `most_pieces`
-  /// pieces are made that many longer ones.
+  /// Goes on to `tips` if a fingertip is at least half a piece away from the curve's end.
+  /// Fingertips that are nearer than a quarter of a piece stay, so that trembling does not lengthen
+  /// the curve. If this gives more than `most_pieces` pieces, that many longer ones are made
+  /// instead.
   void extend(const Points& tips);
-  /// Goes on to `tips` however near they are; the last cut is there.
+  /// Goes on to `tips`, however near they are. The last cut is there.
   void end_at(const Points& tips);
-  /// The next cut, if there is one yet.
+  /// Writes the next cut. Returns false if there is none yet.
   bool next_cut(Points& cut) noexcept;
 
-  /// Where the curve ends, for now.
+  /// Returns the present end of the curve.
   const Points& end() const noexcept { return to_; }
   double piece_length() const noexcept { return piece_length_; }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The two file formats, text in, text out. See mesh_file.hpp for what is kept and which errors
-// there are.
+// Converts meshes from and to the texts of the two file formats. mesh_file.hpp says what is kept
+// and which errors there are.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ Result<Mesh> parse_obj(std::string_view text, std::string_view name);
 Result<Mesh> parse_ply(std::string_view text, std::string_view name);
 
 std::string obj_text(const Mesh& mesh);
-/// Binary, little-endian, coordinates in double.
+/// Returns the mesh as binary little-endian PLY, with coordinates in double.
 std::string ply_text(const Mesh& mesh);
 
 /// The largest index of a list and where it stood. A face may come before its vertices, so that
@@ -34,7 +34,7 @@ struct HighestIndex {
   bool is_beyond(std::size_t count) const noexcept { return place != 0 && index >= count; }
 };
 
-/// Columns of `rows` numbers each.
+/// Returns the numbers as columns of `rows` numbers each.
 template <int rows>
 Eigen::Matrix<double, rows, Eigen::Dynamic> columns_of(const std::vector<double>& numbers) {
   return Eigen::Map<const Eigen::Matrix<double, rows, Eigen::Dynamic>>(

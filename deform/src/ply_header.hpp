@@ -51,7 +51,7 @@ struct PlyHeader {
   std::size_t body_line = 1;
 };
 
-/// Error: bad_input with the line. The names point into `text`.
+/// Parses the header. The names in the result point into `text`. Error: bad_input with the line.
 Result<PlyHeader> parse_ply_header(std::string_view text, std::string_view name);
 
 } // namespace nendo::deform

@@ -1,5 +1,5 @@
 #pragma once
-// Points sorted into cubes, so that those near a place are found without looking at all.
+// Points sorted into cubes, so that those near a place are found without looking at all points.
 
 #include <algorithm>
 #include <array>
@@ -12,19 +12,20 @@ namespace nendo::deform {
 
 class PointGrid {
 public:
-  /// points: finite, at most 1e100. cell_edge > 0 is enlarged where there would be more than 2^21
-  /// cells along an axis. Allocates.
+  /// Coordinates of points must be finite and at most 1e100. cell_edge must be > 0; it is enlarged
+  /// if there would be more than 2^21 cells along an axis. Allocates.
   PointGrid(const Points& points, double cell_edge);
 
-  /// Of cells: x in the lowest 21 bits, then y, z. Places outside the points' box are those of its
-  /// border.
+  /// Returns the number of a place's cell: x in the lowest 21 bits, then y, then z. Places outside
+  /// the points' box belong to the cells at its border.
   std::uint64_t cell_of(const Eigen::Vector3d& place) const noexcept;
 
-  /// visit(index) for every point within `reach` of the box, and for some others, in no order.
+  /// Calls visit(index) for every point within `reach` of the box, and for some others, in no
+  /// order.
   template <class Visit>
   void visit_near(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double reach,
                   const Visit& visit) const {
-    // What rounding may take from a distance that is computed as below `reach`.
+    // The most that rounding may take from a distance.
     const double margin =
         reach * 1e-12 + 1e-15 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
     const Cell first = cell_at(low.array() - (reach + margin));
@@ -63,7 +64,7 @@ private:
   std::size_t number_of(const Cell& cell) const noexcept {
     return (cell[2] * (highest_[1] + 1) + cell[1]) * (highest_[0] + 1) + cell[0];
   }
-  /// The first entry of that cell or of those behind it.
+  /// Returns the first entry of that cell or of the cells after it.
   std::vector<Entry>::const_iterator first_from(const Cell& cell) const noexcept {
     if (!begins_.empty()) return sorted_.begin() + begins_[number_of(cell)];
     return std::lower_bound(sorted_.begin(), sorted_.end(), key_of(cell),

@@ -1,5 +1,5 @@
 #pragma once
-// A block as it was before a step; once the step is undone, as it was after it.
+// A block as it was before a step or, once the step is undone, as it was after the step.
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a shape was before its last steps, and after those that were undone: of each step the blocks
-// that it changed. Where memory ends, the oldest steps make room for new ones.
+// The shapes before the last steps, and after the steps that were undone. It keeps only the blocks
+// that each step changed. When memory ends, the oldest steps make room for new ones.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,20 +15,21 @@ namespace nendo::deform {
 
 class ShapeHistory {
 public:
-  /// Allocates about so many bytes, and for one more shape like this one; nothing afterwards, but
-  /// takes what comes from `more`, if any, which must outlive it. With less than a block and no
-  /// more nothing is ever kept.
+  /// Allocates about this many bytes, and one more shape like this one. Later it allocates nothing,
+  /// but takes blocks from `more`, if that is not null; `more` must outlive this. Without `more`
+  /// and with fewer bytes than a block needs, nothing is kept.
   ShapeHistory(const BlockShape& first, std::size_t bytes, UndoMemory* more);
   ~ShapeHistory();
 
-  /// Ends a step: from what was kept last to this. No step if nothing changed; otherwise undone
-  /// steps are forgotten. A step for which there is no room at all is not kept, nor are those
-  /// before it.
+  /// Ends a step, which leads from the shape kept last to this one, and forgets undone steps. If
+  /// nothing changed, there is no step. A step for which there is no room is not kept, and neither
+  /// are those before it.
   void keep(const BlockShape& now) noexcept;
-  /// Undoes the last step; the shape is what was kept last. False: there is none.
+  /// Undoes the last step. `shape` must be the shape that was kept last. Returns false if there is
+  /// no step.
   bool undo(BoundedShape& shape) noexcept;
-  /// Does again what was undone last, to what was kept last: what the shape has become since is
-  /// dropped. False: there is none, and nothing changes.
+  /// Does the last undone step again, from the shape that was kept last; later changes of `shape`
+  /// are dropped. Returns false, and changes nothing, if there is no undone step.
   bool redo(BoundedShape& shape) noexcept;
 
   std::size_t steps() const noexcept { return steps_; }

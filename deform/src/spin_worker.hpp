@@ -1,5 +1,5 @@
 #pragma once
-// A second thread that is handed its work within a microsecond: it spins between jobs, and keeps a
+// A second thread that gets its work within a microsecond. It spins between jobs, so it keeps a
 // core busy as long as it lives.
 
 #include <thread>
@@ -19,15 +19,15 @@ public:
   SpinWorker() : thread_([this] { work(); }) {}
   ~SpinWorker() {
     offer_.offer({});
-    thread_.join(); // which takes this last job, whenever it comes to run
+    thread_.join(); // the thread takes this last job as soon as it runs
   }
   SpinWorker(const SpinWorker&) = delete;
   SpinWorker& operator=(const SpinWorker&) = delete;
 
-  /// Offers the job to the other thread. Wait-free; end() must come before the next one.
+  /// Offers the job to the other thread. Wait-free. Call end() before the next run().
   void run(const Job& job) noexcept { offer_.offer(job); }
-  /// Withdraws the job if the other thread has not begun it (it may not be on a core), otherwise
-  /// spins until it is done.
+  /// Withdraws the job if the other thread, which may have no core, has not begun it. Otherwise
+  /// spins until the job is done.
   void end() noexcept {
     if (offer_.withdraw()) return;
     while (!offer_.is_done())
@@ -37,7 +37,8 @@ public:
 private:
   void work() noexcept {
     for (Job job;;) {
-      // On a machine with fewer free cores than threads, whoever has work must get one.
+      // If fewer cores are free than there are threads, this thread must leave its core to one that
+      // has work.
       for (int turn = 0; !offer_.take(job); ++turn) {
         relax();
         if (turn % patience == patience - 1) std::this_thread::yield();

@@ -1,5 +1,5 @@
 #pragma once
-// Splits text into lines and fields without copies, so that the length of a line costs nothing.
+// Splits text into lines and fields without copies, so that long lines cost nothing extra.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace nendo::deform {
 
-/// The largest file of a mesh or of control vectors that is read.
+/// The largest size in bytes of a file of a mesh or of control vectors.
 inline constexpr std::uint64_t most_file_bytes = std::uint64_t{4} << 30;
 
-/// Walks over a text field by field. Fields are separated by blanks and views into the text.
+/// Walks over a text field by field. Fields are separated by blanks, and are views into the text.
 class TextScanner {
 public:
   enum class Dialect {
@@ -27,7 +27,7 @@ public:
   /// Goes to the start of the next line; returns false at the end of the text.
   bool next_line() noexcept;
 
-  /// The number of this line, from 1, and the offset of the next character in the text.
+  /// Returns the number of this line, from 1, and the offset of the next character in the text.
   std::size_t line() const noexcept { return line_; }
   std::size_t offset() const noexcept { return at_; }
 

@@ -1,14 +1,14 @@
 #pragma once
-// Which numbers are taken from outside.
+// The bound of numbers that are accepted from outside.
 
 #include <Eigen/Core>
 
 namespace nendo::deform {
 
-/// No model is that large; below it, squares, cubes and sums of coordinates stay finite.
+/// No model is that large. Below this bound, squares, cubes and sums of coordinates stay finite.
 inline constexpr double largest_number = 1e100;
 
-/// False for NaN, too.
+/// Returns true if the magnitude is at most largest_number. It is false for NaN.
 constexpr bool is_usable(double value) noexcept {
   return value <= largest_number && value >= -largest_number;
 }

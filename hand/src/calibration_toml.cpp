@@ -28,7 +28,7 @@ public:
     if (!error_) error_ = bad_line(name_, where.source().begin.line, what);
   }
   /// Complains unless `complaint` is empty.
-  void judge(const toml::node& where, const std::string& subject, const std::string& complaint) {
+  void check(const toml::node& where, const std::string& subject, const std::string& complaint) {
     if (!complaint.empty()) complain(where, subject + ": " + complaint);
   }
 
@@ -147,13 +147,13 @@ void read_sensor(Reader& reader, Sensor sensor, const toml::node& node, WearerCa
                              "most_counts", "confidence"});
   const SensorCalibration line{reader.number(*table, "gain_rad_per_count"),
                                reader.number(*table, "offset_counts")};
-  reader.judge(node, name, complaint_about(sensor, line, wearer.counts));
+  reader.check(node, name, complaint_about(sensor, line, wearer.counts));
   wearer.calibration[sensor] = line;
   if (table->size() <= 2) return;
   const SensorQuality quality{
       reader.number(*table, "residual_rad"), reader.number(*table, "least_counts"),
       reader.number(*table, "most_counts"), reader.number(*table, "confidence")};
-  reader.judge(node, name, complaint_about(quality));
+  reader.check(node, name, complaint_about(quality));
   wearer.quality[static_cast<std::size_t>(sensor)] = quality;
 }
 
@@ -175,7 +175,7 @@ void read_coupling(Reader& reader, const toml::node& node, WearerCalibration& we
   const std::string of = reader.text(*table, "of");
   const std::string by = reader.text(*table, "by");
   const double rad_per_rad = reader.number(*table, "rad_per_rad");
-  reader.judge(node, "mixed_in", complaint_about_mixing(rad_per_rad));
+  reader.check(node, "mixed_in", complaint_about_mixing(rad_per_rad));
   for (std::size_t k = 0; k < couplings.size(); ++k) {
     if (name_of(couplings[k].of) != of || name_of(couplings[k].by) != by) continue;
     if (std::exchange(seen[k], true)) break;
@@ -201,9 +201,9 @@ void read_glove(Reader& reader, const toml::table& root, WearerCalibration& wear
   if (glove == nullptr) return;
   reader.allow_only(*glove, {"model", "serial", "counts_most", "whole_range"});
   wearer.glove_model = reader.text(*glove, "model");
-  reader.judge(*glove, "glove model", complaint_about_text(wearer.glove_model, true));
+  reader.check(*glove, "glove model", complaint_about_text(wearer.glove_model, true));
   wearer.glove_serial = reader.text(*glove, "serial");
-  reader.judge(*glove, "glove serial", complaint_about_text(wearer.glove_serial, true));
+  reader.check(*glove, "glove serial", complaint_about_text(wearer.glove_serial, true));
   wearer.counts.most = reader.count(*glove, "counts_most");
   wearer.counts.whole_range = reader.truth(*glove, "whole_range");
 }
@@ -211,26 +211,26 @@ void read_glove(Reader& reader, const toml::table& root, WearerCalibration& wear
 void read_hand(Reader& reader, const toml::table& root, WearerCalibration& wearer) {
   const std::string hand = reader.text(root, "hand");
   if (hand != "left" && hand != "right")
-    reader.judge(root["hand"].node() != nullptr ? *root["hand"].node() : root,
+    reader.check(root["hand"].node() != nullptr ? *root["hand"].node() : root,
                  "hand " + in_quotes(hand), "must be \"left\" or \"right\"");
   wearer.side = hand == "left" ? Side::left : Side::right;
   const toml::table* size = reader.table(root, "hand_size");
   if (size == nullptr) return;
   reader.allow_only(*size, {"length_m", "breadth_m"});
   wearer.size = {reader.number(*size, "length_m"), reader.number(*size, "breadth_m")};
-  reader.judge(*size, "hand_size", complaint_about(wearer.size));
+  reader.check(*size, "hand_size", complaint_about(wearer.size));
 }
 
 void read_wearer(Reader& reader, const toml::table& root, WearerCalibration& wearer) {
   reader.allow_only(root, {"version", "user", "hand", "made", "method", "middle_bias", "mixed_in",
                            "glove", "hand_size", "sensors"});
   wearer.user = reader.text(root, "user");
-  reader.judge(root, "user", complaint_about_text(wearer.user, false));
+  reader.check(root, "user", complaint_about_text(wearer.user, false));
   wearer.method = reader.text(root, "method");
-  reader.judge(root, "method", complaint_about_text(wearer.method, false));
+  reader.check(root, "method", complaint_about_text(wearer.method, false));
   wearer.made = reader.time(root, "made");
   wearer.calibration.middle_bias = reader.number(root, "middle_bias");
-  reader.judge(root, "middle_bias", complaint_about_bias(wearer.calibration.middle_bias));
+  reader.check(root, "middle_bias", complaint_about_bias(wearer.calibration.middle_bias));
   read_mixed_in(reader, root, wearer);
   read_glove(reader, root, wearer);
   read_hand(reader, root, wearer);

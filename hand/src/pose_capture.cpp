@@ -101,7 +101,7 @@ void PoseCapture::fill_held() noexcept {
   });
 }
 
-CaptureState PoseCapture::judge_movement(SensorMask moved) noexcept {
+CaptureState PoseCapture::state_in_movement(SensorMask moved) noexcept {
   SensorMask jumping;
   for_each(moved, [&](std::size_t slot) {
     if (watched_[slot].noise_variance > std::pow(most_noise_counts * unit_, 2))
@@ -111,7 +111,7 @@ CaptureState PoseCapture::judge_movement(SensorMask moved) noexcept {
   return jumping.bits != 0 ? CaptureState::noisy : CaptureState::moving;
 }
 
-CaptureState PoseCapture::judge_rest(double still_s) noexcept {
+CaptureState PoseCapture::state_at_rest(double still_s) noexcept {
   progress_ = 0.0;
   const SensorMask ends = at_ends();
   if (ends.bits != 0) {
@@ -156,8 +156,8 @@ CaptureState PoseCapture::push(const GloveSample& sample) noexcept {
   if (broken) begin_window(sample, now);
   add(sample);
   const SensorMask moved = restless();
-  if (moved.bits == 0) return state_ = judge_rest(to_seconds(now - begun_));
-  state_ = judge_movement(moved);
+  if (moved.bits == 0) return state_ = state_at_rest(to_seconds(now - begun_));
+  state_ = state_in_movement(moved);
   begin_window(sample, now);
   add(sample);
   return state_;

@@ -31,7 +31,7 @@ GloveCandidate good_adapter() {
 
 /// The only finding about a machine with this one device.
 Finding only_finding(const GloveCandidate& candidate, std::vector<std::string> grabbers = {}) {
-  const auto found = judge_ports({{candidate}, std::move(grabbers)});
+  const auto found = diagnose_ports({{candidate}, std::move(grabbers)});
   REQUIRE(found.size() == 1);
   CHECK(found[0].subject == candidate.device);
   CHECK_FALSE(found[0].remedy.empty());
@@ -42,12 +42,12 @@ Finding only_finding(const GloveCandidate& candidate, std::vector<std::string> g
 
 TEST_SUITE("doctor") {
   TEST_CASE("of a machine on which all is well nothing is said") {
-    CHECK(judge_ports({{good_adapter()}, {}}).empty());
-    CHECK(judge_ports({{good_adapter()}, {"ModemManager"}}).empty()); // it was told to keep off
+    CHECK(diagnose_ports({{good_adapter()}, {}}).empty());
+    CHECK(diagnose_ports({{good_adapter()}, {"ModemManager"}}).empty()); // it was told to keep off
   }
 
   TEST_CASE("a machine without ports is a warning, for simulated gloves need none") {
-    const auto found = judge_ports({});
+    const auto found = diagnose_ports({});
     REQUIRE(found.size() == 1);
     CHECK(found[0].weight == Weight::warning);
     CHECK(found[0].check == "presence");
@@ -73,13 +73,13 @@ TEST_SUITE("doctor") {
     GloveCandidate port = good_adapter();
     port.may_open = false;
     port.access = "";
-    CHECK(judge_ports({{port}, {}}).empty());
+    CHECK(diagnose_ports({{port}, {}}).empty());
   }
 
   TEST_CASE("programs that open what they should not are named while an adapter is unmarked") {
     GloveCandidate port = good_adapter();
     port.left_alone = false;
-    CHECK(judge_ports({{port}, {}}).empty());
+    CHECK(diagnose_ports({{port}, {}}).empty());
     for (const std::string program : {"ModemManager", "brltty"}) {
       const Finding finding = only_finding(port, {program});
       CHECK(finding.weight == Weight::warning);
@@ -88,7 +88,7 @@ TEST_SUITE("doctor") {
       CHECK(finding.remedy.find(program) != std::string::npos);
     }
     port.usb.reset(); // an on-board port does not arrive, so nobody jumps at it
-    CHECK(judge_ports({{port}, {"ModemManager", "brltty"}}).empty());
+    CHECK(diagnose_ports({{port}, {"ModemManager", "brltty"}}).empty());
   }
 
   TEST_CASE("a long latency timer is a warning with the command that shortens it") {

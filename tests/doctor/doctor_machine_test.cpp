@@ -7,6 +7,7 @@
 #include <nendo/udev/rules.hpp>
 
 #include "doctor/doctor.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/text_files.hpp"
 
 namespace doctor_machine_test {
@@ -46,7 +47,7 @@ public:
   void governor(const std::string& cpu, const std::string& name) const {
     write("sys/devices/system/cpu/" + cpu + "/cpufreq/scaling_governor", name + "\n");
   }
-  std::vector<Finding> examine() const { return judge_machine(read_machine(folder_.path())); }
+  std::vector<Finding> examine() const { return diagnose_machine(read_machine(folder_.path())); }
   /// Its only finding.
   Finding finding(const std::string& check) const {
     const auto found = examine();
@@ -71,8 +72,8 @@ TEST_SUITE("doctor") {
 
   TEST_CASE("a machine that says nothing of itself has no findings") {
     const TemporaryFolder empty;
-    CHECK(judge_machine(read_machine(empty.path())).empty());
-    CHECK(judge_machine({}).empty());
+    CHECK(diagnose_machine(read_machine(empty.path())).empty());
+    CHECK(diagnose_machine({}).empty());
   }
 
   TEST_CASE("a missing real-time limit is named, unless a capability stands above it") {

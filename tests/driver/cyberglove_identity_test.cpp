@@ -26,7 +26,7 @@ struct Meeting {
       : transport(script),
         greeting(greet(transport, dialogue,
                        bauds_to_try(options.baud.value_or(115'200), !options.baud.has_value()))),
-        greeted(judge_state("port", greeting.reply, greeting.asked)),
+        greeted(check_state("port", greeting.reply, greeting.asked)),
         identity(greeted ? identify(dialogue, "port", {options, greeting.baud, order})
                          : Result<Identity>(greeted.error())) {}
 

@@ -1,7 +1,7 @@
 #pragma once
 // A reader of BVH files with its own forward kinematics, written from the format's description
 // (Biovision, as the course notes of the University of Wisconsin, CS 838, give it) and not from the
-// writer: any tree, any channels in any order. What it cannot read it throws.
+// writer: any tree, any channels in any order. It throws if it cannot read a file.
 
 #include <cmath>
 #include <cstddef>
@@ -47,13 +47,13 @@ public:
   std::vector<BvhNode> nodes; ///< in the order of the file
   std::vector<std::vector<double>> frames;
 
-  /// The node of that name; throws if there is none.
+  /// Returns the node of that name; throws if there is none.
   std::size_t find(const std::string& name) const {
     for (std::size_t at = 0; at < nodes.size(); ++at)
       if (nodes[at].name == name) return at;
     throw std::runtime_error("no joint " + name);
   }
-  /// The End Site on the joint of that name.
+  /// Returns the End Site on the joint of that name.
   std::size_t find_end_of(const std::string& name) const {
     const auto parent = static_cast<int>(find(name));
     for (std::size_t at = 0; at < nodes.size(); ++at)
@@ -61,7 +61,7 @@ public:
     throw std::runtime_error("no End Site on " + name);
   }
 
-  /// Each node in the world, in the file's units.
+  /// Returns each node's place in the world, in the file's units.
   std::vector<Eigen::Matrix4d> world(std::size_t frame) const {
     std::vector<Eigen::Matrix4d> placed;
     std::size_t at = 0;
@@ -75,7 +75,7 @@ public:
     }
     return placed;
   }
-  /// The value of one channel of a frame.
+  /// Returns the value of one channel of a frame.
   double channel(std::size_t frame, const std::string& joint, const std::string& name) const {
     std::size_t at = 0;
     for (const BvhNode& node : nodes) {

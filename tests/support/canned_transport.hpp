@@ -1,6 +1,5 @@
 #pragma once
-// Devices without any terminal: one that answers whatever is said to it with fixed bytes, and a
-// ScriptedUnit.
+// Devices without a terminal: one that answers everything with fixed bytes, and a ScriptedUnit.
 
 #include <algorithm>
 #include <chrono>
@@ -17,8 +16,8 @@
 
 namespace nendo::test {
 
-/// Answers the n-th thing that is written with the n-th reply, or the last, a byte at a time; then
-/// time is up at once.
+/// Answers the n-th write with the n-th reply, or the last one, a byte at a time. After that, reads
+/// time out at once.
 class CannedTransport final : public driver::Transport {
 public:
   explicit CannedTransport(std::string_view reply) : replies_{std::string(reply)} {}
@@ -49,7 +48,7 @@ private:
   std::string_view unread_;
 };
 
-/// A ScriptedUnit in memory, on a line of a rate of its own.
+/// A ScriptedUnit in memory, on a line with a rate.
 class UnitTransport final : public driver::Transport {
 public:
   explicit UnitTransport(const Script& script)

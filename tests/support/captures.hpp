@@ -1,5 +1,6 @@
 #pragma once
-// Files with what a device sends, and with what is to be read from it: tests/driver/captures/.
+// Files of tests/driver/captures/, with the bytes that a device sends and what is to be read from
+// them.
 
 #include <filesystem>
 #include <fstream>

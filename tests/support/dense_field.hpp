@@ -1,12 +1,12 @@
 #pragma once
-// What the deformation is measured against.
+// The reference with which the deformation is compared.
 
 #include <nendo/deform/csrbf.hpp>
 
 namespace nendo::test {
 
-/// s at the points, by the paper's equations as one system in world coordinates, with another
-/// factorisation.
+/// Returns s at the points. It solves the paper's equations as one system in world coordinates,
+/// with another factorisation.
 deform::Points dense_displacements(const deform::CsrbfOptions& options,
                                    const deform::Points& starts, double radius,
                                    const deform::Points& displacements,

@@ -1,13 +1,13 @@
 #pragma once
-// Waiting for what another thread or program does, no longer than it takes.
+// Waits for what another thread or program does, no longer than it takes.
 
 #include <chrono>
 #include <thread>
 
 namespace nendo::test {
 
-/// Looks every millisecond; its patience is that of a busy machine, and costs only a test that
-/// fails.
+/// Returns true as soon as the condition is true, which it checks every millisecond. The time limit
+/// suits a busy machine; only a test that fails waits so long.
 template <class Condition>
 bool eventually(Condition&& condition) {
   using Clock = std::chrono::steady_clock;

@@ -1,5 +1,5 @@
 #pragma once
-// Fields fitted in one line, and what they do to points.
+// Fits fields in one line, and computes what they do to points.
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 
 namespace nendo::test {
 
-/// of: radii or supports, as build() takes them.
+/// Returns a fitted field. `of` is radii or supports, as build() takes them.
 template <class Of>
 deform::CsrbfField fitted(const deform::CsrbfOptions& options, const deform::Points& starts,
                           const Of& of, const deform::Points& displacements,
@@ -26,7 +26,7 @@ inline deform::CsrbfField fitted(const deform::CsrbfOptions& options, const defo
                 displacements, expected);
 }
 
-/// s(x), a column a point.
+/// Returns s(x), a column for each point.
 inline deform::Points values(const deform::CsrbfField& field, const deform::Points& points) {
   deform::Points moved;
   displace(field, points, moved);

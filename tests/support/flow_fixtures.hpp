@@ -1,5 +1,5 @@
 #pragma once
-// A ball to shape and gloves that say what a test wants them to say.
+// A ball to shape, and gloves that send what a test wants.
 
 #include <memory>
 #include <vector>
@@ -10,15 +10,16 @@
 
 namespace nendo::test {
 
-/// A sphere of radius 1 about the origin, made of about 2 `rings` squared quads.
+/// Returns a sphere of radius 1 about the origin, of about 2 `rings` squared quads.
 inline deform::Mesh ball(std::uint32_t rings) {
   return sphere(rings, 2 * rings, 1.0);
 }
 
-/// What a shape of the ball, kept in float, may be off after a few strokes.
+/// How much a shape of the ball in float may be off after a few strokes.
 inline constexpr double float_gap = 2e-6;
 
-/// A hand in a relaxed pose, bent further by so many counts at every finger's MCP and PIP.
+/// Returns a sample of a relaxed hand that is bent further by so many counts at every finger's MCP
+/// and PIP.
 inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
   GloveSample sample;
   sample.side = side;
@@ -38,7 +39,7 @@ inline GloveSample bent_sample(Side side, int counts, HostTime arrival) {
   return sample;
 }
 
-/// What a test may ask of its loop.
+/// The options of a test's loop.
 struct LoopFixture {
   std::uint32_t rings_of_ball = 24; ///< how fine the model is
   double rate_hz = 1000.0;
@@ -95,7 +96,7 @@ struct LoopUnderTest {
     rings[0]->try_push(bent_sample(Side::left, counts, arrival));
     rings[1]->try_push(bent_sample(Side::right, counts, arrival));
   }
-  /// A frame's shape, in the model's order.
+  /// Returns a frame's shape, in the model's order.
   deform::Points vertices_of(const flow::Frame& frame) const {
     deform::Points vertices;
     loop->layout().unpack(frame.shape, vertices);

@@ -1,6 +1,6 @@
 #pragma once
-// A reader of binary glTF 2.0 that was written from the specification and not from the writer:
-// accessors, sparse ones, too, morph targets and joints at a time. What it cannot read it throws.
+// A reader of binary glTF 2.0, written from the specification and not from the writer. It reads
+// accessors, morph targets and joints. It throws if it cannot read a file.
 
 #include <algorithm>
 #include <cstdint>
@@ -40,7 +40,7 @@ public:
 
   nlohmann::json json;
 
-  /// Rows of an accessor, each as wide as its type; numbers as they are.
+  /// Returns the rows of an accessor, each as wide as its type, with unscaled numbers.
   Eigen::MatrixXd accessor(std::size_t index) const {
     const auto& accessor = json.at("accessors").at(index);
     const Eigen::Index width = width_of(accessor.at("type"));
@@ -68,7 +68,7 @@ public:
     return values;
   }
 
-  /// An animated property of a node at a time: translation, rotation or weights.
+  /// Returns a node's translation, rotation or weights at a time of the animation.
   Eigen::VectorXd animated(std::size_t node, const std::string& path, double time_s,
                            const Eigen::VectorXd& still) const {
     if (!json.contains("animations")) return still;
@@ -86,7 +86,7 @@ public:
     return still;
   }
 
-  /// The morphed vertices of a node's mesh, in its own units. 3 by #vertices.
+  /// Returns the morphed vertices of a node's mesh, in its own units. 3 by #vertices.
   Eigen::Matrix3Xd vertices(std::size_t node, double time_s) const {
     const auto& primitive = json.at("meshes")
                                 .at(json.at("nodes").at(node).at("mesh").get<std::size_t>())
@@ -113,7 +113,7 @@ public:
     throw std::runtime_error("no node " + name);
   }
 
-  /// Where a node is in the scene.
+  /// Returns where a node is in the scene.
   Eigen::Affine3d world(std::size_t node, double time_s) const {
     const auto& nodes = json.at("nodes");
     const auto& self = nodes.at(node);

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 inline constexpr double tenth_mm = 1e-4;
 
-/// Every angle, in one row, by reference: what the tests need to walk over a hand.
+/// Returns pointers to all angles in one row, so that tests can visit every angle of a hand.
 inline std::vector<double*> angles_in(JointAngles& a) {
   std::vector<double*> row{&a.thumb_roll_rad, &a.thumb_abduction_rad, &a.thumb_mcp_flexion_rad,
                            &a.thumb_ip_flexion_rad};
@@ -69,7 +69,7 @@ inline FingertipTargets targets_at(const Eigen::Matrix<double, 3, 5>& places) {
   return targets;
 }
 
-/// What forward kinematics says of a solution: from each tip to its target.
+/// Returns the distance from each tip to its target, by the forward kinematics of a solution.
 inline std::array<double, finger_count> distances(const HandSkeleton& skeleton,
                                                   const Isometry3d& base,
                                                   const FingertipTargets& targets,
@@ -87,7 +87,8 @@ inline double most(const std::array<double, finger_count>& all) {
   return *std::max_element(all.begin(), all.end());
 }
 
-/// The start keeps palm and wrist where the targets were made: nothing else moves them.
+/// Returns a start pose that has palm and wrist as they were when the targets were made, because
+/// nothing else moves them.
 inline JointAngles resting_with_wrist_of(const JointAngles& angles) {
   JointAngles rest;
   rest.palm_arch_rad = angles.palm_arch_rad;

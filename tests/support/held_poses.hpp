@@ -25,7 +25,7 @@ constexpr std::size_t slot_of(Sensor sensor) {
   return static_cast<std::size_t>(sensor);
 }
 
-/// Gains up to a quarter above the default, and offsets up to 12 counts off it.
+/// Returns gains up to a quarter above the default, and offsets up to 12 counts off it.
 inline Calibration some_truth(std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
@@ -38,8 +38,7 @@ inline Calibration some_truth(std::uint32_t seed) {
   return truth;
 }
 
-/// The counts, not rounded, at which `truth` says these angles: the couplings written out
-/// backwards.
+/// Returns the counts, not rounded, for which `truth` gives these angles. It inverts the couplings.
 inline std::array<double, sensor_slots> counts_at(const SensorAngles& angles,
                                                   const Calibration& truth) {
   SensorAngles lines = angles;
@@ -59,7 +58,7 @@ inline std::array<double, sensor_slots> counts_at(const SensorAngles& angles,
   return counts;
 }
 
-/// Held exactly: angles as asked, and where nothing is asked, something else each time.
+/// Returns the angles that the pose asks for, and random ones where it asks for nothing.
 inline SensorAngles exact(PoseId id, std::mt19937& random) {
   std::uniform_real_distribution<double> u(0.1, 0.6);
   SensorAngles angles{};
@@ -80,7 +79,8 @@ inline HeldPose held(const SensorAngles& angles, const Calibration& truth,
 
 inline SensorAngles touching(PoseId id, const HandSkeleton& skeleton);
 
-/// With loops that close. `times`: more evidence, for which the default's pull vanishes.
+/// Returns readings with loops that close. More `times` give more evidence, so that the default's
+/// influence vanishes.
 inline std::vector<PoseReading> exact_readings(const Calibration& truth, int times = 1) {
   const HandSkeleton skeleton(Side::right);
   std::mt19937 random(4);
@@ -107,8 +107,8 @@ inline Calibration fitted(const std::vector<PoseReading>& readings, const FitOpt
   return fit->calibration;
 }
 
-/// The largest difference of any angle that the two say over the range of counts that the readings
-/// covered.
+/// Returns the largest difference of any angle between the two calibrations, over the range of
+/// counts that the readings cover.
 inline double largest_difference_rad(const Calibration& a, const Calibration& b,
                                      const std::vector<PoseReading>& readings) {
   double largest = 0.0;
@@ -124,8 +124,8 @@ inline double largest_difference_rad(const Calibration& a, const Calibration& b,
   return largest;
 }
 
-/// The angles that bring the pads together, by Newton's steps on the forward kinematics. The palm
-/// at the little finger's base is touched by the thumb alone.
+/// Returns the angles that bring the pads together, by Newton's steps on the forward kinematics.
+/// Only the thumb touches the palm at the little finger's base.
 inline SensorAngles touching(PoseId id, const HandSkeleton& skeleton) {
   const Touch& touch = *pose_of(id).touch;
   const auto tip = std::find(fingertips.begin(), fingertips.end(), touch.with);

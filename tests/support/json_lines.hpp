@@ -1,5 +1,5 @@
 #pragma once
-// What a program said as JSON lines.
+// Reads the JSON lines that a program printed.
 
 #include <nlohmann/json.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace nendo::test {
 
-/// The last line of standard output, a summary mostly; null if there is none.
+/// Returns the last line of standard output, which is mostly a summary; null if there is none.
 inline nlohmann::json last_object(const Finished& done) {
   const auto lines = lines_of(done.out);
   return lines.empty() ? nlohmann::json() : nlohmann::json::parse(lines.back());

@@ -53,14 +53,14 @@ public:
   MockedMachine(const MockedMachine&) = delete;
   MockedMachine& operator=(const MockedMachine&) = delete;
 
-  /// With a uevent for the device and each of its parts, as the kernel does it.
+  /// Plugs the device in, with a uevent for it and each of its parts, as the kernel does it.
   void plug(const MockedUsb& usb) {
     plug_usb(usb);
     if (!usb.port.empty()) plug_port(usb);
   }
   void plug_usb(const MockedUsb& usb) { add(usb_text(usb)); }
   void plug_port(const MockedUsb& usb) {
-    // Made by hand: a node of umockdev's own could not come back after it was removed.
+    // A node of umockdev's own could not come back after it was removed.
     const std::string node = "/dev/" + usb.port;
     Terminal& terminal = terminals_[usb.port];
     std::filesystem::create_symlink(terminal.open(), real(node));
@@ -76,11 +76,11 @@ public:
     umockdev_testbed_uevent(testbed_.get(), usb.syspath().c_str(), "remove");
     remove(usb.syspath());
   }
-  /// The far end of a port is gone.
+  /// Closes the far end of a port.
   void hang_up(const std::string& port) { terminals_.at(port).close(); }
 
   int master(const std::string& port) const { return terminals_.at(port).master; }
-  /// A link as udev makes it, relative; umockdev's own links lead out of its mocked /dev.
+  /// Makes a relative link, as udev does; umockdev's own links lead out of its mocked /dev.
   void link(const std::string& name, const std::string& port) const {
     const auto dev = real("/dev");
     const auto folder = (dev / name).parent_path();
@@ -92,7 +92,7 @@ public:
     std::filesystem::create_directories(real(path).parent_path());
     std::ofstream(real(path)) << text;
   }
-  /// Where a mocked path really lies.
+  /// Returns the real place of a mocked path.
   std::filesystem::path real(const std::string& path) const {
     const std::unique_ptr<gchar, decltype(&g_free)> root(
         umockdev_testbed_get_root_dir(testbed_.get()), g_free);
@@ -130,7 +130,7 @@ private:
     void operator()(gpointer object) const { g_object_unref(object); }
   };
 
-  /// The modem lines, which pseudo-terminals lack; everything else is theirs.
+  /// Handles the modem lines, which pseudo-terminals lack. They handle everything else themselves.
   static gboolean handle_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer machine) {
     constexpr int not_handled = -100; // umockdev: run it on the pseudo-terminal behind the mock
     auto& modem_lines = static_cast<MockedMachine*>(machine)->modem_lines;
@@ -168,7 +168,7 @@ private:
     remove(usb.tty_path());
     remove(usb.interface_path() + "/" + usb.port);
     remove(usb.interface_path());
-    // umockdev leaves this behind, and stumbles over it when the name comes back.
+    // umockdev leaves this file behind, and fails because of it when the name comes back.
     std::filesystem::remove(real("/sys/dev/char/188:" + usb.port.substr(usb.port.size() - 1)));
   }
   void remove(const std::string& syspath) {
@@ -190,7 +190,7 @@ private:
            "\\n\nA: product=" + usb.product + "\\n\n" + serial +
            "H: descriptors=" + descriptors(usb) + "\n";
   }
-  /// The device's 18 bytes, and a configuration with an interface without endpoints.
+  /// Returns the device's 18 bytes, and a configuration with an interface without endpoints.
   static std::string descriptors(const MockedUsb& usb) {
     const auto little_endian = [](const std::string& hex) {
       return hex.substr(2, 2) + hex.substr(0, 2);

@@ -1,7 +1,7 @@
 #pragma once
-// A USB bus under umockdev: gloves are plugged in and pulled out, and what the host does to them
-// through /dev/bus/usb is played by their models and noted. Not for timing: a mocked node is always
-// ready, so that libusb never sleeps.
+// A USB bus under umockdev. Gloves are plugged in and pulled out. Their models answer what the host
+// does through /dev/bus/usb, and it is logged. It is not for timing: a mocked node is always ready,
+// so that libusb never sleeps.
 
 #include <atomic>
 #include <memory>
@@ -15,7 +15,7 @@ struct _UMockdevTestbed; // NOLINT(bugprone-reserved-identifier): umockdev's own
 
 namespace nendo::test {
 
-/// What became of a device; read it while nobody uses the device, or under `mutex`.
+/// The log of a device. Read it while nobody uses the device, or under `mutex`.
 struct UsbLog {
   int detached = 0;             ///< times that the kernel's driver lost the glove's interface
   int attached = 0;             ///< times that it was given back
@@ -35,14 +35,15 @@ public:
   MockedUsb& operator=(const MockedUsb&) = delete;
 
   struct Device;
-  /// At bus 1, `port` ("3") and `address`. An empty serial number: it has none.
+  /// Plugs a glove in at bus 1, `port` ("3") and `address`. With an empty `serial` it has no serial
+  /// number.
   Device& plug(UsbGlove& glove, int port, int address, const std::string& serial = {});
   void unplug(Device& device);
 
   static UsbLog log_of(Device& device);
-  /// Every transfer from now on fails as by a bad cable, this many times.
+  /// Lets the next `transfers` transfers fail, as with a bad cable.
   static void spoil(Device& device, int transfers);
-  /// The host's next interrupt transfer ends without a byte.
+  /// Lets the host's next interrupt transfer end without a byte.
   static void send_nothing(Device& device);
   /// Runs `change` while the device's model is at rest.
   template <class Change>
@@ -50,7 +51,7 @@ public:
     const std::lock_guard lock(mutex_of(device));
     change();
   }
-  /// The file behind a device's node, for its permissions.
+  /// Returns the file behind a device's node, so that its permissions can be changed.
   std::string node_file(const Device& device) const;
   std::string root() const;
 

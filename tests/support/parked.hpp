@@ -1,7 +1,6 @@
 #pragma once
-// ParkedPeer: a thread that works without end and can be stopped wherever it is, in the middle of
-// whatever it does. What another thread can still do meanwhile does not wait for it: that is what
-// being lock-free means.
+// A ParkedPeer is a thread that works without end and can be stopped at any instruction. What
+// another thread can do meanwhile does not wait for it, so it is lock-free.
 
 #include <atomic>
 #include <functional>
@@ -11,14 +10,13 @@ namespace nendo::test {
 
 class ParkedPeer {
 public:
-  /// `work` is done over and over by a thread of its own. One peer at a time.
+  /// Starts a thread that does `work` repeatedly. There may be one peer at a time.
   explicit ParkedPeer(std::function<void()> work);
   ~ParkedPeer();
   ParkedPeer(const ParkedPeer&) = delete;
   ParkedPeer& operator=(const ParkedPeer&) = delete;
 
-  /// Stops the peer at an instruction that chance picks, lets it do some work first, and returns
-  /// when it stands still.
+  /// Lets the peer do some work, stops it at a random instruction, and returns when it has stopped.
   void park();
   void resume();
 

@@ -1,5 +1,5 @@
 #pragma once
-// Byte streams for parsers' tests, and what holds for every parser of a stream.
+// Byte streams for the tests of parsers, and checks that every parser of a stream must pass.
 
 #include <cstddef>
 #include <cstdint>
@@ -34,7 +34,7 @@ inline StreamBytes joined(std::initializer_list<StreamBytes> parts) {
   return all;
 }
 
-/// Changes, takes away or adds a byte, `times` times.
+/// Changes, removes or adds a random byte, `times` times.
 template <class Random>
 void mutilate(StreamBytes& stream, std::uint64_t times, Random& random) {
   for (; times > 0; --times) {
@@ -52,7 +52,7 @@ void mutilate(StreamBytes& stream, std::uint64_t times, Random& random) {
   }
 }
 
-/// What a parser that was given `input` bytes counts adds up.
+/// Checks that the counts of a parser that was given `input` bytes add up.
 template <class Parser>
 void check_accounted(const Parser& parser, std::size_t input) {
   const auto& counters = parser.counters();
@@ -60,8 +60,8 @@ void check_accounted(const Parser& parser, std::size_t input) {
   CHECK(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
 }
 
-/// What a parser makes of `stream` in one piece it makes of it in any two. `make()` returns a
-/// parser; `value_of` tells records apart; less than `longest` bytes may be pending.
+/// Checks that a parser makes the same of `stream` in one piece and in any two pieces. `make()`
+/// returns a parser, `value_of` tells records apart, and less than `longest` bytes may be pending.
 template <class Make, class ValueOf>
 void cut_makes_no_difference(const StreamBytes& stream, std::size_t longest, const Make& make,
                              const ValueOf& value_of) {

@@ -1,6 +1,6 @@
 #pragma once
-// A viewer beside a loop, as `nendo view` is one, but for the window: polls frames and makes scenes
-// of them on a thread of its own.
+// A viewer beside a loop, like `nendo view` without the window. It polls frames and makes scenes of
+// them on a thread of its own.
 
 #include <atomic>
 #include <chrono>
@@ -14,8 +14,8 @@ namespace nendo::test {
 
 class PollingViewer {
 public:
-  /// Polls a thousand times a second, and is the frames' only reader. Returns when it has drawn
-  /// once.
+  /// Starts to poll a thousand times a second, as the frames' only reader. Returns when it has made
+  /// a scene.
   explicit PollingViewer(LoopUnderTest& test) : thread_([this, &test] { look_on(test); }) {
     while (scenes_ == 0)
       std::this_thread::yield();
@@ -24,7 +24,7 @@ public:
   PollingViewer(const PollingViewer&) = delete;
   PollingViewer& operator=(const PollingViewer&) = delete;
 
-  /// How many scenes it made.
+  /// Ends the viewer and returns how many scenes it made.
   std::uint64_t end() {
     over_ = true;
     if (thread_.joinable()) thread_.join();
@@ -43,7 +43,7 @@ private:
       if (!test.loop->frames().update() && scenes_ > 0) continue;
       const flow::Frame& frame = test.loop->frames().front();
       holds.follow(frame);
-      viewer::see_hands(frame, holds, moment);
+      viewer::set_hands(frame, holds, moment);
       test.loop->layout().unpack(frame.shape, moment.vertices);
       builder.build(moment, {}, scene);
       ++scenes_;

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the nendo program as a user would, and hands back what it said.
+// Runs the nendo program as a user would, and returns its output.
 
 #include <array>
 #include <chrono>
@@ -24,7 +24,7 @@ struct Finished {
   double seconds = 0.0;
 };
 
-/// A running program. Killed, if it still runs, when this is destroyed.
+/// A running program. The destructor kills it if it still runs.
 class Program {
 public:
   explicit Program(std::vector<std::string> arguments)
@@ -38,7 +38,7 @@ public:
     const std::string err = (folder_.path() / "err").string();
     pid_ = ::fork();
     if (pid_ != 0) return;
-    // Between fork and exec only what is safe in a child of a threaded program.
+    // Between fork and exec, only calls are made that are safe in a child of a threaded program.
     ::dup2(::open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
     ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), STDOUT_FILENO);
     ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), STDERR_FILENO);
@@ -87,7 +87,7 @@ inline Finished nendo(std::vector<std::string> arguments) {
   return Program(std::move(arguments)).wait();
 }
 
-/// Waits until there is a file or link; false if there is none for ten seconds.
+/// Waits until there is a file or link. Returns false if there is none within ten seconds.
 inline bool appears(const std::filesystem::path& path) {
   for (int turn = 0; turn < 2000 && !std::filesystem::exists(path); ++turn)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -107,7 +107,7 @@ private:
   Program program_;
 };
 
-/// An error is one line that begins with the program's name and mentions `what`.
+/// Tells whether an error is one line that begins with the program's name and mentions `what`.
 inline bool is_one_line_about(const std::string& err, std::string_view what) {
   return lines_of(err).size() == 1 && err.starts_with("nendo: ") &&
          err.find(what) != std::string::npos;

@@ -1,5 +1,5 @@
 #pragma once
-// An emulator that is being served, and a host at its terminal that is as plain as can be.
+// An emulator that is being served, and a very simple host at its terminal.
 
 #include <atomic>
 #include <chrono>
@@ -20,7 +20,7 @@
 
 namespace nendo::test {
 
-/// Served by a thread of its own until stop() or the end.
+/// Serves an emulator from a thread of its own until stop() or the destructor.
 class ServedEmulator {
 public:
   explicit ServedEmulator(const emulator::EmulatorOptions& options = {}) {
@@ -48,7 +48,7 @@ private:
   std::thread thread_;
 };
 
-/// Opens, sets raw mode, reads, writes.
+/// A host that opens the terminal, sets raw mode, reads and writes.
 class PtyHost {
 public:
   explicit PtyHost(const std::string& path)
@@ -75,7 +75,7 @@ public:
       read_some(bytes, std::chrono::milliseconds(50));
     return bytes;
   }
-  /// At least `size` bytes, or fewer if they do not come within ten seconds.
+  /// Reads at least `size` bytes, or fewer if they do not come within ten seconds.
   std::string receive(std::size_t size) {
     return receive_until([size](const std::string& bytes) { return bytes.size() >= size; });
   }

@@ -44,7 +44,7 @@ public:
   PtyUnit& operator=(const PtyUnit&) = delete;
 
   const std::string& path() const { return path_; }
-  /// The device is gone; the host's end hangs up.
+  /// Removes the device. The host's end hangs up.
   void unplug() {
     if (!thread_.joinable()) return;
     stop_ = true;
@@ -52,7 +52,7 @@ public:
     ::close(slave_);
     ::close(master_);
   }
-  /// Looks at the unit, of which the caller knows the class, while it serves.
+  /// Calls `look` with the unit while it serves. The caller must know the unit's class.
   template <class Unit, class Look>
   auto look(Look&& look) {
     const std::lock_guard lock(mutex_);
@@ -90,7 +90,7 @@ private:
   std::thread thread_;
 };
 
-/// Says nothing, ever; or the same noise for ever.
+/// A unit that never sends anything, or always the same noise.
 class Stranger final : public emulator::EmulatedUnit {
 public:
   explicit Stranger(std::string_view noise) : noise_(noise) {}

@@ -1,5 +1,5 @@
 #pragma once
-// Calibrations of any content that a file may have.
+// Makes random calibrations with any content that a file may have.
 
 #include <bit>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace nendo::test {
 
-/// A double with random bits all over its mantissa, within -most and most, of any magnitude.
+/// Returns a double between -most and most, of any magnitude, with a random mantissa.
 inline double random_number(std::mt19937_64& random, double most) {
   std::uniform_real_distribution<double> mantissa(-most, most);
   std::uniform_int_distribution<int> exponent(-60, 0);

@@ -1,5 +1,5 @@
 #pragma once
-// A recording of hands that bend evenly, and what each of its frames was when it was made.
+// A recording of hands that bend evenly, and its frames as they were when it was made.
 
 #include <cmath>
 #include <memory>
@@ -19,7 +19,7 @@ struct Motion {
   int hertz = 100;
 };
 
-/// A tick every 1/hertz s; the first one that long after the recording began.
+/// A recording with a tick every 1/hertz s. The first tick is that long after the beginning.
 struct RecordedMotion {
   explicit RecordedMotion(const Motion& motion)
       : played(motion.mode, hand::FilterKind::off, false, motion.injective) {

@@ -1,11 +1,11 @@
 #pragma once
-// Counts what a real-time thread must not do. While a Restraint lives, the calling thread's
-// allocations, frees and mutex operations are counted; other threads' are not.
+// Counts operations that a real-time thread must not do. While a Restraint lives, the calling
+// thread's allocations, frees and mutex operations are counted, but not those of other threads.
 
 #include <cstdint>
 
-// Sanitizers have malloc and the mutexes to themselves. GCC says so by these names, Clang by
-// __has_feature.
+// Sanitizers replace malloc and the mutexes themselves. GCC tells about them by these names, and
+// Clang by __has_feature.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define NENDO_COUNTS_RESTRAINT 0
 #elif defined(__has_feature)
@@ -19,7 +19,7 @@
 
 namespace nendo::test {
 
-/// Where this is false, in sanitizer builds, all counts stay 0.
+/// It is false in sanitizer builds, where all counts stay 0.
 inline constexpr bool restraint_is_counted = NENDO_COUNTS_RESTRAINT != 0;
 
 struct RestraintCounts {

@@ -10,7 +10,7 @@
 
 namespace nendo::test {
 
-/// Frames at the times that a test wants; a frame's tick is its number.
+/// Gives frames at the times that a test wants. A frame's tick is its number.
 class ScriptedFrames final : public takes::FrameSource {
 public:
   explicit ScriptedFrames(std::vector<double> times_s, double rate_hz = 90.0)

@@ -1,5 +1,5 @@
 #pragma once
-// A ScriptedUnit, or worse company, at the far end of a pseudo-terminal.
+// A ScriptedUnit, or a stranger device, at the far end of a pseudo-terminal.
 
 #include <atomic>
 #include <chrono>
@@ -20,7 +20,7 @@
 
 namespace nendo::test {
 
-/// What a test changes and looks at while the unit works.
+/// The state that a test changes and looks at while the unit works.
 struct ScriptControl {
   std::atomic<bool> unplugged{false};   // the glove from its interface unit
   std::atomic<bool> power_cycle{false}; // forgets everything, once
@@ -29,7 +29,7 @@ struct ScriptControl {
     const std::lock_guard lock(mutex_);
     heard_ += commands;
   }
-  /// Every command so far, of the units before a power cycle too.
+  /// Returns every command so far, also those before a power cycle.
   std::string heard() const {
     const std::lock_guard lock(mutex_);
     return heard_;
@@ -40,7 +40,7 @@ private:
   std::string heard_;
 };
 
-/// The speed to which the host has set a pseudo-terminal, in baud.
+/// Returns the speed in baud to which the host has set a pseudo-terminal.
 inline unsigned host_baud(int fd) {
   termios settings{};
   ::tcgetattr(fd, &settings);
@@ -58,13 +58,13 @@ inline unsigned host_baud(int fd) {
   }
 }
 
-/// Serves a ScriptedUnit on any file descriptor until told to stop; a record every 2 ms while it
-/// streams, and none while it is mute.
+/// Serves a ScriptedUnit on any file descriptor until told to stop. It sends a record every 2 ms
+/// while it streams, and none while it is mute.
 inline void serve_script(int fd, const Script& script, const std::atomic<bool>& stop,
                          const std::atomic<bool>& mute, ScriptControl& control) {
   std::optional<ScriptedUnit> unit(std::in_place, script);
   const auto send = [fd](std::string_view bytes) {
-    // A host that does not read loses bytes, as on a wire.
+    // If the host does not read, bytes are lost, as on a wire.
     [[maybe_unused]] const ssize_t sent = ::write(fd, bytes.data(), bytes.size());
   };
   send(script.waiting);
@@ -119,7 +119,7 @@ public:
   ScriptedPort& operator=(const ScriptedPort&) = delete;
 
   const std::string& path() const { return path_; }
-  /// The device is gone; the host's end hangs up.
+  /// Removes the device. The host's end hangs up.
   void unplug() {
     if (!thread_.joinable()) return;
     stop_ = true;

@@ -1,6 +1,6 @@
 #pragma once
-// A CyberGlove's interface unit with the commands that a driver uses, from the published facts and
-// in the simplest way; knows nothing of the code under test.
+// A CyberGlove's interface unit with the commands that a driver uses, written in the simplest way
+// from the published facts. It knows nothing of the code under test.
 
 #include <algorithm>
 #include <array>
@@ -33,13 +33,13 @@ struct Script {
   unsigned baud = 0;          // the only one at which it hears and is heard; 0: any
 };
 
-/// What a unit sends for a command, and the records it streams. Value k of a record is 10 + k.
+/// Makes a unit's answers, and the records that it streams. Value k of a record is 10 + k.
 class ScriptedUnit {
 public:
   explicit ScriptedUnit(const Script& script)
       : streaming(script.streaming), script_(script), sensors_(script.sensors) {}
 
-  /// Obeys the first command of `input` and takes it away; holds it, if it is not complete.
+  /// Obeys and removes the first command of `input`; keeps it if it is incomplete.
   std::string answer(std::string_view& input) {
     const char command = input.front();
     if (streaming && command != '\x03') return skip(input, 1), std::string{};
@@ -144,7 +144,7 @@ private:
     return std::min<unsigned>(count, static_cast<unsigned char>(values_[0]));
   }
 
-  // The first byte's bit k: byte k was 0 and goes as 1; bit 7 always, as the manual has it.
+  // Bit k of the first byte: byte k was 0 and is sent as 1. Bit 7 is always set (manual).
   static std::string stamp(unsigned ticks) {
     std::string bytes = "\x80";
     for (unsigned k = 0; k < 4; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// Runs other programs than nendo by the shell: those that judge what nendo wrote.
+// Runs programs other than nendo by the shell, which check what nendo wrote.
 
 #include <array>
 #include <cstdio>

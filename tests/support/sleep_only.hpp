@@ -1,24 +1,24 @@
 #pragma once
-// A thread that may only sleep: the kernel stops every other system call of it, and counts.
+// A thread that may only sleep: the kernel stops its other system calls, and they are counted.
 
 #include <cstdint>
 
 namespace nendo::test {
 
-/// For the rest of the calling thread's life its system calls are not done, but counted, save
-/// clock_nanosleep (which it is about), getrusage (by which a test counts page faults), the return
-/// from a signal handler, and exit. It has to end in end_thread(). False: this kernel has no
-/// seccomp.
+/// From now on the calling thread's system calls are counted and not done, except clock_nanosleep,
+/// getrusage (by which a test counts page faults), the return from a signal handler, and exit. The
+/// thread has to end in end_thread(). Returns false if this kernel has no seccomp.
 bool allow_sleep_only() noexcept;
 
-/// How many system calls of the calling thread were stopped so far, and which was the last.
+/// The number of the calling thread's system calls that were stopped so far, and the last of them.
 struct StoppedCalls {
   std::uint64_t count = 0;
   int last = -1;
 };
 StoppedCalls stopped_calls() noexcept;
 
-/// Ends the calling thread at once: its ordinary end makes system calls. Destructors do not run.
+/// Ends the calling thread at once, because an ordinary end makes system calls. Destructors do not
+/// run.
 [[noreturn]] void end_thread() noexcept;
 
 } // namespace nendo::test

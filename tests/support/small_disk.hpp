@@ -1,5 +1,5 @@
 #pragma once
-// A disk that is full.
+// Imitates a full disk.
 
 #include <csignal>
 
@@ -7,7 +7,7 @@
 
 namespace nendo::test {
 
-/// Files may not become larger than so many bytes while this is there, as on a disk that is full.
+/// While this lives, files cannot become larger than so many bytes, as on a full disk.
 class SmallDisk {
 public:
   explicit SmallDisk(rlim_t bytes) {

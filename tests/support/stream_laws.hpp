@@ -1,6 +1,6 @@
 #pragma once
-// What holds for every streamed glove, whatever its protocol: each function is the body of a test
-// case. `Kind` says how to make one and how to open it.
+// Checks that every streamed glove must pass. Each function is the body of a test case. `Kind` says
+// how to make a glove and how to open it.
 
 #include <array>
 #include <chrono>
@@ -184,8 +184,8 @@ inline void a_glove_that_vanishes_is_found_again(const Kind& kind, bool tells_it
   check_conservation((*glove)->stats(), kind.longest_record);
 }
 
-/// An option that a kind of glove does not have, or a value that it does not take, and a part of
-/// the message that it brings.
+/// An option that a kind of glove does not have or a value that it does not take, and the error's
+/// words.
 struct WrongOption {
   const char* options;
   const char* said;
@@ -215,7 +215,7 @@ inline constexpr std::array resting_knuckles{
     RestingJoint{Sensor::middle_mcp, 25, 90}, RestingJoint{Sensor::ring_mcp, 26, 90},
     RestingJoint{Sensor::pinky_mcp, 27, 90}};
 
-/// The first sample of the glove that `unit` emulates, which is at rest.
+/// Returns the first sample of the glove that `unit` emulates, whose hand is at rest.
 inline GloveSample sample_at_rest(std::unique_ptr<emulator::EmulatedUnit> unit,
                                   const std::string& kind) {
   const PtyUnit port(std::move(unit));
@@ -228,7 +228,7 @@ inline GloveSample sample_at_rest(std::unique_ptr<emulator::EmulatedUnit> unit,
   return sample;
 }
 
-/// `sample` has the angles of `joints`, whose full range is `most` counts, to within `off` degrees.
+/// Checks the angles of `joints`, whose full range is `most` counts, to within `off` degrees.
 inline void check_at_rest(const GloveSample& sample, std::span<const RestingJoint> joints,
                           double most, double off) {
   for (const RestingJoint& joint : joints) {

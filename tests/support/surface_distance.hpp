@@ -1,6 +1,6 @@
 #pragma once
-// How far a point is from a model's surface, by looking at every triangle: polygons are fans from
-// their first corner.
+// Computes how far a point is from a model's surface, by looking at every triangle. Polygons become
+// fans about their first corner.
 
 #include <algorithm>
 #include <limits>
@@ -25,13 +25,14 @@ inline double distance_to_segment(const Eigen::Vector3d& p, const Eigen::Vector3
   return (p - from - along * (way / length)).norm();
 }
 
-/// To its edges, or to its plane if that is nearer and the foot of the perpendicular is inside.
+/// Returns the distance to the edges, or to the plane if that is nearer and the foot of the
+/// perpendicular is inside.
 inline double distance_to_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                    const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const double to_edges = std::min(
       {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
   const Eigen::Vector3d n = (b - a).cross(c - a);
-  // A line's normal is made of rounding.
+  // The normal of a triangle that is a line consists of rounding errors.
   const bool is_line = n.norm() <= 1e-9 * (b - a).norm() * (c - a).norm();
   const bool inside = !is_line && n.dot((b - a).cross(p - a)) >= 0.0 &&
                       n.dot((c - b).cross(p - b)) >= 0.0 && n.dot((a - c).cross(p - c)) >= 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Recordings for tests: of a loop whose rings the test fills, and of random entries.
+// Makes recordings for tests, of a loop whose rings the test fills, and of random entries.
 
 #include <algorithm>
 #include <fstream>
@@ -25,7 +25,7 @@ inline void write_bytes(const std::filesystem::path& path, std::string_view byte
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// What a recorder of this loop would be told.
+/// Returns the setup that a recorder of this loop would get.
 inline recording::Setup setup_of(const LoopUnderTest& test) {
   recording::Setup setup = recording::begin_setup("test 1.0");
   setup.wearer = "anna";
@@ -79,8 +79,8 @@ struct RecordedLoop {
   }
 };
 
-/// What people do: hands that bend and move at random, requests, a switch that is turned now and
-/// then, and ticks that find several samples or none.
+/// Plays what people do: hands bend and move at random, requests are made, a switch is turned now
+/// and then, and ticks find several samples or none.
 inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
   std::mt19937 random(seed);
   HostTime now = HostClock::now();

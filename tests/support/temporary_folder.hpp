@@ -1,5 +1,5 @@
 #pragma once
-// A folder of a test's own, removed with all it holds.
+// A folder for one test. It is removed with all its contents.
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #pragma once
-// The nendo program in a terminal of its own, with somebody who looks at the screen and presses
-// keys.
+// Runs the nendo program in a terminal of its own, and plays a user who looks at the screen and
+// presses keys.
 
 #include <chrono>
 #include <csignal>
@@ -30,7 +30,7 @@ public:
       argv.push_back(argument.data());
     argv.push_back(nullptr);
     const winsize size{rows, columns, 0, 0};
-    // The terminal's own end stays open here: its settings can be read when the program is gone.
+    // This end stays open, so that its settings can be read when the program has ended.
     if (::openpty(&master_, &slave_, nullptr, nullptr, &size) != 0) return;
     tcgetattr(slave_, &before_);
     pid_ = ::fork();
@@ -53,7 +53,7 @@ public:
 
   const VtScreen& screen() const { return screen_; }
 
-  /// Reads until the screen is as wanted; false if it does not become so for long.
+  /// Reads until the screen is as wanted. Returns false if that takes too long.
   bool sees(const std::function<bool(const VtScreen&)>& wanted) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (!wanted(screen_)) {
@@ -65,7 +65,7 @@ public:
   bool sees(const std::string& text) {
     return sees([&](const VtScreen& screen) { return screen.shows(text); });
   }
-  /// The same of all that was ever shown.
+  /// Reads until `text` was printed outside the page. Returns false if that takes too long.
   bool tells(const std::string& text) {
     return sees([&](const VtScreen& screen) {
       return screen.transcript().find(text) != std::string::npos;
@@ -80,8 +80,8 @@ public:
     screen_.resize(columns, rows);
   }
 
-  /// Reads on until the program has ended. Its exit code; 128 + n if signal n ended it, -1 if
-  /// nothing did.
+  /// Reads until the program has ended. Returns its exit code; 128 + n if signal n ended it, -1 if
+  /// it did not end.
   int wait() {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     int status = 0;
@@ -94,7 +94,7 @@ public:
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
-  /// The terminal is as the program found it.
+  /// Tells whether the terminal is as it was before the program.
   bool is_restored() const {
     termios after{};
     tcgetattr(slave_, &after);

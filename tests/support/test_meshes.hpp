@@ -1,5 +1,5 @@
 #pragma once
-// Models whose every vertex is known.
+// Models of which every vertex is known.
 
 #include <cmath>
 #include <cstdint>
@@ -16,7 +16,7 @@ inline void add_face(deform::Mesh& mesh, std::initializer_list<std::uint32_t> co
   mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
 }
 
-/// cells by cells quads in the plane z = 0, from the origin to (size, size, 0).
+/// Returns cells by cells quads in the plane z = 0, from the origin to (size, size, 0).
 inline deform::Mesh grid(std::uint32_t cells, double size) {
   deform::Mesh mesh;
   const std::uint32_t side = cells + 1;
@@ -32,7 +32,8 @@ inline deform::Mesh grid(std::uint32_t cells, double size) {
   return mesh;
 }
 
-/// Rings of quads between two fans of triangles, outward, round the origin.
+/// Returns a sphere about the origin: rings of quads between two fans of triangles, which face
+/// outwards.
 inline deform::Mesh sphere(std::uint32_t rings, std::uint32_t segments, double radius) {
   deform::Mesh mesh;
   mesh.vertices.resize(3, 2 + static_cast<Eigen::Index>(rings) * segments);
@@ -57,7 +58,7 @@ inline deform::Mesh sphere(std::uint32_t rings, std::uint32_t segments, double r
   return mesh;
 }
 
-/// Evenly in a cube round the origin.
+/// Returns random points, evenly distributed in a cube about the origin.
 inline deform::Points random_points(std::mt19937& random, Eigen::Index count, double half_edge) {
   std::uniform_real_distribution<double> coordinate(-half_edge, half_edge);
   deform::Points points(3, count);

@@ -1,5 +1,5 @@
 #pragma once
-// Whole files, and the lines of a text.
+// Reads whole files and the lines of a text.
 
 #include <filesystem>
 #include <fstream>

@@ -63,7 +63,8 @@ inline bool same_bits(const timeline::Timeline& one, const timeline::Timeline& o
   return same;
 }
 
-/// A pose a frame, at 90 Hz: every joint moves at a pace of its own, and rests now and then.
+/// Returns a pose for each frame, at 90 Hz. Every joint moves at a pace of its own, and rests now
+/// and then.
 inline std::vector<timeline::Key> waving(std::size_t frames) {
   std::vector<timeline::Key> keys(frames);
   for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -79,7 +80,8 @@ inline std::vector<timeline::Key> waving(std::size_t frames) {
   return keys;
 }
 
-/// Two hands that wave at a model of about the size of a ball, and what is asked of it meanwhile.
+/// Returns a timeline of two hands that wave at a model of about the size of a ball, with some
+/// requests.
 inline timeline::Timeline waved_timeline(const deform::Mesh& model, flow::Mode mode,
                                          std::size_t frames = 90) {
   timeline::Timeline made;

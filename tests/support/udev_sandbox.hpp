@@ -1,5 +1,5 @@
 #pragma once
-// udev itself, applied to emulated devices: what rules make of them.
+// Applies udev itself to emulated devices, to test rules.
 
 #include <filesystem>
 #include <map>
@@ -14,7 +14,8 @@
 
 namespace nendo::test {
 
-/// A USB device and, if `port` is not empty, its serial port. Empty texts: it has none.
+/// A USB device and, if `port` is not empty, its serial port. An empty text means that it has no
+/// such property.
 struct PluggedDevice {
   std::string place; ///< "1-2"
   std::string vendor_id, product_id, manufacturer, product, serial;
@@ -28,7 +29,7 @@ struct PluggedDevice {
   std::string tty_path() const { return serial_path() + "/tty/" + port; }
 };
 
-/// A description for umockdev. Ports of one adapter share its USB device.
+/// Returns a description for umockdev. Ports of one adapter share its USB device.
 inline std::string describe(const std::vector<PluggedDevice>& devices) {
   std::ostringstream text;
   std::map<std::string, int> seen;
@@ -65,12 +66,12 @@ inline std::string describe(const std::vector<PluggedDevice>& devices) {
   return text.str();
 }
 
-/// What udev said of each path, and the links to ports that were there in the end.
+/// What udev said of each path, and the links to ports that it made.
 struct UdevVerdict {
   std::map<std::string, std::string> said;
   std::string links;
 
-  /// A property of the device; empty: it has none.
+  /// Returns a property of the device; an empty text if it has no such property.
   std::string property(const std::string& path, const std::string& name) const {
     for (const std::string& line : lines_of(said.at(path))) {
       if (line.starts_with(name + "=")) return line.substr(name.size() + 1);
@@ -80,7 +81,7 @@ struct UdevVerdict {
   bool mentions(const std::string& path, const std::string& text) const {
     return said.at(path).find(text) != std::string::npos;
   }
-  /// udev says where in the rules, and what: "60-x.rules:1 Unknown key ...".
+  /// Tells whether udev complains about a place in the rules: "60-x.rules:1 Unknown key ...".
   bool complains() const {
     for (const auto& [path, text] : said) {
       for (const std::string& line : lines_of(text)) {
@@ -93,7 +94,7 @@ struct UdevVerdict {
   }
 };
 
-/// Nothing if this machine does not let a program have a /dev of its own.
+/// Returns udev's verdict; nothing if this machine does not let a program have a /dev of its own.
 inline std::optional<UdevVerdict> ask_udev(const std::filesystem::path& rules,
                                            const std::vector<PluggedDevice>& devices,
                                            const std::vector<std::string>& paths) {

@@ -45,7 +45,7 @@ struct UnitBench {
       std::chrono::hours(1); // not 0: a unit has usually been on for a while
 };
 
-// At the NULs, which stay.
+// Splits a stream after each NUL. The NULs stay.
 inline std::vector<Bytes> split(const Bytes& stream) {
   std::vector<Bytes> records(1);
   for (const std::uint8_t byte : stream) {

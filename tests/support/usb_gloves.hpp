@@ -1,6 +1,6 @@
 #pragma once
 // USB gloves from their own side: descriptors, feature reports, input reports made from a motion.
-// Pure, and written from published facts; they know nothing of the code under test but the motion.
+// They are pure, and written from published facts without the code under test but for the motion.
 
 #include <algorithm>
 #include <array>
@@ -17,11 +17,11 @@ namespace nendo::test {
 
 using UsbBytes = std::vector<std::uint8_t>;
 
-/// What was measured for each report that left the glove, by sensor slot; -1: not measured.
+/// The counts that a report sent, by sensor slot; -1 for a sensor that is not measured.
 using SentCounts = std::array<int, sensor_slots>;
 
-/// The sample tells these counts, and no others. (A mask first: GCC 12.2 miscompiles the comparison
-/// of a bit with the sign of a number.)
+/// Tells whether the sample has exactly these counts. (It makes a mask first: GCC 12.2 miscompiles
+/// the comparison of a bit with the sign of a number.)
 inline bool tells(const GloveSample& sample, const SentCounts& sent) {
   SensorMask measured;
   SentCounts told{};
@@ -60,7 +60,7 @@ public:
     const double time_s = static_cast<double>(sent.size()) / 60.0;
     return report(motion_.at(time_s), sent.back());
   }
-  /// Device, configuration, and for each interface one HID input (USB 2.0, 9.6).
+  /// Returns device, configuration, and one HID input for each interface (USB 2.0, 9.6).
   UsbBytes descriptors() const {
     const auto low = [](unsigned v) { return static_cast<std::uint8_t>(v & 0xFFU); };
     const auto high = [](unsigned v) { return static_cast<std::uint8_t>(v >> 8U); };
@@ -78,13 +78,13 @@ public:
     }
     return bytes;
   }
-  /// Feature report; nothing: refused.
+  /// Returns a feature report, or nothing if the request is refused.
   virtual std::optional<UsbBytes> get_feature(std::uint8_t /*number*/) { return std::nullopt; }
   virtual bool set_feature(const UsbBytes& /*report*/) { return false; }
 
 protected:
   virtual UsbBytes report(const driver::JointAngles& angles, SentCounts& counts) = 0;
-  /// From one end of the joint's range to the other.
+  /// Returns the count of a joint, from 0 to `most` over its range.
   static int count_of(Sensor sensor, const driver::JointAngles& angles, int most,
                       SentCounts& counts) {
     const auto slot = static_cast<std::size_t>(sensor);
@@ -146,7 +146,7 @@ protected:
   }
 };
 
-/// 64 bytes, 16 values of two bytes, high byte first.
+/// A 5DT Ultra. Its report has 64 bytes, with 16 values of two bytes, high byte first.
 class UltraModel final : public UsbGlove {
 public:
   explicit UltraModel(std::uint16_t product_id) {

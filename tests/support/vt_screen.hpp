@@ -1,6 +1,6 @@
 #pragma once
-// The little of a terminal (ECMA-48, xterm) that the program may use, as a screen to look at. What
-// it does not know, and what leaves the screen, it remembers as a fault.
+// The screen of a terminal (ECMA-48, xterm) with the few functions that the program may use.
+// Unknown sequences, and text that leaves the screen, are kept as faults.
 
 #include <string>
 #include <vector>
@@ -37,9 +37,9 @@ public:
     }
   }
 
-  /// Rows of the page, as long as the screen is wide.
+  /// Returns the rows of the page, which are as long as the screen is wide.
   const std::vector<std::string>& lines() const { return lines_; }
-  /// The row that begins with `name`; empty if there is none.
+  /// Returns the row that begins with `name`; an empty text if there is none.
   std::string line_of(const std::string& name) const {
     for (const auto& line : lines_) {
       if (line.starts_with(name)) return line;
@@ -52,7 +52,7 @@ public:
     }
     return false;
   }
-  /// What was printed outside the page.
+  /// Returns what was printed outside the page.
   const std::string& transcript() const { return transcript_; }
   bool on_page() const { return on_page_; } ///< the alternate screen
   bool cursor_shown() const { return cursor_shown_; }
@@ -88,7 +88,7 @@ private:
       if (row_ >= static_cast<int>(lines_.size())) fault("cursor outside the screen");
     } else if (final == 'J' && (parameters.empty() || parameters == "2")) {
       const int first = parameters.empty() ? row_ : 0;
-      // A cleared screen is how a program answers a new size: what was on its way is no fault.
+      // A program clears the screen after a new size, so what was on its way is no fault.
       if (!parameters.empty()) faults_.clear();
       for (auto row = static_cast<std::size_t>(first); row < lines_.size(); ++row)
         lines_[row].assign(static_cast<std::size_t>(columns_), ' ');

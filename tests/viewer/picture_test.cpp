@@ -42,7 +42,7 @@ double mean_grey(const Image& image, int x0, int y0, int x1, int y1) {
   return sum / ((x1 - x0) * (y1 - y0));
 }
 
-SeenHand hand_at(Side side, const Eigen::Vector3d& place) {
+SceneHand hand_at(Side side, const Eigen::Vector3d& place) {
   Eigen::Isometry3d T_world_wrist = Eigen::Isometry3d::Identity();
   T_world_wrist.translation() = place;
   const auto pose = hand::HandSkeleton(side).pose({}, T_world_wrist);

@@ -56,7 +56,7 @@ TEST_SUITE("scene") {
     holds.follow(frame);
     SceneFrame moment;
     moment.vertices = test.vertices_of(frame);
-    see_hands(frame, holds, moment);
+    set_hands(frame, holds, moment);
     REQUIRE(moment.hands[0]);
     CHECK(moment.hands[0]->starts == taken);
     const auto tips = frame.hands[0].pose.fingertip_positions();
@@ -104,7 +104,7 @@ TEST_SUITE("scene") {
     for (int turn = 0; turn < 3; ++turn)
       step(15);
     SceneFrame moment;
-    see_hands(test.loop->frames().front(), holds, moment);
+    set_hands(test.loop->frames().front(), holds, moment);
     CHECK_FALSE(moment.held);
     CHECK(moment.hands[0]->starts == tips(test.loop->frames().front()));
     REQUIRE(test.commands.try_push(flow::Request::grab));

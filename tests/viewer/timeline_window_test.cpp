@@ -40,7 +40,7 @@ struct Seat {
                       SceneBuilder(test.model, test.placement.units_per_metre));
     const flow::Frame& frame = test.frame_after_tick(0);
     window->follow(frame.shape);
-    see_hands(frame, {}, moment);
+    set_hands(frame, {}, moment);
     view.file = "take.timeline.toml";
     view.duration_s = 4.0;
     view.rate_hz = rate_hz;

@@ -74,7 +74,7 @@ TEST_SUITE("window") {
 
       holds.follow(frame);
       SceneFrame moment;
-      see_hands(frame, holds, moment);
+      set_hands(frame, holds, moment);
       test.loop->layout().unpack(frame.shape, moment.vertices);
       Scene scene;
       builder.build(moment, {}, scene);

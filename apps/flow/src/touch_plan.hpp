@@ -1,5 +1,5 @@
 #pragma once
-// Everything that there is to know of a touching hand's motion, made beforehand.
+// Everything that determines a touching hand's motion, computed beforehand.
 
 #include <array>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace nendo::flow {
 
-/// One finger's part.
+/// The part of one finger.
 struct TouchingFinger {
   bool touches = false;
   double press_m = 0.0;            ///< where the score says 1
@@ -24,7 +24,7 @@ struct TouchingFinger {
 };
 
 struct TouchPlan {
-  /// The joints' angles, by index_of(Angle).
+  /// The angles of the joints, by index_of(Angle).
   using Row = std::array<double, hand::angle_count>;
 
   TouchScore score;
@@ -38,7 +38,7 @@ struct TouchPlan {
   }
 };
 
-/// Errors and cost as TouchingHand::make().
+/// Computes the plan. Errors and cost are those of TouchingHand::make().
 Result<TouchPlan> plan_touch(const deform::Mesh& model, const hand::HandSkeleton& skeleton,
                              const TouchOptions& options);
 

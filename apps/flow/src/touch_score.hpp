@@ -1,6 +1,6 @@
 #pragma once
-// What the fingers of a touching hand do when: strokes into the surface and out of it, and glides
-// along it between them. Parts of what a hand can do, not lengths: those are its own.
+// The time plan of a touching hand's fingers: strokes into the surface and out of it, and glides
+// along it between them. Depths and ways are fractions of what the hand can reach, not lengths.
 
 #include <array>
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace nendo::flow {
 
-/// From 0 to 1, at rest at both ends; 0 before, 1 after. Arm and hand movements from rest to rest
-/// have the least jerk that their ends allow (Flash and Hogan 1985), which makes them a polynomial
-/// of time.
+/// Goes from 0 to 1, at rest at both ends; it is 0 before and 1 after. Arm and hand movements from
+/// rest to rest have the least jerk that their ends allow (Flash and Hogan 1985), which makes them
+/// a polynomial of time.
 double least_jerk(double part) noexcept;
 
 /// Goes from 0 to `depth`, stays, and comes back.
@@ -26,24 +26,26 @@ struct TouchStroke {
   double apex_s() const noexcept { return begin_s + rise_s + 0.5 * hold_s; }
 };
 
-/// Along the finger's way, which runs from 0 to 1.
+/// A glide along the finger's way, which runs from 0 to 1.
 struct TouchGlide {
   double begin_s, length_s;
   double from, to;
 };
 
-/// A cycle: everything begins and ends at rest on the surface at the way's beginning. Fingers press
-/// or pull only while none glides.
+/// A cycle that begins and ends at rest, on the surface, at the way's beginning. Fingers press or
+/// pull only while none glides.
 class TouchScore {
 public:
-  /// The same seed gives the same score, another one another; two sides are not in lock-step.
+  /// The same seed gives the same score, and another seed gives another one. The two sides do not
+  /// move in step.
   TouchScore(Side side, std::uint32_t seed);
 
   double period_s() const noexcept { return period_s_; }
-  /// Any time; twice continuously differentiable, as are hands' own movements.
+  /// Returns the depth at any time. It is twice continuously differentiable, as real hands'
+  /// movements are.
   double depth(hand::Finger finger, double time_s) const noexcept;
   double way(double time_s) const noexcept;
-  /// In these the fingers go farthest.
+  /// Returns the times at which the fingers go farthest.
   std::vector<double> extremes_s() const;
 
 private:

@@ -42,7 +42,7 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
     panel_->follow(frame, gauges.rate_hz);
     window_->follow(frame.shape);
   }
-  see_hands(frame, holds_, moment_);
+  set_hands(frame, holds_, moment_);
   window_->begin_picture(moment_, frame.ticks_run > 0); // before, no hand is there
   if (!move_hand(frame, commands)) window_->move_camera();
   draw_panel(frame, gauges, commands);

@@ -85,7 +85,7 @@ void SceneBuilder::build_beside(const SceneFrame& moment, const SceneParts& part
   if (parts.ground) add_ground(scene);
 }
 
-void SceneBuilder::add_hand(const SeenHand& hand, std::size_t slot, const SceneFrame& moment,
+void SceneBuilder::add_hand(const SceneHand& hand, std::size_t slot, const SceneFrame& moment,
                             const SceneParts& parts, Scene& scene) const {
   if (parts.bones) {
     scene.solids.push_back({{}, {}, {}, bone});

@@ -8,13 +8,13 @@ void HoldTracker::follow(const flow::Frame& frame) noexcept {
     starts_[slot] = frame.hands[slot].pose.fingertip_positions();
 }
 
-void see_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& moment) {
+void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& moment) {
   moment.held = frame.held;
   for (std::size_t slot = 0; slot < moment.hands.size(); ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];
     moment.hands[slot].reset();
     if (!hand.present) continue;
-    moment.hands[slot] = SeenHand{
+    moment.hands[slot] = SceneHand{
         hand.pose, frame.held ? holds.starts(slot) : hand.pose.fingertip_positions(), hand.silent};
   }
 }

@@ -14,7 +14,7 @@ constexpr ImU32 pointed_tip_colour = IM_COL32(205, 60, 15, 255);
 constexpr float ring_px = 8.0F;
 
 /// The hand whose fingers can be bent now; null: none's.
-const SeenHand* bendable_hand(const TimelineView& view, const SceneFrame& moment) {
+const SceneHand* bendable_hand(const TimelineView& view, const SceneFrame& moment) {
   if (!view.at_selected || !view.selected) return nullptr;
   const Side side = view.lanes[view.selected->lane].side;
   const auto& hand = moment.hands[flow::Placement::index_of(side)];
@@ -56,7 +56,7 @@ bool TimelineWindow::move_tip(const TimelineView& view, const SceneFrame& moment
                               EditActions& actions) {
   const ImGuiIO& io = ImGui::GetIO();
   TipMover& tips = panel_->tips;
-  const SeenHand* const hand = bendable_hand(view, moment);
+  const SceneHand* const hand = bendable_hand(view, moment);
   const Camera camera = window_->stage_camera();
   const Size size = window_->scene_size();
   if (!io.WantCaptureMouse && hand != nullptr && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
@@ -80,7 +80,7 @@ bool TimelineWindow::move_tip(const TimelineView& view, const SceneFrame& moment
 
 /// Rings about what can be dragged, and a line to where it is to be.
 void TimelineWindow::mark_tips(const TimelineView& view, const SceneFrame& moment) const {
-  const SeenHand* const hand = bendable_hand(view, moment);
+  const SceneHand* const hand = bendable_hand(view, moment);
   if (hand == nullptr) return;
   const ImGuiIO& io = ImGui::GetIO();
   const Camera camera = window_->stage_camera();

@@ -1,6 +1,6 @@
 #pragma once
-// What the vector code gets of a field, and its entry points, which choose the machine's best
-// instruction set at run time. All in a layout's coordinates (BlockLayout).
+// The vector code's view of a field, and its entry points, which choose the machine's best
+// instruction set at run time. All numbers are in a layout's coordinates (BlockLayout).
 
 #include <array>
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace nendo::deform {
 
-/// One centre: what a vertex's evaluation needs. With o = max(1 - t, 0), of which c0 and c2 are
-/// given r o instead, which spares a product: their coefficients are divided by the power of r that
-/// this makes. The coefficients also contain the kernel's constant factor (kernel_factor).
+/// The numbers of a centre that the evaluation needs. Kernels are functions of o = max(1 - t, 0).
+/// c0 and c2 use r o instead, which saves a product; their coefficients are divided by the same
+/// power of r. The coefficients also contain the kernel's constant factor (kernel_factor).
 template <class Real>
 struct FieldEntry {
   Real x, y, z;
@@ -23,13 +23,15 @@ struct FieldEntry {
   std::array<Real, 3> coefficient;
 };
 
-/// psi = factor * o^p * (polynomial in o) with o = 1 - t: what the vector code leaves out.
+/// Returns the factor that the vector code leaves out: psi = factor * o^p * (polynomial in o) with
+/// o = 1 - t.
 constexpr double kernel_factor(Wendland kernel) noexcept {
   if (kernel == Wendland::c2) return 4.0;
   return kernel == Wendland::c4 ? 1.0 / 3.0 : 1.0;
 }
 
-/// psi' / t = factor * o^p * (polynomial in o), of c0 divided by t.
+/// Returns the factor in psi' / t = factor * o^p * (polynomial in o); for c0 the right side is
+/// divided by t.
 constexpr double slope_factor(Wendland kernel) noexcept {
   switch (kernel) {
   case Wendland::c0:
@@ -44,14 +46,14 @@ constexpr double slope_factor(Wendland kernel) noexcept {
   return 0.0;
 }
 
-/// Powers of r o in psi: those of c4 and c6 are of o.
+/// Returns the power of r o in psi. It is 0 for c4 and c6, which use o.
 constexpr int weight_power(Wendland kernel) noexcept {
   if (kernel == Wendland::c0) return 2;
   return kernel == Wendland::c2 ? 5 : 0;
 }
 
-/// Centres coordinates apart, to find those that reach a block. Arrays are padded to whole vectors
-/// with a negative radius.
+/// Centres as separate arrays of coordinates, to find those that reach a block. Arrays are padded
+/// to whole vectors with a negative radius.
 struct CentreArrays {
   const float* x;
   const float* y;
@@ -70,11 +72,11 @@ struct CandidateRoom {
   float* squared_radius;
 };
 
-/// Blocks whose lists are made together.
+/// The number of blocks whose lists are made together.
 inline constexpr std::size_t group_size = 16;
 
-/// Room for lists of centres while a pass runs; one a thread. Candidates' arrays have
-/// list_room(count), lists group_size times that.
+/// Room for one thread's lists of centres while a pass runs. Candidates' arrays have
+/// list_room(count) entries, and lists have group_size times as many.
 struct ListScratch {
   std::uint32_t* lists;
   std::array<CandidateRoom, 2> candidates;
@@ -88,7 +90,7 @@ struct FieldView {
   CentreArrays centres;
   const FieldEntry<float>* entries;
   const FieldEntry<double>* precise_entries; ///< used instead if not null: sums in double
-  /// p(x) = P (1, x, y, z), or null.
+  /// P of p(x) = P (1, x, y, z), or null.
   const std::array<std::array<double, 4>, 3>* polynomial;
 };
 
@@ -102,13 +104,15 @@ struct BlockPass {
   std::uint8_t* reached;
   std::size_t begin, end;
   ListScratch scratch;
-  /// The shape does not stay in the caches: blocks are fetched before their turn, and written past
-  /// the caches where `to` is another shape: readable by others after hwy::FlushStream().
+  /// Set if the shape does not stay in the caches. Blocks are then fetched before their turn and,
+  /// if `to` is another shape, written past the caches. Other threads may read them after
+  /// hwy::FlushStream().
   bool large = false;
 };
 
 void displace_pass(const FieldView& field, const BlockPass& pass) noexcept;
-/// Pairs of a block and a centre that reaches it; uses nothing but bounds and scratch.
+/// Returns the number of pairs of a block and a centre that reaches it. Uses only the bounds and
+/// the scratch room.
 std::size_t count_pairs(const FieldView& field, const BlockPass& pass) noexcept;
 
 } // namespace nendo::deform

@@ -1,5 +1,5 @@
-// The Wendland functions and vertices in vectors. Included once for each instruction set (Highway's
-// foreach_target).
+// Vector code for the Wendland functions and for vertices. It is included once for each instruction
+// set (Highway's foreach_target).
 
 #if defined(NENDO_SIMD_KERNELS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef NENDO_SIMD_KERNELS_INL
@@ -24,7 +24,7 @@ struct Vectors3 {
   V x, y, z;
 };
 
-// Coordinates are stored in float, whatever the sums are in.
+// Coordinates are stored in float, also where sums are in double.
 template <class D>
 HWY_INLINE hn::Vec<D> load_as(D d, const float* from) {
   if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
@@ -56,7 +56,7 @@ HWY_INLINE void store_vectors(D d, const Vectors3<V>& values, VertexBlock& to, s
   store_from(d, values.z, to.z.data() + lane);
 }
 
-/// The same past the caches: others may read it after hwy::FlushStream().
+/// Stores past the caches. Other threads may read the block after hwy::FlushStream().
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void stream_vectors(D, const Vectors3<V>& values, VertexBlock& to, std::size_t lane) {
   const hn::Rebind<float, D> df;
@@ -72,7 +72,7 @@ HWY_INLINE void stream_vectors(D, const Vectors3<V>& values, VertexBlock& to, st
   stream(values.z, to.z);
 }
 
-/// Of shapes that do not stay in the caches, so many blocks before their turn.
+/// Shapes that do not stay in the caches are fetched this many blocks before their turn.
 constexpr std::size_t fetched_ahead = 4;
 
 HWY_INLINE void fetch(const VertexBlock& vertices) {
@@ -86,7 +86,7 @@ HWY_INLINE Vectors3<V> sum_of(const Vectors3<V>& a, const Vectors3<V>& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
 
-/// psi / kernel_factor of o = 1 - t, which is not negative.
+/// Returns psi / kernel_factor for o = 1 - t, which is not negative.
 template <Wendland kernel, class D, class V = hn::Vec<D>>
 HWY_INLINE V weight(D d, V o) {
   using Real = hn::TFromD<D>;
@@ -103,7 +103,7 @@ HWY_INLINE V weight(D d, V o) {
   return hn::Mul(hn::Mul(o4, o4), hn::MulAdd(square, o, hn::Set(d, Real(66))));
 }
 
-/// o of an entry's centre, or r o (FieldEntry).
+/// Returns o for an entry's centre, or r o (FieldEntry).
 template <Wendland kernel, class D, class V = hn::Vec<D>>
 HWY_INLINE V depth(D d, const FieldEntry<hn::TFromD<D>>& entry, V distance) {
   if constexpr (weight_power(kernel) > 0) {
@@ -114,7 +114,7 @@ HWY_INLINE V depth(D d, const FieldEntry<hn::TFromD<D>>& entry, V distance) {
   }
 }
 
-/// What the entry's coefficients are multiplied by, of depth().
+/// Returns the factor of the entry's coefficients, from depth().
 template <Wendland kernel, class D, class V = hn::Vec<D>>
 HWY_INLINE V weight_at(D d, const FieldEntry<hn::TFromD<D>>& entry, V depth) {
   if constexpr (kernel != Wendland::c2) return weight<kernel>(d, depth);
@@ -138,11 +138,11 @@ HWY_INLINE Vectors3<V> polynomial_at(D d, const std::array<std::array<double, 4>
           polynomial_row(d, rows[2], place)};
 }
 
-/// psi' / (t slope_factor) of t and o = max(1 - t, 0).
+/// Returns psi' / (t slope_factor) for t and o = max(1 - t, 0).
 template <Wendland kernel, class D, class V = hn::Vec<D>>
 HWY_INLINE V slope(D d, V t, V o) {
   using Real = hn::TFromD<D>;
-  // At its centre c0 has no derivative: none is added there.
+  // At its centre c0 has no derivative, so nothing is added there.
   if constexpr (kernel == Wendland::c0)
     return hn::IfThenElseZero(hn::Gt(t, hn::Zero(d)), hn::Div(o, t));
   const V o2 = hn::Mul(o, o);
@@ -164,7 +164,7 @@ HWY_INLINE void store_least_lanes(D, const V (&low)[3], const V (&high)[3], floa
   to[3] = to[7] = 0.0F;
 }
 #else
-/// In each four lanes: the least of those of three vectors, and a zero.
+/// Returns, in each four lanes, the least of those of three vectors, and a zero.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V least_in_fours(D d, const V (&three)[3]) {
   const hn::Repartition<double, D> pairs;
@@ -177,7 +177,7 @@ HWY_INLINE V least_in_fours(D d, const V (&three)[3]) {
                  hn::BitCast(d, hn::InterleaveUpper(pairs, xy, z0)));
 }
 
-/// The least lane of each of three vectors, and a zero, to four aligned places; then of the others.
+/// Stores the least lanes of the vectors `low`, and a zero, to four aligned places; then of `high`.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_least_lanes(D d, const V (&low)[3], const V (&high)[3], float* to) {
   const V lows = least_in_fours(d, low);
@@ -201,7 +201,7 @@ HWY_INLINE void store_least_lanes(D d, const V (&low)[3], const V (&high)[3], fl
 }
 #endif
 
-/// The bounds of a block that has just been written.
+/// Returns the bounds of a block that has just been written.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE BlockBounds vector_bounds(D d, const VertexBlock& block) {
   const float* const coordinates[3] = {block.x.data(), block.y.data(), block.z.data()};

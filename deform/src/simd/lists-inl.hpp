@@ -1,4 +1,4 @@
-// The blocks of a pass, with the centres that reach each. Included once for each instruction set
+// Lists the centres that reach each block of a pass. Included once for each instruction set
 // (Highway's foreach_target).
 
 #if defined(NENDO_SIMD_LISTS_INL) == defined(HWY_TARGET_TOGGLE)
@@ -20,13 +20,13 @@ HWY_BEFORE_NAMESPACE();
 namespace nendo::deform::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// With more centres than this, neighbouring blocks ask together first: 256 for all centres, then
-/// 16 for those that reach the 256.
+/// With more centres than this, groups of neighbouring blocks are tested first: 256 blocks against
+/// all centres, then 16 blocks against those that reach the 256.
 constexpr std::size_t most_ungrouped = 32;
 constexpr std::size_t groups_together = 16;
 
-/// Up to 16 blocks of a pass at a time, with the centres that reach each. Their lists are made
-/// together: what a block's work branches on is then long known.
+/// Up to 16 blocks of a pass, with the centres that reach each. Their lists are made together, so
+/// that the sizes on which a block's work branches are known well before.
 struct ListedBlocks {
   const CentreArrays& all;
   const BlockPass& pass;
@@ -41,7 +41,7 @@ struct ListedBlocks {
   }
 };
 
-/// The next ones. Compiled once, however many kinds of work there are.
+/// Lists the next blocks. It is compiled once for all kinds of work.
 static HWY_NOINLINE void list_next(ListedBlocks& blocks) {
   const auto least = [](std::size_t a, std::size_t b) { return a < b ? a : b; };
   const BlockPass& pass = blocks.pass;
@@ -70,15 +70,17 @@ static HWY_NOINLINE void list_next(ListedBlocks& blocks) {
   list(list_reaching);
 }
 
-/// Of written blocks, all together: each would have to wait for its vertices.
+/// Computes the bounds of written blocks together, because each block alone would have to wait for
+/// its vertices.
 static HWY_NOINLINE void measure_bounds(const BlockPass& pass, std::size_t begin, std::size_t end) {
   for (std::size_t block = begin; block < end; ++block)
     if (pass.reached[block] > 0)
       pass.new_bounds[block] = vector_bounds(ListVectors(), pass.to[block]);
 }
 
-/// Asks for the vertices of listed blocks that something reaches, up to and with `last`. How long
-/// lists are cannot be foretold, so that processors do not get so far ahead by themselves.
+/// Prefetches the vertices of listed blocks that something reaches, up to and including `last`.
+/// Processors do not get so far ahead by themselves, because they cannot predict the lengths of the
+/// lists.
 static HWY_NOINLINE void fetch_until(ListedBlocks& blocks, std::size_t last) {
   if (blocks.fetched < blocks.begin) blocks.fetched = blocks.begin;
   for (; blocks.fetched < blocks.end && blocks.fetched <= last; ++blocks.fetched) {

@@ -1,6 +1,6 @@
 #pragma once
-// Places that are followed through a field, with the determinants of its Jacobian: in vectors of
-// double, for each tick of an injective deformer asks for them.
+// Moves places through a field and computes the determinants of its Jacobian there, in vectors of
+// double, because every tick of an injective deformer needs them.
 
 #include <cstddef>
 
@@ -8,10 +8,10 @@
 
 namespace nendo::deform {
 
-/// Arrays are whole multiples of this.
+/// The lengths of arrays are multiples of this.
 inline constexpr std::size_t probe_vector = 8;
 
-/// Coordinates apart; the arrays need not be aligned.
+/// Places as separate arrays of coordinates, which need not be aligned.
 struct ProbeArrays {
   double* x;
   double* y;
@@ -20,7 +20,8 @@ struct ProbeArrays {
   std::size_t count; ///< a multiple of probe_vector
 };
 
-/// determinant *= det(I + ds/dx), then x += s(x). Returns the least determinant. As jacobian_at().
+/// Computes determinant *= det(I + ds/dx), as jacobian_at() has it, and then x += s(x). Returns the
+/// least determinant.
 double advance_probes(const CsrbfField& field, const ProbeArrays& probes) noexcept;
 
 } // namespace nendo::deform

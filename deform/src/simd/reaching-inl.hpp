@@ -1,5 +1,5 @@
-// Which centres reach a box, or boxes: a vector of centres at a time. Included once for each
-// instruction set (Highway's foreach_target).
+// Finds the centres that reach a box, or several boxes, a vector of centres at a time. Included
+// once for each instruction set (Highway's foreach_target).
 
 #if defined(NENDO_SIMD_REACHING_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef NENDO_SIMD_REACHING_INL
@@ -20,7 +20,7 @@
 #define NENDO_SIMD_SET_LANES
 namespace nendo::deform {
 
-/// Of each byte, the numbers of the bits that are set, and then zeros.
+/// For each byte, the numbers of the bits that are set, and then zeros.
 inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_lanes = [] {
   std::array<std::array<std::uint8_t, 8>, 256> all{};
   for (std::size_t byte = 0; byte < 256; ++byte) {
@@ -52,7 +52,7 @@ HWY_INLINE CentreVector load_centres(const CentreArrays& centres, std::size_t at
           hn::Load(d, centres.squared_radius + at), centres.names + at};
 }
 
-/// Which of them reach a box: those whose squared distance to it is at most the squared radius.
+/// Returns those that reach a box: their squared distance to it is at most the squared radius.
 HWY_INLINE hn::Mask<ListVectors> reaching(const CentreVector& centres, const BlockBounds& box) {
   const ListVectors d;
   const auto outside = [&](hn::Vec<ListVectors> centre, std::size_t axis) HWY_ATTR {
@@ -67,15 +67,15 @@ HWY_INLINE hn::Mask<ListVectors> reaching(const CentreVector& centres, const Blo
   return hn::Le(squared, centres.squared_radius);
 }
 
-/// Bit n of the result: lane n of a mask.
+/// Returns a mask as bits; bit n is lane n.
 HWY_INLINE std::uint32_t bits_of(hn::Mask<ListVectors> mask) {
   alignas(8) std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(ListVectors(), mask, bytes);
   return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
 }
 
-/// Stores the lanes whose bits are set, one after the other; what is beyond them is overwritten.
-/// Without branches on which those are, which nothing could foretell.
+/// Stores the lanes whose bits are set and overwrites what is beyond them. It does not branch on
+/// the bits, which a processor could not predict.
 HWY_INLINE void store_set_lanes(const std::uint32_t* from, std::uint32_t bits, std::uint32_t* to) {
   const hn::ScalableTag<std::uint32_t> d;
   if constexpr (hn::MaxLanes(d) == 8) { // AVX2: Highway's Compress copies its table each time
@@ -91,7 +91,7 @@ HWY_INLINE void store_set_lanes(const std::uint32_t* from, std::uint32_t bits, s
   }
 }
 
-/// The names of those of a vector of centres that reach a box; gives how many.
+/// Stores the names of those centres that reach a box, and returns how many they are.
 HWY_INLINE std::size_t store_reaching(const CentreVector& centres, const BlockBounds& box,
                                       std::uint32_t* to) {
   const ListVectors d;
@@ -107,7 +107,7 @@ HWY_INLINE std::size_t store_reaching(const CentreVector& centres, const BlockBo
   }
 }
 
-/// Of boxes, the centres that reach each, to lists that are `room` apart.
+/// Writes, for each box, the centres that reach it, to lists that are `room` apart.
 HWY_INLINE void list_reaching(const CentreArrays& centres, const BlockBounds* boxes,
                               std::size_t count, std::uint32_t* list, std::size_t room,
                               std::size_t* sizes) {
@@ -119,7 +119,7 @@ HWY_INLINE void list_reaching(const CentreArrays& centres, const BlockBounds* bo
   }
 }
 
-/// The same where all centres fit so many vectors, which then stay in registers.
+/// Does the same if all centres fit into so many vectors, which then stay in registers.
 template <std::size_t vectors>
 HWY_INLINE void list_reaching_few(const CentreArrays& centres, const BlockBounds* boxes,
                                   std::size_t count, std::uint32_t* list, std::size_t room,
@@ -145,7 +145,7 @@ HWY_INLINE BlockBounds common_bounds(const BlockBounds* bounds, std::size_t begi
   return box;
 }
 
-/// The centres that reach a box, copied to `room`.
+/// Copies the centres that reach a box to `room`.
 static HWY_NOINLINE CentreArrays gather_reaching(const CentreArrays& centres,
                                                  const BlockBounds& box,
                                                  const CandidateRoom& room) {

@@ -1,15 +1,15 @@
 #pragma once
-// Which instruction sets the vector code is compiled for. Left out: SSSE3, because few processors
-// have that and not SSE4; vectors whose size is not known when compiling, because kernels keep
-// arrays of them. The lowest of each architecture always stays.
+// Chooses the instruction sets for which the vector code is compiled. SSSE3 is left out, because
+// few processors have it without SSE4. Vectors of a size unknown at compile time are left out,
+// because kernels keep arrays of vectors. The lowest set of each architecture always stays.
 
-// Without instructions that we know: one lane at a time. Highway's emulation of four takes Clang
-// minutes to compile with sanitizers.
+// Without known vector instructions, the code uses one lane at a time, because Clang takes minutes
+// to compile Highway's emulation of four lanes with sanitizers.
 #define HWY_BROKEN_EMU128 1
 #if defined(__aarch64__)
-// NEON is all that is left there: nothing is to be chosen when running. Highway would otherwise
-// compile for processors with AES, which a Raspberry Pi 4 has not, and GCC 12 does not carry such a
-// choice into the constructors that it writes itself.
+// Only NEON is left there, so nothing is chosen at run time. Otherwise Highway would compile for
+// processors with AES, which a Raspberry Pi 4 has not, and GCC 12 does not apply such a choice to
+// the constructors that it generates.
 #define TOOLCHAIN_MISS_SYS_AUXV_H
 #endif
 #include <hwy/detect_targets.h>

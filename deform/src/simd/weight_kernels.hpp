@@ -1,8 +1,8 @@
 #pragma once
 // Cardinal weights: with frozen start points, a vertex moves by sum_j W_j(x) g_j, linear in the
-// displacements g_j. W = Phi A^-1 is computed in double and only then rounded: coefficients of
-// thousands that cancel (crowded fingertips) are gone by then. What counts when they are applied is
-// how many bytes are read: where a start point's weights differ little within a block, as nearly
+// displacements g_j. W = Phi A^-1 is computed in double and then rounded, so that the large
+// coefficients of crowded fingertips have cancelled before. The time to apply weights depends on
+// how many bytes are read. So where a start point's weights differ little within a block, as nearly
 // everywhere, they are kept as steps of 16 bits from the middle of their range.
 
 #include <array>
@@ -13,21 +13,23 @@
 
 namespace nendo::deform {
 
-/// What weights in steps are multiples of, counted from the middle: off by half of it at most.
+/// The size of a step. A weight in steps is the middle plus a multiple of this, and is off by half
+/// of it at most.
 inline constexpr float weight_step = 0x1p-19F;
-/// Beyond, each vertex would carry so many weights that evaluating the field is cheaper.
+/// With more start points than this, each vertex would have so many weights that evaluating the
+/// field is cheaper.
 inline constexpr std::size_t most_weighted_starts = 64;
-/// As far from the middle as 16 bits go.
+/// The largest distance from the middle that 16 bits can hold.
 inline constexpr float most_from_middle = 32767 * weight_step;
 
-/// Start point `start` at the 64 vertices of a block.
+/// The weights of start point `start` at the 64 vertices of a block.
 struct WeightEntry {
   std::uint32_t start;
   float middle; ///< 0 where a weight is 0, which moves nothing at all; of float weights always
 };
 
-/// entries[first] on: `in_steps` of them in steps, then `in_float`; their weights at
-/// weights[first_byte] on, in the same order.
+/// The entries of a block, from entries[first] on: `in_steps` of them are in steps, and the next
+/// `in_float` in float. Their weights are in the same order, from weights[first_byte] on.
 struct WeightedBlock {
   std::uint32_t block;
   std::uint16_t in_steps, in_float;
@@ -48,23 +50,24 @@ struct WeightCache {
 };
 
 struct WeightSource {
-  /// Entry e's coefficient is sum_j map[e * starts + j] g_j, for each coordinate by itself; the
-  /// kernel's constant factor is contained.
+  /// Entry e's coefficient is sum_j map[e * starts + j] g_j, for each coordinate. The map contains
+  /// the kernel's constant factor.
   const double* map;
-  /// The same for p(x): 4 numbers a start point, or null.
+  /// The same for p(x), 4 numbers a start point; or null.
   const double* polynomial;
   std::size_t starts;
-  /// Weights that are nowhere in a block larger than this are left out there.
+  /// Where no weight of a start point in a block is larger than this, its weights are left out
+  /// there.
   float least;
   double* room_for_kernels; ///< 64 for each entry, of which there must be precise ones
   float* room_for_weights;  ///< 64 for each start point
 };
 
-/// Fills the cache; false if its room is not enough, or a weight is not finite.
+/// Fills the cache. Returns false if its room is not enough, or if a weight is not finite.
 bool build_weights(const FieldView& field, const BlockPass& pass, const WeightSource& source,
                    WeightCache& cache) noexcept;
 
-/// The cache's blocks [begin, end) of a shape; `to` may be `from`.
+/// Applies the cache to the blocks [begin, end) of a shape; `to` may be `from`.
 struct WeightPass {
   const std::array<float, 4>* by;      ///< start points' displacements: x, y, z, 0
   const std::array<float, 4>* by_step; ///< those, times weight_step
@@ -74,10 +77,10 @@ struct WeightPass {
   bool large; ///< as BlockPass has it
 };
 
-/// to = from + sum_j W_j g_j.
+/// Computes to = from + sum_j W_j g_j.
 void apply_weights(const WeightCache& cache, const WeightPass& pass) noexcept;
 
-/// Of written blocks, for who changes a shape in place.
+/// Updates the bounds of a written block, for code that changes a shape in place.
 void update_bounds(const VertexBlock& block, BlockBounds& bounds) noexcept;
 
 } // namespace nendo::deform

@@ -1,7 +1,7 @@
 #pragma once
-// What CsrbfSolver keeps between build() and solve(), and the paper's five steps in a row: order
-// and assembly and elimination (csrbf_build.cpp), displacements and the field (csrbf.cpp), whose
-// evaluation is field.hpp's.
+// The state that CsrbfSolver keeps between build() and solve(). The paper's steps are here in a
+// row: order, assembly and elimination are in csrbf_build.cpp, displacements and the field in
+// csrbf.cpp. The evaluation is in field.hpp.
 
 #include <array>
 #include <memory>
@@ -20,7 +20,7 @@ public:
   SolverChoices choices;
 
   void reserve(Eigen::Index points);
-  /// Of `supports`. starts and supports: usable.
+  /// Builds for `supports`. The start points and the supports must be usable.
   FieldStatus build(const Points& starts);
   FieldStatus solve(const Points& displacements, CsrbfField& field);
 
@@ -31,8 +31,9 @@ private:
   using Systems = std::array<std::unique_ptr<KernelSystem>, 3>; ///< lean, dense, sparse
 
   bool has_polynomial() const noexcept { return options_.polynomial != Polynomial::none; }
-  /// p(x) cannot join M, or a solution for every choice would not be certain: it is what the shared
-  /// functions alone would make it, and all functions together carry the rest.
+  /// Tells whether p(x) is solved apart. With own functions it cannot join M, since a solution
+  /// would then not be certain for every choice. So p(x) is what the shared functions alone would
+  /// make it, and all functions together make up the rest.
   bool is_polynomial_apart() const noexcept { return has_polynomial() && own_.size() > 0; }
   void put_in_order(const Points& starts);
   KernelSystem::Assembled assemble(const OwnFunctions& own, Systems& systems,

@@ -1,6 +1,6 @@
 #pragma once
-// Psi of supports.hpp: each own function at the start points within its radius, and what it adds to
-// the matrix and to the field.
+// Psi of supports.hpp: the values of each own function at the start points within its radius, and
+// what it adds to the matrix and to the field.
 
 #include <cstdint>
 #include <span>
@@ -19,23 +19,24 @@ public:
     double psi;
   };
 
-  /// Evaluates; by a grid if there are many points. Allocates unless as many values fitted before.
-  /// False if there are more than CsrbfSolver::most_own_values.
+  /// Evaluates the functions, with a grid if there are many points. Allocates unless as many values
+  /// fitted before. Returns false if there are more than CsrbfSolver::most_own_values.
   bool evaluate(Wendland kernel, const Points& starts, const Supports& supports);
 
   std::size_t size() const noexcept { return weights_.size(); }
-  /// Of one function, points ascending.
+  /// Returns the values of one function, by ascending point.
   std::span<const Value> values(std::size_t function) const noexcept {
     return {values_.data() + begins_[function], begins_[function + 1] - begins_[function]};
   }
   double weight(std::size_t function) const noexcept { return weights_[function]; }
-  /// Pairs of points that share a function, at most; a bound of the work and of the entries.
+  /// Returns a bound of the pairs of points that share a function, and so of the work and of the
+  /// entries.
   double pairs() const noexcept;
-  /// Of Psi W Psi^T.
+  /// Returns the trace of Psi W Psi^T.
   double trace() const noexcept;
-  /// Of Psi W Psi^T, one a point.
+  /// Writes the diagonal of Psi W Psi^T, one entry a point.
   void diagonal(Eigen::VectorXd& out) const noexcept;
-  /// The function's coefficient: w_e sum_i psi_e(c_i) a_i.
+  /// Returns the function's coefficient w_e sum_i psi_e(c_i) a_i.
   Eigen::RowVector4d coefficient(std::size_t function, const Rows& a) const noexcept;
 
 private:

@@ -12,19 +12,20 @@ class PolynomialPart {
 public:
   /// Allocates for this many points.
   void reserve(Eigen::Index points);
-  /// Chooses a basis that is orthonormal on the start points. Terms that they do not determine (of
-  /// coplanar points: along the normal) become zero columns of Q with a 1 in U: weight 0.
+  /// Chooses a basis that is orthonormal on the start points. Terms that they do not determine,
+  /// such as that along the normal of coplanar points, become zero columns of Q with a 1 in U, so
+  /// that their weight is 0.
   void assemble(const Points& starts, Polynomial polynomial);
-  /// Needs `system`'s factor.
+  /// Eliminates M. `system` must be factorised.
   bool eliminate(KernelSystem& system);
-  /// a = M^-1 g on entry; what M and p do together on return. Returns p's weights, by term.
-  /// sums: what Q^T a + U b is to be, 0 but for a correction.
+  /// On entry a = M^-1 g; on return `a` holds the coefficients of the solution with p. Returns p's
+  /// weights b, by term. `sums` is the wanted Q^T a + U b, which is 0 except for a correction.
   Eigen::Matrix4d solve(Rows& a, const Eigen::Matrix4d& sums) const noexcept;
-  /// residual -= Q b.
+  /// Computes residual -= Q b.
   void subtract(const Eigen::Matrix4d& b, Rows& residual) const noexcept;
-  /// What solve() is to be given for a correction of this solution: -(Q^T a + U b).
+  /// Returns the `sums` with which solve() corrects this solution: -(Q^T a + U b).
   Eigen::Matrix4d missing_sums(const Rows& a, const Eigen::Matrix4d& b) const noexcept;
-  /// The coefficients of 1, x, y, z.
+  /// Returns the coefficients of 1, x, y, z.
   Eigen::Matrix<double, 3, 4> in_world(const Eigen::Matrix4d& b) const noexcept;
 
 private:

@@ -1,12 +1,12 @@
 #pragma once
-// sum_s w_s psi(d / r_s), the kernel that all start points share.
+// The kernel sum_s w_s psi(d / r_s) that all start points share.
 
 #include <nendo/deform/csrbf.hpp>
 
 namespace nendo::deform {
 
-/// Of a distance, to compare squared ones with before their roots are taken: or a little more, for
-/// they are rounded.
+/// Returns the square of a distance, or a little more because of rounding. It serves to compare
+/// squared distances before their roots are taken.
 constexpr double squared_or_more(double distance) noexcept {
   return distance * distance * (1.0 + 1e-12);
 }
@@ -27,7 +27,7 @@ public:
     }
     return sum;
   }
-  /// From this distance on it is 0.
+  /// Returns the distance from which on the kernel is 0.
   double reach() const noexcept { return reach_; }
 
 private:

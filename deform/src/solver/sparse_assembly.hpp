@@ -1,5 +1,5 @@
 #pragma once
-// M with its ties where most start points are out of each other's supports.
+// Assembles M with its ties where most start points are out of each other's supports.
 
 #include <optional>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace nendo::deform {
 
-/// The lower triangle, column by column: the diagonal entry first, the others as they were found,
-/// since what permutes them next asks for no order.
+/// The lower triangle, column by column. The diagonal entry comes first, and the others as they
+/// were found, since the permutation that follows needs no order.
 struct SparseLower {
   std::vector<int> begins{0}; ///< #columns + 1
   std::vector<int> rows;
@@ -24,7 +24,7 @@ struct SparseAssembly {
   bool merged = false;
 };
 
-/// Nothing if there would be more than `most_entries`.
+/// Returns nothing if there would be more than `most_entries`.
 std::optional<SparseAssembly> assemble_sparse(const CsrbfOptions& options, const Points& starts,
                                               const Supports& supports, const OwnFunctions& own,
                                               std::size_t most_entries);

@@ -1,7 +1,7 @@
 #pragma once
-// Which sensor slot each value of a record belongs to. Computed from what the glove says of itself,
-// never from a table for "the" 18- or 22-sensor glove: masks can be set, and cut, by whoever used
-// it last.
+// Maps each value of a record to its sensor slot. The map is computed from what the glove says of
+// itself, and not from a table for gloves of 18 or 22 sensors, because the program that used the
+// glove last may have changed its masks.
 
 #include <array>
 #include <cstddef>
@@ -24,7 +24,7 @@ struct ChannelMap {
   friend constexpr bool operator==(const ChannelMap&, const ChannelMap&) = default;
 };
 
-/// The first `most` of the sensors that are both built in and wanted.
+/// Returns the map of the first `most` sensors that are both built in and wanted.
 constexpr ChannelMap make_channel_map(SensorMask hardware, SensorMask software,
                                       std::size_t most) noexcept {
   ChannelMap map;
@@ -34,7 +34,8 @@ constexpr ChannelMap make_channel_map(SensorMask hardware, SensorMask software,
   return map;
 }
 
-/// High-resolution records know no masks: they always carry the 22 values of the full glove.
+/// High-resolution records do not depend on masks. They always carry the 22 values of the full
+/// glove.
 inline constexpr ChannelMap hi_res_channels =
     make_channel_map(sensors_22, sensors_22, hi_res_values);
 

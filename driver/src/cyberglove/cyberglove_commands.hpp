@@ -1,7 +1,7 @@
 #pragma once
-// Every command and query of the interface unit, typed; the bytes are cyberglove_protocol.hpp's.
-// Not while the glove streams. Each call waits for its reply, at most as long as the constructor
-// says where nothing else is stated; Answer tells the unit's errors apart.
+// Every command and query of the interface unit as a typed function; cyberglove_protocol.hpp has
+// the bytes. None may be called while the glove streams. Each call waits for its reply, at most as
+// long as the constructor says unless stated otherwise. Answer tells the unit's errors apart.
 
 #include <array>
 #include <chrono>
@@ -20,7 +20,7 @@
 
 namespace nendo::driver::cyberglove {
 
-/// `value` counts only if the answer is good.
+/// A reply. `value` is valid only if the answer is good.
 template <class T>
 struct Reply {
   Answer answer = Answer::silent;
@@ -60,7 +60,7 @@ public:
   explicit Commands(Dialogue& dialogue, std::chrono::milliseconds timeout) noexcept
       : dialogue_(dialogue), timeout_(timeout) {}
 
-  // Who is there.
+  // Queries about the glove and its unit.
   Reply<std::string> information(); ///< several lines; up to 1 s
   Reply<std::string> help();        ///< the unit's own list of commands and errors; up to 1 s
   Reply<std::string> firmware_text();
@@ -70,7 +70,7 @@ public:
   Reply<SensorMask> hardware_mask() noexcept;
   Reply<Side> side() noexcept;
 
-  // Settings. The unit forgets them when it is switched off.
+  // Settings, which the unit forgets them when it is switched off.
   Reply<bool> get(Setting setting) noexcept;
   Answer set(Setting setting, bool on) noexcept;
   Reply<SensorMask> software_mask() noexcept;
@@ -79,21 +79,22 @@ public:
   Answer set_value_count(std::uint8_t count) noexcept;
   Reply<Parameters> parameters() noexcept;
   Answer set_parameters(const Parameters& parameters) noexcept;
-  /// Records begin with Y and come at the pulses of the sync input; too fast ones: bad_sync_rate.
+  /// Makes records begin with Y and come at the pulses of the sync input. Pulses that are too fast
+  /// give bad_sync_rate.
   Answer set_sync(bool on) noexcept;
   Answer set_text_sync(bool on) noexcept; ///< the same for records in text, which begin with y
   Reply<std::array<std::byte, 4>> period_bytes() noexcept; ///< see decode_period()
-  /// Sets it in text, whose byte order nobody disputes, and asks in bytes: the value is the order
-  /// that the reply shows, if the unit knows the question. bad_rate, bad_number: the unit refuses;
-  /// other_value: it says that it did something else.
+  /// Sets the period in text, which has no byte order, and then asks for it in bytes. The value is
+  /// the byte order that the reply shows, if the unit knows the query. bad_rate and bad_number mean
+  /// that the unit refuses, and other_value that it set another period.
   Reply<std::optional<WordOrder>> set_period(Period period) noexcept;
   Reply<HardwareCalibration> hardware_calibration(std::size_t sensors) noexcept;
   Answer set_hardware_calibration(const HardwareCalibration& calibration) noexcept;
   Answer set_offset(std::uint8_t sensor, std::uint8_t offset) noexcept;
   Answer set_gain(std::uint8_t sensor, std::uint8_t gain) noexcept;
   Reply<std::uint8_t> baud_register() noexcept; ///< see baud_of_register()
-  /// Nobody documents at which of the two rates the reply comes: any answer but an error may mean
-  /// that it was done. Set the transport's rate afterwards and ask for the state.
+  /// Sets the line rate. No source says at which of the two rates the reply comes, so any answer
+  /// but an error may mean success. Set the transport's rate afterwards and ask for the state.
   Answer set_baud_register(std::uint8_t byte) noexcept;
   Reply<Vibration> vibration() noexcept;
   Answer set_vibration(const Vibration& strength) noexcept;

@@ -34,7 +34,7 @@ std::optional<Answer> error_at_end(const Tail& tail) noexcept {
 }
 
 /// What a frame, of which `tail` is the end without NUL, says to a command.
-std::optional<Answer> judge_confirmation(const Tail& tail, std::string_view echo) noexcept {
+std::optional<Answer> check_confirmation(const Tail& tail, std::string_view echo) noexcept {
   // An echo like "1es" ends like an error; one like "y" is the end of an error.
   if (echo.size() > 2 && tail.ends_with(echo)) return Answer::good;
   if (const auto error = error_at_end(tail)) return error;
@@ -197,7 +197,7 @@ Answer Dialogue::command(std::span<const std::byte> bytes, std::string_view echo
   Tail tail;
   return read_until(until, [&](std::byte byte) -> std::optional<Answer> {
     if (byte == terminator) {
-      if (const auto judged = judge_confirmation(tail, echo)) return judged;
+      if (const auto judged = check_confirmation(tail, echo)) return judged;
     }
     tail.push(byte);
     return std::nullopt;

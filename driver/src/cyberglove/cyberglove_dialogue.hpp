@@ -1,7 +1,7 @@
 #pragma once
-// Questions to the glove's interface unit and its answers, while it does not stream. Replies may
-// contain NUL and are therefore read by length; whatever stands before a reply is skipped, since a
-// unit that other programs have talked to may still be answering them.
+// Asks the glove's interface unit, and reads its answers, while it does not stream. Replies may
+// contain NUL and are therefore read by length. Bytes before a reply are skipped, since the unit
+// may still be answering another program.
 
 #include <array>
 #include <chrono>
@@ -34,13 +34,14 @@ enum class Answer : std::uint8_t {
   nonsense,      ///< something came that is no answer
 };
 
-/// The last bytes that came, to recognise short patterns in a stream of others.
+/// The last bytes that came, in which short patterns are recognised.
 class Tail {
 public:
   void push(std::byte byte) noexcept {
     bytes_ = bytes_ << 8U | std::to_integer<std::uint64_t>(byte);
   }
-  /// True if `pattern`, at most 8 bytes, came last, or stands before the last `back` bytes.
+  /// Returns true if `pattern`, at most 8 bytes, is what came last, or stands just before the last
+  /// `back` bytes.
   bool ends_with(std::string_view pattern, unsigned back = 0) const noexcept;
 
 private:
@@ -49,35 +50,36 @@ private:
 
 class Dialogue {
 public:
-  /// No call lasts beyond `deadline`, nor more than 0.3 s after `cancelled` is requested.
-  /// `transport` must outlive it.
+  /// No call lasts beyond `deadline`, or more than 0.3 s after `cancelled` is requested.
+  /// `transport` must outlive the dialogue.
   Dialogue(Transport& transport, HostTime deadline, std::stop_token cancelled = {}) noexcept
       : transport_(transport), deadline_(deadline), cancelled_(std::move(cancelled)) {}
 
-  /// Ends a stream and reads until the line has been quiet for 50 ms; after `longest` of babble it
-  /// gives up (nonsense).
+  /// Ends a stream and reads until the line has been quiet for 50 ms. Gives up with `nonsense` if
+  /// bytes still come after `longest`.
   Answer stop_stream(std::chrono::milliseconds longest = longest_drain) noexcept;
-  /// Ends a stream and reads up to the answer, which is quicker for a line without noise.
+  /// Ends a stream and reads up to the answer. It is quicker, but needs a line without noise.
   Answer pause_stream(std::chrono::milliseconds timeout) noexcept;
-  /// `data` has the size that the query states; it is filled if the answer is good.
+  /// Asks for data. `data` must have the size that the query states; it is filled if the answer is
+  /// good.
   Answer ask(const Query& query, std::span<std::byte> data,
              std::chrono::milliseconds timeout) noexcept;
-  /// Asks for text; cut at 2048 characters.
+  /// Asks for text, which is cut at 2048 characters.
   Answer ask_text(char letter, std::string& text, std::chrono::milliseconds timeout);
-  /// Sends a command that is confirmed by `echo` and NUL, or with a byte between them; `echo` is 1
-  /// to 4 characters.
+  /// Sends a command that is confirmed by `echo` and NUL, perhaps with a byte between them. `echo`
+  /// has 1 to 4 characters.
   Answer command(std::span<const std::byte> bytes, std::string_view echo,
                  std::chrono::milliseconds timeout) noexcept;
-  /// Asks for one record, of which the first `least` bytes are certain; `size` is its length with
-  /// header and NUL.
+  /// Asks for one record, which has at least `least` bytes. `size` becomes its length with header
+  /// and NUL.
   Answer ask_record(std::size_t least, std::span<std::byte> record, std::size_t& size,
                     std::chrono::milliseconds timeout) noexcept;
-  /// Restarts the firmware; all settings are then as after power-up.
+  /// Restarts the firmware. All settings are then as after power-up.
   Answer restart(std::chrono::milliseconds timeout) noexcept;
-  /// Sends a command that begins a stream; whatever arrives from now on is records.
+  /// Sends a command that begins a stream. All bytes that arrive from now on are records.
   Answer start_stream(std::string_view command) noexcept;
 
-  /// Bytes read from the transport so far.
+  /// Returns how many bytes were read from the transport so far.
   std::uint64_t bytes_received() const noexcept { return bytes_received_; }
 
   static constexpr std::chrono::milliseconds longest_drain{500};

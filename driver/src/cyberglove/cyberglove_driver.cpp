@@ -65,7 +65,7 @@ public:
     Commands commands(dialogue, state_answer);
     Reply<GloveState> state = commands.state();
     if (!state && state.answer != Answer::gone) state = commands.state(); // noise on the line
-    const auto ready = judge_state(source, state, "?G");
+    const auto ready = check_state(source, state, "?G");
     const Answer answer = ready ? begin(dialogue) : Answer::silent;
     parser_.count_discarded(dialogue.bytes_received());
     begin_records();
@@ -102,12 +102,12 @@ public:
             SampleSink& sink) noexcept override {
     // After eg there may be another glove in the unit: what it measures is not known until it was
     // asked.
-    const auto judge = [&](Record& record) {
+    const auto check = [&](Record& record) {
       if (!pulled_) return check_(record);
       doubtful_ = true;
       return Verdict{false, 0};
     };
-    parser_.push(chunk, judge,
+    parser_.push(chunk, check,
                  FindingSink{[&](const Record& record) { deliver(record, arrival, sink); },
                              [&](BadRecord) { sink.reject(); },
                              [&](Unplugged) { pulled_ = true; }});
@@ -128,7 +128,7 @@ private:
     }
     const Greeting greeting =
         greet(transport, dialogue, bauds_to_try(baud_, !options_.baud.has_value()));
-    if (auto state = judge_state(source, greeting.reply, greeting.asked); !state) {
+    if (auto state = check_state(source, greeting.reply, greeting.asked); !state) {
       const Reply<GloveState>& reply = greeting.reply;
       if (reply.answer == Answer::no_glove || (reply && !reply.value.connected)) unplugged_ = true;
       return state.error();

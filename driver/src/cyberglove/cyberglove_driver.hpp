@@ -1,5 +1,5 @@
 #pragma once
-// The CyberGlove: I, II and III over anything that looks like a serial port.
+// The driver of CyberGlove I, II and III over anything that looks like a serial port.
 
 #include <memory>
 #include <optional>
@@ -15,14 +15,15 @@
 
 namespace nendo::driver::cyberglove {
 
-/// The table's entry for `serial:PATH`. `side` is not needed: the glove says which hand it is.
+/// Opens `serial:PATH`, as the table of drivers wants it. `side` is not used, because the glove
+/// says which hand it is.
 Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> side);
 /// Does the same, and gives up at `deadline`.
 Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline);
 
-/// Opens, finds the line rate unless `options` name it, identifies and sets up the glove; the
-/// options are set again after every interruption. Errors: those of `open_port`, no_device; usage,
-/// if the glove or its line cannot do what an option asks for.
+/// Opens the port, finds the line rate unless `options` name it, and identifies and sets up the
+/// glove. The options are set again after every interruption. Errors: those of `open_port`;
+/// no_device; usage, if the glove or its line cannot do what an option asks for.
 Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPort open_port,
                                                const cyberglove::Options& options,
                                                HostTime deadline);

@@ -1,5 +1,5 @@
 #pragma once
-// What is good to know of a glove, but not needed to understand its records.
+// Facts about a glove that are not needed to understand its records.
 
 #include <string_view>
 
@@ -9,11 +9,11 @@
 namespace nendo::driver::cyberglove {
 
 /// Fills model, abilities and facts of an identity whose other members are set. A unit may know
-/// none of it: after two questions that it met with silence it is asked no more, so that this
-/// takes little more than a second and never fails.
+/// none of it: after two queries without an answer it is asked no more, so that this takes little
+/// more than a second. It never fails.
 void ask_facts(Dialogue& dialogue, const Request& request, Identity& identity);
 
-/// The first line that has something to say, without what could disturb a terminal.
+/// Returns the first line that is not empty, without characters that could disturb a terminal.
 std::string model_line(std::string_view text);
 
 } // namespace nendo::driver::cyberglove

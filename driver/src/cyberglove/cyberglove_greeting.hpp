@@ -1,6 +1,6 @@
 #pragma once
-// The first words with an interface unit: ends what it streams, and finds the line rate at which it
-// answers.
+// The first exchange with an interface unit: it ends a stream and finds the line rate at which the
+// unit answers.
 
 #include <optional>
 #include <string>
@@ -19,12 +19,12 @@ struct Greeting {
   std::string asked; ///< what was asked how, for messages
 };
 
-/// Asks ?G at each of `bauds`, which are in the order of their likelihood; only the first, if the
-/// transport has no rates. A unit that answers at the first is asked just once. Takes less than
-/// 4 s; blocks until then or until the dialogue's deadline.
+/// Asks ?G at each of `bauds`, the likeliest first, or only at the first if the transport has no
+/// rates. A unit that answers at the first rate is asked just once. Blocks for less than 4 s, and
+/// until the dialogue's deadline at most.
 Greeting greet(Transport& transport, Dialogue& dialogue, const std::vector<int>& bauds);
 
-/// `known` and then, if `known` is a guess, the other usual rates.
+/// Returns `known` and then, if `known` is a guess, the other usual rates.
 std::vector<int> bauds_to_try(int known, bool guess);
 
 } // namespace nendo::driver::cyberglove

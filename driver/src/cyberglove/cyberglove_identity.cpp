@@ -288,7 +288,7 @@ Result<void> SetUp::set_hires() {
 
 } // namespace
 
-Result<void> judge_state(const std::string& source, const Reply<GloveState>& reply,
+Result<void> check_state(const std::string& source, const Reply<GloveState>& reply,
                          const std::string& asked) {
   if (!reply) return bad_answer(source, reply.answer, asked);
   if (!reply.value.connected) return bad_answer(source, Answer::no_glove, asked);

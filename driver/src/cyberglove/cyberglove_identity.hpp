@@ -1,7 +1,7 @@
 #pragma once
-// Who is there: asks an interface unit everything that is needed to understand its records, and
-// sets it up as the user wants it, with records as redundant as the line allows (time stamp, status
-// byte).
+// Identifies a glove: asks an interface unit for everything that is needed to understand its
+// records, and sets it up as the user wants it. Records are as redundant as the line allows (time
+// stamp, status byte).
 
 #include <optional>
 #include <string>
@@ -35,21 +35,21 @@ struct Identity {
   std::vector<std::string> notes; ///< what was decided for the user, a line each
 };
 
-/// What the user wants to be set up, and what is known of the unit already.
+/// The settings that the user wants, and what is already known of the unit.
 struct Request {
   Options options;
   int baud = 0;                        ///< at which the unit answered
   std::optional<WordOrder> word_order; ///< of ?T, as an earlier identity had it
 };
 
-/// Asks and sets; the unit has been greeted. Blocks until done or until the dialogue's deadline.
-/// Errors: no_device; usage, if the unit or its line cannot do what an option asks for. The message
-/// begins with `source`.
+/// Asks the unit and sets it up; greet() must have been called. Blocks until done or until the
+/// dialogue's deadline. The message of an error begins with `source`. Errors: no_device; usage, if
+/// the unit or its line cannot do what an option asks for.
 Result<Identity> identify(Dialogue& dialogue, const std::string& source, const Request& request);
 
-/// Judges the reply to ?G: success, or an error that says why there is no working glove. `asked`
-/// says how it was asked. Error: no_device, as above.
-Result<void> judge_state(const std::string& source, const Reply<GloveState>& reply,
+/// Judges the reply to ?G. `asked` says how it was asked. Error: no_device, with the reason why
+/// there is no working glove.
+Result<void> check_state(const std::string& source, const Reply<GloveState>& reply,
                          const std::string& asked);
 
 } // namespace nendo::driver::cyberglove

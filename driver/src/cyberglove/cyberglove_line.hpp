@@ -1,5 +1,5 @@
 #pragma once
-// The serial line: how much it carries, and the interface unit's register for its rate.
+// The serial line's capacity, and the interface unit's register for its rate.
 
 #include <array>
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace nendo::driver::cyberglove {
 
-/// Rates to look for a glove at, likeliest first: 115200 in every driver since about 2000, the
-/// others are defaults of older units.
+/// The rates at which a glove is looked for, likeliest first. Every driver since about 2000 uses
+/// 115200; the others are defaults of older units.
 inline constexpr std::array usual_bauds{115'200, 38'400, 19'200, 9'600};
 
-/// A start bit, eight data bits, a stop bit.
+/// A byte has a start bit, eight data bits and a stop bit.
 inline constexpr double bits_per_byte = 10.0;
 
-/// Records a second that a line can carry.
+/// Returns how many records a second a line can carry.
 constexpr double line_limit_hz(int baud, std::size_t record_bytes) noexcept {
   return baud / (bits_per_byte * static_cast<double>(record_bytes));
 }
@@ -26,7 +26,8 @@ constexpr double line_limit_hz(int baud, std::size_t record_bytes) noexcept {
 inline constexpr int baud_base = 115'200;
 inline constexpr unsigned baud_bits = 0x37;
 
-/// The line rate that a register value stands for, rounded; nothing for a byte with other bits.
+/// Returns the line rate that a register value stands for, rounded; nothing for a byte with other
+/// bits.
 constexpr std::optional<int> baud_of_register(std::uint8_t byte) noexcept {
   constexpr std::array prescalers{1, 3, 4, 13};
   if ((byte & ~baud_bits) != 0) return std::nullopt;
@@ -34,7 +35,7 @@ constexpr std::optional<int> baud_of_register(std::uint8_t byte) noexcept {
   return (baud_base + divisor / 2) / divisor;
 }
 
-/// The smallest register value that yields `baud` exactly, if any does.
+/// Returns the smallest register value that yields `baud` exactly, if any does.
 constexpr std::optional<std::uint8_t> register_of_baud(int baud) noexcept {
   for (unsigned byte = 0; byte <= baud_bits; ++byte) {
     const auto value = baud_of_register(static_cast<std::uint8_t>(byte));

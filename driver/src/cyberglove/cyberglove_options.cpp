@@ -70,7 +70,7 @@ std::optional<SensorMask> read_mask(std::string_view text) {
 }
 
 /// Options that exclude each other.
-Result<void> judge(const GloveSpec& spec, const Options& options) {
+Result<void> check(const GloveSpec& spec, const Options& options) {
   const auto usage = [&](const char* what) { return Error{Errc::usage, spec.text + ": " + what}; };
   if (options.sync && options.rate_hz)
     return usage("sync=on: the pulses make the rate; leave out rate=");
@@ -111,7 +111,7 @@ Result<Options> read_options(const GloveSpec& spec) {
   also("quantised", "on or off", options.quantised, read_switch);
   also("sync", "on or off", options.sync, read_switch);
   also("hires", "on or off", options.hires, read_switch);
-  if (good) good = judge(spec, options);
+  if (good) good = check(spec, options);
   if (!good) return good.error();
   return options;
 }

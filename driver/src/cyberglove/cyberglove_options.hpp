@@ -1,6 +1,6 @@
 #pragma once
-// What the user may ask of a CyberGlove in its specification, and what follows from it for the
-// shape and rate of its records. Pure.
+// The options of a CyberGlove's specification, and what follows from them for the shape and rate of
+// its records. The functions are pure.
 
 #include <cstddef>
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace nendo::driver::cyberglove {
 
-/// For the driver table.
+/// The grammar, for the table of drivers.
 inline constexpr std::string_view options_grammar =
     "serial:PATH[?baud=N&rate=HZ&mask=0xBITS&stamps=on|off&filter=on|off&quantised=on|off&"
     "sync=on|off&hires=on|off]";
@@ -32,7 +32,7 @@ struct Options {
   bool hires = false; ///< 12-bit values (CyberGlove III)
 };
 
-/// Error: usage, naming the option and what it may be.
+/// Reads the options. Error: usage, naming the option and what it may be.
 Result<Options> read_options(const GloveSpec& spec);
 
 struct RecordPlan {
@@ -42,14 +42,14 @@ struct RecordPlan {
   std::size_t record_bytes = 0;
 };
 
-/// Decides, before anything is set, how records of `values` values can come at the wanted rate, or
-/// else at `present_hz` (0: unknown). Error: usage, if the line cannot carry the wanted rate; the
-/// message has the arithmetic and begins with the option.
+/// Decides, before anything is set, how records of `values` values can come at the wanted rate or,
+/// if none is wanted, at `present_hz` (0 if unknown). Error: usage, if the line cannot carry the
+/// wanted rate; the message begins with the option and shows the calculation.
 Result<RecordPlan> plan_records(const Options& options, std::size_t values, int baud,
                                 double present_hz);
 
-/// The same for the records of 12-bit values, whose rate is a multiple of 30 Hz: how many times.
-/// Nothing if no rate is wanted.
+/// Does the same for records of 12-bit values. Returns the wanted rate as a multiple of 30 Hz, or
+/// nothing if no rate is wanted.
 Result<std::optional<std::uint8_t>> plan_hires(const Options& options, int baud);
 
 } // namespace nendo::driver::cyberglove

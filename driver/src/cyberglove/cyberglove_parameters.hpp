@@ -62,7 +62,7 @@ constexpr std::uint32_t encode_parameters(const Parameters& parameters) noexcept
   return bits;
 }
 
-/// From a record's status byte; 0: the record has none.
+/// Returns the switch's position from a record's status byte, which is 0 if the record has none.
 constexpr WristSwitch wrist_switch_of(std::uint8_t status) noexcept {
   if (status == 0) return WristSwitch::unknown;
   return decode_parameters(status).wrist_switch ? WristSwitch::on : WristSwitch::off;

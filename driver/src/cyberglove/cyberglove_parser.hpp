@@ -1,14 +1,14 @@
 #pragma once
-// The CyberGlove's byte stream, taken apart into records. Pure: no I/O, clock, log or allocation;
-// bytes are hostile. Framing finds where a record ends; decoding judges what stands there.
+// Splits the CyberGlove's byte stream into records. It is pure (no I/O, clock, log or allocation),
+// and bytes are not trusted. Framing finds where a record ends; decoding judges what stands there.
 //
-// Plain records end in NUL, which occurs nowhere else (but see decode_record), so damage costs at
-// most the record that it is in and the one it runs into. High-resolution ones are full of NULs and
-// are found by their whole layout, wherever it begins.
+// Plain records end in NUL, which occurs nowhere else in them (but see decode_record). So damage
+// costs at most the record that it is in and the next one. High-resolution records contain many
+// NULs and are found by their whole layout, wherever it begins.
 //
-// The protocol has no checksum. With the status byte on, one gap in a stream, or one run of bytes
-// too many without NUL, yields no record with a value in the wrong place; a byte lost and another
-// one too many in the same record do, and cannot be seen.
+// The protocol has no checksum. With the status byte on, one gap in a stream, or one run of extra
+// bytes without NUL, yields no record with a value in the wrong place. A lost byte and an extra
+// byte in the same record do, and that cannot be seen.
 
 #include <array>
 #include <chrono>
@@ -25,8 +25,8 @@ namespace nendo::driver::cyberglove {
 
 enum class RecordForm : std::uint8_t { plain, hi_res };
 
-/// The parts that a record is expected to have; `values` is 1 to most_values, in the hi_res
-/// form 22. That form has neither time stamp nor status.
+/// The parts that a record is expected to have. `values` is 1 to most_values, and 22 in the hi_res
+/// form, which has neither time stamp nor status.
 struct RecordShape {
   std::size_t values = 22;
   bool time_stamp = false;
@@ -40,8 +40,8 @@ struct RecordShape {
   }
 };
 
-/// How Record::ticks relates to those before. The parser says `continues` wherever there is a time
-/// stamp; a judge that compares records knows better.
+/// How Record::ticks relates to earlier ones. The parser says `continues` wherever there is a time
+/// stamp; a check that compares records may correct it.
 enum class Stamp : std::uint8_t { none, begins, continues };
 
 struct Record {
@@ -52,15 +52,15 @@ struct Record {
   Stamp stamp = Stamp::none;
   bool sampled_too_fast = false; ///< the glove could not keep its period; the values are good
   bool no_glove = false;         ///< the values mean nothing; counted, never delivered
-  /// Of the hi_res form: since midnight of the glove's own clock. A frame is 1/30 s, whether they
-  /// are numbered from 0 or from 1; what a sub-frame is, no source says, so each counts a tenth of
-  /// a frame. The order is right whatever it is, the instant to within a frame: not for a
-  /// DeviceClock.
+  /// Of the hi_res form only: the time since midnight by the glove's own clock. A frame counts 1/30
+  /// s. No source says what a sub-frame is, so each counts a tenth of a frame. The order is right
+  /// in any case, but the time only to within a frame, so it is not for a DeviceClock.
   std::chrono::nanoseconds time_of_day{};
 };
 
-/// Judges one frame, its NUL included. Nothing if length, header or content are wrong. The one NUL
-/// that may stand inside is the time stamp's first byte: sources disagree if bit 7 is set there.
+/// Decodes one frame, which includes its NUL. Returns nothing if length, header or content are
+/// wrong. The only other byte that may be NUL is the time stamp's first one: sources disagree on
+/// whether bit 7 is set there.
 std::optional<Record> decode_record(std::span<const std::byte> frame,
                                     const RecordShape& shape) noexcept;
 
@@ -74,27 +74,27 @@ class Parser {
 public:
   explicit Parser(const RecordShape& shape) noexcept : shape_(shape) {}
 
-  /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is put before
-  /// `judge(Record&) -> Verdict`, and if it is plausible handed to `sink(const Record&)`. The sink
-  /// is also told of each BadRecord and Unplugged (findings.hpp).
-  template <class Judge, class Sink>
-  void push(std::span<const std::byte> chunk, Judge&& judge, Sink&& sink) {
+  /// Takes the next bytes of the stream, cut anywhere. Each well-formed record is given to
+  /// `check(Record&) -> Verdict` and, if that finds it plausible, to `sink(const Record&)`. The
+  /// sink is also told of each BadRecord and Unplugged (findings.hpp).
+  template <class Check, class Sink>
+  void push(std::span<const std::byte> chunk, Check&& check, Sink&& sink) {
     for (const std::byte byte : chunk) {
       auto record = push_byte(byte);
       for (; bad_ > 0; --bad_)
-        tell(sink, BadRecord{});
+        report(sink, BadRecord{});
       if (!record) continue;
       if (record->no_glove) {
         count_unplugged();
-        tell(sink, Unplugged{});
-      } else if (settle(*record, judge(*record))) {
+        report(sink, Unplugged{});
+      } else if (settle(*record, check(*record))) {
         sink(*record);
       } else {
-        tell(sink, BadRecord{});
+        report(sink, BadRecord{});
       }
     }
   }
-  /// Does the same without a judge.
+  /// Does the same without a check.
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
     push(
@@ -103,11 +103,11 @@ public:
 
   /// Gives up the unfinished record and goes on with records of another shape.
   void reset(const RecordShape& shape) noexcept;
-  /// StreamCounters::count_discarded.
+  /// See StreamCounters::count_discarded.
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
-  /// Bytes of the unfinished record; always less than most_record_bytes.
+  /// Returns the bytes of the unfinished record, always less than most_record_bytes.
   std::size_t pending() const noexcept { return held_; }
 
 private:

@@ -1,9 +1,8 @@
 #pragma once
-// The CyberGlove's serial protocol. The manual itself is out of print; each fact names who states
-// it:
+// The CyberGlove's serial protocol. The manual is out of print, so each fact names its source:
 //   [V]  Virtual Technologies' own host library, 1990-93
-//   [p.] the page of the CyberGlove manual, as drivers cite it that were written with the manual at
-//   hand [D]  two or more independent drivers that ran on real gloves
+//   [p.] the page of the CyberGlove manual, as authors of drivers cite it who had the manual
+//   [D]  two or more independent drivers that ran on real gloves
 
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +12,8 @@
 
 namespace nendo::driver::cyberglove {
 
-/// Ends every reply and every record, and occurs nowhere else inside a record [V, D]. Inside a
-/// reply it may [V].
+/// Ends every reply and every record. It occurs nowhere else in a record [V, D], but may occur in a
+/// reply [V].
 inline constexpr std::byte terminator{0x00};
 
 // Control commands, a single byte each.
@@ -28,8 +27,8 @@ inline constexpr std::string_view stream_command =
     "S";                                    ///< one record after the other until `interrupt` [D]
 inline constexpr char record_command = 'G'; ///< one record [D]
 
-// Settings: the letter and raw bytes; answered by the letter and NUL [D], or with a byte between
-// them [V]. The same in text: the small letter, decimal numbers, CR.
+// Settings are a letter and raw bytes. They are answered by the letter and NUL [D], or with a byte
+// between them [V]. In text they are the small letter, decimal numbers and CR.
 inline constexpr std::string_view set_software_mask = "M"; ///< 3 bytes, LSB first [V, D]
 inline constexpr std::string_view set_value_count = "N";   ///< 1 byte [V, D]
 inline constexpr std::string_view set_parameters = "P";    ///< 3 bytes, LSB first [V]
@@ -43,7 +42,7 @@ inline constexpr std::string_view set_calibration = "CA"; ///< all offsets, all 
 inline constexpr std::string_view set_offset = "CO";      ///< index, value [D]
 inline constexpr std::string_view set_gain = "CG";        ///< index, value [D]
 
-/// On-off settings: the letter and a byte 0 or 1 sets, '?' and the letter asks.
+/// On-off settings. The letter and a byte of 0 or 1 sets one, '?' and the letter asks for it.
 enum class Setting : char {
   time_stamp = 'D',          ///< append the time stamp [V, p.28]
   filter = 'F',              ///< digital filter, on at power-up; slows the sampling [V, p.29]
@@ -54,7 +53,7 @@ enum class Setting : char {
   wrist_switch = 'W',        ///< as the software sees it [V, p.52]
 };
 
-// Queries: '?' and the letter; answered by both, data of fixed length, NUL [V, D].
+// Queries are '?' and a letter. They are answered by both, data of fixed length, and NUL [V, D].
 struct Query {
   char letter;
   std::size_t data_bytes;
@@ -75,7 +74,8 @@ inline constexpr char ask_information = 'i';      ///< text of several lines; NU
 inline constexpr char ask_firmware_text = 'v';    ///< text [V]
 inline constexpr char ask_help = '?';             ///< text: the commands and errors [D]
 
-// A CyberGlove III's own commands; answered by the same and NUL [D]. Sinks: u, w, s.
+// Commands of the CyberGlove III only. They are answered by the same and NUL [D]. Sinks are u, w,
+// s.
 inline constexpr std::string_view third_enable = "1e";     ///< and a sink
 inline constexpr std::string_view third_disable = "1d";    ///< and a sink
 inline constexpr std::string_view third_frame_rate = "1m"; ///< a byte: so many times 30 Hz
@@ -87,7 +87,7 @@ inline constexpr std::size_t third_record_bytes = 61;
 inline constexpr std::uint8_t state_initialised = 0x01; ///< of ?G [V, p.31]
 inline constexpr std::uint8_t state_connected = 0x02;   ///< of ?G [V, p.31]
 
-// Errors, two letters each, for replies and within records [V, D].
+// Errors have two letters each. They occur as replies and within records [V, D].
 inline constexpr char error_mark = 'e';
 inline constexpr char error_unknown_command = '?';
 inline constexpr char error_number = 'n';
@@ -120,7 +120,7 @@ inline constexpr std::size_t hi_res_values = 22;
 inline constexpr std::uint16_t hi_res_most = 0x0FFF;
 inline constexpr std::size_t hi_res_bytes = hi_res_time_bytes + 2 * hi_res_values + 3;
 
-/// Of either form.
+/// The longest record of either form.
 inline constexpr std::size_t most_record_bytes = hi_res_bytes;
 
 inline constexpr double clock_hz = 115'200.0; ///< of the period [p.47] and the time stamp [p.28]

@@ -8,14 +8,14 @@
 
 namespace nendo::driver::cyberglove {
 
-/// May the last of `bytes` stand where it does, all others being right already? At most
-/// hi_res_bytes.
+/// Tells whether the last of `bytes`, at most hi_res_bytes, may stand where it does. The others
+/// must have been found right.
 bool continues_hi_res(std::span<const std::byte> bytes) noexcept;
 
-/// May a record begin with all of `bytes`, which are fewer than hi_res_bytes?
+/// Tells whether a record may begin with all of `bytes`, which are fewer than hi_res_bytes.
 bool begins_hi_res(std::span<const std::byte> bytes) noexcept;
 
-/// The content of a whole record, for which continues_hi_res() held at every byte.
+/// Returns the content of a whole record, for which continues_hi_res() was true at every byte.
 Record read_hi_res(std::span<const std::byte> frame) noexcept;
 
 } // namespace nendo::driver::cyberglove

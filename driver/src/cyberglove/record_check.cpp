@@ -53,7 +53,7 @@ RecordCheck::RecordCheck(std::uint64_t period_ticks) noexcept
 
 Verdict RecordCheck::operator()(Record& record) noexcept {
   if (record.status != 0 && !status_agrees(record.status)) return refuse();
-  return record.stamp == Stamp::none ? Verdict{} : judge_stamp(record);
+  return record.stamp == Stamp::none ? Verdict{} : check_stamp(record);
 }
 
 /// Switch and light change; the reserved bits do not, and without a glove there is no record.
@@ -71,7 +71,7 @@ bool RecordCheck::status_agrees(std::uint8_t status) noexcept {
   return true;
 }
 
-Verdict RecordCheck::judge_stamp(Record& record) noexcept {
+Verdict RecordCheck::check_stamp(Record& record) noexcept {
   if (!begun_) {
     begun_ = true;
     record.stamp = Stamp::begins;

@@ -1,16 +1,17 @@
 #pragma once
-// Does a well-formed record agree with those before it? The protocol has no checksum; its
-// redundancy is the time stamp, which must advance by whole periods, and the status byte, most of
-// which is constant. Pure: no I/O, clock, log or allocation. One thread.
+// Checks whether a well-formed record agrees with those before it. The protocol has no checksum.
+// Its redundancy is the time stamp, which must advance by whole periods, and the status byte, most
+// of which is constant. The check is pure (no I/O, clock, log or allocation) and belongs to one
+// thread.
 //
-// What a flipped bit does in a record of 22 sensors, time stamp and status (30 bytes, 240 bits) at
-// 100 records a second (1152 ticks), none of its bytes a power of two:
+// The effect of a flipped bit in a record of 22 sensors, time stamp and status (30 bytes, 240 bits)
+// at 100 records a second (1152 ticks), if none of its bytes is a power of two:
 //   caught    51: header 8, flags of the time stamp 4, ticks 25, status 6, NUL 8
 //   harmless   4: the flags' upper half means nothing; what is delivered is right
 //   delivered 185: sensors 176, the 7 ticks' bits below the tolerance, wrist switch and light 2
-// So 77 % slip through. A sensor's bit cannot be checked by anything, unless it was the only one
-// set in its byte: then the flip makes a NUL. Where no period is known, a stamp may err by half of
-// one.
+// So 77 % of the flips are not found. Nothing can check a sensor's bit, unless it was the only bit
+// set in its byte, so that the flip makes a NUL. While no period is known, a stamp may be wrong by
+// half a period.
 
 #include <array>
 #include <cstddef>
@@ -22,16 +23,16 @@ namespace nendo::driver::cyberglove {
 
 class RecordCheck {
 public:
-  /// `period_ticks` is what the glove is set to; 0 if unknown, or as fast as it can: then it is
-  /// learnt and need not be kept closely.
+  /// `period_ticks` is the period to which the glove is set. It is 0 if the period is unknown or as
+  /// short as possible; it is then learnt, and need not be kept closely.
   explicit RecordCheck(std::uint64_t period_ticks = 0) noexcept;
 
-  /// A judge for Parser::push. While the glove keeps its period, records sent = delivered + missed
-  /// at every plausible record. A gap of more than 16 periods, a restarted clock or another period
-  /// is believed at the third record that agrees with the two before it. Where the stamps
-  /// contradict each other again and again, first the period need not be kept closely, then they
-  /// are not believed at all: the records pass, with Stamp::none. It is Stamp::begins where the
-  /// ticks do not continue those before them.
+  /// Checks a record, for Parser::push. While the glove keeps its period, records sent = delivered
+  /// + missed at every plausible record. A gap of more than 16 periods, a restarted clock or
+  /// another period is accepted at the third record that agrees with the two before it. If stamps
+  /// contradict each other repeatedly, first the period need not be kept closely, and then the
+  /// stamps are ignored and the records pass with Stamp::none. Stamp::begins marks ticks that do
+  /// not continue those before them.
   Verdict operator()(Record& record) noexcept;
 
   /// Returns the period that was given or learnt; 0 while it is unknown.
@@ -44,7 +45,7 @@ private:
     bool was_late; ///< the record before was sampled off its period, as the glove says
     bool is_late;
   };
-  /// Records in a row that contradict the accepted ones; perhaps they agree with each other.
+  /// Records in a row that contradict the accepted ones, but may agree with each other.
   struct Suspects {
     int count = 0; ///< up to 2
     std::uint32_t ticks = 0;
@@ -53,7 +54,7 @@ private:
   };
 
   bool status_agrees(std::uint8_t status) noexcept;
-  Verdict judge_stamp(Record& record) noexcept;
+  Verdict check_stamp(Record& record) noexcept;
   Verdict refuse() noexcept;
   Verdict accept(const Record& record, std::uint64_t missed) noexcept;
   std::uint32_t agreed_period(const Record& record) noexcept;

@@ -33,7 +33,7 @@ std::string describe(const UsbIdentity& usb) {
               usb.serial.empty() ? "" : "(serial number " + usb.serial + ")");
 }
 
-void judge_access(GloveCandidate& candidate) {
+void check_access(GloveCandidate& candidate) {
   PortAccess access = port_access(candidate.device);
   candidate.may_open = access.granted;
   candidate.access = std::move(access.who);
@@ -65,7 +65,8 @@ std::string why_maybe(const SerialPortInfo& port) {
              : "may be a glove: USB serial device";
 }
 
-GloveCandidate judge_port(const SerialPortInfo& port, const PortLinks& links, bool own_serial) {
+GloveCandidate candidate_of_port(const SerialPortInfo& port, const PortLinks& links,
+                                 bool own_serial) {
   GloveCandidate candidate;
   candidate.device = port.path;
   candidate.usb = port.usb;
@@ -91,7 +92,7 @@ GloveCandidate judge_port(const SerialPortInfo& port, const PortLinks& links, bo
   }
   candidate.latency_timer = ftdi_latency_timer(port.path);
   candidate.left_alone = port.left_alone;
-  judge_access(candidate);
+  check_access(candidate);
   return candidate;
 }
 
@@ -100,11 +101,11 @@ GloveCandidate start_usb(const UsbIdentity& device, DeviceKind kind) {
   candidate.kind = kind;
   candidate.device = node_of(device);
   candidate.usb = device;
-  judge_access(candidate);
+  check_access(candidate);
   return candidate;
 }
 
-GloveCandidate judge_usb_glove(const UsbIdentity& device, std::string_view name) {
+GloveCandidate candidate_of_usb_glove(const UsbIdentity& device, std::string_view name) {
   GloveCandidate candidate = start_usb(device, DeviceKind::usb_glove);
   candidate.description = name;
   candidate.reason = "its USB number is that of a glove";
@@ -113,7 +114,7 @@ GloveCandidate judge_usb_glove(const UsbIdentity& device, std::string_view name)
   return candidate;
 }
 
-GloveCandidate judge_portless(const UsbIdentity& device, const udev::UsbAdapter& adapter) {
+GloveCandidate candidate_of_portless(const UsbIdentity& device, const udev::UsbAdapter& adapter) {
   GloveCandidate candidate = start_usb(device, DeviceKind::portless_adapter);
   candidate.description = describe(*candidate.usb);
   candidate.reason = "a USB-serial adapter (" + std::string(adapter.maker) +
@@ -131,17 +132,18 @@ std::vector<GloveCandidate> list_candidates() {
   std::set<std::pair<unsigned, unsigned>> with_port;
   for (const SerialPortInfo& port : ports) {
     const auto own_links = links.find(port.path);
-    found.push_back(judge_port(port, own_links != links.end() ? own_links->second : PortLinks{},
-                               port.usb && has_own_serial(*port.usb, ports)));
+    found.push_back(candidate_of_port(port,
+                                      own_links != links.end() ? own_links->second : PortLinks{},
+                                      port.usb && has_own_serial(*port.usb, ports)));
     if (port.usb) with_port.emplace(port.usb->bus, port.usb->address);
   }
   for (const UsbIdentity& device : list_usb_devices()) {
     if (with_port.contains({device.bus, device.address})) continue;
     const std::string_view glove = udev::usb_glove_name(id_of(device));
     if (!glove.empty()) {
-      found.push_back(judge_usb_glove(device, glove));
+      found.push_back(candidate_of_usb_glove(device, glove));
     } else if (const auto* adapter = udev::find_usb_adapter(id_of(device))) {
-      found.push_back(judge_portless(device, *adapter));
+      found.push_back(candidate_of_portless(device, *adapter));
     }
   }
   std::stable_partition(found.begin(), found.end(),

@@ -1,5 +1,5 @@
 #pragma once
-// Which programs hold a device, as far as /proc tells without opening the device.
+// Finds the programs that hold a device, as far as /proc tells without opening the device.
 
 #include <cstdint>
 #include <map>

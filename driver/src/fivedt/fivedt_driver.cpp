@@ -30,7 +30,7 @@ constexpr SensorMask sensors = mask_of(slots);
 
 class FiveDtProtocol final : public GloveProtocol {
 public:
-  FiveDtProtocol(bool wireless, const HandWishes& hands) noexcept
+  FiveDtProtocol(bool wireless, const SideOptions& hands) noexcept
       : wireless_(wireless), hands_(hands) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
@@ -174,7 +174,7 @@ private:
   }
 
   const bool wireless_;
-  const HandWishes hands_;
+  const SideOptions hands_;
   Side side_ = Side::right;
   Parser parser_;
 };
@@ -188,7 +188,8 @@ Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<
   const auto hand = hand_option(spec);
   if (!hand) return hand.error();
   if (auto named = require_port(spec, "5dt:/dev/ttyUSB0"); !named) return named.error();
-  auto protocol = std::make_unique<FiveDtProtocol>(*baud == wireless_baud, HandWishes{*hand, side});
+  auto protocol =
+      std::make_unique<FiveDtProtocol>(*baud == wireless_baud, SideOptions{*hand, side});
   return open_stream_glove(spec.text, follow_port(spec.target, *baud), std::move(protocol),
                            HostClock::now() + open_budget);
 }

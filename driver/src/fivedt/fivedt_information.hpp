@@ -25,11 +25,11 @@ struct Information {
 /// Returns nullopt if the answer does not begin as it must.
 std::optional<Information> decode_information(std::span<const std::byte, information_bytes> answer);
 
-/// Finds the answer in what a glove sends, cut anywhere: a sample or an answer to another question
-/// may stand before it.
+/// Finds the answer in a glove's bytes, cut anywhere. A sample or another answer may stand before
+/// it.
 class InformationFinder {
 public:
-  /// True once the whole answer was seen; it takes no more then.
+  /// Takes the next bytes. Returns true once the whole answer was seen; later bytes are ignored.
   bool push(std::span<const std::byte> chunk) noexcept;
   std::span<const std::byte, information_bytes> answer() const noexcept { return answer_; }
 

@@ -1,8 +1,8 @@
 #pragma once
-// The byte stream of a 5DT Data Glove 5, taken apart into samples. Pure: no I/O, clock, log or
-// allocation; bytes are hostile. Nothing marks a sample's beginning for certain, so each nine bytes
-// that begin with the header and whose checksum fits are one, and one byte is dropped where they do
-// not.
+// Splits the byte stream of a 5DT Data Glove 5 into samples. It is pure (no I/O, clock, log or
+// allocation), and bytes are not trusted. Nothing marks a sample's beginning for certain. So nine
+// bytes are a sample if they begin with the header and their checksum fits; otherwise one byte is
+// dropped.
 
 #include <array>
 #include <cstddef>
@@ -20,7 +20,7 @@ struct Record {
   std::array<std::uint8_t, fingers> flexion{}; ///< thumb to pinky, 0 straight to 255 bent
 };
 
-/// Judges nine bytes. Nothing if header or checksum are wrong.
+/// Decodes nine bytes. Returns nothing if header or checksum are wrong.
 std::optional<Record> decode_record(std::span<const std::byte, sample_bytes> frame) noexcept;
 
 class Parser {
@@ -33,18 +33,18 @@ public:
     for (const std::byte byte : chunk) {
       const auto record = push_byte(byte);
       for (; bad_ > 0; --bad_)
-        tell(sink, BadRecord{});
+        report(sink, BadRecord{});
       if (record) sink(*record);
     }
   }
 
-  /// Gives up the unfinished sample; the next byte may be anywhere in one.
+  /// Drops the unfinished sample. The next byte may come from anywhere in a sample.
   void reset() noexcept;
-  /// StreamCounters::count_discarded.
+  /// See StreamCounters::count_discarded.
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
-  /// Bytes of the unfinished sample; always less than sample_bytes.
+  /// Returns the bytes of the unfinished sample, always less than sample_bytes.
   std::size_t pending() const noexcept { return held_; }
 
 private:

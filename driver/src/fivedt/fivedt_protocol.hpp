@@ -20,9 +20,9 @@ inline constexpr char information_command = 'G'; ///< answered by information_by
 inline constexpr char stream_command = 'D';      ///< one sample after the other [V]
 inline constexpr std::byte reset_answer{0x55};   ///< [V]
 
-// A sample. Any byte of it may be 0x80. Some units send a 0x55 more, before or after it [V]; the
-// wireless ones a byte that tells the hand, in bits on which [V] and [J] disagree, so that it is
-// not looked at.
+// A sample. Any byte of it may be 0x80. Some units send an extra 0x55 before or after it [V].
+// Wireless ones send an extra byte that tells the hand; it is ignored, because [V] and [J] disagree
+// on its bits.
 inline constexpr std::byte header{0x80};           ///< [V, J]
 inline constexpr std::size_t data_bytes = 7;       ///< five fingers, pitch, roll [V, J]
 inline constexpr std::size_t sample_bytes = 9;     ///< with header and checksum [V, J]

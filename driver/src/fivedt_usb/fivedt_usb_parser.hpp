@@ -1,6 +1,6 @@
 #pragma once
-// The 5DT Ultra's input report, taken apart. Pure: no I/O, clock, log or allocation; bytes are
-// hostile.
+// Decodes the 5DT Ultra's input report. It is pure (no I/O, clock, log or allocation), and bytes
+// are not trusted.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,8 @@
 namespace nendo::driver::fivedt_usb {
 
 struct Report {
-  /// 0 to most_count, in the order of value_sensors; what lies outside is put to the nearer end.
+  /// Values from 0 to most_count, in the order of value_sensors. Values outside that range are set
+  /// to the nearer end.
   std::array<std::uint16_t, value_sensors.size()> values{};
 };
 

@@ -14,7 +14,7 @@ namespace nendo::driver::fivedt_usb {
 inline constexpr std::uint16_t vendor_id = 0x5D70;
 inline constexpr int interface_number = 0;
 
-// The product number says everything.
+// The product number tells hand, link and sensors.
 inline constexpr unsigned left_bit = 0x01;
 inline constexpr unsigned link_bits = 0x06; ///< none: cable; 0x02: wireless port A; 0x06: port B
 inline constexpr unsigned port_a = 0x02;
@@ -42,14 +42,13 @@ constexpr std::optional<Model> model_of(std::uint16_t product_id) noexcept {
                (product_id & five_sensors_bit) != 0};
 }
 
-// The input report: 16 values of two bytes, high byte first, signed; the rest is not known. It has
-// no number.
+// The input report has 16 signed values of two bytes, high byte first. The rest is not known. It
+// has no number.
 inline constexpr std::size_t report_bytes = 64;
 inline constexpr std::uint16_t most_count = 4095;
 
-/// Value k of the report is this sensor's, in a glove of 14; the last two values are nobody's. A
-/// glove of 5 has one sensor a finger, along all of it, told as the knuckle's: values 0, 3, 6, 9
-/// and 12.
+/// The sensor of value k in a glove of 14 sensors; the last two values belong to no sensor. A glove
+/// of 5 has one sensor along each finger, which counts as the knuckle's: values 0, 3, 6, 9 and 12.
 inline constexpr std::array value_sensors{
     Sensor::thumb_mcp,  Sensor::thumb_ip,   Sensor::thumb_abduction,
     Sensor::index_mcp,  Sensor::index_pip,  Sensor::index_middle_abduction,

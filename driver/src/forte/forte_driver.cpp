@@ -24,7 +24,7 @@ constexpr SensorMask sensors = mask_of(slots);
 
 class ForteProtocol final : public GloveProtocol {
 public:
-  ForteProtocol(bool bluetooth, const HandWishes& hands) noexcept
+  ForteProtocol(bool bluetooth, const SideOptions& hands) noexcept
       : bluetooth_(bluetooth), hand_(choose_hand(std::nullopt, hands)) {}
 
   /// A glove that streams already is told again: another program may have chosen the other link.
@@ -125,7 +125,7 @@ Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<S
   if (!bluetooth) return bluetooth.error();
   if (auto named = require_port(spec, "forte:/dev/ttyACM0"); !named) return named.error();
   return open_stream_glove(spec.text, follow_port(spec.target, *rate),
-                           std::make_unique<ForteProtocol>(*bluetooth, HandWishes{*hand, side}),
+                           std::make_unique<ForteProtocol>(*bluetooth, SideOptions{*hand, side}),
                            HostClock::now() + open_budget);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// The byte stream of a Forte glove, taken apart into records. Pure: no I/O, clock, log or
-// allocation; bytes are hostile. A frame's first byte occurs nowhere else, so whatever was damaged,
-// the next frame is found.
+// Splits the byte stream of a Forte glove into records. It is pure (no I/O, clock, log or
+// allocation), and bytes are not trusted. A frame's first byte occurs nowhere else, so the next
+// frame is found after any damage.
 
 #include <array>
 #include <cstddef>
@@ -20,8 +20,8 @@ struct Record {
   std::uint8_t battery = 0;                         ///< in an unknown unit
 };
 
-/// Judges a whole frame, its first and last byte included. Nothing if it is no record: of another
-/// kind or length, or with a count above most_count.
+/// Decodes a whole frame with its first and last byte. Returns nothing if it is no record: it has
+/// another kind or length, or a count above most_count.
 std::optional<Record> decode_record(std::span<const std::byte> frame) noexcept;
 
 class Parser {
@@ -34,25 +34,25 @@ public:
     for (const std::byte byte : chunk) {
       const auto record = push_byte(byte);
       for (; bad_ > 0; --bad_)
-        tell(sink, BadRecord{});
+        report(sink, BadRecord{});
       if (record) sink(*record);
     }
   }
 
-  /// Gives up the unfinished frame; the next byte may be anywhere in one.
+  /// Drops the unfinished frame. The next byte may come from anywhere in a frame.
   void reset() noexcept;
-  /// StreamCounters::count_discarded.
+  /// See StreamCounters::count_discarded.
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
-  /// Bytes of the unfinished frame; always less than record_bytes.
+  /// Returns the bytes of the unfinished frame, always less than record_bytes.
   std::size_t pending() const noexcept { return held_; }
 
 private:
   enum class State : std::uint8_t {
     between,  ///< two frames
     in_frame, ///< that may be a record
-    skipping, ///< the rest of one that is none, or whose beginning was not seen
+    skipping, ///< the rest of a frame that is no record, or whose beginning was not seen
   };
 
   std::optional<Record> push_byte(std::byte byte) noexcept;

@@ -4,9 +4,9 @@
 //        and test_scripts/readme.md
 //   [?]  stated by nobody, chosen here
 //
-// Both directions look like MIDI: the host sends control changes of three bytes, the glove frames
-// that begin with F0 and end with F7 and, as in MIDI, hold neither between [S]: F0, what it is, how
-// many bytes follow, these, F7. No command that ends the stream is known, nor how to ask for the
+// Both directions look like MIDI. The host sends control changes of three bytes. The glove sends
+// frames that begin with F0 and end with F7 and hold neither between [S]: F0, the kind, the number
+// of bytes that follow, these bytes, F7. No command is known that ends the stream or asks for the
 // hand.
 
 #include <array>
@@ -40,8 +40,9 @@ inline constexpr std::uint8_t most_count = 127; ///< 0 is extended, 127 closed
 inline constexpr std::size_t record_bytes = 15;
 // The battery's byte has no known unit.
 
-/// Two sensors a finger, thumb first [S]. Which of the two is nearer to the palm [S] does not say;
-/// the knuckle goes first in all that the maker's Unity and Unreal kits list. Likely, not certain.
+/// Each finger has two sensors, thumb first [S]. [S] does not say which of the two is nearer to the
+/// palm. The maker's Unity and Unreal kits list the knuckle first, so that order is likely, but not
+/// certain.
 inline constexpr std::array<Sensor, sensor_count> slots{
     Sensor::thumb_mcp,  Sensor::thumb_ip, Sensor::index_mcp, Sensor::index_pip, Sensor::middle_mcp,
     Sensor::middle_pip, Sensor::ring_mcp, Sensor::ring_pip,  Sensor::pinky_mcp, Sensor::pinky_pip};

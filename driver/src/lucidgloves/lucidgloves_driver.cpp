@@ -47,7 +47,7 @@ struct Acquaintance {
 
 class LucidGlovesProtocol final : public GloveProtocol {
 public:
-  LucidGlovesProtocol(std::uint16_t range, const HandWishes& hands) noexcept
+  LucidGlovesProtocol(std::uint16_t range, const SideOptions& hands) noexcept
       : range_(range), hands_(hands), parser_(range) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
@@ -152,7 +152,7 @@ private:
   }
 
   const std::uint16_t range_;
-  const HandWishes hands_;
+  const SideOptions hands_;
   Side side_ = Side::right;
   bool legacy_ = false;
   bool braking_ = false; ///< a finger is held
@@ -163,7 +163,7 @@ private:
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_lucidgloves_by(const std::string& source, OpenPort open_port,
-                                                   std::uint16_t range, const HandWishes& hands) {
+                                                   std::uint16_t range, const SideOptions& hands) {
   return open_stream_glove(source, std::move(open_port),
                            std::make_unique<LucidGlovesProtocol>(range, hands),
                            HostClock::now() + open_budget);

@@ -1,6 +1,6 @@
 #pragma once
-// LucidGloves, and whatever else speaks OpenGloves' alpha encoding, at a serial port (USB, or
-// Bluetooth's rfcomm).
+// The driver of LucidGloves, and of other gloves with OpenGloves' alpha encoding, at a serial port
+// (USB, or Bluetooth's rfcomm).
 
 #include <cstdint>
 #include <memory>
@@ -16,20 +16,20 @@
 
 namespace nendo::driver::lucidgloves {
 
-/// The table's entry for `lucidgloves:PATH?baud=N&range=4095|1023&hand=left|right`. The glove
-/// streams by itself, so that its lines, and no answer, prove that it is there; boards that restart
-/// when their port is opened are waited for. Nothing tells the range of its numbers, hence the
-/// option: 1023 for AVR boards. Which slots it has is learnt from its first lines; `side` counts
-/// if neither the glove nor `hand` tells the hand. May block for 4 s. Errors: usage, no_device,
-/// no_permission.
+/// Opens `lucidgloves:PATH?baud=N&range=4095|1023&hand=left|right`, as the table of drivers wants
+/// it. The glove streams by itself, so its lines prove that it is there. Boards that restart when
+/// their port is opened are waited for. The range of the numbers is an option (1023 for AVR
+/// boards), because the glove does not tell it. The glove's slots are learnt from its first lines.
+/// `side` counts if neither the glove nor `hand` tells the hand. May block for 4 s. Errors: usage,
+/// no_device, no_permission.
 ///
-/// Its brakes are set while it streams, and freed at its end; a legacy firmware's are left alone.
-/// The switch at the wrist stays unknown: the flag "grab" is no switch but a gesture that the
-/// firmware finds in the curls.
+/// The brakes are set while the glove streams, and freed at the end; those of a legacy firmware are
+/// not used. The switch at the wrist stays unknown, because the flag "grab" is not a switch but a
+/// gesture that the firmware finds in the curls.
 Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::optional<Side> side);
 
 /// Does the same for any port, with the range and the settings that the options hold.
 Result<std::unique_ptr<Glove>> open_lucidgloves_by(const std::string& source, OpenPort open_port,
-                                                   std::uint16_t range, const HandWishes& hands);
+                                                   std::uint16_t range, const SideOptions& hands);
 
 } // namespace nendo::driver::lucidgloves

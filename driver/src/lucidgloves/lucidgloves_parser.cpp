@@ -104,9 +104,9 @@ private:
   }
 
   bool set_long(std::string_view key, const Number& number) noexcept {
-    if (key == "ZV") return tell(line_.firmware, number);
-    if (key == "ZG") return tell(line_.device, number);
-    if (key == "ZH") return tell(line_.hand, number);
+    if (key == "ZV") return set_once(line_.firmware, number);
+    if (key == "ZG") return set_once(line_.device, number);
+    if (key == "ZH") return set_once(line_.hand, number);
     const auto finger = index_of(key[0]);
     if (finger >= fingers) return true; // a key of some other firmware
     if (key.size() == 2 && key[1] == 'B') return set(line_.splay[finger], number);
@@ -119,7 +119,7 @@ private:
     value = static_cast<std::uint16_t>(*number);
     return true;
   }
-  static bool tell(Number& value, const Number& number) noexcept {
+  static bool set_once(Number& value, const Number& number) noexcept {
     if (value || !number) return false;
     value = number;
     return true;

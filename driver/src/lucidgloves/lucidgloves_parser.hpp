@@ -1,7 +1,7 @@
 #pragma once
-// The text stream of a LucidGlove, taken apart into lines. Pure: no I/O, clock, log or allocation;
-// bytes are hostile. A piece of a line may look like a whole one, so a line counts only if its
-// beginning was seen: what comes before the first LF is skipped.
+// Splits the text stream of a LucidGlove into lines. It is pure (no I/O, clock, log or allocation),
+// and bytes are not trusted. A piece of a line may look like a whole one, so everything before the
+// first LF is skipped.
 
 #include <array>
 #include <cstddef>
@@ -31,8 +31,9 @@ struct Line {
   bool informs() const noexcept;  ///< has a value of the glove itself
 };
 
-/// Judges one line, without its end. Nothing if it does not keep to the encoding, holds a number
-/// above `range`, tells a value twice (two lines that ran into one), or tells nothing of a hand.
+/// Decodes one line without its end. Returns nothing if it violates the encoding, holds a number
+/// above `range`, tells a value twice (as two lines that were joined do), or tells nothing of a
+/// hand.
 std::optional<Line> decode_line(std::string_view text, std::uint16_t range) noexcept;
 
 class Parser {
@@ -40,24 +41,24 @@ public:
   explicit Parser(std::uint16_t range) noexcept : range_(range) {}
 
   /// Takes the next bytes of the stream, cut anywhere, and hands each good line to `sink(const
-  /// Line&)`. Those that measure count as records; replies do not.
+  /// Line&)`. Lines that measure count as records; replies do not.
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
     for (const std::byte byte : chunk) {
       const auto line = push_byte(byte);
       for (; bad_ > 0; --bad_)
-        tell(sink, BadRecord{});
+        report(sink, BadRecord{});
       if (line) sink(*line);
     }
   }
 
-  /// Gives up the unfinished line; what follows is skipped up to the next line's beginning.
+  /// Drops the unfinished line. What follows is skipped up to the next line's beginning.
   void reset() noexcept;
-  /// StreamCounters::count_discarded.
+  /// See StreamCounters::count_discarded.
   void count_discarded(std::uint64_t bytes) noexcept { counters_.count_discarded(bytes); }
 
   const StreamCounters& counters() const noexcept { return counters_; }
-  /// Bytes of the unfinished line; always less than most_line_bytes.
+  /// Returns the bytes of the unfinished line, always less than most_line_bytes.
   std::size_t pending() const noexcept { return held_; }
 
 private:

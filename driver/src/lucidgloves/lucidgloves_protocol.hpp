@@ -32,10 +32,10 @@ inline constexpr std::size_t most_line_bytes = 256; ///< with LF; firmwares have
 inline constexpr std::uint32_t hand_left = 0;       ///< (ZH) [S]
 inline constexpr std::uint32_t hand_right = 1;      ///< (ZH) [S]
 
-// To the glove. Firmwares that do not know a command look for the letters A to E and a number in
-// it: the first has none, the second frees the thumb [F]. Legacy firmwares take any line for five
-// brakes joined by &, and leave to chance what they do not find [F]: once known, they are told
-// nothing.
+// To the glove. Firmwares that do not know a command look in it for the letters A to E and a
+// number: the first command has none, the second frees the thumb [F]. Legacy firmwares take any
+// line for five brakes joined by &, and missing ones get undefined values [F]. So once such a
+// firmware is recognised, nothing is sent to it.
 inline constexpr std::string_view ask_information = "\nZ\n"; ///< answered by (ZV) (ZG) (ZH) [S]; LF
                                                              ///< ends what another host left
 inline constexpr std::string_view start_streaming = "(ZA)\n"; ///< where it was stopped by (ZZ) [S]

@@ -1,5 +1,5 @@
 #pragma once
-// Where the values of a LucidGlove's line belong among the CyberGlove's slots.
+// Puts the values of a LucidGlove's line into the CyberGlove's slots.
 
 #include <cstdint>
 

@@ -1,5 +1,6 @@
 #pragma once
-// The Essential Reality P5: five bend sensors; its button A is the wrist switch.
+// The driver of the Essential Reality P5, which has five bend sensors. Its button A is the wrist
+// switch.
 
 #include <memory>
 

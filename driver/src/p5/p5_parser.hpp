@@ -1,5 +1,6 @@
 #pragma once
-// The P5's input report, taken apart. Pure: no I/O, clock, log or allocation; bytes are hostile.
+// Decodes the P5's input report. It is pure (no I/O, clock, log or allocation), and bytes are not
+// trusted.
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
-// The Essential Reality P5 (2002): a glove at an infrared receiver that is a USB device. No
-// document of the maker's is public; all of this is what the published host library of 2003-05 and
-// its successors read from real gloves.
+// The Essential Reality P5 (2002): a glove at an infrared receiver that is a USB device. The maker
+// has published no document. All facts here are what the published host library of 2003-05 and its
+// successors read from real gloves.
 
 #include <array>
 #include <cstddef>
@@ -18,15 +18,16 @@ inline constexpr UsbId usb_id{0x0D7F, 0x0100};
 /// Interface 0 is the mouse that a P5 also is.
 inline constexpr int interface_number = 1;
 
-// The one input report: fields from the most significant bit of the first byte on, without gaps.
+// The only input report. Its fields follow each other without gaps, from the most significant bit
+// of the first byte on.
 inline constexpr std::size_t report_bytes = 24;
 inline constexpr std::uint8_t report_id = 1;
 
 inline constexpr std::size_t bends_at = 8; ///< bits from the report's begin
 inline constexpr std::size_t bend_bits = 6;
 inline constexpr std::uint16_t most_bend = 63; ///< a clenched finger; 0 is a straight one
-/// In the report's order. One sensor a finger, along all of it: its curl is told as that of the
-/// knuckle, from which the hand's model bends the others.
+/// The sensors in the report's order. Each lies along a whole finger, and its curl counts as that
+/// of the knuckle, by which the hand's model bends the other joints.
 inline constexpr std::array bend_sensors{Sensor::index_mcp, Sensor::middle_mcp, Sensor::ring_mcp,
                                          Sensor::pinky_mcp, Sensor::thumb_mcp};
 
@@ -36,7 +37,8 @@ inline constexpr std::uint8_t button_a = 0x1;
 inline constexpr std::uint8_t button_b = 0x2;
 inline constexpr std::uint8_t button_c = 0x4;
 
-// Up to four of the eight infrared lights on the glove, as the receiver's three lenses see them.
+// The views that the receiver's three lenses have of up to four of the glove's eight infrared
+// lights.
 inline constexpr std::size_t lights_at = 44;
 inline constexpr std::size_t light_bits = 4;
 inline constexpr std::uint8_t no_light = 0x8; ///< bit of a light's number: this one is not seen
@@ -44,7 +46,7 @@ inline constexpr std::size_t most_lights = 4;
 inline constexpr std::size_t views_at = 60;
 inline constexpr std::size_t view_bits = 10; ///< three a light: v2, v1, h, two's complement
 
-// Feature report 5: whether the glove moves the mouse. Set as well as read.
+// Feature report 5 says whether the glove moves the mouse. It can be read and set.
 inline constexpr std::byte mouse_report{5};
 inline constexpr std::byte mouse_on{0x01};
 inline constexpr std::byte mouse_off{0xFF};

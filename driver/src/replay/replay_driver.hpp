@@ -1,5 +1,6 @@
 #pragma once
-// A glove out of a recording: its samples come again as they came, a peer of the real ones.
+// A glove that replays a recording: its samples come again as they came. To programs it is a glove
+// like any other.
 
 #include <memory>
 
@@ -9,10 +10,10 @@
 
 namespace nendo::driver {
 
-/// `replay:FILE?hand=left|right&speed=X&loop=yes|no`. Of several gloves in the file, `hand` or else
-/// `side` says which. Samples keep counts, sequence and device time; their host times are those of
-/// now, as far apart as they were, divided by `speed` (0.01 to 100). After the last one the glove
-/// falls silent, or with `loop` begins again, its sequence going on. Errors: usage (options),
+/// Opens `replay:FILE?hand=left|right&speed=X&loop=yes|no`. If the file has several gloves, `hand`
+/// or else `side` chooses one. Samples keep counts, sequence and device time. Their host times are
+/// new; the times between them are divided by `speed` (0.01 to 100). After the last sample the
+/// glove is silent, or begins again with `loop`, and its sequence goes on. Errors: usage (options),
 /// bad_input (no recording, no samples), no_device (not of that hand).
 Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<Side> side);
 

@@ -1,6 +1,7 @@
 #pragma once
-// Motions of a simulated hand: joint angles as a pure function of motion, side, seed and time.
-// Plausible enough to develop, demonstrate and test with, and no more: no dynamics, no contact.
+// Motions of a simulated hand: joint angles as a pure function of motion, side, seed and time. They
+// are plausible enough for development, demonstrations and tests, but have no dynamics and no
+// contact.
 
 #include <array>
 #include <cstdint>
@@ -19,11 +20,13 @@ enum class Motion : std::uint8_t {
   sculpt, ///< press in, knead, pull out: cycles of about 8 s
 };
 
-/// By one of motion_names() (simulated_glove.hpp). Error: usage, naming those there are.
+/// Returns the motion that one of motion_names() (simulated_glove.hpp) names. Error: usage, naming
+/// those there are.
 Result<Motion> find_motion(std::string_view name);
 
-/// Radians, one a sensor slot. Flexion is positive, abduction is the angle between neighbours
-/// (positive = apart). Slots that no glove has (index_abduction, unused) stay 0.
+/// The joint angles in radians, by sensor slot. Flexion is positive. Abduction is the angle between
+/// neighbours, positive if they are apart. Slots that no glove has (index_abduction, unused) stay
+/// 0.
 using JointAngles = std::array<double, sensor_slots>;
 
 struct JointRange {
@@ -31,21 +34,21 @@ struct JointRange {
   double most_rad;
 };
 
-/// The range that a motion never leaves.
+/// Returns the range of the sensor's joint, which no motion leaves.
 JointRange joint_range(Sensor sensor) noexcept;
 
-/// How far through its range a joint is: 0 straight to 1 fully bent, as gloves report that
+/// Returns how far a joint is bent, from 0 (straight) to 1 (fully bent), as gloves report it that
 /// calibrate themselves.
 double part_of_range(const JointAngles& angles, Sensor sensor) noexcept;
 
-/// One hand's motion. Every motion starts at time 0 in the relaxed pose and grows to its full size
-/// within a second; angles are continuously differentiable. Two hands of one seed move alike but
-/// not in lock-step.
+/// The motion of one hand. It starts at time 0 in the relaxed pose and grows to its full size
+/// within a second. Angles are continuously differentiable. Two hands of one seed move alike, but
+/// not in step.
 class HandMotion {
 public:
   HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept;
 
-  /// `time_s` since the start, at least 0. Any thread, no state.
+  /// Returns the angles at `time_s` >= 0 since the start. May be called from any thread.
   JointAngles at(double time_s) const noexcept;
 
   /// The properties that distinguish one hand from another. They are drawn from the seed.
@@ -54,7 +57,7 @@ public:
     double phase = 0.0;                ///< where in the cycle it starts, in cycles
     std::array<double, 4> amplitude{}; ///< of each finger, about 1
     std::array<double, 4> lag{};       ///< of each finger, in cycles
-    /// Two sines a slot, in hertz and cycles: their beat is what makes tremor look like tremor.
+    /// Tremor is the sum of two sines a slot, which beat as real tremor does; in hertz and cycles.
     std::array<std::array<double, 2>, sensor_slots> tremor_hz{};
     std::array<std::array<double, 2>, sensor_slots> tremor_phase{};
   };

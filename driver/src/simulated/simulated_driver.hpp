@@ -1,6 +1,6 @@
 #pragma once
-// A glove without hardware, in this process: a peer of the real ones. It has no bytes, so none are
-// ever lost.
+// A glove without hardware, in this process. To programs it is a glove like any other. It has no
+// bytes, so none are ever lost.
 
 #include <memory>
 
@@ -10,8 +10,9 @@
 
 namespace nendo::driver {
 
-/// As simulated_glove_options() says, with one of the motions of hand_motion.hpp. The motion begins
-/// with start(). Error: usage, also for the one motion that takes a surface.
+/// Opens a glove with the options of simulated_glove_options() and one of the motions of
+/// hand_motion.hpp. The motion begins with start(). Error: usage, also for the motion that needs a
+/// surface.
 Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
                                               const GloveContext& context = {});
 

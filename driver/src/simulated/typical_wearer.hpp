@@ -1,6 +1,6 @@
 #pragma once
-// From joint angles to what a glove's 8-bit converter makes of them on a typical wearer's hand. The
-// inverse of a calibration: angle = gain (count - offset).
+// Converts joint angles to the counts of a glove's 8-bit converter on a typical wearer's hand. This
+// is the inverse of a calibration: angle = gain (count - offset).
 
 #include <array>
 #include <cstdint>
@@ -17,16 +17,16 @@ struct NominalSensor {
   double gain_rad;      ///< radians a count
 };
 
-/// Round numbers in the middle of what calibrations of real gloves show. Zero for the slots that no
-/// glove has.
+/// Returns round numbers in the middle of what calibrations of real gloves show, and zeros for
+/// slots that no glove has.
 NominalSensor nominal_sensor(Sensor sensor) noexcept;
 
 class TypicalWearer {
 public:
   explicit TypicalWearer(std::uint32_t seed) : random_(seed) {}
 
-  /// Counts 1..255 (0 is the end of a record on the wire), with converter noise; every call draws
-  /// new noise. Slots that no glove has stay 0.
+  /// Returns counts of 1..255, since 0 ends a record on the wire. Every call draws new converter
+  /// noise. Slots that no glove has stay 0.
   std::array<RawCount, sensor_slots> counts(const JointAngles& angles);
 
 private:

@@ -26,7 +26,7 @@ Result<std::optional<Side>> hand_option(const GloveSpec& spec) {
   return Error{Errc::usage, spec.text + ": hand=" + option->second + " is none of left, right"};
 }
 
-ChosenHand choose_hand(std::optional<Side> glove, const HandWishes& wishes) noexcept {
+ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept {
   if (glove) return {*glove, "glove"};
   if (wishes.option) return {*wishes.option, "option"};
   if (wishes.wanted) return {*wishes.wanted, "caller"};

@@ -1,5 +1,5 @@
 #pragma once
-// What a user may say about a glove that the glove itself may not: its hand, and numbers out of a
+// Options by which a user tells what a glove itself may not tell: its hand, and numbers out of a
 // short list.
 
 #include <initializer_list>
@@ -11,17 +11,17 @@
 
 namespace nendo::driver {
 
-/// The option's number, or the first of `known` where the option is missing. Error: usage, naming
-/// all of them.
+/// Returns the option's number, or the first of `known` if the option is missing. Error: usage,
+/// naming all of `known`.
 Result<int> number_option(const GloveSpec& spec, std::string_view key,
                           std::initializer_list<int> known);
 
-/// `hand=left|right`; empty if the option is missing. Error: usage.
+/// Returns the side of `hand=left|right`, or nothing if the option is missing. Error: usage.
 Result<std::optional<Side>> hand_option(const GloveSpec& spec);
 
-/// Whose word on the hand counts: the glove's own, else the option's, else the caller's wish, else
-/// right.
-struct HandWishes {
+/// Decides which hand a glove is on: what the glove says, or else the option, or else the caller's
+/// wish, or else right.
+struct SideOptions {
   std::optional<Side> option;
   std::optional<Side> wanted;
 };
@@ -29,9 +29,10 @@ struct ChosenHand {
   Side side = Side::right;
   std::string_view source; ///< glove, option, caller or assumed
 };
-ChosenHand choose_hand(std::optional<Side> glove, const HandWishes& wishes) noexcept;
+ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept;
 
-/// Error: usage, if `spec` names no port; `example` is one that does.
+/// Fails with the error `usage` if `spec` names no port. `example` is a specification that names
+/// one.
 Result<void> require_port(const GloveSpec& spec, std::string_view example);
 
 } // namespace nendo::driver

@@ -1,5 +1,5 @@
 #pragma once
-// What every driver's open function needs to judge its specification.
+// A check that every driver's open function makes of its specification.
 
 #include <initializer_list>
 #include <string_view>
@@ -9,7 +9,8 @@
 
 namespace nendo::driver {
 
-/// Error: usage, if `spec` has an option that is not `known`; it names both.
+/// Fails with the error `usage` if `spec` has an option that is not `known`. The message names the
+/// option and those that are known.
 Result<void> allow_options(const GloveSpec& spec, std::initializer_list<std::string_view> known);
 
 } // namespace nendo::driver

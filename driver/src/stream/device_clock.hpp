@@ -1,5 +1,6 @@
 #pragma once
-// From a device's own clock to the host's. Pure: no I/O, clock, log or allocation. One thread.
+// Converts times of a device's own clock to the host's. It is pure (no I/O, clock, log or
+// allocation) and belongs to one thread.
 
 #include <array>
 #include <chrono>
@@ -10,39 +11,43 @@
 
 namespace nendo::driver {
 
-/// A clock of 115200 ticks a second that wraps after 2^32 (10.36 h) becomes one that does not. A
-/// smaller value than the one before is a wrap: records cannot overtake each other.
+/// Makes a clock of 115200 ticks a second, which wraps after 2^32 ticks (10.36 h), into one that
+/// does not wrap. A value smaller than the one before means a wrap, because records keep their
+/// order.
 class TickUnwrapper {
 public:
-  /// Since the device's own zero, rounded down to a nanosecond: 9 ticks are 78125 ns, so nothing
-  /// adds up over the years. A silence of more than one wrap cannot be seen.
+  /// Returns the time since the device's own zero, rounded down to a nanosecond. Errors do not add
+  /// up over the years, since 9 ticks are 78125 ns. A silence of more than one wrap cannot be
+  /// noticed.
   std::chrono::nanoseconds unwrap(std::uint32_t ticks) noexcept;
-  /// The device's clock began anew.
+  /// Starts again, because the device's clock began anew.
   void reset() noexcept { total_ticks_ = 0; }
 
 private:
   std::uint64_t total_ticks_ = 0; ///< its lower half is the value before
 };
 
-/// When did the device take a record? It arrives late by a delay that is never negative, mostly
-/// short and sometimes very long: transmission, latency timers, scheduling, stalls. So the relation
-/// of the two clocks is read off the records that came soonest: (arrival - device time) is bounded
-/// below by a straight line, whose slope is the drift. The line is the one below all points that
-/// comes closest to them on average, an edge of their lower convex hull (S. B. Moon, P. Skelly,
-/// D. Towsley, "Estimation and removal of clock skew from network delay measurements", 1999), over
-/// the minima of the last 64 seconds. The shortest delay itself cannot be seen: it is in the
-/// result.
+/// Estimates when the device took a record. A record arrives with a delay that is never negative,
+/// mostly short and sometimes very long: transmission, latency timers, scheduling, stalls. So the
+/// relation of the two clocks is taken from the records with the least delay: (arrival - device
+/// time) is bounded below by a straight line, whose slope is the drift. Of all lines below the
+/// points, it is the one that is closest to them on average, an edge of their lower convex hull (S.
+/// B. Moon, P. Skelly, D. Towsley, "Estimation and removal of clock skew from network delay
+/// measurements", 1999), over the minima of the last 64 seconds. The shortest delay itself cannot
+/// be measured, so the result contains it.
 ///
-/// A device whose clock falls behind for good is followed after 64 s, all else at once or nearly.
+/// If a device's clock falls behind for good, that is followed after 64 s; all other changes are
+/// followed almost at once.
 class DeviceClock {
 public:
-  /// Never later than `arrival`. Not before the last result either, while arrivals do not run
-  /// back. A device time that runs back, or is 10 s or more from where it should be, is taken for a
-  /// new clock. Times beyond 73 years are absurd: `arrival`, and nothing learnt.
+  /// Returns the host time, which is never later than `arrival`, and not before the last result
+  /// while arrivals do not run back. A device time that runs back, or is 10 s or more off, is taken
+  /// for a new clock. For times beyond 73 years, returns `arrival` and learns nothing.
   HostTime to_host(std::chrono::nanoseconds device_time, HostTime arrival) noexcept;
-  /// The device's clock began anew.
+  /// Starts again, because the device's clock began anew.
   void reset() noexcept;
-  /// By how much the device's clock is fast, of a million; 0 for the first 4 s. At most 500.
+  /// Returns by how many parts in a million the device's clock is fast. It is 0 for the first 4 s,
+  /// and at most 500.
   double drift_ppm() const noexcept;
 
 private:

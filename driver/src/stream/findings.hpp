@@ -6,7 +6,7 @@
 
 namespace nendo::driver {
 
-/// A frame that was no good record, or one that the judge refused.
+/// A frame that was no good record, or one that a check refused.
 struct BadRecord {};
 
 /// A whole record that says that no glove is plugged in.
@@ -14,7 +14,7 @@ struct Unplugged {};
 
 /// Calls `sink(finding)` if the sink takes findings of this kind.
 template <class Sink, class Finding>
-void tell(Sink& sink, const Finding& finding) {
+void report(Sink& sink, const Finding& finding) {
   if constexpr (std::is_invocable_v<Sink&, const Finding&>) sink(finding);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What one kind of glove knows and others do not: how to ask it who it is, and what its bytes mean.
-// The rest of a glove's life is the same for all of them: StreamGlove.
+// What differs between kinds of gloves: how to identify one, and what its bytes mean. Everything
+// else is the same for all of them and is in StreamGlove.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ReplyDeadline {
   std::stop_token cancelled;
 };
 
-/// no_device: the transport said so in the middle of something.
+/// Returns the no_device error for a device that went away while it was used.
 inline Error went_away(const std::string& source) {
   return {Errc::no_device, source + " went away; is the cable loose?"};
 }
@@ -36,20 +36,20 @@ enum class IdentifyReason : std::uint8_t {
   damaged,  ///< its records became unreadable: another glove may have been plugged in
 };
 
-/// Takes what a protocol made of its bytes. `sequence`, and `arrival`, are set by the sink;
-/// `measured` too where the glove has no clock.
+/// Takes the samples that a protocol decodes. The sink sets `sequence` and `arrival`, and also
+/// `measured` if the glove has no clock.
 class SampleSink {
 public:
   virtual void deliver(GloveSample& sample) noexcept = 0;
-  /// A record came that is damaged or cannot be believed.
+  /// Reports a record that is damaged or not plausible.
   virtual void reject() noexcept = 0;
 
 protected:
   ~SampleSink() = default;
 };
 
-/// Used by one thread at a time: first the one that opens, then the reader. No call waits longer
-/// than 0.1 s without looking at its ReplyDeadline.
+/// A protocol is used by one thread at a time: first by the one that opens the glove, then by the
+/// reader. No call waits longer than 0.1 s without checking its ReplyDeadline.
 class GloveProtocol {
 public:
   GloveProtocol() = default;
@@ -61,17 +61,17 @@ public:
   /// Error: no_device; usage, if the device cannot do what an option asks for.
   virtual Result<GloveInfo> identify(Transport& transport, const std::string& source,
                                      IdentifyReason occasion, const ReplyDeadline& patience) = 0;
-  /// Starts the stream; whatever comes from now on is for push(). Error: no_device.
+  /// Starts the stream. All bytes that come from now on go to push(). Error: no_device.
   virtual Result<void> start_stream(Transport& transport, const std::string& source,
                                     const ReplyDeadline& patience) = 0;
   virtual void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept = 0;
-  /// Takes the next bytes of the stream, cut anywhere; the last of them arrived at `arrival`.
+  /// Takes the next bytes of the stream, cut anywhere. The last of them arrived at `arrival`.
   virtual void push(std::span<const std::byte> chunk, HostTime arrival,
                     SampleSink& sink) noexcept = 0;
-  /// True once the device may be another one than it was: identify() has to tell before more of its
-  /// records can be believed.
+  /// Returns true once the device may have been exchanged. identify() must then be called before
+  /// further records can be trusted.
   virtual bool is_doubtful() const noexcept { return false; }
-  /// Shows `feedback`, while it streams. A device that went away shows itself at the next read.
+  /// Shows `feedback` while the glove streams. If the device went away, the next read reports it.
   virtual void set_feedback(Transport& transport, const Feedback& feedback,
                             const ReplyDeadline& patience) noexcept {
     (void)transport, (void)feedback, (void)patience;

@@ -1,5 +1,5 @@
 #pragma once
-// Listening to a device for a while: what identifying a glove consists of.
+// Listens to a device for a while, as it is needed to identify a glove.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,8 @@
 namespace nendo::driver {
 
 /// Hands what arrives to `take(std::span<const std::byte>)` until that returns true (done), the
-/// device is gone, or time or patience are up (timeout). Looks at its patience every 0.1 s.
+/// device is gone, or the deadline has passed or listening is cancelled (timeout). Checks for that
+/// every 0.1 s.
 template <class Take>
 IoStatus listen(Transport& transport, const ReplyDeadline& patience,
                 std::chrono::milliseconds longest, Take&& take) {
@@ -32,8 +33,8 @@ IoStatus listen(Transport& transport, const ReplyDeadline& patience,
   }
 }
 
-/// Throws away what has arrived, also what the system holds back: a pseudo-terminal keeps some 17
-/// kB that no host has read. Waits for nothing. Returns how many bytes it read.
+/// Throws away what has arrived, also what the system holds back; a pseudo-terminal keeps some 17
+/// kB that no host has read. Does not wait. Returns how many bytes it read.
 inline std::uint64_t drop_waiting(Transport& transport) noexcept {
   constexpr std::uint64_t most_bytes = 65'536; // a device that babbles may outrun any host
   std::array<std::byte, 1024> buffer;

@@ -30,13 +30,13 @@ public:
     return {};
   }
 
-  /// Asks for it, and waits for the end. Idempotent.
+  /// Asks the thread to stop, and waits for its end. Idempotent.
   void stop() noexcept {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
   }
 
-  /// For `read`: sleeps until `due`. False: it is to stop.
+  /// For use in `read`: sleeps until `due`. Returns false if the thread has to stop.
   bool wait_until(const std::stop_token& stop, HostTime due) {
     std::unique_lock lock(mutex_);
     wake_.wait_until(lock, stop, due, [] { return false; });

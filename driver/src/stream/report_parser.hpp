@@ -1,6 +1,6 @@
 #pragma once
-// For devices that send whole reports: the bus keeps them apart, so that nothing is framed and
-// nothing is held back; a report is a record, or it is dropped and counted.
+// A parser for devices that send whole reports. The bus separates reports, so there is no framing
+// and nothing is held back. A report is a record, or it is dropped and counted.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace nendo::driver {
 
-/// `decode` is pure and judges one report of any length; nothing if it is no record.
+/// `decode` is pure, takes one report of any length, and returns nothing if it is no record.
 template <class Report, std::optional<Report> (*decode)(std::span<const std::byte>) noexcept>
 class ReportParser {
 public:

@@ -1,12 +1,12 @@
 #pragma once
-// What every parser counts, and what adds up for every glove.
+// The counts that every parser keeps.
 
 #include <cstdint>
 
 namespace nendo::driver {
 
-/// Monotonic; bytes = record_bytes + discarded_bytes + what the parser still holds, which is less
-/// than one longest record.
+/// All counts only grow. bytes = record_bytes + discarded_bytes + what the parser still holds,
+/// which is less than one longest record.
 struct StreamCounters {
   std::uint64_t bytes = 0;
   std::uint64_t record_bytes = 0;

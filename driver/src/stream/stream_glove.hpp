@@ -1,6 +1,6 @@
 #pragma once
-// The life of every glove that sends a stream of bytes: the reader thread, silence, loss, coming
-// back, counting. What the bytes mean is the GloveProtocol's.
+// A glove that sends a stream of bytes. It runs the reader thread, counts, and handles silence,
+// loss and return of the device. The GloveProtocol knows what the bytes mean.
 
 #include <functional>
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace nendo::driver {
 
-/// Opens the device anew; called again from the reader thread whenever it vanished.
+/// Opens the device. The reader thread calls it again whenever the device has vanished.
 using OpenPort = std::function<Result<std::unique_ptr<Transport>>()>;
 
 /// How long opening a glove may take in all.

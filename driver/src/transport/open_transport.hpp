@@ -1,7 +1,7 @@
 #pragma once
-// From a path to a Transport: libserialport for real ports, termios for pseudo-terminals, since
-// Debian 12's libserialport 0.1.1 opens neither pseudo-terminals (they have no modem lines) nor
-// symbolic links.
+// Opens a Transport by its path, with libserialport for real ports and termios for
+// pseudo-terminals, since Debian 12's libserialport 0.1.1 opens neither pseudo-terminals (they have
+// no modem lines) nor symbolic links.
 
 #include <memory>
 #include <string>
@@ -18,14 +18,14 @@ namespace nendo::driver {
 /// (missing, not a terminal, in use), no_permission.
 Result<std::unique_ptr<Transport>> open_transport(const std::string& path, int baud);
 
-/// True for /dev/<name> with an entry in /sys/class/tty: a real port, and what libserialport can
-/// open.
+/// Returns true for /dev/<name> with an entry in /sys/class/tty, which is a real port that
+/// libserialport can open.
 bool is_serial_port(const std::string& path);
 
-/// The back ends; `path` is resolved.
+/// Opens a real port by libserialport. `path` must be free of links.
 Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int baud);
 Result<std::unique_ptr<Transport>> open_termios(const std::string& path);
-/// Takes over a descriptor that is open, non-blocking and, if a terminal, raw.
+/// Takes over a descriptor. It must be open, non-blocking and, if it is a terminal, raw.
 std::unique_ptr<Transport> transport_of(int fd);
 /// Returns what a failed attempt to open or lock `path` means to the user.
 Error open_error(const std::string& path, int error_number);

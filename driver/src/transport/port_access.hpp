@@ -1,5 +1,5 @@
 #pragma once
-// Who may open a device node, and what this user must do to be among them.
+// Tells who may open a device node, and what this user must do to be allowed to.
 
 #include <string>
 
@@ -11,7 +11,7 @@ struct PortAccess {
   std::string remedy;   ///< empty if granted
 };
 
-/// Asks the file system; does not open it. A node that is gone is nobody's: `who` is empty.
+/// Asks the file system and does not open the node. `who` is empty if the node is gone.
 PortAccess port_access(const std::string& path);
 /// Returns the same for a device that refused to be opened, whatever the file system says.
 PortAccess refused_access(const std::string& path);

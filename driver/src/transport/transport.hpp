@@ -1,6 +1,6 @@
 #pragma once
-// Transport: bytes to and from one device, with a time limit on every call. A driver owns exactly
-// one and never sees a port's name or handle. No call throws, allocates or logs.
+// A Transport moves bytes to and from one device, with a time limit on every call. A driver owns
+// exactly one and never sees a port's name or handle. No call throws, allocates or logs.
 
 #include <chrono>
 #include <cstddef>
@@ -27,7 +27,7 @@ public:
   Transport& operator=(const Transport&) = delete;
   virtual ~Transport() = default;
 
-  /// Waits for the first bytes and returns those that are there. `buffer` is not empty.
+  /// Waits for the first bytes and returns those that are there. `buffer` must not be empty.
   virtual ReadResult read_some(std::span<std::byte> buffer,
                                std::chrono::milliseconds timeout) noexcept = 0;
   /// Hands all bytes to the device's output buffer. After a timeout some of them may have been
@@ -36,7 +36,7 @@ public:
                              std::chrono::milliseconds timeout) noexcept = 0;
   /// Throws away what has arrived and was not read.
   virtual void discard_input() noexcept = 0;
-  /// Changes the line's rate. False: it has none, or not this one.
+  /// Changes the line's rate. Returns false if the line has no rate, or not this one.
   virtual bool set_baud(int /*baud*/) noexcept { return false; }
 };
 

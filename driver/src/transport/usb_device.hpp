@@ -1,6 +1,6 @@
 #pragma once
-// What a USB device is called while it is plugged in. Nothing is asked of the device: the kernel
-// has read all of it when the device was plugged in, and gives it to everybody.
+// Tells what a USB device is called while it is plugged in. The device itself is not asked: the
+// kernel read all of it when the device was plugged in, and every user may read it there.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,17 +17,17 @@ using udev::id_of;
 using udev::to_string;
 using udev::UsbId;
 
-/// e.g. /dev/bus/usb/001/007.
+/// Returns the device's node, e.g. /dev/bus/usb/001/007.
 std::string node_of(const UsbIdentity& identity);
 
 inline constexpr std::size_t most_usb_ports = 7; ///< on the way to a device (USB 2.0, 4.1.1)
 
-/// `ports` lead from the bus's root to the device. Where the kernel says nothing of it (a container
-/// without /sys), texts stay empty.
+/// Returns what the kernel says of a device. `ports` lead from the bus's root to the device. Texts
+/// stay empty where the kernel says nothing, as in a container without /sys.
 UsbIdentity identify_usb(UsbId id, unsigned bus, unsigned address,
                          std::span<const std::uint8_t> ports);
 
-/// no_permission, with the rule that grants it.
+/// Returns the error no_permission, with the rule that grants the permission.
 Error usb_permission_error(const UsbIdentity& identity);
 
 } // namespace nendo::driver

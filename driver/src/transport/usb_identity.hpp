@@ -1,5 +1,5 @@
 #pragma once
-// Which USB devices there are, from what the kernel says of them. Nothing is opened.
+// Lists USB devices from what the kernel says of them. Nothing is opened.
 
 #include <optional>
 #include <string>

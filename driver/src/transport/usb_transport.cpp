@@ -111,7 +111,7 @@ private:
   Slot* take_arrived() noexcept;
   int control(std::uint8_t type, std::uint8_t request, std::uint16_t value,
               std::span<unsigned char> data, std::chrono::milliseconds timeout) noexcept;
-  ControlStatus judge(int result) noexcept;
+  ControlStatus status_of(int result) noexcept;
 
   const ContextHandle context_;
   std::array<Slot, transfers_under_way> slots_; // outlives device_, see the destructor
@@ -246,7 +246,7 @@ int LibusbTransport::control(std::uint8_t type, std::uint8_t request, std::uint1
   return result;
 }
 
-ControlStatus LibusbTransport::judge(int result) noexcept {
+ControlStatus LibusbTransport::status_of(int result) noexcept {
   if (gone_) return ControlStatus::gone;
   return result < 0 ? ControlStatus::refused : ControlStatus::done;
 }
@@ -258,7 +258,7 @@ ControlStatus LibusbTransport::get_feature(std::span<std::byte> report, std::siz
   const std::span data(reinterpret_cast<unsigned char*>(report.data()), report.size());
   const int result = control(from_interface, get_report, value, data, timeout);
   received = result > 0 ? static_cast<std::size_t>(result) : 0;
-  return judge(result);
+  return status_of(result);
 }
 
 ControlStatus LibusbTransport::set_feature(std::span<const std::byte> report,
@@ -268,7 +268,7 @@ ControlStatus LibusbTransport::set_feature(std::span<const std::byte> report,
   std::array<unsigned char, most_usb_report_bytes> copy{};
   const std::span data = std::span(copy).first(std::min(report.size(), copy.size()));
   std::memcpy(data.data(), report.data(), data.size());
-  return judge(control(to_interface, set_report, value, data, timeout));
+  return status_of(control(to_interface, set_report, value, data, timeout));
 }
 
 /// A transfer may be freed when its callback has run; each runs once, cancelled or not.

@@ -1,6 +1,7 @@
 #pragma once
-// A glove that is a USB device of its own, by libusb: the reports of one HID interface come in, and
-// its feature reports are asked for and set. Not hidraw, because usbhid makes a mouse of a P5.
+// Transport to a glove that is a USB device of its own, by libusb. It reads the reports of one HID
+// interface, and gets and sets its feature reports. It does not use hidraw, because usbhid makes a
+// mouse of a P5.
 
 #include <chrono>
 #include <cstddef>
@@ -16,7 +17,7 @@
 
 namespace nendo::driver {
 
-/// Which device to open; what is empty does not matter.
+/// Which device to open. An empty member matches every device.
 struct UsbWanted {
   UsbId id;
   std::string serial; ///< its serial number
@@ -35,17 +36,17 @@ enum class ControlStatus : std::uint8_t {
   gone,
 };
 
-/// Reports are read by interrupt transfers, several of them under way, so that none is lost while
-/// the reader is busy; their events are handled inside read_some().
+/// Reports are read by several interrupt transfers at a time, so that none is lost while the reader
+/// is busy. Their events are handled inside read_some().
 class UsbTransport : public Transport {
 public:
-  /// Constant. Any thread.
+  /// Returns the device's identity, which never changes. May be called from any thread.
   virtual const UsbIdentity& identity() const noexcept = 0;
-  /// Asks for feature report `report[0]`. `received` of its bytes, the number among them, are then
-  /// in `report`.
+  /// Asks for feature report number `report[0]`. Afterwards `report` holds `received` bytes of it,
+  /// of which the number is the first.
   virtual ControlStatus get_feature(std::span<std::byte> report, std::size_t& received,
                                     std::chrono::milliseconds timeout) noexcept = 0;
-  /// Sets feature report `report[0]`.
+  /// Sets feature report number `report[0]`.
   virtual ControlStatus set_feature(std::span<const std::byte> report,
                                     std::chrono::milliseconds timeout) noexcept = 0;
   // read_some() returns one whole report in one call; its buffer has room for 1024 bytes, the

@@ -1,5 +1,5 @@
 #pragma once
-// What both back ends do with a non-blocking file descriptor.
+// How both back ends wait for a non-blocking file descriptor.
 
 #include <algorithm>
 #include <cerrno>
@@ -16,7 +16,7 @@
 namespace nendo::driver {
 
 /// Waits until `fd` is ready for `events` (POLLIN or POLLOUT). Bytes that arrived before a hang-up
-/// are still readable, so "ready" goes before "gone".
+/// can still be read, so readiness is reported before `gone`.
 inline IoStatus wait_fd(int fd, short events, HostTime deadline) noexcept {
   using std::chrono::milliseconds;
   for (;;) {
@@ -30,8 +30,8 @@ inline IoStatus wait_fd(int fd, short events, HostTime deadline) noexcept {
   }
 }
 
-/// `write_now(bytes)` returns how many bytes the descriptor took, 0 if none just now, below 0 if it
-/// is gone.
+/// Writes all bytes. `write_now(bytes)` must return how many bytes the descriptor took, 0 if it
+/// takes none now, or a negative number if it is gone.
 template <class WriteNow>
 IoStatus write_all_fd(int fd, std::span<const std::byte> bytes, std::chrono::milliseconds timeout,
                       WriteNow&& write_now) noexcept {

@@ -1,6 +1,6 @@
 #pragma once
-// Whether a glove is there at all: the receiver of a wireless one answers also when the glove is
-// switched off.
+// Finds out whether a glove is there, because the receiver of a wireless glove answers even if the
+// glove is switched off.
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@
 
 namespace nendo::driver {
 
-/// Reads until a report is `good(report)`, for 2 s at most, and counts its bytes in `bytes`.
-/// Error: no_device.
+/// Reads until `good(report)` is true of a report, for 2 s at most, and counts the bytes in
+/// `bytes`. Error: no_device.
 template <class Good>
 Result<void> await_report(Transport& transport, const std::string& source,
                           const ReplyDeadline& patience, std::uint64_t& bytes, Good&& good) {

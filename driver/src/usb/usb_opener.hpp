@@ -10,8 +10,8 @@
 
 namespace nendo::driver {
 
-/// Returns a function that opens the device that is `wanted`, and after that the same device
-/// wherever it turns up: by its serial number, or by its port if it has none.
+/// Returns a function that opens the device that is `wanted`. Later calls open the same device
+/// wherever it is plugged in; it is known by its serial number, or by its port if it has none.
 OpenPort usb_opener(UsbWanted wanted, const UsbInterface& interface);
 
 /// Returns what the kernel knows of the device: its numbers, port, maker, product and serial

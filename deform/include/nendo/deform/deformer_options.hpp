@@ -1,5 +1,5 @@
 #pragma once
-// What Type-1 and Type-2 have in common.
+// The options that Type-1 and Type-2 have in common.
 
 #include <cstddef>
 #include <optional>

@@ -7,7 +7,8 @@
 
 namespace nendo::deform {
 
-/// A field s(x). A few hundred bytes are enough to deform a copy of the model elsewhere.
+/// A field s(x). It has a few hundred bytes, by which a copy of the model can be deformed
+/// elsewhere.
 struct CsrbfField {
   Wendland kernel = Wendland::c2;
   Points centres;        ///< c_i, 3 by #centres, in model units

@@ -1,8 +1,8 @@
 #pragma once
 // Deforming without folding (the fourth item of the paper's outlook): the straight way of the start
-// points is cut into links. Each link is a field with its centres where the points then are, and
-// short enough that x -> x + s(x) is a homeomorphism; so is the chain of them. A map that tears
-// would need a link of no length; points whose paths cross are therefore held apart (LeastGap).
+// points is cut into links. Each link is a field with its centres where the points then are, and so
+// short that x -> x + s(x) is a homeomorphism; the chain of links is one, too. Where paths cross,
+// no link would be short enough, so those points are held apart (LeastGap).
 
 #include <array>
 #include <memory>

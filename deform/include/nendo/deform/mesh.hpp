@@ -1,6 +1,6 @@
 #pragma once
-// A polygon mesh as the deformation needs it: vertices in a fixed order, faces that are carried
-// along unchanged.
+// A polygon mesh as the deformation needs it: vertices in a fixed order, and faces that never
+// change.
 
 #include <cstdint>
 #include <vector>
@@ -14,12 +14,12 @@ using Points = Eigen::Matrix3Xd;
 
 struct Mesh {
   Points vertices;
-  /// Face f has the corners face_corners[face_starts[f]] to face_corners[face_starts[f + 1] - 1];
-  /// #faces + 1 long.
+  /// Face f has the corners face_corners[face_starts[f]] to face_corners[face_starts[f + 1] - 1].
+  /// There are #faces + 1 entries.
   std::vector<std::uint32_t> face_starts{0};
   std::vector<std::uint32_t> face_corners; ///< vertex indices, 0-based
-  /// Texture coordinates (2 by #texcoords) and, a corner each, indices into them; both empty if
-  /// there are none.
+  /// Texture coordinates, 2 by #texcoords, and an index into them for each corner. Both are empty
+  /// if there are none.
   Eigen::Matrix2Xd texcoords;
   std::vector<std::uint32_t> corner_texcoords;
 

@@ -1,6 +1,6 @@
 #pragma once
-// Reading and writing OBJ and PLY (ASCII, binary of either byte order). Files are hostile: every
-// count is checked against the bytes that are there before anything is allocated.
+// Reads and writes OBJ and PLY (ASCII, or binary of either byte order). Files are not trusted:
+// every count is checked against the bytes that are there before anything is allocated.
 
 #include <filesystem>
 #include <span>

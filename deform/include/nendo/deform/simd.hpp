@@ -1,6 +1,6 @@
 #pragma once
-// Which vector instructions evaluate the field. The best that the processor has is chosen at run
-// time.
+// Chooses the vector instructions that evaluate the field. The best that the processor has is
+// chosen at run time.
 
 #include <string_view>
 #include <vector>

@@ -52,10 +52,10 @@ public:
   /// Makes the rest shape what it was before the last undo, and `tips` the start points. If there
   /// is no such undo, or there was a commit since, nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);
-  /// How many commits can be undone, and how many undone ones can be redone.
+  /// Returns how many commits can be undone, and how many undone ones can be redone.
   std::size_t undo_steps() const noexcept;
   std::size_t redo_steps() const noexcept;
-  /// How many commits can no longer be undone because memory ended.
+  /// Returns how many commits can no longer be undone because memory ended.
   std::size_t forgotten_steps() const noexcept;
 
   const BlockLayout& layout() const noexcept { return layout_; }

@@ -58,10 +58,11 @@ public:
   /// one at `tips`. If there is no such undo, or a stroke that changed the shape has ended since,
   /// nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);
-  /// How many strokes before the present one can be undone, and how many undone ones can be redone.
+  /// Returns how many strokes before the present one can be undone, and how many undone ones can be
+  /// redone.
   std::size_t undo_steps() const noexcept;
   std::size_t redo_steps() const noexcept;
-  /// How many strokes can no longer be undone because memory ended.
+  /// Returns how many strokes can no longer be undone because memory ended.
   std::size_t forgotten_steps() const noexcept;
 
   const BlockLayout& layout() const noexcept { return layout_; }
@@ -75,7 +76,7 @@ public:
   const ChainReport& report() const noexcept { return report_; }
 
 private:
-  /// Takes the samples' next tips to the curve.
+  /// A function of the curve that takes the next tips.
   using Lead = void (FingertipCurve::*)(const Points&);
 
   FieldStatus take_hold(const Points& tips);

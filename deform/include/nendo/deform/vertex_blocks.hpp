@@ -1,6 +1,6 @@
 #pragma once
-// Vertices as vector instructions want them: in float, in blocks of 64 that are neighbours in
-// space, with x, y and z apart. A block's bounds tell whether a field reaches it.
+// Vertices in the form that suits vector instructions: in float, in blocks of 64 neighbours in
+// space, with separate arrays of x, y and z. A block's bounds tell whether a field reaches it.
 
 #include <array>
 #include <cstddef>
@@ -24,8 +24,8 @@ struct alignas(32) BlockBounds {
 };
 BlockBounds bounds_of(const VertexBlock& block) noexcept;
 
-/// A shape in blocks. Each block has a stamp; no two different contents in a process ever have the
-/// same, so that a copy is brought up to date by copying only blocks that changed.
+/// A shape in blocks. Each block has a stamp. Different contents never have the same stamp in a
+/// process, so a copy is brought up to date by copying only the blocks that changed.
 class BlockShape {
 public:
   BlockShape() = default;
@@ -36,7 +36,7 @@ public:
   const VertexBlock* data() const noexcept { return blocks_.data(); }
   std::uint64_t stamp(std::size_t block) const noexcept { return stamps_[block]; }
 
-  /// Gives access for writing. Whoever changes a block must set a new stamp for each change.
+  /// Gives access for writing. Code that changes a block must set a new stamp for each change.
   VertexBlock* data() noexcept { return blocks_.data(); }
   void set_stamp(std::size_t block, std::uint64_t stamp) noexcept { stamps_[block] = stamp; }
   static std::uint64_t new_stamp() noexcept; ///< wait-free, from any thread
@@ -58,7 +58,7 @@ private:
 /// Where each vertex of a mesh stands in the blocks, and what the numbers there mean: vertex =
 /// origin + unit * coordinate. The origin is the middle of the model and the unit a power of two of
 /// about half its size, so that float is precise enough for models of any size and place. A layout
-/// does not change: any thread may use it.
+/// does not change, so any thread may use it.
 class BlockLayout {
 public:
   /// vertices: 3 by #vertices, kept as the original. Allocates.

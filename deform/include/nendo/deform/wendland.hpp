@@ -1,6 +1,6 @@
 #pragma once
-// Wendland's compactly supported radial functions, positive definite in R^3, normalised to psi(0) =
-// 1 (Wendland 1995). t = |x - c| / r; all are zero for t >= 1.
+// Wendland's radial functions with compact support, which are positive definite in R^3, normalised
+// to psi(0) = 1 (Wendland 1995). t = |x - c| / r; all functions are zero for t >= 1.
 
 #include <optional>
 #include <string_view>
@@ -9,7 +9,7 @@ namespace nendo::deform {
 
 enum class Wendland { c0, c2, c4, c6 };
 
-/// psi(t), t >= 0.
+/// Returns psi(t) for t >= 0.
 constexpr double wendland(Wendland kernel, double t) noexcept {
   if (!(t < 1.0)) return 0.0;
   const double u = 1.0 - t;
@@ -27,7 +27,8 @@ constexpr double wendland(Wendland kernel, double t) noexcept {
   return 0.0;
 }
 
-/// psi'(t), t >= 0; of c0, whose graph has a cone's tip there, the slope to the right at t = 0.
+/// Returns psi'(t) for t >= 0. For c0, which has no derivative at t = 0, it is the slope to the
+/// right there.
 constexpr double wendland_slope(Wendland kernel, double t) noexcept {
   if (!(t < 1.0)) return 0.0;
   const double u = 1.0 - t;
@@ -45,7 +46,7 @@ constexpr double wendland_slope(Wendland kernel, double t) noexcept {
   return 0.0;
 }
 
-/// Where |psi'| is largest; it rises up to there and falls from there on.
+/// Returns the t at which |psi'| is largest. |psi'| rises up to there and falls from there on.
 constexpr double wendland_steepest_at(Wendland kernel) noexcept {
   switch (kernel) {
   case Wendland::c0:
@@ -60,7 +61,7 @@ constexpr double wendland_steepest_at(Wendland kernel) noexcept {
   return 0.0;
 }
 
-/// "wendland-c2" and so on.
+/// Returns the name, for example "wendland-c2".
 std::string_view name_of(Wendland kernel) noexcept;
 std::optional<Wendland> wendland_named(std::string_view name) noexcept;
 

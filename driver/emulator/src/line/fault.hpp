@@ -40,15 +40,15 @@ struct Fault {
 };
 
 std::string_view name_of(FaultKind kind) noexcept;
-/// The unit suffers it, not its line.
+/// Tells whether the fault happens to the unit and not to its line.
 constexpr bool happens_to_unit(FaultKind kind) noexcept {
   return kind == FaultKind::eg || kind == FaultKind::swap || kind == FaultKind::restart ||
          kind == FaultKind::press;
 }
 
-/// Error: usage, with the form that the fault should have.
+/// Parses a fault. Error: usage, with the form that the fault should have.
 Result<Fault> parse_fault(std::string_view text);
-/// All of them. Error: usage; also for two rates of one kind.
+/// Parses all faults. Error: usage, also for two rates of one kind.
 Result<std::vector<Fault>> parse_faults(const std::vector<std::string>& texts);
 
 } // namespace nendo::emulator

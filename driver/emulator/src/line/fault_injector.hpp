@@ -1,7 +1,7 @@
 #pragma once
-// What goes wrong between a unit and the terminal: messages in, bytes out. Pure and seeded: the
-// same messages and times give the same bytes. It does the faults of the line itself, and tells
-// when those of the unit and the terminal are due.
+// Causes the faults between a unit and the terminal: it takes messages and gives bytes. It is pure
+// and seeded, so the same messages and times give the same bytes. It causes the faults of the line
+// itself, and tells when those of the unit and the terminal are due.
 
 #include <array>
 #include <chrono>
@@ -29,17 +29,18 @@ public:
 
   FaultInjector(const std::vector<Fault>& faults, std::uint32_t seed);
 
-  /// When next_event() will have something; empty: never.
+  /// Returns when next_event() will have something; nothing if it never will.
   std::optional<Time> next_due() const noexcept;
   /// Hands out each event once, in the order of their times, as soon as it is due.
   std::optional<Event> next_event(Time now);
 
-  /// Appends to `wire` what is left of a message that the unit sends at `now`.
+  /// Appends to `wire` what the faults leave of a message that the unit sends at `now`.
   void pass(std::span<const std::byte> message, bool record, Time now, Wire& wire);
-  /// The bytes that a modem probe leaves behind: echoes, and the unit's error answers.
+  /// Appends the bytes that a modem probe leaves behind: echoes, and the unit's error answers.
   void pass_junk(Wire& wire);
 
-  /// Records passed, and those of them that do not arrive whole or arrive joined to something else.
+  /// Returns how many records passed, and how many of them do not arrive whole or arrive joined to
+  /// other bytes.
   std::uint64_t records() const noexcept { return records_; }
   std::uint64_t records_faulted() const noexcept { return records_faulted_; }
   std::uint64_t done(FaultKind kind) const noexcept {
@@ -52,7 +53,8 @@ private:
     Event event;
   };
 
-  // Trials that go by before one succeeds: a random number a fault and not a byte.
+  // The number of trials before the next success. So a random number is drawn for each fault and
+  // not for each byte.
   struct Chance {
     double rate = 0.0;
     std::uint64_t misses = 0;

@@ -9,13 +9,12 @@
 
 namespace nendo::emulator {
 
-/// A symbolic link that is gone when its maker is, unless someone has pointed it elsewhere
-/// meanwhile.
+/// A symbolic link. The destructor removes it, unless it leads elsewhere by then.
 class SymbolicLink {
 public:
   SymbolicLink() = default;
-  /// Replaces an old link in one step, so that a host sees the old target or the new one. Error:
-  /// failed; it never replaces anything but a link.
+  /// Makes the link. It replaces an old link in one step, so that a host sees the old target or the
+  /// new one, and never replaces anything but a link. Error: failed.
   static Result<SymbolicLink> make(const std::string& where, const std::string& target);
   SymbolicLink(SymbolicLink&& other) noexcept
       : path_(std::exchange(other.path_, {})), target_(std::move(other.target_)) {}
@@ -31,11 +30,12 @@ private:
   std::string target_;
 };
 
-/// Raw, 115200 baud. Hosts see it hung up when this is destroyed, and its link is gone before that:
-/// the system may give the terminal's number to a stranger at once.
+/// A pseudo-terminal in raw mode at 115200 baud. When this is destroyed, hosts see a hang-up. The
+/// link is removed before that, because the system may give the terminal's number to another
+/// program at once.
 class PseudoTerminal {
 public:
-  /// `link` is empty or the link's path. Error: failed.
+  /// Makes the terminal, and the link unless `link`, its path, is empty. Error: failed.
   static Result<PseudoTerminal> make(const std::string& link);
   PseudoTerminal(PseudoTerminal&& other) noexcept
       : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)),
@@ -43,7 +43,8 @@ public:
   PseudoTerminal& operator=(PseudoTerminal&&) = delete;
   ~PseudoTerminal();
 
-  /// Does not block. poll() says POLLHUP as long as no host has the other end open.
+  /// Returns the device's end, which is non-blocking. poll() reports POLLHUP as long as no host has
+  /// the other end open.
   int fd() const noexcept { return fd_; }
   const std::string& path() const noexcept { return path_; } ///< of the host's end
 

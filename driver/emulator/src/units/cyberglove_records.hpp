@@ -1,6 +1,5 @@
 #pragma once
-// The records of an emulated CyberGlove: what the sensors see, in the 8-bit, the text and the
-// 12-bit form.
+// Makes the records of an emulated CyberGlove in the 8-bit, the text and the 12-bit form.
 
 #include <cstdint>
 #include <optional>
@@ -32,14 +31,14 @@ public:
   RecordMaker(driver::Motion motion, Side side, std::uint32_t seed, bool stamp_bit7, bool pattern,
               std::vector<Message> capture);
 
-  /// The hand in the glove from now on.
+  /// Sets the hand that is in the glove from now on.
   void wear(Side side);
 
-  /// header, values, time stamp, status, error pairs, NUL. `known` is the glove that the unit has
-  /// read, `plugged` the one in its socket.
+  /// Returns a record: header, values, time stamp, status, error pairs, NUL. `known` is the glove
+  /// that the unit has read, and `plugged` the one in its socket.
   Message record(const RecordFrame& frame, const Settings& settings, const PluggedGlove& known,
                  const std::optional<PluggedGlove>& plugged);
-  /// The 61 bytes of a CyberGlove III.
+  /// Returns a 12-bit record of a CyberGlove III, which has 61 bytes.
   Message fine_record(const RecordFrame& frame, const std::optional<PluggedGlove>& plugged);
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// What a host can set in a CyberGlove's interface unit, how long each command is, and the parameter
-// flags that show most of it at once.
+// The settings of a CyberGlove's interface unit, the lengths of the commands that change them, and
+// the parameter flags that show most of them at once.
 
 #include <array>
 #include <cstddef>
@@ -42,31 +42,33 @@ struct Settings {
   std::array<Byte, sensor_slots> offsets{}; ///< of the hardware calibration
   std::array<Byte, sensor_slots> gains{};   ///< the same, in 1/64
 
-  /// A converter's count after the hardware calibration: 1..255.
+  /// Returns a converter's count after the hardware calibration, 1..255.
   Byte quantise(std::size_t slot, Byte count) const noexcept;
 };
 
 /// Returns the settings after switching on.
 Settings power_up_settings(double rate_hz, const PluggedGlove& glove) noexcept;
 
-/// How its words go over the wire in the binary command and in its query: the sources disagree.
+/// The byte order of the period's words in the binary command and in its query. The sources
+/// disagree on it.
 enum class WordOrder : std::uint8_t { high_first, low_first };
 
-/// How many bytes the argument of a binary command has, as far as its first bytes tell; 0: there is
-/// no such command; empty: the argument is wrong. `letter` is a capital one.
+/// Returns how many bytes the argument of a binary command has, as far as its first bytes tell.
+/// Returns 0 if there is no such command, and nothing if the argument is wrong. `letter` is a
+/// capital letter.
 std::optional<std::size_t> argument_bytes(Byte letter, const Message& argument,
                                           std::size_t sensors);
-/// How many bytes each number of the command's text form stands for.
+/// Returns how many bytes each number of the command's text form stands for.
 std::size_t number_width(Byte letter) noexcept;
 
-/// Handles a set command whose argument is complete. False: a number is out of range, nothing is
-/// set.
+/// Handles a set command whose argument is complete. Returns false, and sets nothing, if a number
+/// is out of range.
 bool apply(Settings& settings, Byte letter, const Message& argument, WordOrder order,
            const PluggedGlove& glove);
 
-/// The value of an on-off setting by its letter; empty: it is none.
+/// Returns the value of an on-off setting by its letter; nothing if the letter is no such setting.
 std::optional<bool> switch_state(const Settings& settings, Byte letter) noexcept;
-/// The part of the parameter flags that a host can write.
+/// Returns the part of the parameter flags that a host can write.
 std::uint32_t writable_parameters(const Settings& settings) noexcept;
 
 } // namespace nendo::emulator::unit

@@ -1,7 +1,6 @@
 #pragma once
-// The commands that a CyberGlove III has and its predecessors have not: all begin with the digit 1.
-// Only their forms are known, from programs that drive the glove; what was chosen beyond that is
-// said in the source.
+// The commands that only a CyberGlove III has. All begin with the digit 1. Only their forms are
+// known, from programs that drive the glove; the source says what was chosen beyond that.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,16 +15,16 @@ struct ThreeSettings {
   unsigned divider = 1; ///< of the base rate, for the USB sink
   bool usb = true;      ///< the USB sink is on
 
-  /// Between two 12-bit records, in 1/115200 s.
+  /// Returns the time between two 12-bit records, in 1/115200 s.
   std::uint64_t period_ticks() const noexcept;
 };
 
-/// How many bytes the command has after its 1, as far as its first bytes (at least one) tell;
-/// empty: there is no such command.
+/// Returns how many bytes the command has after its 1, as far as its first bytes (at least one)
+/// tell; nothing if there is no such command.
 std::optional<std::size_t> three_bytes(const Message& command);
 
-/// Handles a complete command. S, which starts the stream, is left to the caller. False: a number
-/// is out of range, nothing is set.
+/// Handles a complete command. S, which starts the stream, is left to the caller. Returns false,
+/// and sets nothing, if a number is out of range.
 bool apply(ThreeSettings& settings, const Message& command);
 
 } // namespace nendo::emulator::unit

@@ -41,7 +41,7 @@ struct UnitOptions {
   std::vector<unit::Message> capture; ///< records to send instead of a motion
 };
 
-/// Error: usage or bad_input, naming the option.
+/// Makes the unit. Error: usage or bad_input, naming the option.
 Result<std::unique_ptr<EmulatedUnit>> make_cyberglove_unit(const EmulatorOptions& options);
 
 class CyberGloveUnit final : public EmulatedUnit {
@@ -59,7 +59,8 @@ private:
   using Byte = unit::Byte;
   using Message = unit::Message;
 
-  // Record n is due n periods after the start. Counting in ticks keeps the time stamps exact.
+  // Record n is due n periods after the start. Time is counted in ticks, so that the time stamps
+  // are exact.
   struct Stream {
     Byte header = 0; ///< 0: none; '1': 12-bit records
     Time start{};

@@ -1,5 +1,5 @@
 #pragma once
-// The kinds of gloves that can be emulated: a line in the table of emulated_kinds.cpp each.
+// The kinds of gloves that can be emulated. Each is a line in the table of emulated_kinds.cpp.
 
 #include <memory>
 #include <string_view>
@@ -17,7 +17,7 @@ struct EmulatedKind {
   bool takes_incidents; ///< its glove can be pulled and swapped
 };
 
-/// Error: usage, naming those there are.
+/// Returns the kind of that name. Error: usage, naming those there are.
 Result<EmulatedKind> find_emulated_kind(std::string_view name);
 
 } // namespace nendo::emulator

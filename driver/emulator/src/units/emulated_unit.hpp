@@ -1,6 +1,6 @@
 #pragma once
-// A device from its own side, without any I/O or clock: bytes from the host and the time go in,
-// bytes to the host come out. Whoever has a terminal (PtyEmulator) or a test moves them.
+// A device from its own side, without any I/O or clock. Bytes from the host and the time go in, and
+// bytes to the host come out. The owner of a terminal (PtyEmulator), or a test, moves them.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace nendo::emulator {
 
-/// Something that happens to a unit without the host's doing.
+/// An event at the unit that the host did not cause.
 struct Incident {
   enum class Kind : std::uint8_t { glove_out, glove_in, power_cycle, switch_on, switch_off };
   Kind kind = Kind::glove_out;
@@ -50,16 +50,16 @@ public:
   virtual void receive(std::span<const std::byte> bytes, Time now) = 0;
   /// Does what is due at `now`, e.g. the records of a stream.
   virtual void advance(Time now) = 0;
-  /// When advance() will have something to do; empty if only the host can cause it.
+  /// Returns when advance() will have something to do; nothing if only the host can cause that.
   virtual std::optional<Time> next_due() const noexcept = 0;
   /// Lets an incident happen. A unit whose glove cannot be pulled or swapped ignores it.
   virtual void inject(const Incident& incident, Time now) { (void)incident, (void)now; }
 
   /// Returns the bytes that wait for the host, at most output_capacity.
   std::span<const std::byte> output() const noexcept { return {output_.data(), output_size_}; }
-  /// The messages that output() consists of, or what is left of them.
+  /// Returns the messages of which output() consists. The first one may be cut.
   std::span<const UnitMessage> messages() const noexcept { return messages_; }
-  /// The host has taken the first `count` bytes of output().
+  /// Removes the first `count` bytes of output(), which the host has taken.
   void take(std::size_t count) noexcept {
     count = std::min(count, output_size_);
     output_size_ -= count;
@@ -74,7 +74,8 @@ public:
   UnitCounters counters() const noexcept { return counters_; }
 
 protected:
-  /// False: the message does not fit and is refused whole.
+  /// Puts a message into the output. Returns false if it does not fit; the whole message is then
+  /// refused.
   bool send(std::span<const std::byte> message) { return put(message, false); }
   /// Sends a record, and counts it.
   bool send_record(std::span<const std::byte> message) {
@@ -84,8 +85,7 @@ protected:
   }
 
   /// Sends `make(due)` for each time from `next` on that is due at `now`, one every `period`. Once
-  /// the output is full, the others that are due count as refused without being made, however many
-  /// they are.
+  /// the output is full, the others that are due count as refused and are not made.
   template <class Make>
   void send_due(Time& next, Time period, Time now, Make&& make) {
     for (; next <= now; next += period) {

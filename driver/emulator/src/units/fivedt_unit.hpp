@@ -27,7 +27,7 @@ struct FiveDtUnitOptions {
 
 class FiveDtUnit final : public EmulatedUnit {
 public:
-  /// Samples of ten bytes that 19200 baud can carry; a wireless one sends half as many.
+  /// The rate of ten-byte samples that 19200 baud can carry. A wireless glove sends half as many.
   static constexpr double most_rate_hz = 190.0;
   static constexpr double most_wireless_rate_hz = 95.0;
 
@@ -53,7 +53,7 @@ private:
   Time next_sample_{};
 };
 
-/// Never null.
+/// Makes the unit. Never returns null.
 std::unique_ptr<EmulatedUnit> make_fivedt_unit(const FiveDtUnitOptions& options);
 
 } // namespace nendo::emulator

@@ -27,7 +27,7 @@ struct ForteUnitOptions {
 
 class ForteUnit final : public EmulatedUnit {
 public:
-  /// Records that 115200 baud can carry, with a frame of motion after each.
+  /// The rate of records that 115200 baud can carry, with a frame of motion after each.
   static constexpr double most_rate_hz = 370.0;
 
   explicit ForteUnit(const ForteUnitOptions& options);
@@ -53,7 +53,7 @@ private:
   Time next_record_{};
 };
 
-/// Never null.
+/// Makes the unit. Never returns null.
 std::unique_ptr<EmulatedUnit> make_forte_unit(const ForteUnitOptions& options);
 
 } // namespace nendo::emulator

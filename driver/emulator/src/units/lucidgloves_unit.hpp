@@ -1,7 +1,7 @@
 #pragma once
 // A LucidGlove from the device's side. It shares no code with the driver's parser, so that each can
-// test the other. The facts are those of the LucidGloves firmware, and of SenseShift's library for
-// what only that knows (information replies, starting and stopping).
+// test the other. The facts are those of the LucidGloves firmware, and, for what only that has
+// (information replies, starting and stopping), of SenseShift's library.
 
 #include <array>
 #include <cstddef>
@@ -54,7 +54,7 @@ private:
   std::array<int, 5> brakes_{};
 };
 
-/// Never null.
+/// Makes the unit. Never returns null.
 std::unique_ptr<EmulatedUnit> make_lucidgloves_unit(const LucidGlovesUnitOptions& options);
 
 } // namespace nendo::emulator

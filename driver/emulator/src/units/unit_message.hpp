@@ -1,5 +1,5 @@
 #pragma once
-// Bytes and numbers as the interface unit's messages hold them.
+// Functions for the bytes and numbers of the interface unit's messages.
 
 #include <algorithm>
 #include <charconv>
@@ -26,7 +26,8 @@ inline void append(Message& message, std::string_view text) {
     message.push_back(static_cast<Byte>(c));
 }
 
-// Least significant byte first, as masks, parameter flags and the time stamp go.
+// Returns the bytes of `value`, least significant first, as masks, parameter flags and the time
+// stamp have them.
 inline Message low_first(std::uint32_t value, unsigned bytes) {
   Message message;
   for (unsigned k = 0; k < bytes; ++k)
@@ -41,8 +42,8 @@ inline std::uint32_t from_low_first(const Message& bytes) noexcept {
   return value;
 }
 
-// The decimal numbers of a text command as bytes, each number `width` bytes wide, high byte first;
-// empty if there is none, or anything else, or one that does not fit.
+// Returns the decimal numbers of a text command as bytes, each `width` bytes wide, high byte first.
+// Returns an empty message if there is no number, anything else, or a number that does not fit.
 inline Message read_numbers(std::string_view text, std::size_t width) {
   const char* at = text.data();
   const char* const end = at + text.size();

@@ -9,7 +9,7 @@
 
 namespace nendo::hand {
 
-/// One for each number in JointAngles, in its order: the thumb, the four fingers, palm and wrist.
+/// Names each number in JointAngles, in its order: the thumb, the four fingers, palm and wrist.
 enum class Angle : std::uint8_t {
   thumb_roll,
   thumb_abduction,
@@ -55,7 +55,7 @@ constexpr std::string_view name_of(Angle angle) noexcept {
   return angle_names[index_of(angle)];
 }
 
-/// Angle number `index`, below angle_count.
+/// Returns angle number `index`, which must be below angle_count.
 constexpr Angle angle_at(std::size_t index) noexcept {
   return static_cast<Angle>(index);
 }

@@ -1,6 +1,7 @@
 #pragma once
-// Where each angle of joint_angles() comes from, which its numbers do not show: a sensor, a rule,
-// or nothing at all. Whoever records, calibrates or judges poses must be able to tell them apart.
+// Tells where each angle of joint_angles() comes from: a sensor, a rule, or nothing at all. The
+// angles themselves do not show it, and whoever records, calibrates or judges poses must be able to
+// tell these apart.
 
 #include <array>
 #include <cstdint>
@@ -23,7 +24,7 @@ enum class AngleSource : std::uint8_t {
 
 inline constexpr std::size_t angle_source_count = 7;
 
-/// "measured", "from_mcp" and so on.
+/// Returns "measured", "from_mcp" and so on.
 constexpr std::string_view name_of(AngleSource source) noexcept {
   constexpr std::array<std::string_view, angle_source_count> names{
       "measured", "from_mcp", "from_pip", "from_ip", "opposition", "from_gaps", "zero"};
@@ -34,11 +35,12 @@ constexpr bool is_estimated(AngleSource source) noexcept {
   return source != AngleSource::measured && source != AngleSource::zero;
 }
 
-/// By index_of(Angle).
+/// The source of each angle, by index_of(Angle).
 using AngleSources = std::array<AngleSource, angle_count>;
 
-/// What joint_angles() does with samples of a glove that has these sensors. Constant for a glove:
-/// GloveInfo::sensors, or any sample's `present`. Wait-free.
+/// Returns where joint_angles() takes each angle from, for samples of a glove that has these
+/// sensors: GloveInfo::sensors, or any sample's `present`. The result is constant for a glove.
+/// Wait-free.
 AngleSources angle_sources(SensorMask present) noexcept;
 
 } // namespace nendo::hand

@@ -7,7 +7,8 @@
 
 namespace nendo::hand {
 
-/// Metres. Bones run from joint to joint; the distal ones to the tip of the finger.
+/// Lengths in metres. A bone runs from joint to joint, a distal bone from its joint to the tip of
+/// the finger.
 struct BoneLengths {
   static constexpr double least_m = 0.001;
   static constexpr double most_m = 0.200;
@@ -16,7 +17,7 @@ struct BoneLengths {
   /// Index, middle, ring, little: metacarpal, proximal, intermediate, distal.
   std::array<std::array<double, 4>, 4> fingers_m{};
 
-  /// Error: a length that is not a number from least_m to most_m, with the bone's name.
+  /// Fails with bad_input, naming the bone, if a length is not a number from least_m to most_m.
   Result<void> check() const;
 };
 

@@ -1,19 +1,20 @@
 #pragma once
 // A hand's motion as text in the Biovision hierarchy format (BVH), which animation programs read.
-// Pure text; BvhFile (bvh_file.hpp) puts it on a disk.
+// Only text is made here; BvhFile (bvh_file.hpp) writes it to a disk.
 //
-// - Lengths are centimetres, as most readers take them, angles degrees; axes are OpenXR's.
-// - The ROOT is the wrist, every other joint but the tips a JOINT, in OpenXR's order; tips are End
-//   Sites. The palm is left out: it is fixed to the wrist and no joint of a BVH's kind.
-// - Names are OpenXR's with the hand behind them, as its specification advises: wrist_R,
+// - Lengths are in centimetres, as most readers take them, and angles in degrees. The axes are
+//   OpenXR's.
+// - The ROOT is the wrist. Every other joint is a JOINT, in OpenXR's order, and every tip an End
+//   Site. The palm is left out, because it is fixed to the wrist and nothing turns at it.
+// - Names are OpenXR's followed by the hand, as the OpenXR specification advises: wrist_R,
 //   index_proximal_L.
-// - Zero rotations are the flat hand of JointAngles{}, and OFFSETs are its bones, so that the rest
-//   shape stands in the hierarchy. A joint's OpenXR orientation is therefore its BVH orientation
-//   times its orientation in the flat hand.
-// - Channels are "Yrotation Zrotation Xrotation", R = Ry Rz Rx. A finger spreads about Y and bends
-//   about X, so its channels are its joint's angles, and the order's singular place, Z at 90
-//   degrees, is one to which no finger can turn. With X in the middle it would be a right-angled
-//   bend.
+// - With all rotations zero the hand is the flat hand of JointAngles{}, whose bones are the
+//   OFFSETs: the hierarchy holds the rest shape. A joint's OpenXR orientation is therefore its BVH
+//   orientation times its orientation in the flat hand.
+// - Channels are "Yrotation Zrotation Xrotation", that is R = Ry Rz Rx. A finger spreads about Y
+//   and bends about X, so its channels are its joint's angles. This order is singular where Z is 90
+//   degrees, to which no finger can turn. With X in the middle it would be singular at a
+//   right-angled bend.
 
 #include <array>
 #include <cstdint>
@@ -26,23 +27,23 @@ namespace nendo::hand {
 class BvhFormat {
 public:
   static constexpr double units_per_metre = 100.0;
-  /// Digits of a frame count, which is padded behind, so that it can be written over.
+  /// The width of a frame count. Blanks behind it fill the width, so that it can be written over.
   static constexpr std::size_t count_width = 12;
 
   explicit BvhFormat(const HandSkeleton& skeleton);
 
-  /// From HIERARCHY to the line before MOTION.
+  /// Returns the text from HIERARCHY to the line before MOTION.
   std::string hierarchy() const;
-  /// MOTION, Frames and Frame Time. `rate_hz` > 0.
+  /// Returns the lines MOTION, Frames and Frame Time. `rate_hz` must be above 0.
   static std::string motion_head(std::uint64_t frames, double rate_hz);
-  /// Where the frame count begins in what motion_head() gives.
+  /// The position of the frame count in the text that motion_head() returns, in bytes.
   static constexpr std::size_t count_place = sizeof "MOTION\nFrames: " - 1;
-  /// The frame count in its whole width.
+  /// Returns the frame count, padded to its whole width.
   static std::string count_text(std::uint64_t frames);
 
-  /// Appends a line: where the wrist is and how all joints are turned, to six decimals. The pose is
-  /// one of the skeleton's. False, and nothing is appended, if any number of it would not be
-  /// finite.
+  /// Appends a line to `text`: where the wrist is and how all joints are turned, to six decimals.
+  /// `pose` must be one of the skeleton's. Returns false and appends nothing if any of the numbers
+  /// would not be finite.
   [[nodiscard]] bool append_frame(const HandPose& pose, std::string& text) const;
 
 private:

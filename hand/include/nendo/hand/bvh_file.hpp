@@ -1,12 +1,13 @@
 #pragma once
-// A BVH recording on a disk. How many frames there will be is not known at the beginning, and the
-// end may be a crash or a full disk, so the file is readable at any time: whole frames are written
-// at once, and the count at its head is written over after them, never before.
+// A BVH recording on a disk. How many frames there will be is not known at the beginning, and a
+// crash or a full disk may end the recording. The file is therefore readable at any time: frames
+// are written whole, and the count at the head of the file is written over after them, never
+// before.
 //
-// It grows as FILE.part and gets its name at the end. That loses least: what stood under the name
-// stays until the recording is whole, and what was recorded before a crash stays in FILE.part,
-// which nothing here writes over. A crash of the program loses what was not flushed; one of the
-// machine also what the kernel had not written yet.
+// The recording grows as FILE.part and gets its name at the end. So the file that had the name
+// before stays until the recording is whole, and what was recorded before a crash stays in
+// FILE.part, which nothing here writes over. A crash of the program loses the frames that were not
+// flushed; a crash of the machine also loses those that the kernel had not written yet.
 
 #include <cstdint>
 #include <filesystem>
@@ -17,29 +18,33 @@
 
 namespace nendo::hand {
 
-/// Its functions block as long as the disk does. Movable.
+/// A BVH file that is being written. Its functions block as long as the disk does.
 class BvhFile {
 public:
-  /// Begins FILE.part, without frames. Errors: usage (a rate that is not above 0 and at most
-  /// 1e6, a skeleton that is not finite), failed (cannot be written, is no regular file, or
-  /// FILE.part exists).
+  /// Creates FILE.part, without frames. Errors: usage (a rate that is not above 0 and at most 1e6,
+  /// a skeleton that is not finite), failed (the file cannot be written or is not a regular file,
+  /// or FILE.part exists).
   static Result<BvhFile> create(const std::filesystem::path& path, const HandSkeleton& skeleton,
                                 double rate_hz);
 
   BvhFile(BvhFile&& other) noexcept;
   BvhFile& operator=(BvhFile&&) = delete;
-  /// Without finish() what was flushed stays in FILE.part; one without any frame is removed.
+  /// Closes the file. Without finish(), the flushed frames stay in FILE.part; a FILE.part without
+  /// any frame is removed.
   ~BvhFile();
 
-  /// The next frame, kept until flush(). Error: bad_input if it is not finite; it is left out.
+  /// Takes the next frame and keeps it until flush(). Fails with bad_input if the pose is not
+  /// finite; that frame is left out.
   Result<void> add(const HandPose& pose);
-  /// Gives whole frames to the system, then the count. Error: failed (disk full, ...); frames that
-  /// were not wholly written are taken out again, and the message says where the others are.
+  /// Hands the kept frames to the system, then the count. Fails with failed (disk full, ...);
+  /// frames that were not wholly written are then removed, and the message says where the others
+  /// are.
   Result<void> flush();
-  /// Flushes, syncs and gives the file its name. To be called once, as the last. Error: failed.
+  /// Flushes, syncs and gives the file its name. Must be called once, as the last call. Error:
+  /// failed.
   Result<void> finish();
 
-  /// Flushed ones.
+  /// Returns the number of flushed frames.
   std::uint64_t frames() const noexcept { return frames_; }
 
 private:

@@ -1,9 +1,9 @@
 #pragma once
-// Calibration: from raw counts to joint angles. Each sensor has a line of its own, in the vendor's
-// form, angle = gain * (raw - offset) (VirtualHand SDK, vhtCyberGlove). Above it stand couplings,
-// for what a glove cannot separate: its thumb sensors read roll and abduction mixed, and its
-// abduction sensors are stretched by the flexion of their two neighbours, too. Flexion and
-// spreading are positive.
+// Calibration turns raw counts into joint angles. Each sensor has its own line in the vendor's
+// form, angle = gain * (raw - offset) (VirtualHand SDK, vhtCyberGlove). Couplings come on top of
+// the lines, for what a glove cannot separate: its thumb sensors read roll and abduction mixed, and
+// the flexion of two neighbouring fingers also stretches the abduction sensor between them. Flexion
+// and spreading are positive.
 
 #include <array>
 
@@ -11,7 +11,7 @@
 
 namespace nendo::hand {
 
-/// The angle that each sensor's joint has, by slot; radians.
+/// The angle of each sensor's joint, by slot; radians.
 using SensorAngles = std::array<double, sensor_slots>;
 
 struct SensorCalibration {
@@ -23,7 +23,7 @@ struct SensorCalibration {
   }
 };
 
-/// Which sensor's angle needs what another one reads.
+/// Says that the angle of sensor `of` also depends on what sensor `by` reads.
 struct Coupling {
   Sensor of;
   Sensor by;
@@ -41,10 +41,12 @@ inline constexpr std::array<Coupling, 8> couplings{{
 
 struct Calibration {
   std::array<SensorCalibration, sensor_slots> sensors{};
-  /// One for each of `couplings`: radians of `of` for each radian that the line of `by` reads.
+  /// One factor for each of `couplings`: radians that are added to `of` for each radian that the
+  /// line of `by` reads.
   std::array<double, couplings.size()> mixed_in{};
-  /// The middle finger's own abduction, which no sensor measures, as a part of how far ring and
-  /// index finger lie on different sides of it: 0 keeps it straight. The vendor's "middle bias".
+  /// The middle finger's own abduction, which no sensor measures, as a part of how far the ring and
+  /// index fingers lie on different sides of it; 0 keeps the finger straight. The vendor calls it
+  /// "middle bias".
   double middle_bias = 0.0;
 
   constexpr const SensorCalibration& operator[](Sensor sensor) const noexcept {
@@ -54,16 +56,17 @@ struct Calibration {
     return sensors[static_cast<std::size_t>(sensor)];
   }
 
-  /// The joint of every sensor that is present; 0 for the others, which couple to nothing.
-  /// Wait-free.
+  /// Returns the joint angle of every sensor that is present, and 0 for the others, which also add
+  /// nothing by couplings. Wait-free.
   SensorAngles angles_rad(const GloveSample& sample) const noexcept;
 };
 
-/// Usable for an average hand without any file; a wearer's own calibration is better. The same for
-/// both sides. A whole-range scale is spread over each joint's range of motion, from straight
-/// (closed) at 0 to fully bent (spread) at `most`; the wrist, which turns both ways, from one end
-/// to the other. Counts of a bare converter are taken for a CyberGlove's, and its typical 8-bit
-/// values scaled to `most`. With `most` = 0 every gain is 0.
+/// Returns a calibration that is usable for an average hand without any file; a wearer's own
+/// calibration is better. It is the same for both sides. A whole-range scale is spread over each
+/// joint's range of motion: from straight (closed) at 0 to fully bent (spread) at `most`, and for
+/// the wrist, which turns both ways, from one end to the other. Counts of a bare converter are
+/// taken for a CyberGlove's, whose typical 8-bit values are scaled to `most`. With `most` = 0 every
+/// gain is 0.
 Calibration default_calibration(CountScale scale = {}) noexcept;
 
 } // namespace nendo::hand

@@ -1,11 +1,12 @@
 #pragma once
-// Calibrations of other programs, in and out. All texts are hostile until they have been read to
-// the end; nothing here touches a file but the last two functions.
+// Reads and writes the calibrations of other programs. No text is trusted before it has been read
+// to the end. Only the last two functions touch files.
 //
-// Signs: the vendor's angle is -gain * (count - offset) in a frame where flexion is negative, so
-// its positive gains are those of ours, where flexion and spreading are positive: a CyberGlove's
-// counts rise with both. A text whose bend sensors (or pair sensors) all have the other sign means
-// the other frame, and is turned; one that has both signs among them is refused.
+// About signs: the vendor's angle is -gain * (count - offset) in a frame where flexion is negative.
+// Its positive gains are therefore also positive in our frame, where flexion and spreading are
+// positive: a CyberGlove's counts rise with both. If all bend sensors (or all pair sensors) of a
+// text have the other sign, the text means the other frame, and their signs are turned. A text that
+// has both signs among them is refused.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,8 +22,8 @@ namespace nendo::hand {
 
 struct ImportedCalibration {
   Calibration calibration;        ///< in counts of 0 to 255
-  std::optional<Side> side;       ///< if the text tells
-  std::vector<std::string> notes; ///< what was read otherwise than written, one line each
+  std::optional<Side> side;       ///< nullopt: the text does not tell
+  std::vector<std::string> notes; ///< what was not read as written, one line each
 };
 
 struct ExportedCalibration {
@@ -32,33 +33,37 @@ struct ExportedCalibration {
 
 enum class CalibrationFormat : std::uint8_t { toml, virtualhand, two_point, csv };
 
-/// By what the text looks like; virtualhand if like nothing known.
+/// Guesses the format of a text; virtualhand if it looks like no known format.
 CalibrationFormat format_of(std::string_view text) noexcept;
 
-// Errors of all readers: bad_input, "NAME:LINE: what; remedy". Of all writers: bad_input.
+// All readers fail with bad_input and the message "NAME:LINE: what; remedy". All writers fail with
+// bad_input.
 
-/// VirtualHand's .cal as VTI's library writes it (version, comments, FINGER headings, geometry), as
-/// the Device Configuration Utility does (a header line, headed groups), and as MotorControl does
-/// (tabs, no headings): six groups of four rows `joint offset gain`. In it the row of the sensor
-/// that no glove has (slot 7) holds the gain of slot 11, whose own gain is the middle bias.
+/// Reads a VirtualHand .cal file: six groups of four rows `joint offset gain`. It may be written as
+/// by VTI's library (version, comments, FINGER headings, geometry), the Device Configuration
+/// Utility (a header line, headed groups) or MotorControl (tabs, no headings). The row of the
+/// sensor that no glove has (slot 7) holds the gain of slot 11, and slot 11's own gain is the
+/// middle bias.
 Result<ImportedCalibration> parse_virtualhand(std::string_view text, std::string_view name);
-/// In VTI's structure; offsets are rounded to whole counts, gains to five decimals. Refuses offsets
-/// outside 0 to 255, uncalibrated sensors that every glove has, and self-calibrating gloves.
+/// Writes a .cal file as VTI's library does. Offsets are rounded to whole counts, gains to five
+/// decimals. Refuses offsets outside 0 to 255, sensors that every glove has but that are not
+/// calibrated, and self-calibrating gloves.
 Result<ExportedCalibration> virtualhand_text(const Calibration& calibration, CountScale counts);
 
-/// asr_cyberglove's: 22 lines `angle_rad:count angle_rad:count`, two points of each sensor's line,
-/// in the order of its hand model: wrist, thumb, then each finger with its abduction second. The
-/// place of the palm arch is there but not used.
+/// Reads a calibration of asr_cyberglove: 22 lines `angle_rad:count angle_rad:count`, two points of
+/// each sensor's line, in the order of its hand model: wrist, thumb, then each finger with its
+/// abduction second. It has a line for the palm arch, which is not used.
 Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_view name);
 
-/// Lines `sensor,gain_rad_per_count,offset_counts` under that header; # begins a comment.
+/// Reads lines `sensor,gain_rad_per_count,offset_counts`, which follow a header line of these
+/// words. # begins a comment.
 Result<ImportedCalibration> parse_calibration_csv(std::string_view text, std::string_view name);
-/// Calibrated sensors only, in numbers that read back to the same bits.
+/// Writes the calibrated sensors only, in numbers that read back to the same bits.
 Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration);
 
-/// A regular file of at most 1 MiB; a pipe or device is refused. Blocks. Error: bad_input.
+/// Reads a regular file of at most 1 MiB; a pipe or a device is refused. Blocks. Error: bad_input.
 Result<std::string> read_calibration_text(const std::filesystem::path& path);
-/// All of it or, if that fails, what was there before. Blocks. Error: failed.
+/// Writes the whole text, or leaves the file as it was if that fails. Blocks. Error: failed.
 Result<void> write_calibration_text(const std::filesystem::path& path, std::string_view text);
 
 } // namespace nendo::hand

@@ -1,11 +1,11 @@
 #pragma once
-// A wearer's calibration from held poses: the line of each sensor and the couplings under which the
-// poses are likeliest, by Levenberg and Marquardt. Four things speak: the angles that a pose is
-// known to have, each as surely as wearers do it, some by a habit that all poses share; touches,
-// where the thumb's and a finger's pads meet by forward kinematics, whatever the angles (closed
-// loops; Griffin, Findley, Turner, Cutkosky 2000); the ends of a free motion; and the default
-// calibration, very softly. What the poses do not determine is left at the default and said to be
-// undetermined.
+// Fits a wearer's calibration to held poses: finds the line of each sensor and the couplings under
+// which the poses are likeliest, by the method of Levenberg and Marquardt. The fit rests on the
+// angles that a pose is known to have, each as sure as wearers are at it, and some shifted by a
+// habit that all poses share. It also rests on touches, where the pads of the thumb and of a finger
+// meet by forward kinematics, whatever the angles (closed loops; Griffin, Findley, Turner, Cutkosky
+// 2000), on the ends of a free motion, and, very softly, on the default calibration. What the poses
+// do not determine stays at the default and is reported as undetermined.
 
 #include <array>
 #include <span>
@@ -26,8 +26,8 @@ struct PoseReading {
 };
 
 enum class FitMode : std::uint8_t {
-  /// A line for each flexion sensor; of the others the offset, from the flat hand. No couplings, no
-  /// touches. All that two poses can say.
+  /// Fits a line for each flexion sensor, and for the other sensors only the offset, from the flat
+  /// hand. Uses no couplings and no touches. That is all that two poses can determine.
   quick,
   full,
 };
@@ -35,22 +35,24 @@ enum class FitMode : std::uint8_t {
 struct FitOptions {
   CountScale scale{};
   FitMode mode = FitMode::full;
-  /// Not fitted: touches close at the same angles in a larger hand, up to the pads' thickness.
+  /// Is not fitted: in a larger hand touches close at the same angles, apart from the pads'
+  /// thickness.
   HandSize size{};
-  /// Of a free motion in which every joint went from end to end; empty without one. A sensor that
-  /// reached less there than in the poses is taken not to have been at its end.
+  /// The ranges of a free motion in which every joint went from end to end; empty without one. A
+  /// sensor that reached less there than in the poses is taken not to have been at its end.
   CountRanges free_motion{};
 };
 
-/// What became of a sensor.
+/// What the fit found out about a sensor.
 struct SensorFit {
   bool gain_determined = false;
   bool offset_determined = false;
   double low_counts = 0.0; ///< the range that the poses covered
   double high_counts = 0.0;
   double residual_rad = 0.0; ///< root mean square, over poses that assume an angle
-  /// How sure the angle is within that range: a standard deviation, root mean square over the
-  /// poses. It rests on what the poses say of themselves, and on the default where it was kept.
+  /// The standard deviation of the angle within that range, root mean square over the poses. It
+  /// follows from the deviations that the poses assume, and from the default's where the default
+  /// was kept.
   double deviation_rad = 0.0;
 };
 
@@ -71,11 +73,11 @@ struct CalibrationFit {
   double condition = 1.0;
 };
 
-/// Fits the calibration of a glove with these sensors on this side. `readings` need flat and fist,
-/// and may hold a pose several times; their order is of no consequence. The middle bias stays at
-/// its default, because no pose shows it. Takes milliseconds, allocates. Errors: a reading that is
-/// not finite, out of scale, saturated or lacks a sensor; flat or fist missing; a sensor that moves
-/// the wrong way, or whose poses contradict each other.
+/// Fits the calibration of a glove with these sensors on this side. `readings` must contain flat
+/// and fist, and may contain a pose several times; their order does not matter. The middle bias
+/// stays at its default, because no pose shows it. Takes milliseconds and allocates. Fails with
+/// bad_input on: a reading that is not finite, out of scale, saturated or lacks a sensor; flat or
+/// fist missing; a sensor that moves the wrong way, or whose poses contradict each other.
 Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
                                        SensorMask sensors, const FitOptions& options = {});
 

@@ -1,8 +1,8 @@
 #pragma once
 // The poses of the guided calibration: what a wearer is asked to do, and what that says about the
 // joints. Straight, hook, fist, table top and straight fist are the tendon gliding exercises of
-// hand therapy (Wehbe, Hunter 1985): each bends other joints, and people know how to do them. A
-// table's edge bends PIP joints to an angle that is not the wearer's own to choose.
+// hand therapy (Wehbe, Hunter 1985): each bends different joints, and people know how to do them.
+// The edge of a table bends PIP joints to an angle that does not depend on the wearer's judgement.
 
 #include <array>
 #include <cstdint>
@@ -48,17 +48,18 @@ inline constexpr std::size_t pose_count = 24;
 struct AssumedAngle {
   double angle_rad = 0.0;
   double deviation_rad = 0.0; ///< how far wearers are off, as a standard deviation; 0: not assumed
-  /// Bent to where it feels right, by a habit that is the same each time, and held there by
-  /// nothing.
+  /// The wearer bends the joint to where it feels right, and nothing holds it there. The error is
+  /// partly a habit, which is the same each time.
   bool by_feel = false;
 
   constexpr bool known() const noexcept { return deviation_rad > 0.0; }
 };
 
-/// The pad of the thumb touches the pad of a finger, or the palm at the base of one. Bones end
-/// where the skeleton's tips are, and soft pads lie between them: pads meet `pad_depth_m` to the
-/// palmar side of either tip and `pad_behind_tip_m` behind it; at a finger's base, a proximal
-/// joint, flesh is `palm_depth_m` deep to the palmar side, by the axes of its metacarpal.
+/// A touch of the pad of the thumb with the pad of a finger, or with the palm at the base of a
+/// finger. Bones end at the skeleton's tips, and soft pads lie between them: pads meet
+/// `pad_depth_m` to the palmar side of either tip and `pad_behind_tip_m` behind it. At a finger's
+/// base, which is a proximal joint, the flesh is `palm_depth_m` deep to the palmar side, by the
+/// axes of the finger's metacarpal.
 struct Touch {
   Joint with = Joint::index_tip;
   double deviation_m = 0.002; ///< of each coordinate, between touches of one wearer
@@ -70,21 +71,22 @@ inline constexpr double palm_depth_m = 0.012;
 struct CalibrationPose {
   std::string_view name;        ///< "pinch_index" and so on
   std::string_view instruction; ///< a sentence to be read or spoken to the wearer
-  /// By sensor slot, in the terms of SensorAngles: the abduction sensors' are of pairs.
+  /// The assumed angles by sensor slot, as in SensorAngles: those of the abduction sensors are of
+  /// pairs of fingers.
   std::array<AssumedAngle, sensor_slots> assumed{};
   std::optional<Touch> touch{};
 };
 
-/// Wait-free.
+/// Returns the description of a pose. Wait-free.
 const CalibrationPose& pose_of(PoseId id) noexcept;
 std::optional<PoseId> pose_named(std::string_view name) noexcept;
 
-/// Flat and fist.
+/// Returns flat and fist, the poses of the quick calibration.
 std::span<const PoseId> quick_poses() noexcept;
-/// All of them, in an order that is easy on the hand.
+/// Returns all poses, in an order that is easy on the hand.
 std::span<const PoseId> full_poses() noexcept;
-/// What a full calibration asks for: all of them, then some once more, which are the only ones, or
-/// the surest, to tell of a joint. A take is never the pose of the one before.
+/// Returns the poses that a full calibration asks for: all of them, then some once more, because
+/// they tell most, or alone, about a joint. No take asks for the same pose as the take before it.
 std::span<const PoseId> full_takes() noexcept;
 
 } // namespace nendo::hand

@@ -1,6 +1,6 @@
 #pragma once
-// Where calibration files lie, and which of them is for the glove at hand. What counts is what a
-// file says; its name only keeps files apart.
+// Finds the calibration files and chooses the one for a glove. The content of a file decides; its
+// name only keeps files apart.
 
 #include <cstdint>
 #include <filesystem>
@@ -18,13 +18,14 @@ struct CalibrationFolders {
   std::filesystem::path shared; ///< of all users; empty: none
 };
 
-/// $XDG_CONFIG_HOME/nendo/calibrations (~/.config without it; the home folder from $HOME or else
-/// the password file), and /etc/nendo/calibrations. Reads the environment: no other thread may set
-/// it meanwhile.
+/// Returns $XDG_CONFIG_HOME/nendo/calibrations (without that variable in ~/.config, where the home
+/// folder comes from $HOME or else from the password file), and /etc/nendo/calibrations. Reads the
+/// environment: no other thread may set it meanwhile.
 CalibrationFolders calibration_folders();
 
-/// "USER+GLOVE+HAND.toml", where an empty serial number is "any". Different users, gloves and hands
-/// give different names, each at most 200 characters of [A-Za-z0-9_+%.-], whatever was given.
+/// Returns "USER+GLOVE+HAND.toml", where an empty serial number becomes "any". Different users,
+/// gloves and hands give different names. Every name is at most 200 characters of [A-Za-z0-9_+%.-],
+/// whatever the arguments.
 std::string calibration_file_name(const std::string& user, const std::string& glove_serial,
                                   Side side);
 
@@ -35,23 +36,24 @@ struct StoredCalibration {
 };
 
 struct CalibrationList {
-  std::vector<StoredCalibration> files; ///< own ones first, each folder's by name
-  std::vector<Error> unreadable;        ///< files, and folders that exist, one error each
+  std::vector<StoredCalibration> files; ///< own files first, each folder's by name
+  std::vector<Error> unreadable;        ///< one error for each such file or existing folder
 };
 
-/// All of both folders but earlier versions; a missing folder is an empty one. Blocks.
+/// Reads the calibrations of both folders except the earlier versions. A missing folder counts as
+/// empty. Blocks.
 CalibrationList list_calibrations(const CalibrationFolders& folders);
 
 /// What is known of a glove that needs a calibration.
 struct GloveAtHand {
-  std::string user; ///< empty: whoever
+  std::string user; ///< empty: any
   std::string model;
-  std::string serial; ///< empty: it does not tell
+  std::string serial; ///< empty: the glove does not tell it
   Side side = Side::right;
   CountScale counts;
 };
 
-/// Better ones are greater.
+/// How well a calibration fits a glove; better matches are greater.
 enum class GloveMatch : std::uint8_t {
   other_glove, ///< made with another glove of this model
   any_glove,   ///< made for no particular glove
@@ -63,13 +65,14 @@ struct CalibrationChoice {
   GloveMatch match;
 };
 
-/// The best for that glove, or nothing. Never one of the other hand, of another model or of other
-/// kinds of counts. Of equally good ones an own file goes before a shared one, then the newer, then
-/// the one listed first. `files` must outlive the choice.
+/// Returns the best calibration for that glove, or nullopt. It is never one of the other hand, of
+/// another user, of another model or of the other kind of counts. Among equally good matches an own
+/// file goes before a shared one, then the newer file, then the one listed first. `files` must
+/// outlive the choice.
 std::optional<CalibrationChoice> choose_calibration(const std::vector<StoredCalibration>& files,
                                                     const GloveAtHand& glove);
 
-/// Whether the file is what choose_calibration() gives for its own user, glove and hand.
+/// Tells whether choose_calibration() returns this file for its own user, glove and hand.
 bool is_in_force(const StoredCalibration& file, const std::vector<StoredCalibration>& files);
 
 } // namespace nendo::hand

@@ -1,8 +1,8 @@
 #pragma once
-// Inverse kinematics: from places for the fingertips to joint angles, for pinches, for hands that
-// touch a surface, and for key frames. A fingertip's place leaves one of a finger's four angles
-// open; it is settled as a hand does it, near the angles from which it starts and with a finger's
-// last two joints bending together.
+// Inverse kinematics: finds joint angles that bring the fingertips to given places, for pinches,
+// for hands that touch a surface, and for key frames. The place of a fingertip leaves one of a
+// finger's four angles open. It is chosen as a hand does it: near the start angles, and with the
+// last two joints of a finger bending together.
 
 #include <array>
 
@@ -14,63 +14,66 @@
 
 namespace nendo::hand {
 
-/// Each joint's range; radians. A range that is not finite, not ordered, or wider than a full turn
-/// either way is replaced by the default one.
+/// Each joint's range, in radians. A range that is not finite, not ordered, or wider than a full
+/// turn either way is replaced by the default range.
 struct AngleLimits {
   JointAngles low;
   JointAngles high;
 };
 
-/// From end to end of joint_limits. Wait-free.
+/// Returns the whole ranges of joint_limits. Wait-free.
 AngleLimits default_angle_limits() noexcept;
 
 struct FingertipTarget {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-  /// How much this tip counts beside the others when they pull at the wrist or the palm; 0 is no
-  /// target at all, as is whatever is not finite, negative, or farther than farthest_m from 0.
+  /// How much this tip counts compared with the others when they pull at the wrist or the palm.
+  /// With 0 there is no target, nor with a weight or position that is not finite, a negative
+  /// weight, or a position farther than farthest_m from 0.
   double weight = 0.0;
 
   static constexpr double farthest_m = 1e3;
 };
 
-/// Thumb to little finger.
+/// The targets from the thumb to the little finger.
 using FingertipTargets = std::array<FingertipTarget, finger_count>;
 
-/// Where the palm is to be, as another device tells it (OpenXR's palm pose).
+/// The wanted pose of the palm, as another device measures it (OpenXR's palm pose).
 struct PalmTarget {
   Eigen::Isometry3d T_world_palm = Eigen::Isometry3d::Identity();
-  /// How much it counts beside the fingertips when the wrist is solved for both; 0 is no target at
-  /// all, as is what is not finite or no rotation.
+  /// How much the palm counts compared with the fingertips when the wrist is solved for both. With
+  /// 0 there is no target, nor with values that are not finite or a matrix that is not a rotation.
   double weight = 0.0;
 };
 
 struct InverseOptions {
   AngleLimits limits = default_angle_limits();
-  bool solve_wrist = false;     ///< pitch and yaw, too; else they stay as they are at the start
-  bool solve_palm_arch = false; ///< likewise
-  /// Pitch and yaw are solved for it: alone, or together with the fingertips under solve_wrist.
+  bool solve_wrist = false;     ///< solves pitch and yaw; else they stay as in `start`
+  bool solve_palm_arch = false; ///< likewise for the arch
+  /// With this target, pitch and yaw are solved for the palm alone, or together with the fingertips
+  /// if solve_wrist is set.
   PalmTarget palm{};
-  double tolerance_m = 1e-5; ///< how near counts as reached; 1e-9 at least
+  double tolerance_m = 1e-5; ///< how near counts as reached; at least 1e-9
 };
 
 struct InverseSolution {
   JointAngles angles;
-  /// From each target to the fingertip; 0 without a target.
+  /// The distance from each target to its fingertip; 0 without a target.
   std::array<double, finger_count> residual_m{};
-  /// From the palm to its target, by four points: its origin and, 0.1 m from it, one on each axis;
-  /// root mean square. 0 without a target.
+  /// The distance of the palm from its target: the root mean square over four points, its origin
+  /// and one on each axis 0.1 m from it. 0 without a target.
   double palm_off_m = 0.0;
   unsigned iterations = 0; ///< of all fingers together
   bool converged = false;  ///< every fingertip is within the tolerance of its target
 };
 
-/// Angles within the limits that bring each fingertip to its target. A target out of reach gets the
-/// nearest place found from ten starts, the way from `start` itself preferred by 0.05 mm; so, too,
-/// with palm and wrist solved, but begin near, for that has many more places to end.
-/// Targets stand where T_world_wrist does: in the world, or, if that is the identity, in the frame
-/// of the forearm's end. `start` is the previous pose, or the rest pose; what has no target keeps
-/// its angles, clamped to the limits (what is not finite counts as zero). The same input gives the
-/// same result. Wait-free, bounded time, no allocation; the result is finite.
+/// Returns angles within the limits that bring each fingertip to its target. A target out of reach
+/// gets the nearest place found from ten starts; the result from `start` itself is preferred unless
+/// another is nearer by 0.05 mm. The same holds when palm and wrist are solved, but then begin near
+/// the solution, because there are many more local minima. Targets are in the frame in which
+/// T_world_wrist is given: in the world, or, if T_world_wrist is the identity, in the frame of the
+/// forearm's end. `start` is the previous pose or the rest pose. What has no target keeps its
+/// angles, clamped to the limits (an angle that is not finite counts as zero). The same input gives
+/// the same result. Wait-free, bounded time, no allocation; the result is finite.
 InverseSolution inverse_kinematics(const HandSkeleton& skeleton,
                                    const Eigen::Isometry3d& T_world_wrist,
                                    const FingertipTargets& targets, const JointAngles& start,

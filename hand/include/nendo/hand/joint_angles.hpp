@@ -1,6 +1,6 @@
 #pragma once
-// The angles of a hand's joints, made from one glove sample. What a glove does not measure is
-// filled by stated rules.
+// The angles of a hand's joints, made from one glove sample. Stated rules fill in what a glove does
+// not measure.
 
 #include <array>
 
@@ -11,8 +11,8 @@
 
 namespace nendo::hand {
 
-/// Index, middle, ring or little finger. Flexion > 0 bends towards the palm; abduction > 0 turns
-/// towards the thumb.
+/// The angles of the index, middle, ring or little finger. Flexion > 0 bends towards the palm;
+/// abduction > 0 turns towards the thumb.
 struct FingerAngles {
   double mcp_flexion_rad = 0.0;
   double mcp_abduction_rad = 0.0;
@@ -20,7 +20,8 @@ struct FingerAngles {
   double dip_flexion_rad = 0.0;
 };
 
-/// All zero is the flat hand with closed fingers and the thumb beside the index finger.
+/// The angles of all joints. All zero is the flat hand with closed fingers and the thumb beside the
+/// index finger.
 struct JointAngles {
   double thumb_roll_rad = 0.0;      ///< > 0 carries the thumb across in front of the palm
   double thumb_abduction_rad = 0.0; ///< > 0 opens the web between thumb and index finger
@@ -42,15 +43,16 @@ struct JointAngles {
 };
 
 /// Applies the calibration and keeps every angle within its joint's range of motion by soft stops
-/// (joint_limits.hpp). The abduction sensors measure pairs; the middle finger's own abduction,
-/// which none measures, is what the calibration's middle bias makes of them: none, usually.
+/// (joint_limits.hpp). The abduction sensors measure pairs of fingers. None measures the middle
+/// finger's own abduction; it follows from the pairs by the calibration's middle bias, and is
+/// usually 0.
 ///
-/// What is absent is made of what is present, by rules that are continuous and do not fall when a
-/// measured angle rises; angle_sources.hpp tells which angles they made:
+/// Angles of absent sensors are estimated from present ones, by rules that are continuous and do
+/// not fall when a measured angle rises; angle_sources.hpp tells which angles are estimated:
 /// - finger DIP: 0.32 PIP^2 + 0.17 PIP, of a bent PIP (the vendor library's rule for 18-sensor
 ///   gloves);
-/// - finger PIP: 1.1 MCP, of a bent MCP. A glove with one sensor a finger measures curl, and a
-///   closing hand has both joints arrive together, at about 100 and 90 degrees;
+/// - finger PIP: 1.1 MCP, of a bent MCP. A glove with one sensor a finger measures curl, and in a
+///   closing hand both joints arrive together, at about 100 and 90 degrees;
 /// - finger MCP: the measured PIP / 1.1, for the same reason;
 /// - thumb IP: 0.5 MCP, of a bent MCP; thumb MCP: 2 times the measured IP. In a pinch the IP joint
 ///   bends about half as much, and pulp meets pulp;

@@ -1,8 +1,8 @@
 #pragma once
-// How far each joint turns, and the soft stops that keep an angle within. A glove reads past the
-// end of a joint's range for many reasons, wrong calibration the first of them. A hard clamp would
-// hold such a joint still; a soft stop presses what is beyond its beginning into what is left, so
-// that the joint still moves, and no pose is impossible.
+// The range of motion of each joint, and the soft stops that keep an angle within it. A glove reads
+// past the end of a joint's range for many reasons, most often because of a wrong calibration. A
+// hard clamp would hold such a joint still. A soft stop compresses the angles beyond its beginning
+// into the rest of the range, so that the joint still moves and no pose is impossible.
 
 #include <array>
 
@@ -14,13 +14,14 @@ namespace nendo::hand {
 /// A joint's range of motion, radians: least < soft_least < soft_most < most.
 struct JointLimit {
   double least_rad;
-  double soft_least_rad; ///< below it, angles are pressed together
-  double soft_most_rad;  ///< above it, too
+  double soft_least_rad; ///< below it, angles are compressed
+  double soft_most_rad;  ///< above it, angles are compressed
   double most_rad;
 
-  /// The angle itself from soft_least to soft_most; beyond, an angle on the same side of them and
-  /// no farther than the end. Monotone, of continuous slope, halfway to the end where the angle is
-  /// at the end. Finite for every double: NaN becomes the lower end. Wait-free.
+  /// Returns the angle itself from soft_least to soft_most. Beyond that, returns an angle on the
+  /// same side of them and no farther than the end of the range. The function is monotone with a
+  /// continuous slope, and is halfway to the end where the given angle is at the end. The result is
+  /// finite for every double: NaN becomes the lower end. Wait-free.
   double soften(double angle_rad) const noexcept;
 };
 
@@ -32,16 +33,16 @@ constexpr JointLimit limit_deg(double least, double soft_least, double soft_most
 
 // Ranges of motion as clinical goniometry gives them (American Academy of Orthopaedic Surgeons:
 // finger MCP 0 to 90 and 20 to 30 of extension, PIP 0 to 100, DIP 0 to 80, thumb MCP 0 to 55, IP 0
-// to 80, wrist 70 to 80, 20 and 30 to the sides), a little widened, because a glove that reads past
-// them is more often badly calibrated than worn by an acrobat. The soft stops begin at those ends
-// or beyond, so that neither a flat hand nor a full fist is touched. Where goniometry has no angle
-// (spreading, thumb roll, palm arch) a spread or cupped hand gives it: neighbouring fingers part by
-// 25 degrees, which add up from the middle finger outwards.
+// to 80, wrist 70 to 80, 20 and 30 to the sides), a little widened. A glove that reads past them is
+// more often badly calibrated than worn by an acrobat. The soft stops begin at the clinical ends or
+// beyond, so that they change neither a flat hand nor a full fist. Where goniometry has no angle
+// (spreading, thumb roll, palm arch), the range is that of a spread or cupped hand: neighbouring
+// fingers part by 25 degrees, which add up from the middle finger outwards.
 inline constexpr JointLimit finger_mcp_limit = limit_deg(-30, -20, 90, 100);
 inline constexpr JointLimit finger_pip_limit = limit_deg(-10, -5, 105, 115);
 inline constexpr JointLimit finger_dip_limit = limit_deg(-10, -5, 80, 85);
 
-/// By index_of(Angle).
+/// The limits of all joints, by index_of(Angle).
 inline constexpr std::array<JointLimit, angle_count> joint_limits{{
     limit_deg(-20, -10, 80, 90), // thumb_roll
     limit_deg(-10, -5, 60, 70),  // thumb_abduction

@@ -45,18 +45,18 @@ constexpr std::size_t index_of(Joint joint) noexcept {
   return static_cast<std::size_t>(joint);
 }
 
-/// "thumb_metacarpal" and so on.
+/// Returns "thumb_metacarpal" and so on.
 std::string_view name_of(Joint joint) noexcept;
 
-/// The joint that carries this one; nullopt for the wrist, which is the root. The palm hangs on the
-/// wrist.
+/// Returns the joint that carries this one, or nullopt for the wrist, which is the root. The wrist
+/// carries the palm.
 std::optional<Joint> parent_of(Joint joint) noexcept;
 
 enum class Finger : std::uint8_t { thumb, index, middle, ring, little };
 
 inline constexpr std::size_t finger_count = 5;
 
-/// "thumb" to "little".
+/// Returns "thumb" to "little".
 std::string_view name_of(Finger finger) noexcept;
 
 inline constexpr std::array<Joint, finger_count> fingertips{
@@ -75,9 +75,10 @@ struct PaperNode {
 
 inline constexpr std::size_t paper_node_count = 25;
 
-/// nullopt for the palm, which the paper does not have.
+/// Returns the node of the paper for this joint, or nullopt for the palm, which the paper does not
+/// have.
 std::optional<PaperNode> paper_node_of(Joint joint) noexcept;
-/// nullopt if the paper has no such node.
+/// Returns the joint for a node of the paper, or nullopt if the paper has no such node.
 std::optional<Joint> joint_of(PaperNode node) noexcept;
 
 } // namespace nendo::hand

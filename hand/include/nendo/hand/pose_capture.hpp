@@ -1,6 +1,6 @@
 #pragma once
-// From a stream of samples to a held pose: waits until the hand has been still for a second, and
-// says what it waits for.
+// Captures a held pose from a stream of samples: waits until the hand has been still for a second,
+// and tells what it waits for.
 
 #include <array>
 #include <cstdint>
@@ -9,28 +9,28 @@
 
 namespace nendo::hand {
 
-/// What the sensors said while a pose was held.
+/// The counts of the sensors while a pose was held.
 struct HeldPose {
   std::array<double, sensor_slots> mean_counts{};
   std::array<double, sensor_slots> noise_counts{}; ///< standard deviation of one sample
-  SensorMask present;                              ///< of which slots the two tell
+  SensorMask present;                              ///< the slots for which the two are set
 };
 
 enum class CaptureState : std::uint8_t {
   waiting,   ///< no sample yet, or none of a sensor
-  moving,    ///< some sensor changes; troubled() says which
+  moving,    ///< some sensor changes; troubled() tells which
   noisy,     ///< some sensor jumps to and fro faster than a joint could
   saturated, ///< still, but some sensor is at an end of its counts half the time
-  unchanged, ///< still, but in the last pose
-  settling,  ///< still, not yet for long enough
+  unchanged, ///< still, but in the pose that was held last
+  settling,  ///< still, but not yet for long enough
   held,      ///< held() is complete
 };
 
-/// Wait-free, no allocation. One thread.
+/// Watches samples until a pose is held. Wait-free, no allocation; for use by one thread.
 class PoseCapture {
 public:
-  /// Limits for 255 counts; other scales have them in proportion, yet never below what a last bit
-  /// that flickers does.
+  /// These limits are for 255 counts. Other scales have them in proportion, but never so low that a
+  /// flickering last bit exceeds them.
   static constexpr double still_range_counts = 6.0;
   static constexpr double most_noise_counts = 2.0;
   static constexpr double least_change_counts = 8.0;
@@ -39,19 +39,19 @@ public:
 
   explicit PoseCapture(CountScale scale = {}) noexcept;
 
-  /// The next sample in time. Once held, nothing changes until begin_next().
+  /// Takes the next sample in time. Once the state is held, nothing changes until begin_next().
   CaptureState push(const GloveSample& sample) noexcept;
 
   CaptureState state() const noexcept { return state_; }
-  /// The sensors that stand in the way, if the state is moving, noisy or saturated.
+  /// Returns the sensors that prevent capture, if the state is moving, noisy or saturated.
   SensorMask troubled() const noexcept { return troubled_; }
-  /// How much of hold_s is over, 0 to 1; 1 is held, and nothing else is.
+  /// Returns the part of hold_s that is over, 0 to 1. It is 1 exactly if the state is held.
   double progress() const noexcept { return progress_; }
-  /// Of value if the state is held.
+  /// Returns the held pose; meaningful only if the state is held.
   const HeldPose& held() const noexcept { return held_; }
-  /// Waits for another pose, different from the one held.
+  /// Begins to wait for another pose, different from the one held.
   void begin_next() noexcept;
-  /// Takes the pose held last, too, if it is held again.
+  /// Also accepts the pose held last, if it is held again.
   void forget_last() noexcept { last_ = {}; }
 
 private:
@@ -68,8 +68,8 @@ private:
   void begin_window(const GloveSample& sample, HostTime now) noexcept;
   void watch_noise(const GloveSample& sample, double elapsed_s) noexcept;
   void add(const GloveSample& sample) noexcept;
-  CaptureState judge_movement(SensorMask moved) noexcept;
-  CaptureState judge_rest(double still_s) noexcept;
+  CaptureState state_in_movement(SensorMask moved) noexcept;
+  CaptureState state_at_rest(double still_s) noexcept;
   SensorMask restless() const noexcept;
   SensorMask at_ends() const noexcept;
   bool differs_from_last() const noexcept;

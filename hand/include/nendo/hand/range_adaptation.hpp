@@ -3,12 +3,13 @@
 // the hand moves, and spread over its joint's usual range of motion. It begins as the default
 // calibration and changes so slowly that nobody sees the hand drift.
 //
-// What teaches is a joint's turn: the end of a swing, from which it comes back. So a hand at rest
-// teaches nothing, however long, and one excursion counts once, however far and long: a glove that
-// is put on or taken off, a sensor that sticks, does little. The two bounds are expectiles of those
-// ends (W. K. Newey, J. L. Powell, "Asymmetric Least Squares Estimation and Testing", Econometrica
-// 55, 1987): an end beyond the bound draws it much, an end short of it a little, so that the bounds
-// come in again for a hand that moves less.
+// The learner learns from a joint's turns: a turn is the end of a swing, from which the joint comes
+// back. So a hand at rest teaches nothing, however long it rests. One excursion counts once,
+// however far and long it is, so that putting a glove on or off, or a sensor that sticks, has
+// little effect. The two bounds are expectiles of those ends (W. K. Newey, J. L. Powell,
+// "Asymmetric Least Squares Estimation and Testing", Econometrica 55, 1987): an end beyond the
+// bound moves it much, an end short of it moves it a little, so that the bounds come closer again
+// for a hand that moves less.
 
 #include <array>
 #include <cstdint>
@@ -19,59 +20,63 @@
 
 namespace nendo::hand {
 
-/// What was learned of a sensor.
+/// What was learned about a sensor.
 struct SensorRange {
   double low_counts = 0.0;  ///< where its joint is at the lower end of its usual range
   double high_counts = 0.0; ///< where it is at the upper end
-  std::uint64_t turns = 0;  ///< how many turns of the joint taught them; 0: the default's counts
+  std::uint64_t turns = 0;  ///< turns of the joint that taught them; 0: they are the default's
 };
 using SensorRanges = std::array<SensorRange, sensor_slots>;
 
-/// All that a learner needs to go on where another one stopped.
+/// The state of a learner, from which another one can go on.
 struct LearnedRanges {
   struct Sensor {
-    double low_counts = 0.0, high_counts = 0.0; ///< as SensorRange has them
-    std::uint32_t bottoms = 0, tops = 0;        ///< turns that taught the one and the other
-    SensorCalibration line; ///< on its way to them; a gain of 0: nothing can be learned
+    double low_counts = 0.0, high_counts = 0.0; ///< as in SensorRange
+    std::uint32_t bottoms = 0, tops = 0;        ///< turns that taught low and high
+    SensorCalibration line; ///< drifts towards them; gain 0: nothing can be learned
   };
-  Side side = Side::right; ///< of the hand that they are of
+  Side side = Side::right; ///< of the hand from which they were learned
   std::array<Sensor, sensor_slots> sensors{};
 };
 
 class RangeAdaptation {
 public:
-  /// No count's angle changes faster than that through learning.
+  /// Learning changes the angle of a count at most this fast.
   static constexpr double most_drift_rad_s = 0.1;
-  /// Less than this part of the usual range, in the default's counts, is no swing.
+  /// A movement over less than this part of the usual range, in the default's counts, is no swing.
   static constexpr double least_swing = 0.15;
-  /// What one swing's end moves a bound by, at most, as a part of that range: of the first, and
-  /// once many have come.
+  /// How far the end of one swing moves a bound at most, as a part of that range: for the first
+  /// swing, and once there have been many.
   static constexpr double most_first_step = 0.25;
   static constexpr double most_step = 0.05;
   /// The bounds never come nearer to each other than this part of that range.
   static constexpr double least_span = 0.35;
 
-  /// Of a glove whose counts mean this. Nothing is ever learned with `most` = 0.
+  /// Begins with the default calibration for a glove of this scale. With `most` = 0 nothing is ever
+  /// learned.
   explicit RangeAdaptation(CountScale counts = {}) noexcept;
-  /// Goes on, as after a pause in which no sensor sent anything. A sensor of which `learned` tells
-  /// what cannot have been learned begins anew.
+  /// Continues from `learned`, as after a pause in which no sensor sent anything. A sensor whose
+  /// values in `learned` cannot have been learned begins anew.
   RangeAdaptation(CountScale counts, const LearnedRanges& learned) noexcept;
 
-  /// The next sample, in time. A count that is gone again within two samples is not seen. A sample
-  /// of the other hand, another glove's, begins anew, from the default. Wait-free, no allocation.
+  /// Takes the next sample in time. Ignores a count that is gone again within two samples. A sample
+  /// of the other hand, which is another glove's, begins anew from the default. Wait-free, no
+  /// allocation.
   void push(const GloveSample& sample) noexcept;
 
-  /// Lines only, without couplings: default_calibration() at first. Finite.
+  /// Returns the present lines, without couplings; they are those of default_calibration() at
+  /// first. Finite.
   const Calibration& calibration() const noexcept { return calibration_; }
-  /// What the lines are on their way to. Zeros for slots that no glove fills.
+  /// Returns the ranges towards which the lines drift; zeros for slots that no glove fills.
   SensorRanges ranges() const noexcept;
-  /// For whoever goes on. Null before the first sample: nothing is known, not even which hand's.
+  /// Returns the state from which another learner can go on. It is nullopt before the first sample,
+  /// because then not even the hand is known.
   std::optional<LearnedRanges> learned() const noexcept;
 
 private:
   static constexpr std::size_t window = 5; ///< of the median that takes out spikes
 
-  /// One sensor.
+  /// What is learned about one sensor.
   struct Learner {
     std::array<std::uint16_t, window> recent{};
     std::size_t seen = 0;           ///< of `recent`, since it was absent

@@ -1,6 +1,6 @@
 #pragma once
-// What each sensor reached while a hand moved freely: with every joint moved from end to end, the
-// counts of a whole range of motion.
+// Captures the counts that each sensor reaches while a hand moves freely. If every joint is moved
+// from end to end, these are the counts of a whole range of motion.
 
 #include <array>
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace nendo::hand {
 struct CountRanges {
   std::array<double, sensor_slots> low_counts{};
   std::array<double, sensor_slots> high_counts{};
-  SensorMask present; ///< of which slots the two tell; none: nothing is known
+  SensorMask present; ///< the slots for which the two are set; none: nothing is known
 };
 
-/// Wait-free, no allocation. One thread.
+/// Watches samples and keeps the ranges. Wait-free, no allocation; for use by one thread.
 class RangeCapture {
 public:
   RangeCapture() = default;
-  /// Goes on from what was seen before.
+  /// Continues from the ranges that were seen before.
   explicit RangeCapture(const CountRanges& seen) noexcept : seen_(seen) {}
 
-  /// The next sample in time. A count counts once it is the middle one of three in a row by size,
-  /// so that a single sample that jumps does not widen a range.
+  /// Takes the next sample in time. Of three counts in a row only the one in the middle by size is
+  /// used, so that a single sample that jumps does not widen a range.
   void push(const GloveSample& sample) noexcept;
 
   const CountRanges& seen() const noexcept { return seen_; }

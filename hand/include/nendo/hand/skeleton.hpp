@@ -1,11 +1,11 @@
 #pragma once
-// The paper's VR Hand: a skeleton of constant rest shape, and its forward kinematics. Numbers in,
-// numbers out; every pose is computed from the rest shape and the current angles, so nothing drifts
-// and a lost sample costs nothing.
+// The paper's VR Hand: a skeleton of constant rest shape, and its forward kinematics. Every pose is
+// computed from the rest shape and the current angles alone, so nothing drifts and a lost sample
+// does no harm.
 //
 // Frames follow OpenXR: right-handed; at zero angles a joint's -Z points to the fingertip, +Y out
-// of the back of the hand, +X to the right. A pose sits at the base of the bone it is named after,
-// tips at the end of the finger.
+// of the back of the hand, +X to the right. A joint's pose is at the base of the bone that it is
+// named after, a tip's pose at the end of the finger.
 
 #include <array>
 
@@ -31,7 +31,7 @@ struct HandPose {
   const Eigen::Isometry3d& operator[](Joint joint) const noexcept {
     return joints[index_of(joint)];
   }
-  /// 3 by 5, thumb to little finger; metres.
+  /// Returns the positions of the fingertips, 3 by 5, thumb to little finger; metres.
   Eigen::Matrix<double, 3, 5> fingertip_positions() const noexcept;
 };
 
@@ -39,31 +39,33 @@ class HandSkeleton {
 public:
   explicit HandSkeleton(Side side, HandSize size = {});
 
-  /// A wearer's measured bones. Where the metacarpals begin, and in which directions they run, has
-  /// an average hand's proportions, scaled as the middle finger's bones are. Error: bones.check().
+  /// Makes a skeleton of a wearer's measured bones. The places where the metacarpals begin and
+  /// their directions are those of an average hand, scaled as the middle finger's bones are. Error:
+  /// as bones.check().
   static Result<HandSkeleton> of_bones(Side side, const BoneLengths& bones);
 
-  /// Forward kinematics. T_world_wrist is where the forearm ends; the wrist's own angles turn the
-  /// hand about it. An angle that is not finite counts as zero. Wait-free, no allocation.
+  /// Returns the pose by forward kinematics. T_world_wrist is where the forearm ends; the wrist's
+  /// own angles turn the hand about it. An angle that is not finite counts as zero. Wait-free, no
+  /// allocation.
   HandPose pose(const JointAngles& angles, const Eigen::Isometry3d& T_world_wrist) const noexcept;
 
   Side side() const noexcept { return side_; }
-  /// As they are in this skeleton, whatever it was made from.
+  /// Returns the lengths of the bones in this skeleton, whatever it was made from.
   BoneLengths bones() const noexcept;
-  /// The bone that ends in `joint`, from its parent at zero angles, in the axes of a right hand's
-  /// wrist; metres.
+  /// Returns the vector of the bone that ends in `joint`, from its parent at zero angles, in the
+  /// axes of a right hand's wrist; metres.
   const Eigen::Vector3d& rest_offset(Joint joint) const noexcept {
     return offsets_m_[index_of(joint)];
   }
 
 private:
   using Offsets = std::array<Eigen::Vector3d, joint_count>;
-  /// What does not change from pose to pose, in the axes of this side's own hand.
+  /// The parts of a finger that are the same in every pose, in the axes of this side's own hand.
   struct FingerRoot {
     Eigen::Vector3d base_m; ///< of the metacarpal, from the wrist
     Eigen::Vector3d head_m; ///< of the metacarpal, from its base
-    /// The metacarpal's -Z points along the bone, whereas the finger's zero is parallel to the
-    /// wrist's axis.
+    /// The axes of the metacarpal. Its -Z points along the bone, whereas the finger's zero is
+    /// parallel to the wrist's axis.
     Eigen::Matrix3d metacarpal_axes;
   };
 

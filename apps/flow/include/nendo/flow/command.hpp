@@ -1,7 +1,7 @@
 #pragma once
-// Everything that a person may ask of a run, whichever way it comes: a key, the window's mouse and
-// buttons, or a browser. A command is a plain value of fixed size, so that it passes through rings
-// without allocation.
+// Everything that a person may ask of a run by keys, by the window's mouse and buttons, or by a
+// browser. A command is a plain value of fixed size, so that it passes through rings without
+// allocation.
 
 #include <type_traits>
 #include <variant>
@@ -13,43 +13,43 @@
 
 namespace nendo::flow {
 
-/// The loop goes on with these settings.
+/// Lets the loop go on with these settings.
 struct ChangeSettings {
   LoopSettings settings;
   friend bool operator==(const ChangeSettings&, const ChangeSettings&) = default;
 };
-/// The model becomes again what was loaded from its file.
+/// Makes the model again what was loaded from its file.
 struct ResetModel {
   friend bool operator==(const ResetModel&, const ResetModel&) = default;
 };
-/// Recording to a file begins or ends.
+/// Begins or ends a recording to a file.
 struct SetRecording {
   bool on = false;
   friend bool operator==(const SetRecording&, const SetRecording&) = default;
 };
-/// The shape as it is now is written to a file of its own.
+/// Writes the present shape to a file of its own.
 struct SaveShape {
   friend bool operator==(const SaveShape&, const SaveShape&) = default;
 };
-/// The input of the last while is written to a file, if the run keeps it in memory.
+/// Writes the most recent input to a file, if the run keeps it in memory.
 struct SaveRecording {
   friend bool operator==(const SaveRecording&, const SaveRecording&) = default;
 };
-/// The run ends, and its shape is written.
+/// Ends the run, which then writes its shape.
 struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
 };
 
-/// A loop does what Request and WristMove say, at the beginning of its next tick, and passes over
-/// all others, which are done by whoever runs the loop.
+/// A loop obeys Request and WristMove at the beginning of its next tick. It ignores all others,
+/// which are obeyed by the code that runs the loop.
 using Command = std::variant<Request, WristMove, ChangeSettings, ResetModel, SetRecording,
                              SaveShape, SaveRecording, EndRun>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
-/// One thread pushes, one thread takes.
+/// One thread pushes commands, and one thread takes them.
 using CommandRing = SpscRing<Command>;
 
-/// Whether a loop does it by itself while it runs.
+/// Tells whether a running loop obeys the command by itself.
 constexpr bool is_for_loop(const Command& command) noexcept {
   return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The loop: drains the gloves' rings, computes both hands' fingertips, makes control vectors of
+// The loop drains the gloves' rings, computes both hands' fingertips, makes control vectors of
 // them, deforms the model and publishes the frame, at a fixed rate.
 
 #include <array>
@@ -23,11 +23,11 @@
 
 namespace nendo::flow {
 
-/// One hand, as the loop takes it in. The loop's thread alone drains `ring`, which must outlive the
+/// A hand as an input of the loop. Only the loop's thread drains `ring`, which must outlive the
 /// loop.
 struct HandInput {
   SampleRing* ring = nullptr;
-  Side side = Side::right; ///< the hand that it is on the stage, whichever glove it wears
+  Side side = Side::right; ///< which hand it is on the stage, whichever glove it wears
   hand::Wearer wearer;
   GloveSample first;            ///< the pose in which the hand takes hold of the model
   bool gated = true;            ///< hand::SensorGate keeps out counts that no hand can have caused
@@ -54,17 +54,16 @@ struct TickStages {
 struct LoopOptions : PaceOptions {
   SculptorOptions sculptor;
   TickStages stages;
-  /// Every tick's record goes there; a full ring refuses it. Must outlive the loop.
+  /// The ring that gets every tick's record, or refuses it if it is full. It must outlive the loop.
   TickRing* records = nullptr;
-  /// What people ask of the loop while it runs; it takes them at the beginning of a tick. Must
-  /// outlive it.
+  /// The commands, which the loop takes at the beginning of a tick. It must outlive the loop.
   CommandRing* commands = nullptr;
-  /// The loop logs there what it takes, for a recorder. Must outlive the loop.
+  /// The log to which the loop writes its input, for a recorder. It must outlive the loop.
   InputLog* input_log = nullptr;
   std::size_t undo_most_bytes = 0; ///< ShapingOptions::undo_most_bytes
-  /// Each is shown every frame. Must outlive the loop.
+  /// The sinks that are shown every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
-  /// The hands' rings count their samples there; OverrunPolicy::sample needs it. Must outlive the
+  /// Is notified of each sample that comes; OverrunPolicy::sample needs it. It must outlive the
   /// loop.
   EventCount* event_count = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
@@ -73,23 +72,23 @@ struct LoopOptions : PaceOptions {
 
 class DeformLoop {
 public:
-  /// One or two hands, at most one of a side. The model's vertices are copied; everything that a
-  /// tick needs is allocated here. The hands take hold of the model at their first samples; with
-  /// SwitchAction::grab they do not keep it until a switch is on.
+  /// `hands` are one or two, at most one of a side. Copies the model's vertices and allocates all
+  /// that a tick needs. The hands take hold of the model at their first samples. With
+  /// SwitchAction::grab they hold it only while a switch is on.
   DeformLoop(const deform::Mesh& model, const Placement& placement, std::vector<HandInput> hands,
              const LoopOptions& options);
 
-  /// Runs ticks on the calling thread until `stop` or for `most_ticks` deadlines of the grid,
-  /// skipped ones included. In a tick: no allocation, no lock, no system call but the sleep.
-  /// make_thread_realtime() before it makes the thread's wake-ups punctual.
+  /// Runs ticks on the calling thread until `stop` or for `most_ticks` deadlines of the grid, also
+  /// skipped ones. A tick does not allocate or lock; its only system call is the sleep. Call
+  /// make_thread_realtime() first to make wake-ups punctual.
   void run(const std::atomic<bool>& stop,
            std::uint64_t most_ticks = std::numeric_limits<std::uint64_t>::max()) noexcept;
-  /// One tick without its sleep, for callers with a clock of their own. Same thread as run().
+  /// Runs one tick without its sleep, for callers with a clock of their own, on the thread of
+  /// run().
   void tick(std::uint64_t number, HostTime scheduled) noexcept {
     tick({number, scheduled, HostClock::now()});
   }
-  /// The same of a tick that has been, as an input log tells it; what is measured of it says
-  /// nothing.
+  /// Repeats a tick from an input log. The times that are measured of it mean nothing.
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {
     tick(Pacer::Due{number, scheduled, woke});
   }
@@ -101,14 +100,15 @@ public:
   const LoopStats& stats() const noexcept { return stats_; }
   /// Returns where the hands are. Must not be called while the loop runs.
   Placement placement() const;
-  /// What adaptation has learned of the hands' gloves, by Placement::index_of(); nullopt where it
-  /// does not. Not while the loop runs.
+  /// Returns what adaptation has learned of the gloves, by Placement::index_of(); nullopt without
+  /// adaptation. Must not be called while the loop runs.
   std::array<std::optional<hand::LearnedRanges>, 2> learned() const;
-  /// Makes room for more undos (Shaping::refill_undo), as far as LoopOptions::undo_most_bytes.
+  /// Makes room for more undos, up to LoopOptions::undo_most_bytes. See Shaping::refill_undo().
   bool refill_undo() { return shaping_.refill_undo(); }
-  /// Makes points in the mesh's order of a frame's shape. Any thread.
+  /// Returns the layout, which turns a frame's shape into points in the mesh's order. Any thread.
   const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
-  /// The shape as it stands when the loop has ended, nothing of a stroke left out. 3 by #vertices.
+  /// Completes the last stroke and returns the shape, 3 by #vertices. Call it when the loop has
+  /// ended.
   deform::Points final_shape();
 
 private:
@@ -122,7 +122,7 @@ private:
   void record_latencies(const TickRecord& record) noexcept;
 
   struct Hand {
-    /// Makes `latest` and `angles` of the next sample.
+    /// Updates `latest` and `angles` by the next sample.
     void follow(const GloveSample& sample) noexcept;
     const hand::HandSkeleton& skeleton() const noexcept {
       return skeletons[Placement::index_of(latest.side)];

@@ -9,8 +9,8 @@ namespace nendo::flow {
 class FrameSink {
 public:
   virtual ~FrameSink() = default;
-  /// Called on the loop's thread, as a part of the tick: wait-free, and without allocation, lock or
-  /// system call.
+  /// Takes a frame. It is called on the loop's thread, as a part of the tick, so it must be
+  /// wait-free, without allocation, lock or system call.
   virtual void show(const Frame& frame) noexcept = 0;
 };
 

@@ -14,17 +14,18 @@ class Histogram {
 public:
   using Nanoseconds = std::chrono::nanoseconds;
 
-  /// Wait-free, no allocation. Negative durations count as zero. `count`: that often.
+  /// Counts `value`, `count` times. Negative durations count as zero. Wait-free, without
+  /// allocation.
   void record(HostClock::duration value, std::uint64_t count = 1) noexcept;
 
   std::uint64_t count() const noexcept { return count_; }
   Nanoseconds min() const noexcept { return Nanoseconds(count_ == 0 ? 0 : min_ns_); }
   Nanoseconds max() const noexcept { return Nanoseconds(max_ns_); }
-  /// The least recorded value that `fraction` (0..1) of all values do not exceed, to within 1.6 %;
-  /// never above max().
+  /// Returns the least recorded value that `fraction` (0..1) of all values do not exceed, to within
+  /// 1.6 %. It is never above max().
   Nanoseconds percentile(double fraction) const noexcept;
-  /// Calls sink(longest, count) for each class of durations that has any, shortest first; `longest`
-  /// is the longest that belongs to it, at most max().
+  /// Calls sink(longest, count) for each class of durations that has any, shortest first. `longest`
+  /// is the longest duration of that class, at most max().
   template <class Sink>
   void for_each(Sink&& sink) const {
     for (std::size_t bucket = 0; bucket < bucket_count; ++bucket) {
@@ -36,8 +37,8 @@ public:
   }
 
 private:
-  // 64 buckets an octave; values below 64 ns have one each. 2^40 ns is 18 minutes: longer ones
-  // share the last bucket.
+  // There are 64 buckets an octave; values below 64 ns have one each. Values above 2^40 ns, which
+  // is 18 minutes, share the last bucket.
   static constexpr unsigned sub_bits = 6;
   static constexpr unsigned most_bits = 40;
   static constexpr std::size_t bucket_count = (most_bits - sub_bits + 1) << sub_bits;

@@ -5,11 +5,11 @@
 
 namespace nendo::flow {
 
-/// Follows a loop's frames, one after another: a hold begins where `held` becomes true or a commit
-/// or an undo is counted. Wait-free.
+/// Follows a loop's frames, one after another. A hold begins where `held` becomes true, or where a
+/// commit or an undo is counted. Wait-free.
 class HoldWatch {
 public:
-  /// True: in this frame the fingertips took hold.
+  /// Returns true if the fingertips took hold in this frame.
   bool follow(const Frame& frame) noexcept {
     const bool anew = frame.held && (!held_ || frame.commits != commits_ || frame.undos != undos_);
     held_ = frame.held;

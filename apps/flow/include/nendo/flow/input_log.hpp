@@ -1,7 +1,7 @@
 #pragma once
-// What the loop took, in the order in which it took it: samples, commands, and the ticks that
-// closed over them. Whoever gives the same to another loop of the same options gets the same shape,
-// bit for bit.
+// The loop's input in the order in which the loop took it: samples, commands, and after them the
+// tick that used them. Another loop of the same options makes the same shape of the same input, bit
+// for bit.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@ struct TakenSample {
   GloveSample sample;
 };
 
-/// All that stands before it on the input log, up to the tick before, is what this tick took.
+/// A tick. The entries between the tick before and this one are the input of this tick.
 struct LoggedTick {
   std::uint64_t number = 0; ///< Pacer::Due::number
   HostTime scheduled{};
@@ -30,11 +30,12 @@ struct LoggedTick {
 
 using InputLogEntry = std::variant<TakenSample, Command, LoggedTick>;
 
-/// From the loop to a recorder, through a ring; a full one refuses what comes, and the next tick
-/// that finds room tells how much that was. The loop's side is wait-free.
+/// Hands the loop's input to a recorder through a ring. A full ring refuses entries, and the next
+/// tick that finds room tells how many. The loop's side is wait-free.
 class InputLog {
 public:
-  /// Allocates once, 128 bytes an entry. Two gloves and a loop at 90 Hz make 270 entries a second.
+  /// Allocates once, 128 bytes for each entry. Two gloves and a loop at 90 Hz make 270 entries a
+  /// second.
   explicit InputLog(std::size_t at_least = std::size_t{1} << 14) : ring_(at_least) {}
 
   void sample(std::uint8_t hand, const GloveSample& sample) noexcept {
@@ -45,12 +46,12 @@ public:
     ring_.try_push(LoggedTick{number, scheduled, woke, ring_.counters().refused});
   }
 
-  /// The recorder's thread only, wait-free: hands every entry that is there to `sink`, in order.
+  /// The recorder's thread only, wait-free. Hands all present entries to `sink`, in order.
   template <class Sink>
   std::size_t drain(Sink&& sink) noexcept {
     return ring_.drain(std::forward<Sink>(sink));
   }
-  /// Any thread.
+  /// Returns how many entries were refused so far. May be called from any thread.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
 private:

@@ -10,7 +10,7 @@
 
 namespace nendo::flow {
 
-/// Written by the loop's thread; read them when run() has returned.
+/// The loop's thread writes these counters. Read them when run() has returned.
 struct LoopStats {
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0; ///< ticks that ended after the next deadline
@@ -34,7 +34,8 @@ struct LoopStats {
   Histogram wake_latency;                     ///< from TickRecord::scheduled to the loop's running
   Histogram work;                             ///< from there to the published frame
   Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it
-  /// hand::FilterLatency of each hand at each tick with samples, which end_to_end does not contain.
+  /// The hand::FilterLatency of each hand at each tick with samples. end_to_end does not contain
+  /// it.
   Histogram filter_moving;
   Histogram filter_worst;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// When a loop's ticks run: the grid of deadlines, what becomes of it when a tick takes too long,
-// and the wait between ticks.
+// Decides when a loop's ticks run: it keeps the grid of deadlines, handles ticks that take too
+// long, and waits between ticks.
 
 #include <cstdint>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace nendo::flow {
 
-/// What follows a tick that ended after the next deadline.
+/// What happens after a tick that ended after the next deadline.
 enum class OverrunPolicy : std::uint8_t {
   skip,      ///< deadlines that passed are missed; the next tick is on the grid again
   catch_up,  ///< they are run at once, the newest `most_catch_up` of them; older ones are missed
@@ -25,19 +25,20 @@ struct PaceOptions {
   double rate_hz = 90.0; ///< within TickGrid's limits
   OverrunPolicy policy = OverrunPolicy::skip;
   unsigned most_catch_up = 4; ///< at least 1
-  /// Wakes before the deadline and spins to it (SpinMargin). DeformLoop does so under SCHED_FIFO
-  /// alone: the ordinary scheduler punishes a thread that spins, which then misses twice as many.
+  /// If set, the pacer wakes before the deadline and spins until it (SpinMargin). DeformLoop does
+  /// so only under SCHED_FIFO: under the ordinary scheduler, a thread that spins misses twice as
+  /// many deadlines.
   bool spin = false;
-  /// With `sample`: a tick runs after so long without one, so that silence is seen.
+  /// With `sample`, a tick runs after this time without a sample, so that silence is noticed.
   HostClock::duration longest_wait = std::chrono::milliseconds(100);
 };
 
-/// "skip", "catch-up" or "catch-up:N" with N from 1 to 1000, "re-anchor", "sample".
+/// Returns "skip", "catch-up" or "catch-up:N" with N from 1 to 1000, "re-anchor", or "sample".
 std::string describe_policy(const PaceOptions& options);
-/// Sets policy and most_catch_up; false for anything else than the above.
+/// Sets policy and most_catch_up by such a text. Returns false if the text is none of these.
 bool parse_policy(std::string_view text, PaceOptions& options) noexcept;
 
-/// One thread. No allocation, lock or system call but the wait.
+/// Belongs to one thread. It does not allocate or lock, and its only system call is the wait.
 class Pacer {
 public:
   struct Due {
@@ -48,15 +49,16 @@ public:
     HostClock::duration spun{};
   };
 
-  /// `event_count` is what samples notify; needed by OverrunPolicy::sample alone. Tick 0 is due at
-  /// `start`.
+  /// Tick 0 is due at `start`. `event_count` is notified of samples; only OverrunPolicy::sample
+  /// needs it.
   Pacer(const PaceOptions& options, HostTime start, EventCount* event_count = nullptr) noexcept;
 
-  /// Waits until the next tick is due, not at all if it is late.
+  /// Waits until the next tick is due. It does not wait if the tick is late.
   Due wait() noexcept;
-  /// The tick ended at `now`: decides which comes next. True if it overran the next deadline.
+  /// Must be called when the tick ended, at `now`; decides which tick comes next. Returns true if
+  /// the tick overran the next deadline.
   bool end_tick(HostTime now) noexcept;
-  /// The number that wait() gives next; deadlines below it are past.
+  /// Returns the number that wait() gives next. Deadlines with lower numbers are past.
   std::uint64_t next() const noexcept { return next_; }
   HostTime next_deadline() const noexcept { return grid_.deadline(next_ - first_of_grid_); }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Where the hands are. A glove measures no position in space, so the model is put on a stage,
-// scaled to a size that two hands can hold, and a hand is placed at either side of it with its
+// Says where the hands are. A glove measures no position in space. So the model is put on a stage
+// and scaled to a size that two hands can hold. A hand is placed at each side of it, with the
 // fingertips on the surface.
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace nendo::flow {
 
-/// 3 by 5, thumb to little finger, in metres.
+/// The tips of a hand's fingers, 3 by 5, thumb to little finger, in metres.
 using Fingertips = Eigen::Matrix<double, 3, 5>;
 
 struct PlacementOptions {
@@ -22,7 +22,7 @@ struct PlacementOptions {
 };
 
 /// The stage has the model's axes and origin, in metres: x to the operator's right, y up, z towards
-/// the operator. Models are taken as y up, z front, as OBJ files mostly are.
+/// the operator. Models are taken to have y up and z to the front, as most OBJ files have.
 struct Placement {
   double units_per_metre = 1.0; ///< model units on a metre of the stage
   std::array<Eigen::Isometry3d, 2> T_stage_wrist{Eigen::Isometry3d::Identity(),
@@ -32,10 +32,10 @@ struct Placement {
   static constexpr std::size_t index_of(Side side) noexcept { return side == Side::left ? 0 : 1; }
 };
 
-/// tips_wrist: each hand's fingertips in its wrist's frame in the pose in which it is to touch the
-/// model; an absent hand is nullopt. A rigid registration of the five tips to the surface (point to
-/// plane), started from hands that hold the model between them, palms inwards, fingers forward,
-/// thumbs up. Allocates; not for the loop.
+/// Places the hands at the model. tips_wrist: each hand's fingertips in its wrist's frame, in the
+/// pose in which it is to touch the model; an absent hand is nullopt. The five tips are registered
+/// rigidly to the surface (point to plane). The search starts from hands that hold the model
+/// between them, palms inwards, fingers forward, thumbs up. Allocates; not for the loop.
 Placement place_hands(const deform::Mesh& model,
                       const std::array<std::optional<Fingertips>, 2>& tips_wrist,
                       const PlacementOptions& options = {});

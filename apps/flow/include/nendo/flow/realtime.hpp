@@ -1,6 +1,6 @@
 #pragma once
-// What a thread needs of the system to be on time, asked for, and what the system said. Nothing
-// that is refused is fatal, and nothing is refused in silence.
+// Asks the system for what a thread needs to be on time, and tells what the system granted. A
+// refusal is never fatal, and it is always reported.
 
 #include <optional>
 #include <string>
@@ -11,8 +11,8 @@
 namespace nendo::flow {
 
 struct RealtimeOptions {
-  /// SCHED_FIFO, 1 to 97; 0: the ordinary scheduler. The readers of gloves run two above, so that a
-  /// sample that has arrived is in the ring before the loop drains it.
+  /// The priority under SCHED_FIFO, 1 to 97, or 0 for the ordinary scheduler. The readers of gloves
+  /// run two above, so that a sample that has arrived is in the ring before the loop drains it.
   unsigned priority = 0;
   std::vector<unsigned> affinity; ///< the CPUs that the thread may use; empty: all
   bool lock_memory = false;       ///< no page of the process is ever fetched again
@@ -23,10 +23,10 @@ constexpr unsigned reader_priority(unsigned of_loop) noexcept {
   return of_loop == 0 ? 0 : of_loop + 2;
 }
 
-/// "2", "0,2", "0-3": CPUs of this machine. Error: usage, naming `option`.
+/// Parses CPUs of this machine, such as "2", "0,2" or "0-3". Error: usage, naming `option`.
 Result<std::vector<unsigned>> parse_cpus(const std::string& text, const std::string& option);
 
-/// One right that was asked for.
+/// A right that was asked for.
 struct Grant {
   std::string name;   ///< stable: "policy", "affinity", "memory_lock", "dma_latency", "timer_slack"
   std::string wanted; ///< "SCHED_FIFO 80"
@@ -34,12 +34,13 @@ struct Grant {
   std::string why;    ///< the system's words; empty if granted
   std::string remedy; ///< the command or deed that mends it; empty if granted
 };
-/// The refused ones, a line each: what, why, and the remedy.
+/// Returns a line for each refused right: what was refused, why, and the remedy.
 std::vector<std::string> refusals(const std::vector<Grant>& grants);
 
-/// What holds for the process while this lives: memory locked and kept by malloc, and the processor
-/// kept from sleep states that take long to leave (/dev/cpu_dma_latency, if a priority is asked
-/// for). Locked memory stays locked until the process ends. Blocks while pages come in.
+/// Holds the process's rights while it lives. Memory is locked, and malloc keeps it. If a priority
+/// is asked for, the processor is kept from sleep states that take long to leave
+/// (/dev/cpu_dma_latency). Locked memory stays locked until the process ends. The constructor
+/// blocks while pages come in.
 class RealtimeProcess {
 public:
   explicit RealtimeProcess(const RealtimeOptions& options);
@@ -54,12 +55,12 @@ private:
   std::vector<Grant> grants_;
 };
 
-/// For the calling thread: affinity, scheduler, timer slack (the ordinary scheduler may else delay
-/// a wake-up by 50 microseconds), and 256 KiB of its stack touched.
+/// Sets the calling thread's affinity, scheduler and timer slack, and touches 256 KiB of its stack.
+/// With the default slack, the ordinary scheduler may delay a wake-up by 50 microseconds.
 std::vector<Grant> make_thread_realtime(const RealtimeOptions& options);
 
-/// While it lives, threads that the calling one starts run at this priority (SCHED_FIFO; 0: nothing
-/// changes), as does the calling one.
+/// While it lives, the calling thread and the threads that it starts run at this priority under
+/// SCHED_FIFO. With 0 nothing changes.
 class InheritedPriority {
 public:
   explicit InheritedPriority(unsigned priority);
@@ -67,7 +68,7 @@ public:
   InheritedPriority(const InheritedPriority&) = delete;
   InheritedPriority& operator=(const InheritedPriority&) = delete;
 
-  /// Nothing, if nothing was asked for.
+  /// Returns nothing if nothing was asked for.
   const std::optional<Grant>& grant() const noexcept { return grant_; }
 
 private:

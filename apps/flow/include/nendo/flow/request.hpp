@@ -8,7 +8,7 @@
 
 namespace nendo::flow {
 
-/// Recordings keep the numbers: what is new stands at the end.
+/// Recordings keep the numbers, so new values are added at the end.
 enum class Request : std::uint8_t {
   grab,   ///< the hands take hold of the model
   let_go, ///< and let go of it; what they have shaped stays

@@ -1,5 +1,6 @@
 #pragma once
-// One face for the two ways of deforming, so that the loop need not know which it runs.
+// One interface for the two ways of deforming, so that the loop need not know which of them it
+// runs.
 
 #include <cstdint>
 #include <optional>
@@ -11,8 +12,8 @@
 
 namespace nendo::flow {
 
-/// type1: the start points are frozen, the rest shape is deformed anew each tick. type2: the
-/// fingertips' paths are followed piece by piece.
+/// With type1, the start points are frozen and the rest shape is deformed anew each tick. With
+/// type2, the fingertips' paths are followed piece by piece.
 enum class Mode : std::uint8_t { type1, type2 };
 
 std::string_view name_of(Mode mode) noexcept;
@@ -28,33 +29,36 @@ class Sculptor {
 public:
   Sculptor(deform::Points rest, Eigen::Index control_points, const SculptorOptions& options);
 
-  /// The fingertips take hold of the model here (3 by control_points, model units).
+  /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
   deform::FieldStatus grab(const deform::Points& tips) noexcept;
-  /// The shape for the fingertips' present places, into `out`; what `out` has of it already is not
-  /// written again. Wait-free (with a second thread: no longer than that needs); no allocation if
-  /// `out` has the size.
+  /// Writes the shape for the fingertips' present places into `out`; blocks that `out` already has
+  /// are not written again. Wait-free, except that it may wait for a second thread to finish its
+  /// part. It does not allocate if `out` has the right size.
   deform::FieldStatus update(const deform::Points& tips, deform::BlockShape& out) noexcept;
   /// Does what update() does, and completes the stroke up to `tips`.
   deform::FieldStatus finish(const deform::Points& tips, deform::BlockShape& out) noexcept;
-  /// To be called after finish() with the same tips: the shape that it gave becomes the rest shape,
-  /// and the fingertips hold that where they are. Unless solved, nothing changes. No allocation.
+  /// Makes the shape that finish() gave the rest shape, which the fingertips then hold where they
+  /// are. It must be called after finish() with the same tips. If the equations have no solution,
+  /// nothing changes. It does not allocate.
   deform::FieldStatus commit(const deform::Points& tips) noexcept;
 
-  /// Back to the rest shape before the last commit, or to the one that the last stroke began with
-  /// (Type1Deformer::undo, Type2Deformer::undo); the fingertips hold it at `tips`. Unless solved,
-  /// nothing changes. No allocation.
+  /// Goes back to the rest shape before the last commit, or to the shape with which the last stroke
+  /// began (Type1Deformer::undo, Type2Deformer::undo). The fingertips then hold it at `tips`. If
+  /// the equations have no solution, nothing changes. It does not allocate.
   deform::FieldStatus undo(const deform::Points& tips) noexcept;
-  /// Forth to what the last undo came from, if nothing was committed since (Type1Deformer::redo,
-  /// Type2Deformer::redo). Where there is nothing to redo, nothing changes, and it is ok.
+  /// Goes forward to the shape before the last undo, if nothing was committed since
+  /// (Type1Deformer::redo, Type2Deformer::redo). If there is nothing to redo, nothing changes and
+  /// the status is ok.
   deform::FieldStatus redo(const deform::Points& tips) noexcept;
   std::size_t undo_steps() const noexcept;
   std::size_t redo_steps() const noexcept;
-  /// How many could be undone once, and went for want of memory.
+  /// Returns how many steps can no longer be undone because memory ended.
   std::size_t forgotten_steps() const noexcept;
 
-  /// The shape that nobody holds: the rest shape, or where the last stroke ended.
+  /// Returns the shape that remains when no hand holds the model: the rest shape, or the shape at
+  /// the end of the last stroke.
   const deform::BlockShape& rest() const noexcept;
-  /// Makes points in the mesh's order of shapes in blocks.
+  /// Returns the layout, which turns shapes in blocks into points in the mesh's order.
   const deform::BlockLayout& layout() const noexcept;
 
   /// Returns the fields of the last update: for type 1 they lead from the rest shape to this shape,

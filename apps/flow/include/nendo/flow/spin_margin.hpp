@@ -1,7 +1,7 @@
 #pragma once
-// How long before a deadline to wake and spin: as late as this machine's wake-ups have been of
-// late, so that nearly every one is over before the deadline, and no longer, because spinning
-// costs.
+// Chooses how long before a deadline the loop wakes and spins. The time is as long as this
+// machine's wake-ups have recently been late, so that nearly every wake-up is over before the
+// deadline. It is no longer, because spinning takes processor time.
 
 #include <array>
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace nendo::flow {
 
-/// The margin is the lateness that 99.9 % of the last second's wake-ups did not exceed, and 5
-/// microseconds; at most 100 microseconds and a fifth of the period, and what would have spun for a
-/// 25th of that second. It begins with a 25th of the period. Costs an addition a tick, and 200 of
-/// them a second. No allocation.
+/// The margin is the lateness that 99.9 % of the last second's wake-ups did not exceed, plus 5
+/// microseconds. It is at most 100 microseconds, at most a fifth of the period, and no more than
+/// would have spun for a 25th of that second. It begins with a 25th of the period. It costs an
+/// addition a tick, and 200 additions a second. It does not allocate.
 class SpinMargin {
 public:
   static constexpr std::chrono::microseconds most{100};
@@ -23,7 +23,7 @@ public:
   explicit SpinMargin(HostClock::duration period) noexcept;
 
   HostClock::duration get() const noexcept { return margin_; }
-  /// How late the kernel woke the thread, against when it was to.
+  /// Takes note of how much later than asked for the kernel woke the thread.
   void observe(HostClock::duration lateness) noexcept;
 
 private:

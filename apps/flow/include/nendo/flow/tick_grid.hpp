@@ -1,6 +1,7 @@
 #pragma once
-// The times at which a fixed-rate loop runs: tick k is due at start + k / rate, computed from the
-// start each time, so that rounding never adds up to drift, at 90 Hz (11.1... ms) as at 100.
+// The times at which a fixed-rate loop runs: tick k is due at start + k / rate. That is computed
+// from the start each time, so that rounding errors never add up to drift, also where the period is
+// no whole number of nanoseconds (90 Hz).
 
 #include <cstdint>
 
@@ -17,7 +18,7 @@ public:
   TickGrid(HostTime start, double rate_hz) noexcept;
 
   HostTime deadline(std::uint64_t tick) const noexcept;
-  /// The first tick that is due later than `now`.
+  /// Returns the first tick that is due later than `now`.
   std::uint64_t first_after(HostTime now) const noexcept;
 
 private:
@@ -25,7 +26,8 @@ private:
   std::uint64_t rate_mhz_; ///< thousandths of a hertz
 };
 
-/// Sleeps until an absolute time; also after signals. The one system call of a tick.
+/// Sleeps until an absolute time, and goes on sleeping after a signal. This is the only system call
+/// of a tick.
 void sleep_until(HostTime deadline) noexcept;
 
 } // namespace nendo::flow

@@ -1,6 +1,6 @@
 #pragma once
-// What a tick leaves for whoever looks into the loop's timing: one cache line, through a ring, so
-// that lateness, work and the age of the input can be told apart for every single tick.
+// The record of a tick's times, one cache line that goes through a ring. It tells lateness, work
+// and the age of the input for every single tick.
 
 #include <algorithm>
 #include <cstdint>
@@ -15,10 +15,10 @@ struct alignas(cache_line_bytes) TickRecord {
   std::uint64_t tick = 0; ///< Pacer::Due::number
   HostTime scheduled{};   ///< the deadline; paced by samples, when the newest of them arrived
   HostTime woke{};
-  /// When the sample arrived that the tick shows: the newest of a hand, the older of two hands;
-  /// HostTime{} if none came.
+  /// When the sample arrived that the tick shows. That is the newest sample of a hand, and the
+  /// older one of two hands'. It is HostTime{} if none came.
   HostTime input{};
-  // Ends of the tick's stages, since it woke; 4.29 s and more are 4.29 s.
+  // The ends of the tick's stages, counted from its wake-up; at most 4.29 s.
   std::uint32_t drained_ns = 0;   ///< the rings are empty, the angles known
   std::uint32_t posed_ns = 0;     ///< the hands' joints and fingertips
   std::uint32_t solved_ns = 0;    ///< the field and the vertices
@@ -31,7 +31,7 @@ struct alignas(cache_line_bytes) TickRecord {
 };
 static_assert(sizeof(TickRecord) == cache_line_bytes);
 
-/// When it is full, records are refused and counted: the loop waits for nobody.
+/// A full ring refuses records and counts them, so that the loop never waits.
 using TickRing = SpscRing<TickRecord>;
 
 constexpr std::uint32_t saturated_ns(HostClock::duration time) noexcept {

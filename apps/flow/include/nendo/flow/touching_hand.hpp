@@ -1,7 +1,8 @@
 #pragma once
-// A simulated hand that really touches: its fingertips lie on the model's surface, press into it
+// A simulated hand that touches the model. Its fingertips lie on the model's surface, press into it
 // and pull at it by stated depths, one finger after another and all together, and glide along it
-// between the strokes. The joint angles are inverse kinematics of where the tips are to be.
+// between the strokes. The joint angles are computed from the places of the tips by inverse
+// kinematics.
 
 #include <cstdint>
 #include <memory>
@@ -34,31 +35,33 @@ struct TouchTarget {
 
 struct TouchPlan;
 
-/// One stroke after another, without end: after period_s() everything is repeated. At time 0 all
+/// The motion: one stroke after another. After period_s() everything is repeated. At time 0 all
 /// fingertips lie on the surface.
 class TouchingHand {
 public:
   /// How far a fingertip may be from its target, at any time.
   static constexpr double tolerance_m = 1e-4;
 
-  /// The model stands as place_hands() puts it; so does the hand. Error: bad_input, if the model
-  /// has no faces or none within reach. Allocates; takes about 0.1 s, longer with millions of
-  /// faces.
+  /// Computes the motion. The model and the hand are placed by place_hands(). Error: bad_input, if
+  /// the model has no faces or none within reach. Allocates, and takes about 0.1 s, or longer with
+  /// millions of faces.
   static Result<TouchingHand> make(const deform::Mesh& model, const hand::HandSkeleton& skeleton,
                                    const TouchOptions& options = {});
 
-  /// `time_s` since the start; what is no time counts as 0. Continuously differentiable; within the
-  /// ranges in which joint_angles() leaves angles as they are; the middle finger does not turn
-  /// aside, because no glove measures that. Any thread, wait-free.
+  /// Returns the joint angles at `time_s` since the start; negative times and times that are not
+  /// finite count as 0. They are continuously differentiable, and within the ranges in which
+  /// joint_angles() leaves angles as they are. The middle finger does not turn aside, because no
+  /// glove measures that. Any thread, wait-free.
   hand::JointAngles angles(double time_s) const noexcept;
   /// Returns the sensors' angles of a glove at that time; joint_angles() turns them into
   /// angles(time_s).
   hand::SensorAngles sensor_angles(double time_s) const noexcept;
-  /// Returns zeros for a finger that cannot reach the surface and keeps still. Any thread.
+  /// Returns a finger's target at that time; zeros for a finger that keeps still because it cannot
+  /// reach the surface. Any thread.
   TouchTarget target(hand::Finger finger, double time_s) const noexcept;
 
   bool touches(hand::Finger finger) const noexcept;
-  /// T_stage_wrist: where the forearm ends.
+  /// Returns T_stage_wrist, the place where the forearm ends.
   const Eigen::Isometry3d& wrist_pose() const noexcept;
   double period_s() const noexcept;
 

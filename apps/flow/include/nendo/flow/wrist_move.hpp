@@ -1,6 +1,6 @@
 #pragma once
-// Where a hand is in space, which no glove measures: it stays where it was placed until somebody
-// moves it, with a mouse, say, or a tracker.
+// Says where a hand is in space, which no glove measures. The hand stays where it was placed until
+// it is moved, for example with a mouse or a tracker.
 
 #include <array>
 #include <cstdint>
@@ -19,10 +19,10 @@ struct WristMove {
   static constexpr double farthest_m = 100.0;
 
   static WristMove to(Side side, const Eigen::Isometry3d& T_stage_wrist) noexcept;
-  /// Within farthest_m of the stage's middle, with a quaternion that has a length. What is not is
-  /// refused by the loop.
+  /// Tells whether the position is within farthest_m of the stage's middle and the quaternion is
+  /// not zero. The loop refuses a move that is not usable.
   bool is_usable() const noexcept;
-  /// T_stage_wrist, of one that is usable.
+  /// Returns T_stage_wrist. The move must be usable.
   Eigen::Isometry3d pose() const noexcept;
 
   friend bool operator==(const WristMove&, const WristMove&) = default;

@@ -1,5 +1,5 @@
 #pragma once
-// The switch at the wrist as an event: debounced, and what a loop does with it.
+// Debounces the switch at the wrist, and says what a loop does when it is turned on.
 
 #include <cstdint>
 #include <optional>
@@ -9,7 +9,8 @@
 
 namespace nendo::flow {
 
-/// What the switches of both hands do. Recordings keep the numbers: what is new stands at the end.
+/// What the switches of both hands do. Recordings keep the numbers, so new values are added at the
+/// end.
 enum class SwitchAction : std::uint8_t {
   none,   ///< nothing: the hands hold the model all the time
   grab,   ///< the hands hold the model while a switch is on
@@ -21,15 +22,16 @@ enum class SwitchAction : std::uint8_t {
 std::string_view name_of(SwitchAction action) noexcept;
 std::optional<SwitchAction> switch_action_named(std::string_view name) noexcept;
 
-/// Takes the switch's position sample by sample and tells when it was really turned. Pure.
+/// Takes the switch's position sample by sample and tells when it was really turned. It is pure: no
+/// clock, no I/O.
 class WristSwitchEdge {
 public:
-  /// A position counts once it has lasted so long, and for two samples at least: contacts bounce
-  /// for some milliseconds, and a damaged status byte lasts one sample.
+  /// A position counts once it has lasted this long and for at least two samples, because contacts
+  /// bounce for some milliseconds, and a damaged status byte lasts one sample.
   static constexpr std::chrono::milliseconds settling_time{20};
 
-  /// True when the switch has just been turned on. The first position that is known is where it
-  /// stood all along, and a sample that does not tell the position is passed over.
+  /// Returns true if the switch has just been turned on. The first known position is taken as the
+  /// position from the start on. A sample that does not tell the position is ignored.
   bool turned_on(WristSwitch position, HostTime time) noexcept;
   bool is_on() const noexcept { return settled_ == WristSwitch::on; }
 

@@ -50,7 +50,7 @@ public:
   const Eigen::Vector3d& size_m() const noexcept { return size_m_; }
 
 private:
-  void add_hand(const SeenHand& hand, std::size_t slot, const SceneFrame& moment,
+  void add_hand(const SceneHand& hand, std::size_t slot, const SceneFrame& moment,
                 const SceneParts& parts, Scene& scene) const;
   void add_ground(Scene& scene) const;
 

@@ -12,7 +12,7 @@ namespace nendo::viewer {
 
 using TipPlaces = Eigen::Matrix<double, 3, 5>; ///< thumb to little finger
 
-struct SeenHand {
+struct SceneHand {
   hand::HandPose pose; ///< on the stage, metres
   /// Where the control vectors begin, on the stage, metres; no vectors if equal to the tips.
   TipPlaces starts;
@@ -21,8 +21,8 @@ struct SeenHand {
 
 struct SceneFrame {
   double time_s = 0.0;
-  deform::Points vertices;                      ///< 3 by #vertices, model units
-  std::array<std::optional<SeenHand>, 2> hands; ///< by flow::Placement::index_of(side)
+  deform::Points vertices;                       ///< 3 by #vertices, model units
+  std::array<std::optional<SceneHand>, 2> hands; ///< by flow::Placement::index_of(side)
   bool held = false; ///< the hands hold the model; otherwise there are no control vectors
   /// The radius of each fingertip's support, on the stage; 0 means not shown.
   std::array<double, 5> radius_m{};
@@ -42,6 +42,6 @@ private:
 };
 
 /// Sets everything of `moment` from a frame except its vertices and its time.
-void see_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& moment);
+void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& moment);
 
 } // namespace nendo::viewer

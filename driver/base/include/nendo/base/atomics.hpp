@@ -1,7 +1,7 @@
 #pragma once
-// StdAtomics: the policy over which the lock-free classes of this folder are written. Their tests
-// put a policy of their own in its place (tests/explorer), under which the same source runs through
-// every execution that the C++ memory model allows.
+// StdAtomics is the policy that the lock-free classes of this folder use for their atomics. Their
+// tests use another policy (tests/explorer), under which the same source runs through every
+// execution that the C++ memory model allows.
 
 #include <atomic>
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace nendo {
 
-/// What belongs to different threads is kept this far apart, twice that where prefetchers fetch
-/// pairs of lines. A constant, because a class that is laid out by
-/// std::hardware_destructive_interference_size changes with the compiler's options.
+/// The distance in bytes that separates the data of different threads. Classes keep twice that
+/// distance where prefetchers fetch pairs of lines. It is a constant, because a class that is laid
+/// out by std::hardware_destructive_interference_size changes with the compiler's options.
 inline constexpr std::size_t cache_line_bytes = 64;
 
 struct StdAtomics {
   template <class T>
   using Atomic = std::atomic<T>;
 
-  /// What one thread writes and another one reads, and which is no atomic.
+  /// Data that one thread writes and another one reads, and that is not atomic by itself.
   template <class T>
   using Plain = T;
 

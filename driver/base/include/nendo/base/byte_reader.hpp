@@ -1,7 +1,7 @@
 #pragma once
-// Sequential, bounds-checked reading of bytes. Reading past the end yields zeros and sets a sticky
-// flag, so that a decoder reads a whole layout and asks once, at the end, whether the bytes
-// sufficed.
+// Reads bytes one after another and checks bounds. A read past the end yields zeros and sets a flag
+// that stays set, so that a decoder reads a whole layout and asks once, at the end, whether there
+// were enough bytes.
 
 #include <bit>
 #include <cstddef>
@@ -40,7 +40,8 @@ public:
   }
   constexpr std::int64_t i64_le() noexcept { return std::bit_cast<std::int64_t>(u64_le()); }
   constexpr double f64_le() noexcept { return std::bit_cast<double>(u64_le()); }
-  /// As ByteWriter::text() writes it; any bytes. As long-lived as the bytes that are read.
+  /// Reads a text as ByteWriter::text() writes it; it may hold any bytes. The view is valid as long
+  /// as the bytes that are read.
   std::string_view text() noexcept {
     const auto part = take(u16_le());
     return {reinterpret_cast<const char*>(part.data()), part.size()};
@@ -58,7 +59,7 @@ public:
   [[nodiscard]] constexpr std::size_t remaining() const noexcept {
     return bytes_.size() - position_;
   }
-  /// True once any read went past the end.
+  /// Returns true if any read so far went past the end.
   [[nodiscard]] constexpr bool overrun() const noexcept { return overrun_; }
 
 private:

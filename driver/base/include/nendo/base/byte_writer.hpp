@@ -1,5 +1,6 @@
 #pragma once
-// What ByteReader reads, written: little-endian, one after another, at the end of a vector.
+// Writes numbers and texts, little-endian, at the end of a vector, so that ByteReader can read
+// them.
 
 #include <bit>
 #include <cstddef>
@@ -12,7 +13,7 @@ namespace nendo {
 
 class ByteWriter {
 public:
-  /// Appends to `out`, which must outlive it.
+  /// Appends to `out`, which must outlive the writer.
   explicit ByteWriter(std::vector<std::byte>& out) noexcept : out_(&out) {}
 
   void u8(std::uint8_t value) { out_->push_back(std::byte{value}); }
@@ -24,7 +25,8 @@ public:
   void bytes(std::span<const std::byte> part) {
     out_->insert(out_->end(), part.begin(), part.end());
   }
-  /// Its length in two bytes, then the text; cut after 65535 bytes.
+  /// Writes the text's length in two bytes and then the text, of which it cuts off what exceeds
+  /// 65535 bytes.
   void text(std::string_view part) {
     part = part.substr(0, UINT16_MAX);
     u16_le(static_cast<std::uint16_t>(part.size()));

@@ -8,7 +8,7 @@ namespace nendo {
 class Descriptor {
 public:
   Descriptor() = default;
-  /// Takes over what open() returned; a negative number is no open file.
+  /// Takes over what open() returned. A negative number means that no file is open.
   explicit Descriptor(int fd) noexcept : fd_(fd) {}
   ~Descriptor() { close(); }
   Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
@@ -22,7 +22,8 @@ public:
 
   int get() const noexcept { return fd_; }
   bool is_open() const noexcept { return fd_ >= 0; }
-  /// Closes the file, if it is open. False: the system reports that an earlier write failed.
+  /// Closes the file, if it is open. Returns false if the system reports that an earlier write
+  /// failed.
   bool close() noexcept;
 
 private:

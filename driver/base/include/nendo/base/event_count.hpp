@@ -1,6 +1,6 @@
 #pragma once
-// Wakes a thread that waits for other threads' data. The notifying thread pays an atomic addition,
-// and a system call only if the waiter sleeps; there is no lock that a slow side could hold.
+// Wakes a thread that waits for other threads' data. A notification costs an atomic addition, and a
+// system call only if the waiter sleeps. There is no lock that a slow thread could hold.
 
 #include <atomic>
 #include <cstdint>
@@ -11,21 +11,22 @@ namespace nendo {
 
 class EventCount {
 public:
-  /// Any thread, lock-free. What was written before is seen by the thread that wait() returns in.
+  /// Notifies the waiter. May be called from any thread; lock-free. The waiter sees everything that
+  /// was written before this call as soon as its wait() returns.
   void notify() noexcept {
     if ((word_.fetch_add(one_notification, std::memory_order_acq_rel) & sleeps) != 0) wake();
   }
 
-  /// One thread: returns true once it was notified since wait() last returned true, at once if it
-  /// has already, or false at `until`. Its one system call is the sleep.
+  /// Waits for a notification; only one thread may call it. Returns true as soon as there was one
+  /// since wait() last returned true, or false at `until`. The only system call is the sleep.
   bool wait(HostTime until) noexcept;
 
 private:
   void wake() noexcept;
 
-  // The lowest bit: the waiter sleeps or is about to; the notifier clears it. The rest counts the
-  // notifications, so that one between the look and the sleep is seen by the kernel, which
-  // compares.
+  // The lowest bit says that the waiter sleeps or is about to sleep; the notifier clears it. The
+  // other bits count notifications, so that the kernel, which compares the word, sees one that
+  // comes between the waiter's last look and its sleep.
   static constexpr std::uint32_t sleeps = 1;
   static constexpr std::uint32_t one_notification = 2;
 

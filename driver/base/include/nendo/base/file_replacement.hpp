@@ -1,5 +1,5 @@
 #pragma once
-// Writes a whole file piece by piece, for what is too large to be in memory at once.
+// Writes a whole file piece by piece, for contents that are too large to be in memory at once.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,17 +16,18 @@ namespace nendo {
 /// the beginning.
 class FileReplacement {
 public:
-  /// Error: failed (not a regular file, cannot be written).
+  /// Starts to replace `path`. Error: failed (it is not a regular file, or cannot be written).
   static Result<FileReplacement> begin(const std::filesystem::path& path);
   FileReplacement(FileReplacement&& other) noexcept;
   FileReplacement& operator=(FileReplacement&&) = delete;
   ~FileReplacement();
 
-  /// Appends. Error: failed (disk full, ...).
+  /// Appends bytes. Error: failed (for example if the disk is full).
   Result<void> write(std::span<const std::byte> bytes);
   Result<void> write(std::string_view text) { return write(std::as_bytes(std::span(text))); }
-  /// Syncs, so that finish() can hardly fail any more. Only finish() may follow. For callers that
-  /// replace several files and want all of them or none. Error: failed (e.g. the disk is full).
+  /// Syncs, so that finish() can hardly fail any more. Only finish() may follow. It serves callers
+  /// that replace several files and want all of them or none. Error: failed (e.g. the disk is
+  /// full).
   Result<void> sync();
   /// Syncs and gives the file its name. No call may follow. Error: failed.
   Result<void> finish();

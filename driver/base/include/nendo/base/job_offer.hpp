@@ -9,23 +9,25 @@
 
 namespace nendo {
 
-/// All of it is wait-free. What was written before offer() is seen after take(), and what was
-/// written before done() after is_done().
+/// All functions are wait-free. What was written before offer() is seen after take(), and what was
+/// written before done() is seen after is_done().
 template <class Job, class Atomics = StdAtomics>
 class JobOffer {
 public:
-  /// Offering thread: offers a job. The job before must have been withdrawn or be done.
+  /// Offering thread only. Offers a job. The previous job must have been withdrawn or be done.
   void offer(const Job& job) noexcept {
     job_ = job;
     done_.store(0, std::memory_order_relaxed);
     open_.store(1, std::memory_order_release);
   }
-  /// Offering thread, once a job: takes the job back. False: the other thread has taken it.
+  /// Offering thread only, at most once for each job. Takes the job back. Returns false if the
+  /// other thread has taken it.
   bool withdraw() noexcept { return open_.exchange(0, std::memory_order_relaxed) == 1; }
-  /// Offering thread: says whether a job that could not be withdrawn is done.
+  /// Offering thread only. Tells whether a job that could not be withdrawn is done.
   bool is_done() const noexcept { return done_.load(std::memory_order_acquire) == 1; }
 
-  /// Other thread: takes the job. False: there is none. The job is this thread's until done().
+  /// Other thread only. Takes the job, which belongs to this thread until done(). Returns false if
+  /// there is none.
   bool take(Job& job) noexcept {
     if (open_.load(std::memory_order_relaxed) == 0) return false; // spares others' caches
     if (open_.exchange(0, std::memory_order_acquire) == 0) return false;
@@ -38,7 +40,8 @@ private:
   template <class T>
   using Atomic = typename Atomics::template Atomic<T>;
 
-  // Two threads ask for the 1, and one gets it.
+  // The value 1 means that a job is on offer. Both threads exchange it for 0, and only one of them
+  // gets the 1.
   alignas(2 * cache_line_bytes) Atomic<std::uint32_t> open_{0};
   Atomic<std::uint32_t> done_{0};
   typename Atomics::template Plain<Job> job_{};

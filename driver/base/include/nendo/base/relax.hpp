@@ -1,10 +1,10 @@
 #pragma once
-// relax(): what a thread does that spins.
+// relax(), which a thread calls while it spins.
 
 namespace nendo {
 
-/// Tells the processor that this is a spin: its other thread may run, and less power is drawn.
-/// Takes some 10 to 60 ns. Wait-free.
+/// Tells the processor that this thread spins, so that the core's other hardware thread may run and
+/// less power is drawn. Takes some 10 to 60 ns. Wait-free.
 inline void relax() noexcept {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();

@@ -1,6 +1,7 @@
 #pragma once
-// Result<T>: a value or an Error, for everything that can fail outside the loop. A small part of
-// C++23's std::expected. Inside the loop failures are enums and counters, never strings.
+// Result<T> is a value or an Error, and everything that can fail outside the loop returns it. It is
+// a small part of C++23's std::expected. Inside the loop, failures are enums and counters, never
+// strings.
 
 #include <cassert>
 #include <string>
@@ -9,7 +10,7 @@
 
 namespace nendo {
 
-/// What a caller can act on. The values are the program's exit codes.
+/// The kinds of errors that a caller can tell apart. The values are the program's exit codes.
 enum class Errc {
   failed = 1,        ///< the job failed
   usage = 2,         ///< an argument is wrong
@@ -27,7 +28,8 @@ struct Error {
 template <class T>
 class [[nodiscard]] Result {
 public:
-  // Implicit on purpose: `return value;` and `return Error{...};` are how a Result is made.
+  // These are implicit on purpose, so that functions can say `return value;` and `return
+  // Error{...};`.
   Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
   Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
 

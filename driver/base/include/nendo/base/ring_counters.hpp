@@ -1,6 +1,6 @@
 #pragma once
-// What SpscRing counts. Every count only grows and has one thread that writes it; other threads may
-// read it at any time, and the sums hold once both sides are at rest.
+// The counts of an SpscRing. Each count only grows and is written by one thread; other threads may
+// read it at any time. The sum below holds once both sides are at rest.
 
 #include <cstdint>
 

@@ -12,7 +12,7 @@ constexpr Side opposite(Side side) noexcept {
   return side == Side::left ? Side::right : Side::left;
 }
 
-/// "left" or "right", as options, files and udev's rules write it.
+/// Returns "left" or "right", as options, files and udev's rules write it.
 constexpr std::string_view name_of(Side side) noexcept {
   return side == Side::left ? "left" : "right";
 }

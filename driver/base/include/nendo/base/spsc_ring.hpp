@@ -1,7 +1,7 @@
 #pragma once
-// SpscRing: one producer thread, one consumer thread, lock-free, fixed capacity. When it is full
-// the newest element is refused and counted; nobody ever waits. Each side caches the other's index
-// and looks at it again only when it must. Proof, bounds and figures: RINGS.md.
+// SpscRing is a lock-free ring of fixed capacity for one producer and one consumer thread. When it
+// is full, the newest element is refused and counted; nobody waits. Each side caches the other's
+// index and reads it again only when it must. Proof, bounds and figures: RINGS.md.
 
 #include <algorithm>
 #include <bit>
@@ -28,11 +28,12 @@ public:
       : mask_(std::bit_ceil(std::max<std::size_t>(at_least, 2)) - 1),
         slots_(std::make_unique<Slot[]>(mask_ + 1)) {}
 
-  /// Producer only, wait-free. False: full, the element was refused and counted.
+  /// Producer only, wait-free. Returns false if the ring is full; the element is then refused and
+  /// counted.
   bool try_push(const T& element) noexcept { return push_n({&element, 1}) == 1; }
 
-  /// Producer only, wait-free: pushes as many of the first as fit and publishes them together.
-  /// Returns how many; the others were refused and counted.
+  /// Producer only, wait-free. Pushes the first elements, as many as fit, and publishes them
+  /// together. Returns how many these are; the others are refused and counted.
   std::size_t push_n(std::span<const T> elements) noexcept {
     const std::size_t fitting = claim(elements.size());
     for (std::size_t n = 0; n < fitting; ++n)
@@ -42,9 +43,9 @@ public:
     return fitting;
   }
 
-  /// Producer only, wait-free: push_n() in steps, to fill elements in their place. Says how many of
-  /// `wanted` slots are free; claimed(0) to claimed(that - 1) may be written until commit(), which
-  /// publishes the first `count` together. refuse() counts those that the producer had no slot for.
+  /// Producer only, wait-free: push_n() in steps, to fill elements in their place. claim() returns
+  /// how many of `wanted` slots are free. These may be written by claimed(n) until commit(), which
+  /// publishes the first `count` of them. refuse() counts elements that found no slot.
   [[nodiscard]] std::size_t claim(std::size_t wanted) noexcept {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
     if (wanted > capacity() - (tail - cached_head_)) look_at_head();
@@ -56,7 +57,7 @@ public:
   void commit(std::size_t count) noexcept {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed) + count;
     const std::uint64_t high_water = high_water_.load(std::memory_order_relaxed);
-    if (tail - cached_head_ > high_water) { // or so it seems to one who has not looked lately
+    if (tail - cached_head_ > high_water) { // the cached head may be old
       look_at_head();
       high_water_.store(std::max(high_water, tail - cached_head_), std::memory_order_relaxed);
     }
@@ -66,8 +67,8 @@ public:
     refused_.store(refused_.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
   }
 
-  /// Consumer only, wait-free: hands every element present at the call to `sink`, oldest first, and
-  /// frees them together. Returns how many.
+  /// Consumer only, wait-free. Hands every element present at the call to `sink`, oldest first, and
+  /// frees them together. Returns how many they were.
   template <class Sink>
   std::size_t drain(Sink&& sink) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
@@ -78,7 +79,7 @@ public:
     return static_cast<std::size_t>(cached_tail_ - head);
   }
 
-  /// Consumer only, wait-free. Takes the oldest element. False: the ring is empty.
+  /// Consumer only, wait-free. Takes the oldest element. Returns false if there is none.
   bool try_pop(T& element) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
     if (head == cached_tail_) look_at_tail();
@@ -88,9 +89,8 @@ public:
     return true;
   }
 
-  /// Consumer only. The same for a consumer that asks again at once: if the ring is empty, it
-  /// pauses for some 0.3 microseconds before it says so. A consumer that does not pause takes the
-  /// producer's cache line away from it with each element.
+  /// Consumer only. Like try_pop(), for a consumer that asks again at once: it pauses for some 0.3
+  /// microseconds if the ring is empty, so as not to take the producer's cache line away from it.
   bool try_pop_or_pause(T& element) noexcept {
     if (try_pop(element)) return true;
     for (int n = 0; n < 16; ++n)
@@ -99,7 +99,7 @@ public:
   }
 
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
-  /// Any thread, wait-free; exact only while both sides are at rest, and never less than none.
+  /// Any thread, wait-free. The size is exact only while both sides are at rest.
   [[nodiscard]] std::size_t size() const noexcept {
     const RingCounters now = counters();
     return static_cast<std::size_t>(now.offered - now.refused - now.consumed);
@@ -112,7 +112,7 @@ public:
   }
 
 private:
-  // On a line of its own, where that does not waste most of it.
+  // A large element has cache lines of its own; for a small one, that would waste most of a line.
   struct alignas(sizeof(T) >= cache_line_bytes / 2 ? cache_line_bytes : alignof(Element)) Slot {
     Element element;
   };
@@ -121,11 +121,11 @@ private:
   void look_at_tail() noexcept { cached_tail_ = tail_.load(std::memory_order_acquire); }
   const std::size_t mask_;
   std::unique_ptr<Slot[]> slots_;
-  alignas(2 * cache_line_bytes) Index tail_{0}; // these four are the producer's to write
+  alignas(2 * cache_line_bytes) Index tail_{0}; // the producer writes these four
   std::uint64_t cached_head_ = 0;
   Index refused_{0};
   Index high_water_{0};
-  alignas(2 * cache_line_bytes) Index head_{0}; // these two the consumer's
+  alignas(2 * cache_line_bytes) Index head_{0}; // the consumer writes these two
   std::uint64_t cached_tail_ = 0;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// Units that cross folder boundaries. SI everywhere: metres, radians, seconds; bare numbers carry
-// their unit in the name (`angle_rad`, `rate_hz`), time is std::chrono, and raw sensor counts are a
-// type of their own.
+// Units that cross folder boundaries. All of them are SI: metres, radians, seconds. Plain numbers
+// carry their unit in the name (`angle_rad`, `rate_hz`), times are std::chrono, and raw sensor
+// counts have a type of their own.
 
 #include <chrono>
 #include <compare>
@@ -24,8 +24,8 @@ constexpr double to_seconds(HostClock::duration d) noexcept {
   return std::chrono::duration<double>(d).count();
 }
 
-/// Returns the longest duration, or the shortest, for seconds that HostClock cannot count, and zero
-/// for what is not a number. Parts of a nanosecond are cut off.
+/// Returns the duration, without parts of a nanosecond. Seconds that HostClock cannot count give
+/// the longest or the shortest duration, and NaN gives zero.
 constexpr HostClock::duration from_seconds(double seconds) noexcept {
   constexpr double most_s = to_seconds(HostClock::duration::max());
   if (seconds != seconds) return HostClock::duration::zero();
@@ -42,7 +42,8 @@ constexpr double to_microseconds(std::chrono::nanoseconds d) noexcept {
   return static_cast<double>(d.count()) / 1e3;
 }
 
-/// Defined for any two times: far apart, where their difference would overflow, it wraps instead.
+/// Returns the seconds from one time to another. It is defined for any two times: a difference that
+/// would overflow wraps around.
 constexpr double seconds_between(HostTime from, HostTime to) noexcept {
   const auto ticks = [](HostTime time) {
     return static_cast<std::uint64_t>(time.time_since_epoch().count());
@@ -50,7 +51,8 @@ constexpr double seconds_between(HostTime from, HostTime to) noexcept {
   return to_seconds(HostClock::duration(static_cast<HostClock::rep>(ticks(to) - ticks(from))));
 }
 
-/// Degrees are for people: texts, tables of sources, options. Radians of degrees, and back.
+/// These convert degrees to radians and back. Degrees are for people: texts, options, and tables
+/// taken from publications.
 constexpr double from_degrees(double angle_deg) noexcept {
   return angle_deg * std::numbers::pi / 180.0;
 }

@@ -6,9 +6,9 @@
 
 namespace nendo {
 
-/// Returns how many bytes of memory this process may use: those of the machine, or fewer if a
+/// Returns how many bytes of memory this process may use: the machine's memory, or less if a
 /// control group of this process (cgroup version 2: a container, a service with MemoryMax=) has a
-/// lower limit. Reads files; never fails.
+/// lower limit. It reads files, and it never fails.
 std::size_t usable_memory();
 
 /// Returns the least memory.max, in bytes, of the control group that the file `membership` names

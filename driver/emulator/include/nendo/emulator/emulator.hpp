@@ -39,8 +39,8 @@ struct EmulatedCyberGlove {
   bool period_low_first = false;   ///< the order of the bytes in the words of T and ?T
   bool stamp_bit7 = true; ///< bit 7 of a time stamp's first byte is always set; else if it must
   bool streaming = false; ///< from the start, as a host that died leaves it
-  /// Instead of a motion: in record n the sensor of slot k has the count 1 + (n + 29 k) mod 255
-  /// (with 12 bits 16 times that), so that every record can be judged by itself.
+  /// If set, there is no motion: in record n the sensor of slot k has the count 1 + (n + 29 k) mod
+  /// 255, or 16 times that with 12 bits. So every record can be judged by itself.
   bool pattern = false;
   std::string replay = {}; ///< a file of bytes that a host received: its records are sent
 };
@@ -85,14 +85,14 @@ public:
   GloveEmulator& operator=(const GloveEmulator&) = delete;
   virtual ~GloveEmulator() = default; ///< removes the link
 
-  /// The terminal that a host opens at first, e.g. /dev/pts/4. After the fault `unplug` there is
-  /// another, to be found through the link.
+  /// Returns the terminal that a host opens at first, e.g. /dev/pts/4. After the fault `unplug`
+  /// there is another one, which the link leads to.
   virtual const std::string& tty_path() const noexcept = 0;
-  /// Serves hosts, one after another, until `stop` becomes true and what was sent has gone out;
-  /// looks at it at least every 20 ms, and waits 300 ms for a host that takes nothing. Blocks.
+  /// Serves hosts, one after another, until `stop` becomes true and all sent bytes have gone out.
+  /// Checks `stop` at least every 20 ms, and waits 300 ms for a host that takes nothing. Blocks.
   /// Error: failed.
   virtual Result<void> serve(const std::atomic<bool>& stop) = 0;
-  /// Any thread.
+  /// Returns the counts so far. May be called from any thread.
   virtual EmulatorStats stats() const = 0;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 // Measures how long a record takes from the write of its last byte at the device's end until its
-// sample is visible in the ring. It measures the real CyberGlove driver and, for comparison, the
-// least that any program can do: a thread that calls poll() and read() and pushes. Both run at once
-// and take records in turn, because a machine's speed changes between two runs.
+// sample is visible in the ring. It measures the real CyberGlove driver and, as the lower bound for
+// any program, a thread that calls poll() and read() and pushes. Both run at once and take records
+// in turn, because a machine's speed changes between two runs.
 
 #include <atomic>
 #include <cstddef>
@@ -29,8 +29,8 @@ struct LatencySinks {
   std::function<void(HostClock::duration)> bare;
 };
 
-/// Measures until done or until `stop` becomes true. Blocks for records / rate_hz and about 2 s;
-/// the sinks are called from another thread, one at a time. Errors: failed (no line, or a record
+/// Measures until done or until `stop` becomes true. Blocks for records / rate_hz plus about 2 s.
+/// The sinks are called from another thread, one at a time. Errors: failed (no line, or a record
 /// did not arrive within a second), usage.
 Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& sinks,
                              const std::atomic<bool>& stop);

@@ -14,16 +14,15 @@ public:
   explicit ServedEmulator(GloveEmulator& emulator)
       : thread_([this, &emulator] {
           served_ = emulator.serve(over_);
-          over_ = true; // an emulator that fails must not be waited for
+          over_ = true; // nothing waits for an emulator that has failed
         }) {}
   ServedEmulator(const ServedEmulator&) = delete;
   ServedEmulator& operator=(const ServedEmulator&) = delete;
   ~ServedEmulator() { stop(); }
 
-  /// Says whether serving was told to end, or failed.
+  /// Tells whether serving was told to end, or failed.
   bool is_over() const noexcept { return over_; }
-  /// Ends serving when all that was sent has gone out. Returns how serving went. Blocks for a
-  /// moment.
+  /// Ends serving when all sent bytes have gone out. Returns the result of serving. Blocks briefly.
   Result<void> finish() {
     stop();
     return served_;
