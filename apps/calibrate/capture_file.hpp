@@ -1,8 +1,8 @@
 #pragma once
-// A capture as JSON lines, of which there are three kinds that may be mixed. Samples, as nendo
-// monitor --json prints them: {"measured_s":…,"hand":"right","raw":{"index_mcp":118,…}}. Poses that
-// were held: {"pose":"flat","mean_counts":{…},"noise_counts":{…},"hand":"right","counts_most":255}.
-// The ends of a free motion: {"low_counts":{…},"high_counts":{…},"hand":"right","counts_most":255}.
+// A capture as JSON lines of three kinds, which may be mixed. Samples are as nendo monitor --json
+// prints them: {"measured_s":…,"hand":"right","raw":{"index_mcp":118,…}}. Held poses are
+// {"pose":"flat","mean_counts":{…},"noise_counts":{…},"hand":"right","counts_most":255}. The ends
+// of a free motion are {"low_counts":{…},"high_counts":{…},"hand":"right","counts_most":255}.
 
 #include <filesystem>
 #include <span>
@@ -27,11 +27,11 @@ struct CaptureFile {
   }
 };
 
-/// Errors: bad_input, "FILE:LINE: what"; a file of two hands or of none, without a line of either
-/// kind, or larger than 1 GiB.
+/// Reads a capture. Blocks. Fails with bad_input ("FILE:LINE: what"), also for a file that has two
+/// hands or none, has no line of any kind, or is larger than 1 GiB.
 Result<CaptureFile> read_capture(const std::filesystem::path& path);
 
-/// Replaces the file in one step. Error: failed.
+/// Writes the readings and the free motion; replaces the file in one step. Blocks. Error: failed.
 Result<void> write_readings(const std::filesystem::path& path,
                             std::span<const hand::PoseReading> readings,
                             const hand::CountRanges& free_motion, Side side, CountScale counts);

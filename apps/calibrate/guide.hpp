@@ -1,6 +1,6 @@
 #pragma once
-// The guided calibration without its terminal: which pose is asked for, which were held, and
-// whether what was held can be that pose.
+// The guided calibration without its terminal. It knows which pose is asked for and which poses
+// were held, and checks whether a held pose can be the one asked for.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace nendo::calibrate {
 
 class CalibrationGuide {
 public:
-  /// `poses` in the order in which they are asked for; one that stands there twice is taken twice.
-  /// Flat and fist are among them.
+  /// `poses` are in the order in which they are asked for; a pose that is in it twice is taken
+  /// twice. They must contain flat and fist.
   CalibrationGuide(std::span<const hand::PoseId> poses, CountScale scale);
 
   enum class Event : std::uint8_t {
@@ -26,36 +26,36 @@ public:
     captured,    ///< the pose was held and is kept; the next one is asked for
     implausible, ///< a pose was held that cannot be the one asked for; see doubted()
   };
-  /// A sample of the free motion that comes before the poses.
+  /// Takes a sample of the free motion that comes before the poses.
   void see_free_motion(const GloveSample& sample) { free_motion_.push(sample); }
   const hand::CountRanges& free_motion() const noexcept { return free_motion_.seen(); }
 
-  /// The next sample in time. Nothing once is_done().
+  /// Takes the next sample in time. Does nothing once is_done().
   Event see(const GloveSample& sample);
 
   bool is_done() const noexcept { return at_ == poses_.size(); }
-  /// The pose asked for; not once is_done().
+  /// Returns the pose asked for. Must not be called once is_done().
   hand::PoseId asked() const noexcept { return poses_[at_]; }
   std::size_t number() const noexcept { return at_; } ///< of the pose asked for, from 0
   std::size_t pose_count() const noexcept { return poses_.size(); }
   const hand::PoseCapture& capture() const noexcept { return capture_; }
-  /// The sensor by which the last held pose was found implausible.
+  /// Returns the sensor that makes the last held pose implausible, or nullopt.
   std::optional<Sensor> doubted() const noexcept { return doubted_; }
 
-  /// Whether the pose asked for was taken before and is taken again.
+  /// Tells whether the pose asked for was taken before and is taken again.
   bool is_again() const noexcept;
 
   void go_back();    ///< forgets the pose before this one and asks for it again
   void take_again(); ///< asks for the pose before this one once more; both takes count
   void skip();       ///< goes on without this pose; flat and fist are asked for again at the end
-  /// What an earlier session kept. Poses that are not asked for here are left out, and so are takes
-  /// of a pose beyond `most_takes`.
+  /// Restores what an earlier session kept. Poses that are not asked for here are left out, and so
+  /// are takes of a pose beyond `most_takes`.
   void restore(std::span<const hand::PoseReading> readings, const hand::CountRanges& free_motion);
   static constexpr std::size_t most_takes = 8;
 
-  /// In the order in which they are asked for.
+  /// Returns the held poses in the order in which they are asked for.
   std::vector<hand::PoseReading> readings() const;
-  /// Whether there are readings.
+  /// Tells whether there are readings.
   bool has_any() const noexcept;
 
 private:
@@ -69,7 +69,7 @@ private:
   std::vector<std::optional<hand::HeldPose>> kept_; ///< by number
   std::size_t at_ = 0;
   hand::PoseCapture capture_;
-  bool same_may_come_ = false; ///< once the hand has moved
+  bool same_may_come_ = false; ///< the last pose counts again once the hand has moved
   hand::RangeCapture free_motion_;
   std::optional<Sensor> doubted_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// A hand in its pose, drawn with characters: outlines of palm and fingers, the nearer before the
+// Draws a hand in its pose with characters: outlines of palm and fingers, where nearer parts hide
 // farther ones.
 
 #include <string>
@@ -15,9 +15,9 @@ enum class HandView {
   side, ///< from the thumb's side
 };
 
-/// The pose is one whose forearm ends at the origin and points along -Z. `rows` lines of `columns`
-/// printable ASCII characters. The hand is centred, and so large that a flat one with spread
-/// fingers fits. Characters are taken to be twice as high as wide.
+/// Returns `rows` lines of `columns` printable ASCII characters. The forearm of `pose` must end at
+/// the origin and point along -Z. The hand is centred, and drawn so large that a flat hand with
+/// spread fingers fits. Characters are taken to be twice as high as wide.
 std::vector<std::string> draw_hand(const hand::HandPose& pose, Side side, HandView view,
                                    int columns, int rows);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Limbs drawn with characters: dots that they cover, the nearer before the farther ones, and of
-// these the outlines.
+// Draws limbs with characters. A limb covers dots, where nearer limbs hide farther ones; the
+// characters show the outlines of the covered areas.
 
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace nendo::calibrate {
 
-/// A bone with flesh: what lies within the radius of a line, which shrinks towards its end.
+/// A bone with flesh: everything within a radius of a line. The radius changes from `begin_radius`
+/// to `end_radius` along the line.
 struct Limb {
   Eigen::Vector3d begin, end; ///< x to the right, y up, z towards the viewer; metres
   double begin_radius, end_radius;
@@ -18,21 +19,22 @@ struct Limb {
 
 class LimbCanvas {
 public:
-  // Dots that a character's cell is sampled with; they are as wide as high.
+  // The number of dots in a character's cell. The dots are as wide as high.
   static constexpr int dots_across = 4;
   static constexpr int dots_down = 8;
   static constexpr std::uint8_t nothing = 0xFF;
 
-  /// Empty; the origin is its middle. A hand with spread fingers fits.
+  /// Makes an empty canvas with the origin in its middle. A hand with spread fingers fits.
   LimbCanvas(int columns, int rows);
 
   void draw(const Limb& limb);
 
-  /// The part that is seen at a dot, from the upper left; `nothing` also outside of the canvas.
+  /// Returns the part that is seen at a dot, counted from the upper left; `nothing` also outside of
+  /// the canvas.
   std::uint8_t part(int column, int row) const noexcept;
-  /// Where a dot lies.
+  /// Returns where a dot is, in metres.
   Eigen::Vector2d place_m(int column, int row) const noexcept;
-  /// The printable character that resembles the outlines within a cell most.
+  /// Returns the printable character that most resembles the outlines within a cell.
   char character(int column, int row) const;
 
 private:

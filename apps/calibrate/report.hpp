@@ -1,5 +1,5 @@
 #pragma once
-// What a calibration came to: a table for people, and a picture.
+// Reports the result of a calibration: as a table for people, and as a picture.
 
 #include <filesystem>
 #include <ostream>
@@ -9,13 +9,14 @@
 
 namespace nendo::calibrate {
 
-/// A line for each sensor: range, gain, how far the poses are from it, how sure its angles are, and
-/// what was kept of the default; then the poses that agree least, and the condition.
+/// Prints a line for each sensor: its range, its gain, how far the poses are from its line, how
+/// sure its angles are, and what was kept of the default. Then prints the poses that agree least,
+/// and the condition.
 void print_report(std::ostream& out, const hand::CalibrationFit& fit,
                   std::span<const hand::PoseReading> readings, SensorMask sensors);
 
-/// The same as an SVG picture: by sensor the range of counts and of angles, and the residual.
-/// Error: failed.
+/// Writes an SVG picture that shows for each sensor the ranges of counts and of angles, and the
+/// residual. Blocks. Error: failed.
 Result<void> write_report_picture(const std::filesystem::path& path,
                                   const hand::CalibrationFit& fit, SensorMask sensors,
                                   CountScale counts);

@@ -1,5 +1,5 @@
 #pragma once
-// A guided calibration at a terminal: shows the poses, watches the glove, obeys keys.
+// A guided calibration at a terminal: shows the poses, reads the glove, and follows the keys.
 
 #include <string>
 
@@ -11,11 +11,12 @@ namespace nendo::calibrate {
 
 enum class SessionEnd : std::uint8_t {
   complete, ///< every pose was taken or skipped
-  written,  ///< the wearer wants what there is
-  quit,     ///< by key, signal, or a terminal that is gone
+  written,  ///< the wearer asked to write the poses taken so far
+  quit,     ///< by a key, a signal, or because the terminal is gone
 };
 
-/// Runs until the end; `guide` holds what was taken. The glove is started and stopped. Blocks.
+/// Runs the calibration until one of these ends; `guide` then holds what was taken. Starts the
+/// glove and stops it. Blocks.
 Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::string& user,
                                            const hand::FitOptions& fit, CalibrationGuide& guide);
 

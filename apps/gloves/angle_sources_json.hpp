@@ -1,6 +1,6 @@
 #pragma once
-// Which joints a glove measures, as JSON: for `nendo info`, and for the first line of each glove of
-// what streams.
+// Tells as JSON which joints a glove measures, for `nendo info` and for the first line of each
+// glove in a stream.
 
 #include <optional>
 
@@ -10,10 +10,11 @@
 
 namespace nendo::gloves {
 
-/// By angle, the name of its hand::AngleSource: "measured", the rule that estimates it, or "zero".
+/// Returns an object with the name of each angle's hand::AngleSource: "measured", the rule that
+/// estimates it, or "zero".
 nlohmann::ordered_json angle_sources_json(SensorMask sensors);
 
-/// Tells the first sample of each glove from the others, by its hand and sensors.
+/// Distinguishes the first sample of each glove from the others, by its hand and sensors.
 class GloveChanges {
 public:
   bool is_first(Side side, SensorMask sensors) noexcept {
@@ -25,7 +26,7 @@ public:
 
 private:
   Side side_ = Side::right;
-  std::optional<SensorMask> sensors_; ///< nullopt: none came yet
+  std::optional<SensorMask> sensors_; ///< nullopt: no sample came yet
 };
 
 } // namespace nendo::gloves

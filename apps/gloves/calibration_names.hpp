@@ -1,5 +1,6 @@
 #pragma once
-// Calibrations as users name them: a path, a stored file's name without .toml, or a wearer.
+// Finds calibrations as users name them: by a path, by a stored file's name without .toml, or by a
+// wearer.
 
 #include <string>
 
@@ -8,15 +9,16 @@
 
 namespace nendo::gloves {
 
-/// What is stored on this machine, by the environment's folders; says on standard error which files
-/// cannot be read.
+/// Returns what is stored on this machine, in the folders that the environment gives. Tells on
+/// standard error which files cannot be read. Blocks.
 hand::CalibrationList stored_calibrations();
 
-/// A text with a slash or the ending .toml is a path. Of a wearer's calibrations those in force
-/// count. Errors: bad_input (no such, cannot be read), usage (several are meant).
+/// Returns the calibration that `name` means. A text with a slash or the ending .toml is a path. A
+/// wearer's name means those of the wearer's calibrations that are in force. Blocks. Errors:
+/// bad_input (there is none, or it cannot be read), usage (several are meant).
 Result<hand::StoredCalibration> named_calibration(const std::string& name);
 
-/// "Anna, right hand, glove A1".
+/// Returns a text such as "Anna, right hand, glove A1".
 std::string title_of(const hand::WearerCalibration& wearer);
 
 } // namespace nendo::gloves

@@ -1,5 +1,5 @@
 #pragma once
-// The light at a glove's wrist, as something that a command switches on and leaves dark.
+// The light at a glove's wrist, which a command switches on and off and leaves off.
 
 #include <nendo/driver/glove.hpp>
 
@@ -14,10 +14,10 @@ public:
 
   bool exists() const noexcept { return glove_.info().abilities.light; }
   bool is_lit() const noexcept { return lit_; }
-  /// Does not block; nothing if the glove has no light.
+  /// Switches the light on or off. Does nothing if the glove has no light. Does not block.
   void show(bool lit) noexcept;
-  /// Before the glove is stopped: puts a lit one out and gives the reader thread the time to say
-  /// so. Blocks for a quarter of a second if it was lit.
+  /// Switches the light off, if it is lit, and gives the reader thread the time to send that. Call
+  /// it before the glove is stopped. Blocks for a quarter of a second if the light was lit.
   void put_out() noexcept;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// The option --hand-length, by which a wearer's skeleton gets its size.
+// The option --hand-length, which sets the size of a wearer's skeleton.
 
 #include <optional>
 
@@ -13,7 +13,7 @@ namespace nendo::gloves {
 struct HandLength {
   std::optional<double> length_mm; ///< nullopt: not given
 
-  /// Error: usage, if no hand is that long.
+  /// Fails with usage if no hand is that long.
   Result<void> check() const;
   /// Returns a hand of the length that was given, with the proportions of `known`. Without a
   /// length it returns `known`.

@@ -1,5 +1,6 @@
 #pragma once
-// The picture that `nendo monitor` draws in a terminal: two lines about the glove, a bar a sensor.
+// The picture that `nendo monitor` draws in a terminal: two lines about the glove, and a bar for
+// each sensor.
 
 #include <array>
 #include <cstdint>
@@ -23,7 +24,7 @@ public:
 
   void see(const GloveSample& sample) noexcept;
   void forget() noexcept { present_ = {}; }
-  /// Only for a sensor of a sample that was seen.
+  /// Returns the range of a sensor, which must be one of a sample that was seen.
   const Range& operator[](Sensor sensor) const noexcept {
     return ranges_[static_cast<std::size_t>(sensor)];
   }
@@ -33,7 +34,7 @@ private:
   SensorMask present_;
 };
 
-/// What a picture is made of. Everything that is pointed to lives as long as the picture.
+/// The contents of a picture. Everything that is pointed to must outlive the picture.
 struct MonitorPicture {
   const driver::GloveInfo* info = nullptr;
   driver::GloveStats stats;
@@ -45,13 +46,14 @@ struct MonitorPicture {
   bool keys = false; ///< the user can press keys
 };
 
-/// `width` characters of which one in proportion to `count` is '#', with '[' and ']' at the least
-/// and the greatest count seen ('|' where they meet), '-' between, '.' where nothing has been.
+/// Returns `width` characters, of which the one at the place of `count` is '#'. '[' and ']' are at
+/// the least and the greatest count seen ('|' where they meet), '-' is between them, and '.' where
+/// no count has been.
 std::string count_bar(int width, std::uint16_t count, SeenCounts::Range seen, std::uint16_t most);
 
-/// Lines of printable ASCII, at most as many and as long as the screen. Where rows are scarce the
-/// sensors stand in two columns, and those that still do not fit are counted in the last line;
-/// where columns are, first the angle goes, then the bar.
+/// Returns lines of printable ASCII, at most as many and as long as the screen. If there are few
+/// rows, the sensors are in two columns, and the last line tells how many still do not fit. If
+/// there are few columns, first the angle is left out, then the bar.
 std::vector<std::string> monitor_lines(const MonitorPicture& picture, cli::ScreenSize size);
 
 } // namespace nendo::gloves

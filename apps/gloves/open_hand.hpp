@@ -1,6 +1,6 @@
 #pragma once
-// A glove that was opened, and the ring in which its samples come: what the commands that use hands
-// begin with.
+// A glove that was opened, and the ring that receives its samples. Commands that use hands begin
+// with these.
 
 #include <memory>
 #include <optional>
@@ -14,34 +14,34 @@
 
 namespace nendo::gloves {
 
-/// A glove, its samples on their way to who uses them, and the first of them.
+/// A glove, the ring with its samples, and the first sample.
 struct OpenHand {
   Side side = Side::right;
   std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
   std::unique_ptr<driver::Glove> glove;
   GloveSample first;
   hand::Wearer wearer; ///< set by calibrate()
-  /// Where the forearm ends, if something else than the glove tells it.
+  /// Where the forearm ends, if something other than the glove tells it.
   std::optional<Eigen::Isometry3d> T_stage_wrist{};
 };
 
-/// Opens the glove for that hand, and says so on standard error if it calls itself the other one;
-/// without `side`, for the hand that it is. each sample notifies `event_count`. Blocks and fails as
-/// open_glove().
+/// Opens the glove for that hand, and tells on standard error if it calls itself the other one.
+/// Without `side`, opens it for the hand that it is. Each sample notifies `event_count`. Blocks and
+/// fails as open_glove() does.
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
                            EventCount* event_count = nullptr,
                            const driver::GloveContext& context = {});
 
-/// The same of a glove that is open already.
+/// Does the same with a glove that is already open.
 OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
                  EventCount* event_count);
 
-/// Takes the first sample of a started glove out of the ring. Blocks, 2 s at most. Errors:
-/// no_device if none comes, failed if a stop signal does.
+/// Takes the first sample of a started glove out of the ring. Blocks for 2 s at most. Errors:
+/// no_device if no sample comes, failed if a stop signal comes.
 Result<void> wait_for_first_sample(OpenHand& hand);
 
-/// Sets `wearer`, once the first sample has come; both hands get `length` if it is given. Blocks
-/// and fails as find_wearer().
+/// Sets `wearer`; the first sample must have come. Both hands get `length` if it is given. Blocks
+/// and fails as find_wearer() does.
 Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options, const HandLength& length);
 
 } // namespace nendo::gloves

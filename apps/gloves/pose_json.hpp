@@ -9,9 +9,10 @@
 
 namespace nendo::gloves {
 
-/// One object without a line end. Keys: time_s (host clock), hand ("left" or "right"), joints: by
-/// OpenXR's names and in its order, position_m [x, y, z] and orientation_xyzw, a unit quaternion
-/// whose w is not negative. With `sensors` also angles, as angle_sources_json() has them.
+/// Returns one object without a line end. Its keys are time_s (host clock), hand ("left" or
+/// "right") and joints. joints has OpenXR's names in OpenXR's order, each with position_m [x, y, z]
+/// and orientation_xyzw, a unit quaternion whose w is not negative. With `sensors` there is also
+/// the key angles, with what angle_sources_json() returns.
 std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
                       std::optional<SensorMask> sensors = std::nullopt);
 

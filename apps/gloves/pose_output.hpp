@@ -18,20 +18,22 @@ public:
   PoseOutput& operator=(const PoseOutput&) = delete;
   virtual ~PoseOutput() = default;
 
-  /// The hand that every pose has to be of; nullopt: any.
+  /// Returns the hand of which every pose must be, or nullopt if any hand will do.
   virtual std::optional<Side> only_side() const = 0;
-  /// A pose that was made of these sensors. Kept until flush().
+  /// Takes a pose that was made from these sensors. Keeps it until flush(), which it calls itself
+  /// when much is kept; blocks then.
   virtual Result<void> put(HostTime time, Side side, const hand::HandPose& pose,
                            SensorMask sensors) = 0;
-  /// Blocks as long as the disk or the reader does. Error: failed.
+  /// Writes the kept poses. Blocks as long as the disk or the reader does. Error: failed.
   virtual Result<void> flush() = 0;
-  /// Flushes and completes; the last call. Error: failed.
+  /// Flushes and completes the output. Must be the last call. Error: failed.
   virtual Result<void> finish() = 0;
 };
 
-/// Standard output; a reader that has gone is an error from now on, and not the signal SIGPIPE.
+/// Writes to standard output. From now on, a reader that has gone causes an error and not the
+/// signal SIGPIPE, in the whole process.
 std::unique_ptr<PoseOutput> json_pose_output();
-/// Errors as BvhFile::create().
+/// Writes a BVH file. Fails as BvhFile::create() does.
 Result<std::unique_ptr<PoseOutput>>
 bvh_pose_output(const std::string& path, const hand::HandSkeleton& skeleton, double rate_hz);
 

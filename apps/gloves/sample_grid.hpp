@@ -1,8 +1,8 @@
 #pragma once
-// A glove's samples as they come, or brought to a fixed rate: at each time of a grid the newest
-// sample that had arrived. When the program gets to run does not matter: a sample that arrived
-// after a grid time is never taken for it, however late the samples are read, and no grid time is
-// left out or moves.
+// Passes on a glove's samples as they come, or at a fixed rate: at each time of a grid the newest
+// sample that had arrived. The result does not depend on when the program gets to run. A sample
+// that arrived after a grid time is never taken for it, however late the samples are read, and no
+// grid time is left out or moved.
 
 #include <chrono>
 #include <optional>
@@ -14,14 +14,14 @@ namespace nendo::gloves {
 
 class SampleGrid {
 public:
-  /// The grid's first time is `start`. `rate_hz`: 0 for the samples as they come, or within
-  /// TickGrid's limits, which keeps it to a thousandth of a hertz.
+  /// The grid's first time is `start`. `rate_hz` is 0 for the samples as they come, or else within
+  /// the limits of TickGrid, which rounds it to a thousandth of a hertz.
   SampleGrid(HostTime start, double rate_hz) {
     if (rate_hz > 0.0) grid_.emplace(start, rate_hz);
   }
 
-  /// The next sample. `emit(HostTime, const GloveSample&)` is called for the grid times before it
-  /// and gives back whether to go on; false: it did not want to.
+  /// Takes the next sample. Calls `emit(HostTime, const GloveSample&)` for the grid times before
+  /// it; `emit` returns whether to go on. Returns false if `emit` did.
   template <class Emit>
   bool take(const GloveSample& sample, Emit&& emit) {
     if (!grid_) return emit(sample.arrival, sample);
@@ -29,7 +29,8 @@ public:
     newest_ = sample;
     return true;
   }
-  /// All samples that arrived until `now` have been taken.
+  /// Says that all samples that arrived until `now` have been taken. Calls `emit` and returns as
+  /// take() does.
   template <class Emit>
   bool pass_time(HostTime now, Emit&& emit) {
     return !grid_ || !newest_ || emit_until(now, emit);

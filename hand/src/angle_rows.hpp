@@ -1,6 +1,6 @@
 #pragma once
-// All angles of a hand in one row, as the solver of inverse kinematics takes them: in the order of
-// Angle, that is four for the thumb and for each finger, then what the whole hand shares.
+// All angles of a hand in one row, as the solver of inverse kinematics takes them. They are in the
+// order of Angle: four for the thumb and for each finger, then those of the whole hand.
 
 #include <nendo/hand/angle.hpp>
 #include <nendo/hand/inverse_kinematics.hpp>
@@ -18,9 +18,9 @@ using AllAngles = Eigen::Matrix<double, row_size, 1>;
 AllAngles row_of(const JointAngles& angles) noexcept;
 JointAngles angles_of(const AllAngles& row) noexcept;
 
-/// Ranges that are none are replaced by the default ones.
+/// Returns the limits as a box. Ranges that are not valid are replaced by the default ones.
 Box<row_size> box_of(const AngleLimits& limits) noexcept;
-/// What is not finite counts as zero.
+/// Returns the row clamped to the box. An angle that is not finite counts as zero.
 AllAngles clamped(AllAngles row, const Box<row_size>& box) noexcept;
 
 } // namespace nendo::hand

@@ -17,13 +17,14 @@ struct Box {
   Eigen::Matrix<double, N, 1> high;
 };
 
-/// Of half a sum of squares, at one place: Gauss and Newton's approximation.
+/// The normal equations of half a sum of squares at one place, in the approximation of Gauss and
+/// Newton.
 template <int N>
 struct NormalEquations {
   Eigen::Matrix<double, N, N> matrix;   ///< J^T J
   Eigen::Matrix<double, N, 1> gradient; ///< J^T r
   double cost = 0.0;                    ///< r^T r / 2
-  double farthest_m = 0.0;              ///< what `enough_m` is compared with
+  double farthest_m = 0.0;              ///< the largest distance to a target; compared with `enough_m`
 };
 
 struct Effort {
@@ -32,8 +33,9 @@ struct Effort {
   double least_step_rad = 1e-9; ///< stop when a step is shorter
 };
 
-/// The step that lowers the quadratic model most without leaving the box, starting with those
-/// unknowns held that stand at an end and are pushed out, and adding whichever would leave.
+/// Returns the step that lowers the quadratic model most without leaving the box. At first it holds
+/// those unknowns that are at an end of their range and are pushed out of it; then it also holds
+/// each unknown that would leave the box.
 template <int N>
 Eigen::Matrix<double, N, 1>
 bounded_step(const Eigen::Matrix<double, N, N>& matrix, const Eigen::Matrix<double, N, 1>& gradient,
@@ -70,8 +72,9 @@ bounded_step(const Eigen::Matrix<double, N, N>& matrix, const Eigen::Matrix<doub
   return step;
 }
 
-/// Goes downhill from `at`, which lies in the box, and stays in it. `model(place)` gives the
-/// NormalEquations there. Returns the iterations it took; `at` and `here` end where it ended.
+/// Goes downhill from `at`, which must lie in the box, and stays in the box. `model(place)` returns
+/// the NormalEquations at a place. Returns the number of iterations; `at` and `here` become the
+/// last place and its equations.
 template <int N, class Model>
 int minimise(const Model& model, const Box<N>& box, const Effort& effort,
              Eigen::Matrix<double, N, 1>& at, NormalEquations<N>& here) noexcept {
@@ -88,8 +91,8 @@ int minimise(const Model& model, const Box<N>& box, const Effort& effort,
     const NormalEquations<N> next = model(there);
     const double step_rad = (there - at).cwiseAbs().maxCoeff();
     if (next.cost < here.cost) {
-      // How well the model foretold the descent says how far it may be trusted (H. B. Nielsen,
-      // "Damping parameter in Marquardt's method", 1999).
+      // The more exactly the model predicted the descent, the farther it may be trusted (H. B.
+      // Nielsen, "Damping parameter in Marquardt's method", 1999).
       const double foretold = -step.dot(here.gradient) - 0.5 * step.dot(here.matrix * step);
       const double quality = foretold > 0.0 ? (here.cost - next.cost) / foretold : 1.0;
       const double cubed = (2.0 * quality - 1.0) * (2.0 * quality - 1.0) * (2.0 * quality - 1.0);

@@ -1,7 +1,7 @@
 #pragma once
-// One fingertip as a function of its finger's four angles, with the derivatives: what inverse
-// kinematics needs of the hand, without the other joints. A right hand's, in the frame of its wrist
-// joint, behind the wrist's own angles.
+// One fingertip as a function of its finger's four angles, with the derivatives. Inverse kinematics
+// needs only this of the hand, not the other joints. Everything is of a right hand, in the frame of
+// its wrist joint, after the wrist's own angles.
 
 #include <array>
 
@@ -11,8 +11,8 @@
 
 namespace nendo::hand {
 
-/// A finger: MCP flexion, MCP abduction, PIP, DIP. The thumb: roll, abduction, MCP, IP. Radians, as
-/// JointAngles has them and in its order.
+/// The angles of a finger (MCP flexion, MCP abduction, PIP, DIP) or of the thumb (roll, abduction,
+/// MCP, IP), in radians, as in JointAngles and in its order.
 using FourAngles = Eigen::Vector4d;
 
 struct Fingertip {
@@ -22,12 +22,12 @@ struct Fingertip {
 
 class FingerChain {
 public:
-  /// finger: 0, the thumb, to 4.
+  /// `finger` is 0 for the thumb to 4 for the little finger.
   FingerChain(const HandSkeleton& skeleton, std::size_t finger) noexcept;
 
-  /// With the palm arched. Wait-free.
+  /// Returns the tip at these angles, with the palm arched by `palm_arch_rad`. Wait-free.
   Fingertip tip(const FourAngles& angles, double palm_arch_rad) const noexcept;
-  /// The derivative of a tip's position by the palm's arch.
+  /// Returns the derivative of a tip's position by the palm's arch, in m / rad.
   Eigen::Vector3d by_arch(const Eigen::Vector3d& tip_m) const noexcept;
   bool moves_with_arch() const noexcept { return arch_share_ > 0.0; }
 

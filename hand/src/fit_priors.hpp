@@ -1,6 +1,6 @@
 #pragma once
-// What a calibration's fit takes for granted before it has seen a pose: how far gloves and wearers
-// are from the default, how far joints go, and how much a single residual may say.
+// What the fit of a calibration assumes before it has seen a pose: how far gloves and wearers are
+// from the default, how far joints go, and how much a single residual may count.
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace nendo::hand {
 
-// What the default leaves open. Published gains and offsets differ by half of this between gloves
-// and wearers, so that a pose or two outweigh it.
+// How uncertain the default is. Published gains and offsets differ by half of this between gloves
+// and wearers, so that one or two poses outweigh it.
 inline constexpr double gain_deviation = 0.5; ///< of the gain's logarithm: its sign is known
 inline constexpr double offset_deviation_of_range = 40.0 / 255.0;
 // Thumb sensors mix strongly; published slope matrices have ratios up to 0.9.
@@ -22,25 +22,26 @@ inline constexpr double pad_depth_deviation_m = 0.002;
 inline constexpr double pad_behind_deviation_m = 0.003;
 inline constexpr double palm_depth_deviation_m = 0.003;
 
-// Beyond so many deviations a residual counts by its size and no more by its square: a pose badly
-// done, or another one than was asked for, does not bend what the others agree on.
+// Beyond this many deviations a residual counts by its size and no longer by its square. So a pose
+// that was held badly, or another pose than was asked for, does not spoil what the other poses
+// agree on.
 inline constexpr double unusual = 3.0;
 
-// Of what wearers are off by where they bend a joint by feel, so much is their habit, and the same
-// in all poses of the joint: its square is a third of the whole's. No fit of all poses alone could
-// tell it from a gain.
+// Where wearers bend a joint by feel, this part of their error is a habit, which is the same in all
+// poses of the joint. The square of this part is about a third, so the habit is a third of the
+// variance. No fit of all poses could tell a habit from a gain without this.
 inline constexpr double habit_part = 0.6;
 
-// Poses differ from what was asked in the joint's angle, and counts follow from it: a line should
-// be fitted to counts over asked angles. By residuals in radians the best line is the flatter the
-// more poses scatter, for a small gain makes small residuals (regression dilution: W. A. Fuller,
-// "Measurement Error Models", 1987). By residuals in counts, whose deviations are those in radians
-// over the gain of the last turn, it is not, but where few poses bend a joint it is then uncertain.
-// Errors of wearers for tuning were least so far on the way, by a geometric mean of both
-// deviations.
+// In a pose the joint's angle differs from the angle that was asked for, and the counts follow the
+// joint. A line should therefore be fitted to counts over asked angles. With residuals in radians,
+// the best line becomes flatter the more the poses scatter, because a small gain makes small
+// residuals (regression dilution: W. A. Fuller, "Measurement Error Models", 1987). This does not
+// happen with residuals in counts, whose deviations are those in radians divided by the gain of the
+// last iteration; but where few poses bend a joint, the line is then uncertain. The tuning wearers
+// had the least errors this far between the two, with a geometric mean of both deviations.
 inline constexpr double scatter_in_counts = 0.6;
 
-// A free motion that stays so far behind the poses did not reach the end.
+// A free motion that stays this far behind the poses did not reach the end.
 inline constexpr double short_of_poses_rad = 0.05;
 
 // How far joints go, and how far people and published tables differ: means of the American Academy
@@ -48,10 +49,10 @@ inline constexpr double short_of_poses_rad = 0.05;
 // -70, 20 and -30), of those of the Electronic Textbook of Hand Surgery (90, 100, 80; 55 and 80; 75
 // and -70, 20 and -35), and for wrists of D. C. Boone and S. P. Azen's, J. Bone Joint Surg. 61-A,
 // 1979 (76, -75, 22, -36, as reference tables for goniometry quote them). From memory alone, and
-// not found again: the active ranges of M. C. Hume and others, J. Hand Surg. 15A, 1990 (100, 105,
-// 85; thumb 56 and 73), whose abstract has the functional ones; a thumb's MCP joint of 59, from 16
-// to 90, in 300 hands; deviations of 6 and 4 in wrists. Of PIP joints tables say up to 120. What is
-// straight, poses tell better.
+// not found again, are the active ranges of M. C. Hume and others, J. Hand Surg. 15A, 1990 (100,
+// 105, 85; thumb 56 and 73), whose abstract has the functional ones; a thumb's MCP joint of 59,
+// from 16 to 90, in 300 hands; deviations of 6 and 4 in wrists. For PIP joints tables say up to
+// 120. The straight ends of flexion are not used, because poses determine them better.
 struct RangeEnds {
   double low_deg, low_deviation_deg, high_deg, high_deviation_deg; // deviation 0: not used
 };
@@ -68,8 +69,8 @@ inline constexpr std::array<RangeEnds, sensor_slots> range_ends_of{{
     no_ends,  {-72, 7, 78, 7}, {-33, 5, 21, 4}, no_ends, // palm, wrist
 }};
 
-/// What pseudo-Huber's loss makes of a residual, so that its square is the loss, and the slope of
-/// that (P. Charbonnier and others, 1997).
+/// The residual that pseudo-Huber's loss makes of a residual, so that its square is the loss, and
+/// its slope (P. Charbonnier and others, 1997).
 struct Robust {
   double residual, slope;
 };

@@ -11,11 +11,11 @@
 
 namespace nendo::hand {
 
-/// Unknowns, in units of their prior's standard deviation and 0 at its mean: of each slot the
-/// gain's logarithm and the angle at the mean of its counts, then the couplings. These are the
-/// calibration. What follows is the wearer's, and not told: how deep the pads are, how far behind
-/// the tips, how deep the palm's flesh, and of each slot how far off the asked angle the joint
-/// is by habit, as a part of what wearers are off by.
+/// The unknowns, in units of their prior's standard deviation and 0 at its mean. The first are the
+/// calibration: for each slot the gain's logarithm and the angle at the mean of its counts, then
+/// the couplings. The others are the wearer's and are not reported: how deep the pads are, how far
+/// behind the tips, how deep the palm's flesh is, and for each slot the habit, that is how far the
+/// joint always is from the asked angle, in units of the prior.
 inline constexpr std::size_t line_unknowns = 2 * sensor_slots + couplings.size();
 inline constexpr std::size_t habit_unknowns = line_unknowns + 3;
 inline constexpr std::size_t unknown_count = habit_unknowns + sensor_slots;
@@ -41,25 +41,27 @@ public:
 
   Calibration calibration(const Unknowns& at) const;
 
-  /// All residuals, each over its deviation; `jacobian` is theirs by the unknowns.
+  /// Computes all residuals, each divided by its deviation, and unless `jacobian` is null their
+  /// derivatives by the unknowns.
   void evaluate(const Unknowns& at, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) const;
 
-  // An angle's deviation may be thought of as one in radians or as one in counts, which is the gain
-  // at which it is taken times that; see scatter_in_counts.
+  // An angle's deviation can be held constant in radians or in counts. In radians, a deviation in
+  // counts is multiplied by the gain; see scatter_in_counts.
 
-  /// Makes residuals at `at` those whose deviations, in counts by so great a part, are of `before`.
+  /// Rescales the residuals at `at` as if their deviations, of which `part` is held in counts, were
+  /// still those at `before`.
   void weigh_as(const Unknowns& before, const Unknowns& at, double part,
                 Eigen::VectorXd& residuals) const;
-  /// Makes of a jacobian that of residuals whose deviations are in counts by so great a part.
+  /// Changes the jacobian to that of residuals of whose deviations `part` is held in counts.
   void hold_weights(const Eigen::VectorXd& residuals, double part, Eigen::MatrixXd& jacobian) const;
 
-  /// Where a reading's residuals stand: first, and one past the last of the assumed angles', and
-  /// one past the last of all.
+  /// The rows of a reading's residuals: assumed angles from `begin`, the touch from `touch`, up to
+  /// before `end`.
   struct Rows {
     Eigen::Index begin, touch, end;
   };
   const Rows& rows(std::size_t reading) const { return rows_[reading]; }
-  /// The slot of an assumed angle's residual, and its deviation.
+  /// The slot of an assumed angle, and the angle with its deviation.
   struct Assumption {
     std::size_t slot;
     AssumedAngle assumed;
@@ -67,12 +69,12 @@ public:
   const std::vector<Assumption>& assumptions(std::size_t reading) const {
     return assumptions_[reading];
   }
-  /// Those that are no calibration, but are solved with it.
+  /// Returns the unknowns that are not of the calibration but are solved with it.
   std::vector<Eigen::Index> wearers_unknowns() const;
-  /// Between the pads that should touch in this reading.
+  /// Returns the distance between the pads that should touch in this reading; 0 without a touch.
   double gap_m(const Unknowns& at, std::size_t reading) const;
 
-  /// Angles of one reading, and their derivatives by the unknowns.
+  /// Returns the angles of one reading, and unless `jacobian` is null their derivatives.
   using AngleJacobian = Eigen::Matrix<double, sensor_slots, line_unknowns, Eigen::RowMajor>;
   SensorAngles angles_rad(const Unknowns& at, std::size_t reading, AngleJacobian* jacobian) const;
 
@@ -92,7 +94,7 @@ private:
   void add_range_ends(const Unknowns& at, Eigen::VectorXd& residuals,
                       Eigen::MatrixXd* jacobian) const;
   void find_range_ends(const CountRanges& free_motion);
-  /// visit(row, gain) of each residual that is of an angle, and of which sensor's gain.
+  /// Calls visit(row, gain) for each residual of an angle, with the index of its sensor's gain.
   template <class Visit>
   void for_each_line(Visit&& visit) const;
 
@@ -103,7 +105,7 @@ private:
   };
   Line line(const Unknowns& at, std::size_t slot) const noexcept;
 
-  /// A joint was turned as far as it goes.
+  /// Says that a joint was turned to the end of its range at these counts.
   struct RangeEnd {
     std::size_t slot;
     double counts;

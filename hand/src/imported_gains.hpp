@@ -1,5 +1,6 @@
 #pragma once
-// From lines of some other program's to a calibration: signs, and sensors that must be there.
+// Makes a calibration of the lines that another program wrote: corrects signs, and checks that
+// required sensors are there.
 
 #include <array>
 #include <cstddef>
@@ -12,11 +13,12 @@ namespace nendo::hand {
 /// Lines as they were read, in counts of 0 to 255.
 struct ReadLines {
   std::array<SensorCalibration, sensor_slots> sensors{};
-  std::array<std::size_t, sensor_slots> line{}; ///< where in the text; 0: nowhere
+  std::array<std::size_t, sensor_slots> line{}; ///< its line number in the text; 0: none
 };
 
-/// Turns what is written in the other frame (calibration_exchange.hpp) and judges every line. What
-/// every CyberGlove has must be calibrated, if `complete`. Error: bad_input.
+/// Turns the signs of what is written in the other frame (calibration_exchange.hpp) and checks
+/// every line. If `complete`, the sensors that every CyberGlove has must be calibrated. Error:
+/// bad_input.
 Result<ImportedCalibration> imported(ReadLines lines, std::string_view name, bool complete);
 
 } // namespace nendo::hand

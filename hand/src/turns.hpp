@@ -1,7 +1,7 @@
 #pragma once
-// The sines and cosines of many angles at once. A pose needs two dozen of them, and the library's
-// would take most of its time: they go one by one, and are exact to the last bit, which nobody sees
-// in a hand. These go through the vector unit, and are right to 2e-15.
+// Computes the sines and cosines of many angles at once. A pose needs two dozen of them. Those of
+// the standard library would take most of its time: they are computed one by one and are exact to
+// the last bit, which is not visible in a hand. These use the vector unit and are right to 2e-15.
 
 #include <array>
 #include <cmath>
@@ -26,8 +26,8 @@ struct Turns {
 
 namespace detail {
 
-// Taylor's series in the square of an eighth of the angle. That is at most pi / 4, where the first
-// term left out is below 1e-16.
+// Taylor's series in the square of an eighth of the angle. The eighth is at most pi / 4, where the
+// first term left out is below 1e-16.
 inline constexpr std::array<double, 8> sine_terms{
     1.0,           -1.0 / 6,          1.0 / 120,           -1.0 / 5040,
     1.0 / 362'880, -1.0 / 39'916'800, 1.0 / 6'227'020'800, -1.0 / 1'307'674'368'000};
@@ -52,7 +52,8 @@ Eigen::Array2d series(const std::array<double, Terms>& terms,
 
 } // namespace detail
 
-/// N is even. An angle that is not finite counts as zero. Wait-free.
+/// Returns the sines and cosines of N angles; N must be even. An angle that is not finite counts as
+/// zero. Wait-free.
 template <int N>
 Turns<N> turns(const Eigen::Array<double, N, 1>& angles_rad) noexcept {
   static_assert(N % 2 == 0, "angles go through the vector unit in pairs");

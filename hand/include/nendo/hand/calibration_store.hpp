@@ -66,9 +66,8 @@ struct CalibrationChoice {
 };
 
 /// Returns the best calibration for that glove, or nullopt. It is never one of the other hand, of
-/// another user, of another model or of the other kind of counts. Among equally good matches an own
-/// file goes before a shared one, then the newer file, then the one listed first. `files` must
-/// outlive the choice.
+/// another model or of the other kind of counts. Among equally good matches an own file goes before
+/// a shared one, then the newer file, then the one listed first. `files` must outlive the choice.
 std::optional<CalibrationChoice> choose_calibration(const std::vector<StoredCalibration>& files,
                                                     const GloveAtHand& glove);
 
