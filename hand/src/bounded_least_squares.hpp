@@ -24,7 +24,7 @@ struct NormalEquations {
   Eigen::Matrix<double, N, N> matrix;   ///< J^T J
   Eigen::Matrix<double, N, 1> gradient; ///< J^T r
   double cost = 0.0;                    ///< r^T r / 2
-  double farthest_m = 0.0;              ///< the largest distance to a target; compared with `enough_m`
+  double farthest_m = 0.0;              ///< the largest distance to a target
 };
 
 struct Effort {

@@ -1,6 +1,6 @@
 #pragma once
 // One finger's part of inverse kinematics: finds its four angles from a place for its tip, with the
-// palm held still. Defines also what makes a posture natural, which the solver for the whole hand
+// palm held still. Also defines what makes a posture natural, which the solver for the whole hand
 // needs, too.
 
 #include <algorithm>

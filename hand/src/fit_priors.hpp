@@ -29,7 +29,7 @@ inline constexpr double unusual = 3.0;
 
 // Where wearers bend a joint by feel, this part of their error is a habit, which is the same in all
 // poses of the joint. The square of this part is about a third, so the habit is a third of the
-// variance. No fit of all poses could tell a habit from a gain without this.
+// variance. The poses alone could not tell a habit from a gain.
 inline constexpr double habit_part = 0.6;
 
 // In a pose the joint's angle differs from the angle that was asked for, and the counts follow the
@@ -37,8 +37,9 @@ inline constexpr double habit_part = 0.6;
 // the best line becomes flatter the more the poses scatter, because a small gain makes small
 // residuals (regression dilution: W. A. Fuller, "Measurement Error Models", 1987). This does not
 // happen with residuals in counts, whose deviations are those in radians divided by the gain of the
-// last iteration; but where few poses bend a joint, the line is then uncertain. The tuning wearers
-// had the least errors this far between the two, with a geometric mean of both deviations.
+// last iteration; but where few poses bend a joint, the line is then uncertain. For the wearers
+// used in tuning, errors were least this far from radians to counts, by a geometric mean of both
+// deviations.
 inline constexpr double scatter_in_counts = 0.6;
 
 // A free motion that stays this far behind the poses did not reach the end.

@@ -14,8 +14,8 @@ namespace nendo::hand {
 /// The unknowns, in units of their prior's standard deviation and 0 at its mean. The first are the
 /// calibration: for each slot the gain's logarithm and the angle at the mean of its counts, then
 /// the couplings. The others are the wearer's and are not reported: how deep the pads are, how far
-/// behind the tips, how deep the palm's flesh is, and for each slot the habit, that is how far the
-/// joint always is from the asked angle, in units of the prior.
+/// behind the tips, how deep the palm's flesh is, and for each slot the habit, by which the joint
+/// differs from every asked angle.
 inline constexpr std::size_t line_unknowns = 2 * sensor_slots + couplings.size();
 inline constexpr std::size_t habit_unknowns = line_unknowns + 3;
 inline constexpr std::size_t unknown_count = habit_unknowns + sensor_slots;
@@ -55,8 +55,7 @@ public:
   /// Changes the jacobian to that of residuals of whose deviations `part` is held in counts.
   void hold_weights(const Eigen::VectorXd& residuals, double part, Eigen::MatrixXd& jacobian) const;
 
-  /// The rows of a reading's residuals: assumed angles from `begin`, the touch from `touch`, up to
-  /// before `end`.
+  /// A reading's rows: assumed angles from `begin`, its touch from `touch`; `end` is one past them.
   struct Rows {
     Eigen::Index begin, touch, end;
   };

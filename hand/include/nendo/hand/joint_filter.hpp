@@ -22,9 +22,8 @@ std::string_view name_of(FilterKind kind) noexcept;
 std::optional<FilterKind> filter_named(std::string_view name) noexcept;
 
 /// The cutoff of a joint is min_cutoff_hz + beta_hz_per_rad_s |speed|. The defaults were chosen
-/// with a CyberGlove's count of 0.0125 rad at 90 Hz: a sensor that flickers between two counts
-/// flickers only a quarter as much afterwards, and reaches of 1.2 rad in 0.2, 0.5 and 1 s are 12,
-/// 16 and 21 ms late.
+/// with a CyberGlove's count of 0.0125 rad at 90 Hz: a flicker between two counts is reduced to a
+/// quarter, and reaches of 1.2 rad in 0.2, 0.5 and 1 s are 12, 16 and 21 ms late.
 struct FilterOptions {
   FilterKind kind = FilterKind::off;
   double min_cutoff_hz = 2.0;
