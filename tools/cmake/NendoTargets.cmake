@@ -47,13 +47,10 @@ function(nendo_settings target scope)
     target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:SHELL:--param ggc-min-heapsize=2097152>")
   endif()
   # GCC 12 sees impossible lengths in std::string and std::vector that it has inlined, and the insides of empty optionals.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # Of a precompiled standard library each GCC does, because it takes that for the project's own code.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND (NENDO_PCH OR CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13))
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Wno-restrict -Wno-array-bounds -Wno-stringop-overread
-      -Wno-maybe-uninitialized>)
-  endif()
-  # Of a precompiled standard library, GCC warns as if it were the project's own code.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NENDO_PCH)
-    target_compile_options(${target} PRIVATE -Wno-stringop-overflow)
+      -Wno-stringop-overflow -Wno-maybe-uninitialized>)
   endif()
   if(NENDO_SANITIZE)
     # Bad pointers are the address sanitizer's to find; the other's checks of them would double the time that Eigen's
@@ -65,13 +62,14 @@ function(nendo_settings target scope)
 endfunction()
 
 # nendo_kind(<target> <kind>): what differs between a `library`, a `room` of the program, a `test` and an `optimised_test`.
-# A debugging build optimises rooms as little as tests, because libraries do what takes long. Where NENDO_PCH is on, the
-# headers that most files see are read once for all targets of a kind. The preset dev has it off, and clang-tidy and clangd
-# read that preset's flags: they show whether each file includes what it uses.
+# Where NENDO_PCH is on, the headers that most files see are read once for all targets of a kind. The preset dev has it off,
+# and clang-tidy and clangd read that preset's flags: they show whether each file includes what it uses.
 function(nendo_kind target kind)
   nendo_kind_options(${target} ${kind})
   if(NENDO_PCH)
     target_precompile_headers(${target} REUSE_FROM nendo_headers_${kind})
+    # clang-tidy looks for the headers of the precompiled one, whether or not the target uses Eigen.
+    target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
   endif()
 endfunction()
 
@@ -82,8 +80,6 @@ function(nendo_kind_options target kind)
   if(kind STREQUAL "library" AND NENDO_FUZZ) # coverage, for the fuzz targets that link it
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
     target_link_options(${target} PUBLIC -fsanitize=fuzzer-no-link)
-  elseif(kind STREQUAL "room")
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Debug>:-O0>)
   elseif(kind STREQUAL "test")
     target_compile_options(${target} PRIVATE -O0)
   elseif(kind STREQUAL "optimised_test")
@@ -140,19 +136,15 @@ function(nendo_library name)
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 endfunction()
 
-# nendo_room(<name> [OPTIMISED] SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not
-# installed. Its includes are quoted and begin with the room's folder. OPTIMISED: a debugging build optimises it, too.
+# nendo_room(<name> SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not installed. Its
+# includes are quoted and begin with the room's folder.
 function(nendo_room name)
-  cmake_parse_arguments(ARG "OPTIMISED" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   set(target nendo_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(nendo::${name} ALIAS ${target})
   nendo_settings(${target} PRIVATE)
-  if(ARG_OPTIMISED OR NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
-    nendo_kind(${target} library)
-  else()
-    nendo_kind(${target} room)
-  endif()
+  nendo_kind(${target} room)
   target_compile_definitions(${target} PRIVATE NENDO_VERSION="${PROJECT_VERSION}")
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/apps)
   if(ARG_LIBRARIES)
