@@ -1,5 +1,6 @@
 #include "light_maps.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -106,11 +107,14 @@ Vector3f DepthMap::on_map(const Vector3f& place) const noexcept {
 }
 
 void DepthMap::cast(const Surface& surface) {
+  std::vector<Vector3f> places(surface.places.size());
+  std::transform(surface.places.begin(), surface.places.end(), places.begin(),
+                 [this](const Vector3f& place) { return on_map(place); });
   for (std::size_t at = 0; at + 2 < surface.corners.size(); at += 3) {
     std::array<RasterCorner, 3> corners;
     Vector3f depth;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3f on = on_map(surface.places[surface.corners[at + k]]);
+      const Vector3f& on = places[surface.corners[at + k]];
       corners[k] = {static_cast<double>(on.x()), static_cast<double>(on.y())};
       depth[static_cast<Eigen::Index>(k)] = on.z();
     }

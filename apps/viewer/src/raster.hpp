@@ -57,18 +57,21 @@ void each_covered(const std::array<RasterCorner, 3>& corners, int width, Rows ro
     bias[k] = dy[k] < 0 || (dy[k] == 0 && dx[k] > 0) ? 0 : -1;
   }
   for (int row = y0; row <= y1; ++row) {
+    std::array<std::int64_t, 3> edge{}; // twice the area to each side of the sample, less the bias
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t from = (k + 1) % 3;
+      edge[k] = dx[k] * (std::int64_t{row} * 256 + 128 - y[from]) -
+                dy[k] * (std::int64_t{x0} * 256 + 128 - x[from]) + bias[k];
+    }
     for (int column = x0; column <= x1; ++column) {
-      const std::int64_t px = std::int64_t{column} * 256 + 128;
-      const std::int64_t py = std::int64_t{row} * 256 + 128;
-      std::array<double, 3> b{};
-      bool inside = true;
-      for (std::size_t k = 0; k < 3 && inside; ++k) {
-        const std::size_t from = (k + 1) % 3;
-        const std::int64_t edge = dx[k] * (py - y[from]) - dy[k] * (px - x[from]);
-        inside = edge + bias[k] >= 0;
-        b[k] = static_cast<double>(edge) / static_cast<double>(area);
+      if ((edge[0] | edge[1] | edge[2]) >= 0) {
+        std::array<double, 3> b{};
+        for (std::size_t k = 0; k < 3; ++k)
+          b[k] = static_cast<double>(edge[k] - bias[k]) / static_cast<double>(area);
+        visit(column, row, b);
       }
-      if (inside) visit(column, row, b);
+      for (std::size_t k = 0; k < 3; ++k)
+        edge[k] -= dy[k] * 256;
     }
   }
 }
