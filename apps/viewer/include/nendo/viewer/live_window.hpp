@@ -41,7 +41,7 @@ public:
   /// Begins to show another loop over this model. The camera stays where it was.
   void begin(const deform::BlockLayout& layout, const SceneBuilder& builder,
              const flow::LoopSettings& settings);
-  /// Draws one picture of the latest frame and waits for the screen, or for at most 20 ms if there
+  /// Draws one picture of the latest frame and waits for the screen, or for at most 8 ms if there
   /// is none. fresh: the frame differs from that of the previous call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 

@@ -51,7 +51,7 @@ public:
   /// Lets the keys h, b, v and d show and hide parts of the scene, unless a text is being entered
   /// or a question is open.
   void follow_part_keys();
-  /// Draws the picture and waits for the screen, or for at most 20 ms if there is none.
+  /// Draws the picture and waits for the screen, or for at most 8 ms if there is none.
   void end_picture();
 
   /// Returns whether the person has asked to close the window since the last call.

@@ -26,7 +26,7 @@ public:
   }
   /// Sets the shape of the model from the next picture on.
   void follow(const deform::BlockShape& shape) { window_->follow(shape); }
-  /// Draws one picture and waits for the screen, or for at most 20 ms if there is none. The
+  /// Draws one picture and waits for the screen, or for at most 8 ms if there is none. The
   /// vertices of `moment` are not used. If a person wants to leave with unsaved changes, the window
   /// asks first and then returns `quit`.
   EditActions show(const TimelineView& view, const SceneFrame& moment);
