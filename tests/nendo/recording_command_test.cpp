@@ -190,10 +190,10 @@ TEST_SUITE("recording_command") {
                            "60s"});
     REQUIRE(test::appears(folder.path() / "take.nendo"));
     // Its description is written before the first tick, and chunks of ticks after that.
+    const auto size = [&] { return std::filesystem::file_size(folder.path() / "take.nendo"); };
     for (int growth = 0; growth < 2; ++growth) {
-      const auto before = std::filesystem::file_size(folder.path() / "take.nendo");
-      for (int turn = 0;
-           turn < 2000 && std::filesystem::file_size(folder.path() / "take.nendo") == before; ++turn)
+      const auto before = size();
+      for (int turn = 0; turn < 2000 && size() == before; ++turn)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     program.signal(SIGSEGV);
