@@ -1,4 +1,4 @@
-// The window of `nendo edit view`, with a mouse and a keyboard that the test pretends.
+// The window of `nendo edit view`, with a mouse and a keyboard that the test simulates.
 
 #include <cmath>
 
@@ -29,7 +29,7 @@ struct Seat {
   std::unique_ptr<TimelineWindow> window;
   TimelineView view;
   SceneFrame moment;
-  PretendedInput input;
+  SimulatedInput input;
   DopeSheet strip;
 
   Seat() {
@@ -60,7 +60,7 @@ struct Seat {
   EditActions move(const Vector2d& pointer, bool left) {
     input.pointer = pointer;
     input.buttons[0] = left;
-    window->pretend(input);
+    window->simulate(input);
     return show();
   }
   EditActions press(const Vector2d& pointer) {
@@ -73,11 +73,11 @@ struct Seat {
     input.key = key;
     input.control = control;
     input.shift = shift;
-    window->pretend(input);
+    window->simulate(input);
     auto actions = show();
     input.key = 0;
     input.control = input.shift = false;
-    window->pretend(input);
+    window->simulate(input);
     show();
     return actions;
   }
@@ -250,13 +250,13 @@ TEST_SUITE("timeline_window") {
     Seat& seat = *room.seat;
     seat.input.control = true;
     seat.input.taps = {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_Z, GLFW_KEY_Z, GLFW_KEY_Y};
-    seat.window->pretend(seat.input);
+    seat.window->simulate(seat.input);
     std::vector<EditCommand> commands;
     for (int picture = 0; picture < 4; ++picture) {
       const auto actions = seat.show();
       commands.insert(commands.end(), actions.commands.begin(), actions.commands.end());
       seat.input = {};
-      seat.window->pretend(seat.input);
+      seat.window->simulate(seat.input);
     }
     using enum EditCommand;
     CHECK(commands == std::vector{undo, undo, redo});

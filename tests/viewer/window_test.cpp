@@ -108,11 +108,11 @@ TEST_SUITE("window") {
                  settings);
     const flow::Frame& frame = test.frame_after_tick(0);
     const auto type = [&](int key) {
-      PretendedInput input;
+      SimulatedInput input;
       input.taps = {key};
-      window.pretend(input);
+      window.simulate(input);
       auto commands = window.show(frame, false, {});
-      window.pretend({});
+      window.simulate({});
       window.show(frame, false, {});
       return commands;
     };
@@ -175,7 +175,7 @@ TEST_SUITE("window") {
     window.begin(test.loop->layout(), builder, {});
     const flow::Frame& frame = test.frame_after_tick(0);
     window.show(frame, true, {});
-    PretendedInput input;
+    SimulatedInput input;
     for (const auto& joint : frame.hands[1].pose.joints) { // the one that the panel covers least
       const Eigen::Vector4d clip = window.camera().projection(1.0 * size.width / size.height) *
                                    (joint.translation() - builder.origin_m()).homogeneous();
@@ -183,13 +183,13 @@ TEST_SUITE("window") {
                                   (1.0 - clip.y() / clip.w()) / 2 * size.height);
       if (pixel.x() > input.pointer.x()) input.pointer = pixel;
     }
-    window.pretend(input);
+    window.simulate(input);
     window.show(frame, false, {});
     input.buttons[1] = true;
-    window.pretend(input);
+    window.simulate(input);
     window.show(frame, false, {});
     input.pointer.y() -= 10.0;
-    window.pretend(input);
+    window.simulate(input);
     const Commands commands = window.show(frame, false, {});
     REQUIRE(commands.size() == 1);
     const auto* moved = std::get_if<flow::WristMove>(&commands.front());

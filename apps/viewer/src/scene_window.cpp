@@ -131,7 +131,7 @@ void SceneWindow::begin_picture(const SceneFrame& moment, bool is_whole) {
   framed_ = framed_ || is_whole;
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  if (pretended_) put_pretended();
+  if (simulated_) put_simulated();
   quick_->put();
   ImGui::NewFrame();
 }
@@ -147,14 +147,14 @@ void SceneWindow::choose_camera() {
   camera_ = framing(points, {22.0, 10.0}, 1.0 * size.width / size.height, 0.1);
 }
 
-void SceneWindow::pretend(const PretendedInput& input) {
+void SceneWindow::simulate(const SimulatedInput& input) {
 #if IMGUI_VERSION_NUM >= 18700
   ImGui::GetIO().ConfigInputTrickleEventQueue =
-      false; // each picture shows what is pretended for it
+      false; // each picture shows what is simulated for it
 #endif
-  if (pretended_ && pretended_->key > 0 && pretended_->key != input.key)
-    put_key(pretended_->key, false);
-  pretended_ = input;
+  if (simulated_ && simulated_->key > 0 && simulated_->key != input.key)
+    put_key(simulated_->key, false);
+  simulated_ = input;
   for (const int key : input.taps)
     quick_->press(key, input.control, input.shift);
   if (!input.clicked_at) return;
@@ -163,14 +163,14 @@ void SceneWindow::pretend(const PretendedInput& input) {
 }
 
 // As the window's back end tells ImGui of those that are there.
-void SceneWindow::put_pretended() const {
-  put_pointer(static_cast<float>(pretended_->pointer.x()),
-              static_cast<float>(pretended_->pointer.y()));
-  for (std::size_t button = 0; button < pretended_->buttons.size(); ++button)
-    put_button(static_cast<int>(button), pretended_->buttons[button]);
-  put_wheel(static_cast<float>(pretended_->wheel));
-  put_modifiers(pretended_->control, pretended_->shift);
-  if (pretended_->key > 0) put_key(pretended_->key, true);
+void SceneWindow::put_simulated() const {
+  put_pointer(static_cast<float>(simulated_->pointer.x()),
+              static_cast<float>(simulated_->pointer.y()));
+  for (std::size_t button = 0; button < simulated_->buttons.size(); ++button)
+    put_button(static_cast<int>(button), simulated_->buttons[button]);
+  put_wheel(static_cast<float>(simulated_->wheel));
+  put_modifiers(simulated_->control, simulated_->shift);
+  if (simulated_->key > 0) put_key(simulated_->key, true);
 }
 
 void SceneWindow::move_camera() {

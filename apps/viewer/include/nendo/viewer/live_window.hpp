@@ -51,7 +51,7 @@ public:
   const Camera& camera() const noexcept { return window_->camera(); }
   const Scene& scene() const noexcept { return window_->scene(); }
   std::uint64_t blocks_sent() const noexcept { return window_->blocks_sent(); }
-  void pretend(const PretendedInput& input) { window_->pretend(input); }
+  void simulate(const SimulatedInput& input) { window_->simulate(input); }
 
 private:
   struct Panel;

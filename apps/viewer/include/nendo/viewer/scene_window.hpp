@@ -17,7 +17,7 @@ namespace nendo::viewer {
 class QuickInput;
 
 /// Simulated input of a mouse and a keyboard, for tests.
-struct PretendedInput {
+struct SimulatedInput {
   Eigen::Vector2d pointer{-1.0, -1.0}; ///< pixels from the window's top left corner
   std::array<bool, 3> buttons{};       ///< left, right, middle
   double wheel = 0.0;
@@ -70,18 +70,18 @@ public:
   /// Does the same as viewer::silhouette() with OpenGL, for the scene that was shown last.
   Image silhouette(Size size);
   /// Replaces the real mouse and keyboard by `input` from the next picture on.
-  void pretend(const PretendedInput& input);
+  void simulate(const SimulatedInput& input);
 
 private:
   SceneWindow();
   void choose_camera();
-  void put_pretended() const;
+  void put_simulated() const;
   void draw_all() const;
 
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<GlRenderer> renderer_;
   std::optional<SceneBuilder> builder_;
-  std::optional<PretendedInput> pretended_;
+  std::optional<SimulatedInput> simulated_;
   std::unique_ptr<QuickInput> quick_;
   SceneParts parts_;
   Scene scene_;

@@ -32,7 +32,7 @@ public:
   EditActions show(const TimelineView& view, const SceneFrame& moment);
 
   const SceneWindow& scene_window() const noexcept { return *window_; }
-  void pretend(const PretendedInput& input) { window_->pretend(input); }
+  void simulate(const SimulatedInput& input) { window_->simulate(input); }
 
 private:
   struct Panel;
