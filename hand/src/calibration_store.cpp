@@ -84,10 +84,10 @@ std::optional<GloveMatch> match_of(const WearerCalibration& wearer, const GloveA
   if (wearer.side != glove.side) return std::nullopt;
   if (wearer.counts.whole_range != glove.counts.whole_range) return std::nullopt;
   if (!glove.user.empty() && wearer.user != glove.user) return std::nullopt;
-  if (!glove.serial.empty() && wearer.glove_serial == glove.serial) return GloveMatch::this_glove;
   const bool same_model = wearer.glove_model == glove.model;
-  if (wearer.glove_serial.empty() && (same_model || wearer.glove_model.empty()))
-    return GloveMatch::any_glove;
+  if (!same_model && !wearer.glove_model.empty()) return std::nullopt;
+  if (!glove.serial.empty() && wearer.glove_serial == glove.serial) return GloveMatch::this_glove;
+  if (wearer.glove_serial.empty()) return GloveMatch::any_glove;
   return same_model ? std::optional(GloveMatch::other_glove) : std::nullopt;
 }
 
