@@ -74,14 +74,16 @@ std::optional<double> rate(std::string_view text) {
 }
 
 std::optional<Nanoseconds> time(std::string_view text) {
-  constexpr double most_s = 1e7; // nearly four months
+  using Seconds = std::chrono::duration<double>;
+  constexpr Seconds most(1e7); // nearly four months
   const bool milliseconds = text.ends_with("ms");
   if (!text.ends_with('s')) return {};
   const auto value = number(text.substr(0, text.size() - (milliseconds ? 2 : 1)));
   if (!value) return {};
-  const double seconds = milliseconds ? *value / 1000.0 : *value;
-  if (!(seconds >= 0.0 && seconds <= most_s)) return {};
-  return std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(seconds));
+  const Seconds given =
+      milliseconds ? Seconds(std::chrono::duration<double, std::milli>(*value)) : Seconds(*value);
+  if (!(given.count() >= 0.0 && given <= most)) return {};
+  return std::chrono::duration_cast<Nanoseconds>(given);
 }
 
 bool fits(Part part, bool given) noexcept {
