@@ -12,6 +12,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <nendo/base/descriptor.hpp>
+
 #include "cyberglove/cyberglove_driver.hpp"
 #include "transport/open_transport.hpp"
 #include "units/cyberglove_unit.hpp"
@@ -21,19 +23,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct FileDescriptor {
-  explicit FileDescriptor(int descriptor = -1) noexcept : fd(descriptor) {}
-  FileDescriptor(FileDescriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
-  FileDescriptor& operator=(FileDescriptor&&) = delete;
-  ~FileDescriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-  int fd;
-};
-
 struct Wire {
-  FileDescriptor device;
-  FileDescriptor host;
+  Descriptor device;
+  Descriptor host;
 };
 
 Result<Wire> make_wire(Line line) {
@@ -42,20 +34,21 @@ Result<Wire> make_wire(Line line) {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0)
       return none;
-    return Wire{FileDescriptor(ends[0]), FileDescriptor(ends[1])};
+    return Wire{Descriptor(ends[0]), Descriptor(ends[1])};
   }
   constexpr int flags = O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;
-  FileDescriptor device(::posix_openpt(flags));
+  Descriptor device(::posix_openpt(flags));
   std::array<char, 64> name{};
-  if (device.fd < 0 || ::grantpt(device.fd) != 0 || ::unlockpt(device.fd) != 0 ||
-      ::ptsname_r(device.fd, name.data(), name.size()) != 0) {
+  const int fd = device.get();
+  if (fd < 0 || ::grantpt(fd) != 0 || ::unlockpt(fd) != 0 ||
+      ::ptsname_r(fd, name.data(), name.size()) != 0) {
     return none;
   }
-  FileDescriptor host(::open(name.data(), flags));
+  Descriptor host(::open(name.data(), flags));
   termios settings{};
-  if (host.fd < 0 || ::tcgetattr(host.fd, &settings) != 0) return none;
+  if (!host.is_open() || ::tcgetattr(host.get(), &settings) != 0) return none;
   ::cfmakeraw(&settings);
-  if (::tcsetattr(host.fd, TCSANOW, &settings) != 0) return none;
+  if (::tcsetattr(host.get(), TCSANOW, &settings) != 0) return none;
   return Wire{std::move(device), std::move(host)};
 }
 
@@ -69,7 +62,8 @@ bool write_record(int fd, std::span<const std::byte> bytes) {
   return ::write(fd, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
 }
 
-/// How long from the write until `ring` shows a sample; nothing if it does not within a second.
+/// Writes a record and returns the time until `ring` shows a sample, or nothing if it does not
+/// within a second.
 std::optional<HostClock::duration> time_one(SampleRing& ring, int fd,
                                             std::span<const std::byte> record) {
   const HostTime written = HostClock::now();
@@ -81,7 +75,7 @@ std::optional<HostClock::duration> time_one(SampleRing& ring, int fd,
   }
 }
 
-/// The least that reads a record: what the driver is compared with.
+/// Reads records with as little work as possible. The driver is compared with it.
 void read_barely(const std::stop_token& stop, int fd, SampleRing& ring) {
   std::array<char, 1024> buffer{};
   while (!stop.stop_requested()) {
@@ -112,7 +106,7 @@ public:
       serve();
   }
 
-  /// False: a record got lost.
+  /// Returns false if a record got lost.
   bool measure(SampleRing& driver_ring, SampleRing& bare_ring, const LatencySinks& sinks,
                const std::atomic<bool>& stop) {
     std::size_t warm_up = options_.records / 20 + 1;
@@ -123,7 +117,7 @@ public:
       std::optional<HostClock::duration> bare;
       const auto time_driver = [&] { driver = time_one(driver_ring, driver_fd_, bytes); };
       const auto time_bare = [&] { bare = time_one(bare_ring, bare_fd_, bytes); };
-      // In turn: whoever comes second finds the machine awake.
+      // The two take turns, because the second one finds the machine awake.
       k % 2 == 0 ? (time_driver(), time_bare()) : (time_bare(), time_driver());
       unit_.take(bytes.size());
       if (!driver || !bare) return false;
@@ -179,11 +173,12 @@ Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& 
 
   SampleRing driver_ring(1024);
   SampleRing bare_ring(1024);
-  Device device(options, driver_wire->device.fd, bare_wire->device.fd);
+  Device device(options, driver_wire->device.get(), bare_wire->device.get());
   std::atomic<bool> opened{false};
   std::thread dialogue([&] { device.serve_dialogue(opened); });
   const auto open_port = [&]() -> Result<std::unique_ptr<driver::Transport>> {
-    const int fd = std::exchange(driver_wire->host.fd, -1);
+    Descriptor host = std::move(driver_wire->host); // the transport gets a copy of its own
+    const int fd = host.is_open() ? ::fcntl(host.get(), F_DUPFD_CLOEXEC, 0) : -1;
     if (fd < 0) return Error{Errc::no_device, "the line was closed"};
     return driver::transport_of(fd);
   };
@@ -199,7 +194,7 @@ Result<void> measure_latency(const LatencyOptions& options, const LatencySinks& 
   while (driver_ring.try_pop(early)) {
   }
   const std::jthread bare(
-      [&](const std::stop_token& token) { read_barely(token, bare_wire->host.fd, bare_ring); });
+      [&](const std::stop_token& token) { read_barely(token, bare_wire->host.get(), bare_ring); });
   if (!device.measure(driver_ring, bare_ring, sinks, stop)) {
     return Error{Errc::failed,
                  "a record did not arrive within a second; is the machine that busy?"};

@@ -116,6 +116,20 @@ std::string_view name_of(FaultKind kind) noexcept {
   return rows[static_cast<std::size_t>(kind)].name;
 }
 
+std::optional<Incident> incident_of(const Fault& fault, bool over) {
+  using Kind = Incident::Kind;
+  if (fault.kind == FaultKind::restart) return Incident{Kind::power_cycle};
+  if (fault.kind == FaultKind::press) return Incident{over ? Kind::switch_off : Kind::switch_on};
+  if (fault.kind != FaultKind::eg && fault.kind != FaultKind::swap) return std::nullopt;
+  Incident incident{over ? Kind::glove_in : Kind::glove_out};
+  if (!over || fault.kind == FaultKind::eg) return incident;
+  if (fault.value == "18") incident.sensors = 18;
+  if (fault.value == "22") incident.sensors = 22;
+  if (fault.value == "left") incident.side = Side::left;
+  if (fault.value == "right") incident.side = Side::right;
+  return incident;
+}
+
 std::vector<FaultForm> fault_forms() {
   std::vector<FaultForm> forms;
   for (const Row& row : rows)

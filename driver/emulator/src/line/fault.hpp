@@ -7,11 +7,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <nendo/base/result.hpp>
+
+#include "units/emulated_unit.hpp"
 
 namespace nendo::emulator {
 
@@ -33,18 +36,16 @@ inline constexpr std::size_t fault_kinds = 12;
 
 struct Fault {
   FaultKind kind = FaultKind::drop;
-  double rate = 0.0; ///< of those by chance: more than 0, at most 1
+  double rate = 0.0; ///< for faults by chance: more than 0, at most 1; otherwise 0
   std::chrono::nanoseconds at{};
   std::chrono::nanoseconds lasting{};
   std::string value = {};
 };
 
 std::string_view name_of(FaultKind kind) noexcept;
-/// Tells whether the fault happens to the unit and not to its line.
-constexpr bool happens_to_unit(FaultKind kind) noexcept {
-  return kind == FaultKind::eg || kind == FaultKind::swap || kind == FaultKind::restart ||
-         kind == FaultKind::press;
-}
+/// Returns the event at the unit that the fault causes when it begins or is over. Returns nothing
+/// if it is a fault of the line or the terminal.
+std::optional<Incident> incident_of(const Fault& fault, bool over);
 
 /// Parses a fault. Error: usage, with the form that the fault should have.
 Result<Fault> parse_fault(std::string_view text);

@@ -45,7 +45,8 @@ std::optional<FaultInjector::Event> FaultInjector::next_event(Time now) {
   return event;
 }
 
-// Inverse of the geometric distribution; the standard one gives other numbers with every library.
+// Draws from the geometric distribution by its inverse. The standard library's distribution gives
+// other numbers with each implementation.
 std::uint64_t FaultInjector::draw_misses(double rate) {
   if (rate >= 1.0) return 0;
   const double uniform = static_cast<double>(random_() >> 11U) * 0x1p-53; // 0 <= uniform < 1
@@ -89,7 +90,7 @@ void FaultInjector::pass(std::span<const std::byte> message, bool record, Time n
   if (touched) ++records_faulted_;
 }
 
-// True if anything was done to it.
+// Passes a message through the noise. Returns whether a fault touched it.
 bool FaultInjector::pass_noisy(std::span<const std::byte> message, Wire& wire) {
   constexpr std::array kinds{FaultKind::drop, FaultKind::flip, FaultKind::insert};
   const std::uint64_t size = message.size();

@@ -13,11 +13,10 @@ namespace nendo::emulator {
 
 namespace fs = std::filesystem;
 
-void SymbolicLink::remove() noexcept {
+SymbolicLink::~SymbolicLink() {
   if (path_.empty()) return;
   std::error_code error;
   if (fs::read_symlink(path_, error) == target_ && !error) fs::remove(path_, error);
-  path_.clear();
 }
 
 Result<SymbolicLink> SymbolicLink::make(const std::string& where, const std::string& target) {
@@ -47,18 +46,13 @@ Result<SymbolicLink> SymbolicLink::make(const std::string& where, const std::str
   return SymbolicLink(path, target);
 }
 
-PseudoTerminal::~PseudoTerminal() {
-  link_.remove();
-  if (fd_ >= 0) ::close(fd_);
-}
-
 Result<PseudoTerminal> PseudoTerminal::make(const std::string& link) {
   const auto failed = [] {
     return Error{Errc::failed,
                  "cannot make a pseudo-terminal: " + std::generic_category().message(errno)};
   };
   PseudoTerminal terminal(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  const int fd = terminal.fd_;
+  const int fd = terminal.fd();
   std::array<char, 64> name{};
   termios raw{};
   if (fd < 0 || ::grantpt(fd) != 0 || ::unlockpt(fd) != 0 ||
@@ -73,10 +67,12 @@ Result<PseudoTerminal> PseudoTerminal::make(const std::string& link) {
   if (once < 0) return failed();
   ::close(once);
   terminal.path_ = name.data();
-  if (link.empty()) return terminal;
-  auto made = SymbolicLink::make(link, terminal.path_);
-  if (!made) return made.error();
-  return PseudoTerminal(std::move(terminal), *std::move(made));
+  if (!link.empty()) {
+    auto made = SymbolicLink::make(link, terminal.path_);
+    if (!made) return made.error();
+    terminal.link_.emplace(*std::move(made));
+  }
+  return terminal;
 }
 
 } // namespace nendo::emulator

@@ -2,9 +2,11 @@
 // The device's end of a pseudo-terminal, and the symbolic link by which hosts find the other one.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include <nendo/base/descriptor.hpp>
 #include <nendo/base/result.hpp>
 
 namespace nendo::emulator {
@@ -12,15 +14,13 @@ namespace nendo::emulator {
 /// A symbolic link. The destructor removes it, unless it leads elsewhere by then.
 class SymbolicLink {
 public:
-  SymbolicLink() = default;
   /// Makes the link. It replaces an old link in one step, so that a host sees the old target or the
   /// new one, and never replaces anything but a link. Error: failed.
   static Result<SymbolicLink> make(const std::string& where, const std::string& target);
   SymbolicLink(SymbolicLink&& other) noexcept
       : path_(std::exchange(other.path_, {})), target_(std::move(other.target_)) {}
   SymbolicLink& operator=(SymbolicLink&&) = delete;
-  ~SymbolicLink() { remove(); }
-  void remove() noexcept;
+  ~SymbolicLink();
 
 private:
   SymbolicLink(std::filesystem::path path, std::string target)
@@ -37,25 +37,17 @@ class PseudoTerminal {
 public:
   /// Makes the terminal, and the link unless `link`, its path, is empty. Error: failed.
   static Result<PseudoTerminal> make(const std::string& link);
-  PseudoTerminal(PseudoTerminal&& other) noexcept
-      : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)),
-        link_(std::move(other.link_)) {}
-  PseudoTerminal& operator=(PseudoTerminal&&) = delete;
-  ~PseudoTerminal();
-
   /// Returns the device's end, which is non-blocking. poll() reports POLLHUP as long as no host has
   /// the other end open.
-  int fd() const noexcept { return fd_; }
+  int fd() const noexcept { return device_.get(); }
   const std::string& path() const noexcept { return path_; } ///< of the host's end
 
 private:
-  explicit PseudoTerminal(int fd) noexcept : fd_(fd) {}
-  PseudoTerminal(PseudoTerminal&& other, SymbolicLink link) noexcept
-      : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)), link_(std::move(link)) {}
+  explicit PseudoTerminal(int fd) noexcept : device_(fd) {}
 
-  int fd_;
+  Descriptor device_;
   std::string path_;
-  SymbolicLink link_;
+  std::optional<SymbolicLink> link_; ///< last, so that it is removed first
 };
 
 } // namespace nendo::emulator

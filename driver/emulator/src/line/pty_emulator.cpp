@@ -34,13 +34,15 @@ using Time = EmulatedUnit::Time;
 
 constexpr HostClock::duration longest_wait = 20ms; // how late `stop` may be seen
 
-// What waits for the terminal beyond the unit's own output: enough for writes of some size.
+// The bytes that may wait for the terminal beyond the unit's own output. They allow writes of some
+// size.
 constexpr std::size_t wire_full = 4096;
 
-// At the host's pace: records made before faults, `stop` and the host are looked at again.
+// At the host's pace, so many records are made before faults, `stop` and the host are checked
+// again.
 constexpr int most_records_a_turn = 256;
 
-// At the end: for a host that takes nothing of what was sent to it.
+// At the end, the emulator waits so long for a host that takes nothing.
 constexpr auto last_patience = 300ms;
 
 struct Parts {
@@ -72,7 +74,7 @@ public:
     last_turn_ = HostClock::now();
     while (!stop) {
       advance_clock();
-      if (auto happened = let_faults_happen(); !happened) return happened;
+      if (auto injected = inject_due_faults(); !injected) return injected;
       run_unit();
       write();
       publish();
@@ -101,15 +103,15 @@ private:
     last_turn_ = host_now;
   }
 
-  Result<void> let_faults_happen() {
+  Result<void> inject_due_faults() {
     if (!terminal_ && HostClock::now() >= replugged_at_) {
       auto made = PseudoTerminal::make(options_.link);
       if (!made) return made.error();
       terminal_.emplace(*std::move(made));
-      log_.happened(now_, "plugged in again");
+      log_.event(now_, "plugged in again");
     }
     while (const auto event = injector_.next_event(now_))
-      happen(event->fault, event->over);
+      inject(event->fault, event->over);
     if (junk_waits_ && host_present()) {
       junk_waits_ = false;
       const std::size_t before = wire_.size();
@@ -119,42 +121,15 @@ private:
     return {};
   }
 
-  void happen(const Fault& fault, bool over) {
-    log_.happened(now_, std::string(name_of(fault.kind)) + (over ? " over" : ""));
-    switch (fault.kind) {
-    case FaultKind::junk:
-      junk_waits_ = true;
-      break;
-    case FaultKind::unplug:
-      terminal_.reset();
-      host_present_ = false;
-      replugged_at_ = HostClock::now() + fault.lasting;
-      if (!fault.value.empty()) options_.link = fault.value;
-      break;
-    case FaultKind::restart:
-      unit_->inject({Incident::Kind::power_cycle}, now_);
-      break;
-    case FaultKind::press:
-      unit_->inject({over ? Incident::Kind::switch_off : Incident::Kind::switch_on}, now_);
-      break;
-    case FaultKind::eg:
-      unit_->inject({over ? Incident::Kind::glove_in : Incident::Kind::glove_out}, now_);
-      break;
-    case FaultKind::swap:
-      unit_->inject(over ? other_glove(fault.value) : Incident{Incident::Kind::glove_out}, now_);
-      break;
-    default:
-      break; // the injector's own
-    }
-  }
-
-  static Incident other_glove(const std::string& what) {
-    Incident incident{Incident::Kind::glove_in};
-    if (what == "18") incident.sensors = 18;
-    if (what == "22") incident.sensors = 22;
-    if (what == "left") incident.side = Side::left;
-    if (what == "right") incident.side = Side::right;
-    return incident;
+  void inject(const Fault& fault, bool over) {
+    log_.event(now_, std::string(name_of(fault.kind)) + (over ? " over" : ""));
+    if (const auto incident = incident_of(fault, over)) unit_->inject(*incident, now_);
+    if (fault.kind == FaultKind::junk) junk_waits_ = true;
+    if (fault.kind != FaultKind::unplug) return;
+    terminal_.reset();
+    host_present_ = false;
+    replugged_at_ = HostClock::now() + fault.lasting;
+    if (!fault.value.empty()) options_.link = fault.value;
   }
 
   void run_unit() {
@@ -168,7 +143,7 @@ private:
       const auto due = unit_->next_due();
       if (!due) return;
       now_ = std::max(now_, *due);
-      if (injector_.next_due().value_or(Time::max()) <= now_) return; // that comes first
+      if (injector_.next_due().value_or(Time::max()) <= now_) return; // the fault comes first
       unit_->advance(now_);
       collect();
     }
@@ -206,7 +181,7 @@ private:
     wire_.erase(wire_.begin(), wire_.begin() + count);
   }
 
-  // What counts as sent goes out, for as long as the host takes any of it.
+  // Writes the bytes that count as sent, for as long as the host takes any.
   void empty_wire() {
     HostTime patience = HostClock::now() + last_patience;
     while (host_present() && !wire_.empty() && HostClock::now() < patience) {
@@ -220,8 +195,8 @@ private:
     }
   }
 
-  // Until a host writes, or has room for what waits, or the unit or a fault has something to do, or
-  // it is time to look at `stop`.
+  // Returns when the unit or a fault has something to do, or `stop` must be checked. A host that
+  // writes, or has room for what waits, ends the wait earlier.
   HostTime wake_up() const {
     const HostTime latest = HostClock::now() + longest_wait;
     if (!terminal_) return std::min(latest, replugged_at_);
@@ -250,8 +225,8 @@ private:
       return receive();
     }
     host_present_ = (line.revents & POLLHUP) == 0;
-    // Nobody has the terminal open: poll() then returns at once, for ever, and must not make this
-    // loop spin; nor must a terminal that says it has room and takes nothing.
+    // While nobody has the terminal open, poll() returns at once, and the loop would spin. It would
+    // also spin with a terminal that says it has room and takes nothing.
     if (!host_present_) {
       std::this_thread::sleep_until(std::max(until, HostClock::now() + 1ms));
     } else if (stuck_ && (line.revents & POLLOUT) != 0) {
@@ -320,7 +295,7 @@ Result<void> check_faults(const EmulatorOptions& options, const EmulatedKind& ki
                           const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
     const std::string name = "fault " + std::string(name_of(fault.kind)) + ": ";
-    if (happens_to_unit(fault.kind) && !kind.takes_incidents) {
+    if (incident_of(fault, false) && !kind.takes_incidents) {
       return Error{Errc::usage, name + "an emulated " + std::string(kind.name) + " has none"};
     }
     if (fault.kind == FaultKind::unplug && options.link.empty()) {

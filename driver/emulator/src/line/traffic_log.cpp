@@ -37,7 +37,7 @@ void TrafficLog::sent(Time now, std::string_view kind, std::span<const std::byte
   end(bytes);
 }
 
-void TrafficLog::happened(Time now, std::string_view what) {
+void TrafficLog::event(Time now, std::string_view what) {
   if (!*this) return;
   begin(now, '!');
   file_ << line_ << ' ' << what << '\n';

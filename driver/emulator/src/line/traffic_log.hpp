@@ -12,12 +12,13 @@
 
 namespace nendo::emulator {
 
-/// The log has a line for each entry: time_s, direction (< from the host, > to the host, ! a
-/// fault), then
-///   <  the bytes in hexadecimal, and as text between bars (. for what cannot be printed), as they
-///      were read
-///   >  the same for one message, with its kind (record or reply) in front, after the line's faults
-///   !  what happened
+/// The log has a line for each entry. A line begins with the time in seconds and the direction: <
+/// from the host, > to the host, ! for a fault. Then follow
+///   <  the bytes as they were read: in hexadecimal, and as text between bars (. for what cannot be
+///      printed)
+///   >  the kind of a message (record or reply), and its bytes as the faults of the line have left
+///      them
+///   !  the name of the fault
 class TrafficLog {
 public:
   using Time = std::chrono::nanoseconds;
@@ -29,7 +30,7 @@ public:
   explicit operator bool() const noexcept { return file_.is_open(); }
   void received(Time now, std::span<const std::byte> bytes);
   void sent(Time now, std::string_view kind, std::span<const std::byte> bytes);
-  void happened(Time now, std::string_view what);
+  void event(Time now, std::string_view what);
   /// Hands what was written to the system. Error: failed (e.g. the disk is full).
   Result<void> flush();
 

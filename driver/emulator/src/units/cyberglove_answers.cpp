@@ -23,7 +23,7 @@ std::string information(unsigned model, const PluggedGlove& glove) {
          std::string(name_of(glove.side)) + " hand\r\nemulated by Nendo\r\n";
 }
 
-// That there is such a text is known, what it says is not.
+// It is known that there is such a text, but not what it says.
 constexpr std::string_view help =
     " \r\n"
     "G one record, S stream, ^C stop, ^I read the glove again, ^R restart\r\n"
@@ -40,8 +40,8 @@ Message calibration(const Settings& settings, std::uint32_t mask) {
   return data;
 }
 
-// Three lines of as many numbers as there are sensors, that much is known; chosen: the sensors'
-// slots, their offsets, their gains.
+// It is known that there are three lines with a number for each sensor. Chosen: the slots of the
+// sensors, their offsets, their gains.
 std::string calibration_text(const Settings& settings, std::uint32_t mask) {
   std::string slots;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {

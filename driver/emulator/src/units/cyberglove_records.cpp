@@ -10,7 +10,7 @@
 namespace nendo::emulator::unit {
 namespace {
 
-// What the converter sees where no sensor is connected. No source says; chosen: a floating input.
+// The count of a slot without a sensor. No source tells it; chosen: a floating input.
 constexpr Byte open_input = 255;
 
 void append_errors(Message& record, bool unplugged, bool too_fast) {
@@ -38,9 +38,9 @@ driver::JointAngles RecordMaker::angles(EmulatedUnit::Time now) {
   return hand_.at(std::chrono::duration<double>(now - *motion_origin_).count());
 }
 
-// Bit k of the first byte: byte k was 0 and goes as 1. The manual has bit 7 always set; one author
-// who owned a glove never saw it, and the vendor's library refuses a first byte of 0. Without
-// `stamp_bit7_` it is therefore set where the byte would otherwise be 0, and only there.
+// Bit k of the first byte says that byte k was 0 and is sent as 1. The manual has bit 7 always set;
+// one author who owned a glove never saw it, and the vendor's library refuses a first byte of 0.
+// Without `stamp_bit7_` it is therefore set where the byte would otherwise be 0, and only there.
 Message RecordMaker::time_stamp(std::uint64_t ticks) const {
   Message stamp = low_first(static_cast<std::uint32_t>(ticks), 4);
   Byte replaced = stamp_bit7_ ? 0x80 : 0;
@@ -53,8 +53,8 @@ Message RecordMaker::time_stamp(std::uint64_t ticks) const {
   return stamp;
 }
 
-// What a record holds between its header and its end. No byte is 0, so that NUL marks the end and
-// nothing else.
+// Returns the part of a record between its header and its end. No byte is 0, so that NUL marks the
+// end and nothing else.
 Message RecordMaker::fields(const RecordFrame& frame, const Settings& settings,
                             const PluggedGlove& known, const std::optional<PluggedGlove>& plugged) {
   auto raw = wearer_.counts(angles(frame.now));

@@ -24,7 +24,7 @@ constexpr std::array<Flag, 9> flags{{{'W', 1, &Settings::switch_on},
                                      {'D', 13, &Settings::time_stamp},
                                      {'Q', 16, &Settings::quantised}}};
 
-// What one wearer's sensors were seen to span, slot by slot; 0 where no glove has a sensor.
+// The counts that the sensors of one wearer were seen to span, slot by slot.
 constexpr std::array<Byte, sensor_slots> least_seen{79, 149, 87, 59, 16, 58, 61, 0,  22, 67, 83, 53,
                                                     31, 68,  72, 21, 41, 91, 76, 70, 70, 67, 87, 0};
 constexpr std::array<Byte, sensor_slots> most_seen{228, 206, 176, 217, 155, 193, 201, 254,

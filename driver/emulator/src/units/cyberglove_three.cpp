@@ -49,13 +49,13 @@ bool apply(ThreeSettings& settings, const Message& command) {
   switch (command[0]) {
   case 'e':
   case 'd':
+    // There is neither Wi-Fi nor a card here. Their switches are accepted, as are their rates.
     if (command[1] == 'u') settings.usb = command[0] == 'e';
-    return true; // there is neither Wi-Fi nor a card here: their switches are accepted, as are
-                 // rates
+    return true;
   case 'm':
     return set_frames(settings, command[1]);
   case 'u':
-    // "Divider or multiplier" is all that is known; a divider it is here.
+    // Only "divider or multiplier" is known. Here it is a divider.
     if (command[1] == 0) return false;
     settings.divider = command[1];
     return true;

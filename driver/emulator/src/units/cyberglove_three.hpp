@@ -1,6 +1,7 @@
 #pragma once
 // The commands that only a CyberGlove III has. All begin with the digit 1. Only their forms are
-// known, from programs that drive the glove; the source says what was chosen beyond that.
+// known, from programs that drive the glove. Comments in the .cpp file tell what was chosen beyond
+// that.
 
 #include <cstddef>
 #include <cstdint>

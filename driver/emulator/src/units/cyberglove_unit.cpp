@@ -243,7 +243,7 @@ void CyberGloveUnit::set(Byte letter, const Message& argument, Time now) {
   reply(echo);
 }
 
-// What is read of the glove; and all its values are sent again.
+// Reads the plugged glove. From then on all of its values are sent.
 void CyberGloveUnit::read_glove() noexcept {
   if (!plugged_ || (plugged_->mask == known_.mask && plugged_->side == known_.side)) return;
   known_ = *plugged_;

@@ -1,8 +1,8 @@
 #pragma once
 // A CyberGlove's interface unit, from the device's side. It shares no code with the driver's
 // parser, so that each can test the other. The facts are those of the vendor library (VirtualHand
-// 2, 1993) and of drivers that cite the manual; where sources disagree or are silent, the sources
-// say what was chosen.
+// 2, 1993) and of drivers that cite the manual. Where these disagree or say nothing, a comment in
+// the .cpp files tells what was chosen.
 
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +36,7 @@ struct UnitOptions {
   unsigned reply_bytes = 2; ///< of a set command: the letter and NUL, or 3 with a byte between
   unit::WordOrder period_order = unit::WordOrder::high_first;
   bool stamp_bit7 = true;
-  bool streaming = false;             ///< from the start, as a host that died leaves it
+  bool streaming = false;             ///< it streams from the start, as after a host that died
   bool pattern = false;               ///< EmulatedCyberGlove::pattern
   std::vector<unit::Message> capture; ///< records to send instead of a motion
 };

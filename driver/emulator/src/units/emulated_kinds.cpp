@@ -11,47 +11,29 @@
 namespace nendo::emulator {
 namespace {
 
-/// The options that every kind has; `Options` is its own set of them.
-template <class Options>
-Result<Options> common_options(const EmulatorOptions& options, double most_rate_hz) {
+/// Makes a unit of the options that every kind has.
+template <class Unit, class UnitOptions>
+Result<std::unique_ptr<EmulatedUnit>> make_unit(const EmulatorOptions& options) {
   const auto motion = driver::find_motion(options.motion);
   if (!motion) return motion.error();
-  if (!(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz)) {
+  if (!(options.rate_hz >= 1.0 && options.rate_hz <= Unit::most_rate_hz)) {
     return Error{Errc::usage, "rate: a " + options.glove + " glove sends 1 to " +
-                                  std::to_string(static_cast<int>(most_rate_hz)) +
+                                  std::to_string(static_cast<int>(Unit::most_rate_hz)) +
                                   " records a second"};
   }
-  Options unit;
+  UnitOptions unit;
   unit.side = options.side;
   unit.motion = *motion;
   unit.rate_hz = options.rate_hz;
   unit.seed = options.seed;
-  return unit;
-}
-
-Result<std::unique_ptr<EmulatedUnit>> make_lucidgloves(const EmulatorOptions& options) {
-  const auto unit = common_options<LucidGlovesUnitOptions>(options, LucidGlovesUnit::most_rate_hz);
-  if (!unit) return unit.error();
-  return make_lucidgloves_unit(*unit);
-}
-
-Result<std::unique_ptr<EmulatedUnit>> make_fivedt(const EmulatorOptions& options) {
-  const auto unit = common_options<FiveDtUnitOptions>(options, FiveDtUnit::most_rate_hz);
-  if (!unit) return unit.error();
-  return make_fivedt_unit(*unit);
-}
-
-Result<std::unique_ptr<EmulatedUnit>> make_forte(const EmulatorOptions& options) {
-  const auto unit = common_options<ForteUnitOptions>(options, ForteUnit::most_rate_hz);
-  if (!unit) return unit.error();
-  return make_forte_unit(*unit);
+  return std::unique_ptr<EmulatedUnit>(std::make_unique<Unit>(unit));
 }
 
 constexpr std::array kinds{
     EmulatedKind{"cyberglove", make_cyberglove_unit, true},
-    EmulatedKind{"lucidgloves", make_lucidgloves, false},
-    EmulatedKind{"5dt", make_fivedt, false},
-    EmulatedKind{"forte", make_forte, false},
+    EmulatedKind{"lucidgloves", make_unit<LucidGlovesUnit, LucidGlovesUnitOptions>, false},
+    EmulatedKind{"5dt", make_unit<FiveDtUnit, FiveDtUnitOptions>, false},
+    EmulatedKind{"forte", make_unit<ForteUnit, ForteUnitOptions>, false},
 };
 
 } // namespace

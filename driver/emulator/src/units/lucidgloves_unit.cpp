@@ -20,7 +20,8 @@ int curl_of(const driver::JointAngles& angles, Sensor sensor) {
   return clamped(driver::part_of_range(angles, sensor));
 }
 
-// The number behind a letter, as the firmware's atoi reads it; empty where the letter is not there.
+// Returns the number behind a letter, as the firmware's atoi reads it, or nothing if the letter is
+// missing.
 std::optional<int> argument(std::string_view command, char letter) {
   const std::size_t at = command.find(letter);
   if (at == std::string_view::npos) return std::nullopt;

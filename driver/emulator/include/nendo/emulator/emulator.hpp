@@ -27,7 +27,7 @@ std::vector<FaultForm> fault_forms();
 
 enum class EmulatorPace : std::uint8_t {
   clock, ///< as a device: a record a period, lost if nobody reads it
-  host,  ///< a record whenever the host has room for it; the device's clock goes a period further
+  host,  ///< a record whenever the host has room; each advances the device's clock by a period
 };
 
 /// Options for CyberGloves only.
@@ -37,8 +37,9 @@ struct EmulatedCyberGlove {
   bool touch = false;              ///< it has the vibrators of a CyberTouch
   unsigned reply_bytes = 2;        ///< of a set command's reply: 2, or 3 as one library expects
   bool period_low_first = false;   ///< the order of the bytes in the words of T and ?T
-  bool stamp_bit7 = true; ///< bit 7 of a time stamp's first byte is always set; else if it must
-  bool streaming = false; ///< from the start, as a host that died leaves it
+  bool stamp_bit7 =
+      true; ///< bit 7 of a time stamp's first byte is always set; false: only if it must
+  bool streaming = false; ///< it streams from the start, as after a host that died
   /// If set, there is no motion: in record n the sensor of slot k has the count 1 + (n + 29 k) mod
   /// 255, or 16 times that with 12 bits. So every record can be judged by itself.
   bool pattern = false;
@@ -67,10 +68,10 @@ struct FaultCount {
 struct EmulatorStats {
   std::uint64_t bytes_received = 0;
   std::uint64_t bytes_sent = 0;
-  std::uint64_t records_sent = 0;    ///< whole ones that the unit gave, before any fault
-  std::uint64_t records_faulted = 0; ///< those that a fault of the line touched, or joined to junk
-  std::uint64_t bytes_refused = 0;   ///< not sent because no host read them
-  std::vector<FaultCount> faults = {}; ///< of the kinds that were asked for
+  std::uint64_t records_sent = 0;      ///< whole ones that the unit gave, before any fault
+  std::uint64_t records_faulted = 0;   ///< records that a fault touched, or joined to junk
+  std::uint64_t bytes_refused = 0;     ///< not sent because no host read them
+  std::vector<FaultCount> faults = {}; ///< one for each kind in EmulatorOptions::faults
 };
 
 class GloveEmulator {

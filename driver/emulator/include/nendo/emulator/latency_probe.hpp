@@ -15,7 +15,7 @@ namespace nendo::emulator {
 
 enum class Line {
   pseudo_terminal, ///< what an emulated glove has; its far end is a kernel worker of no priority
-  socket_pair,     ///< no worker between: what remains is the driver's own
+  socket_pair,     ///< without a kernel worker, so that the driver's own latency remains
 };
 
 struct LatencyOptions {
@@ -24,9 +24,10 @@ struct LatencyOptions {
   double rate_hz = 300.0;     ///< 1 to 480, records a second to the driver; with stamps, 384 fit
 };
 
+/// Each sink receives the latency of every record.
 struct LatencySinks {
-  std::function<void(HostClock::duration)> driver;
-  std::function<void(HostClock::duration)> bare;
+  std::function<void(HostClock::duration)> driver; ///< of the CyberGlove driver
+  std::function<void(HostClock::duration)> bare;   ///< of the thread that only polls and reads
 };
 
 /// Measures until done or until `stop` becomes true. Blocks for records / rate_hz plus about 2 s.
