@@ -7,11 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/emulator/emulator.hpp>
-
-#include "support/eventually.hpp"
+#include "support/pty_host.hpp"
 #include "support/scripted_port.hpp"
-#include "support/temporary_folder.hpp"
+#include "support/stream_laws.hpp"
 
 namespace cyberglove_driver_test {
 
@@ -25,12 +23,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void check_conservation(const GloveStats& stats) {
-  constexpr std::uint64_t longest_record = 36;
-  CHECK(stats.bytes >= stats.record_bytes + stats.discarded_bytes);
-  CHECK(stats.bytes - stats.record_bytes - stats.discarded_bytes < longest_record);
-}
-
 /// The n-th set bit of a mask: where value n of a record belongs.
 std::size_t slot_of(SensorMask mask, unsigned n) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -39,8 +31,23 @@ std::size_t slot_of(SensorMask mask, unsigned n) {
   return sensor_slots;
 }
 
+/// A good glove, for the checks that every streamed glove must pass.
+struct ScriptedKind {
+  static std::unique_ptr<ScriptedPort> plug(Side side) {
+    Script script;
+    script.right = side == Side::right;
+    return std::make_unique<ScriptedPort>(script);
+  }
+  static std::string spec(const std::string& path) { return "serial:" + path; }
+  static constexpr std::uint64_t longest_record = 36;
+};
+
 Result<std::unique_ptr<Glove>> open_port(const ScriptedPort& port) {
-  return open_glove("serial:" + port.path());
+  return open_glove(ScriptedKind::spec(port.path()));
+}
+
+void check_conservation(const GloveStats& stats) {
+  test::check_conservation(stats, ScriptedKind::longest_record);
 }
 
 } // namespace
@@ -54,21 +61,20 @@ TEST_SUITE("cyberglove_driver") {
       script.right = all;
       const ScriptedPort port(script);
       SampleRing ring(1024);
-      auto glove = open_port(port);
-      REQUIRE_MESSAGE(glove, glove.error().message);
+      auto glove = required(open_port(port));
       const SensorMask sensors = all ? sensors_22 : sensors_18;
-      CHECK((*glove)->info().sensors == sensors);
-      CHECK((*glove)->info().side == (all ? Side::right : Side::left));
-      CHECK((*glove)->info().model ==
+      CHECK(glove->info().sensors == sensors);
+      CHECK(glove->info().side == (all ? Side::right : Side::left));
+      CHECK(glove->info().model ==
             (all ? "Scripted CyberGlove, 22 sensors" : "Scripted CyberGlove, 18 sensors"));
-      CHECK((*glove)->info().source == "serial:" + port.path());
-      CHECK((*glove)->info().rate_hz == doctest::Approx(90.0));
+      CHECK(glove->info().source == "serial:" + port.path());
+      CHECK(glove->info().rate_hz == doctest::Approx(90.0));
 
       const HostTime before = HostClock::now();
-      REQUIRE((*glove)->start(ring));
-      CHECK_FALSE((*glove)->start(ring));
+      REQUIRE(glove->start(ring));
+      CHECK_FALSE(glove->start(ring));
       CHECK(eventually([&] { return ring.size() >= 20; }));
-      (*glove)->stop();
+      glove->stop();
       std::uint64_t next = 0;
       HostTime last = before;
       ring.drain([&](const GloveSample& sample) {
@@ -80,16 +86,16 @@ TEST_SUITE("cyberglove_driver") {
         CHECK(sample.arrival >= last);
         last = sample.arrival;
         CHECK(sample.present == sensors);
-        CHECK(sample.side == (*glove)->info().side);
+        CHECK(sample.side == glove->info().side);
         CHECK(sample.has_device_time);
         for (unsigned k = 0; k < script.sensors; ++k) {
           CHECK(sample.raw[slot_of(sensors, k)].value == 10 + k);
         }
       });
       CHECK(last <= HostClock::now());
-      check_conservation((*glove)->stats());
-      CHECK((*glove)->stats().records == next);
-      CHECK((*glove)->stats().bad_records <= 2); // the end of the stream, and the answer to it
+      check_conservation(glove->stats());
+      CHECK(glove->stats().records == next);
+      CHECK(glove->stats().bad_records <= 2); // the end of the stream, and the answer to it
     }
   }
 
@@ -100,9 +106,8 @@ TEST_SUITE("cyberglove_driver") {
       script.long_replies = true;
       const ScriptedPort port(script);
       SampleRing ring(64);
-      auto glove = open_port(port);
-      REQUIRE_MESSAGE(glove, glove.error().message);
-      REQUIRE((*glove)->start(ring));
+      auto glove = required(open_port(port));
+      REQUIRE(glove->start(ring));
       GloveSample sample;
       REQUIRE(eventually([&] { return ring.try_pop(sample); }));
       CHECK(sample.has_device_time == knows_options);
@@ -138,49 +143,15 @@ TEST_SUITE("cyberglove_driver") {
   }
 
   TEST_CASE("a full ring refuses samples, and they are counted") {
-    const ScriptedPort port;
-    SampleRing ring(8);
-    auto glove = open_port(port);
-    REQUIRE(glove);
-    REQUIRE((*glove)->start(ring));
-    CHECK(eventually([&] { return (*glove)->stats().ring_refused > 5; }));
-    (*glove)->stop();
-    const GloveStats stats = (*glove)->stats();
-    CHECK(stats.records == stats.ring_refused + ring.size());
-    check_conservation(stats);
+    a_full_ring_refuses_and_counts(ScriptedKind{});
   }
 
   TEST_CASE("stop is prompt, may be repeated, and the stream may be started again") {
-    const ScriptedPort port;
-    SampleRing ring(1024);
-    auto glove = open_port(port);
-    REQUIRE(glove);
-    for (int round = 0; round < 2; ++round) {
-      REQUIRE((*glove)->start(ring));
-      CHECK(eventually([&] { return (*glove)->stats().records > 3; }));
-      const auto start = Clock::now();
-      (*glove)->stop();
-      (*glove)->stop();
-      CHECK(Clock::now() - start < 1s);
-    }
+    stop_is_prompt_and_start_works_again(ScriptedKind{});
   }
 
   TEST_CASE("a stream that falls silent is started again") {
-    ScriptedPort port;
-    SampleRing ring(4096);
-    auto glove = open_port(port);
-    REQUIRE(glove);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
-    port.mute = true;
-    REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
-    port.mute = false;
-    const std::uint64_t before = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
-    (*glove)->stop();
-    CHECK((*glove)->stats().silences == 1);
-    CHECK((*glove)->stats().reopened == 0);
-    check_conservation((*glove)->stats());
+    a_silent_stream_is_started_again(ScriptedKind{});
   }
 
   TEST_CASE("a glove that vanishes is found again at its path, even if it is another one") {
@@ -189,9 +160,8 @@ TEST_SUITE("cyberglove_driver") {
     auto first = std::make_unique<ScriptedPort>();
     std::filesystem::create_symlink(first->path(), link);
     SampleRing ring(1U << 16U);
-    auto glove = open_glove("serial:" + link.string());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("serial:" + link.string()));
+    REQUIRE(glove->start(ring));
     REQUIRE(eventually([&] { return ring.size() > 3; }));
 
     first.reset();
@@ -205,12 +175,12 @@ TEST_SUITE("cyberglove_driver") {
     std::filesystem::create_symlink(second.path(), link);
     GloveSample sample;
     REQUIRE(eventually([&] { return ring.try_pop(sample); }));
-    (*glove)->stop();
-    CHECK((*glove)->stats().reopened == 1);
+    glove->stop();
+    CHECK(glove->stats().reopened == 1);
     CHECK(sample.present == sensors_18);
     CHECK(sample.side == Side::left);
     CHECK(sample[Sensor::middle_mcp].value == 10 + 6);
-    check_conservation((*glove)->stats());
+    check_conservation(glove->stats());
   }
 
   TEST_CASE("a glove that is swapped at its interface unit is asked anew") {
@@ -218,31 +188,29 @@ TEST_SUITE("cyberglove_driver") {
     script.swap_after = 50;
     const ScriptedPort port(script);
     SampleRing ring(1U << 16U);
-    auto glove = open_port(port);
-    REQUIRE(glove);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_port(port));
+    REQUIRE(glove->start(ring));
     GloveSample sample;
     CHECK(eventually([&] { return ring.try_pop(sample) && sample.present == sensors_18; }));
-    (*glove)->stop();
+    glove->stop();
     CHECK(sample.sequence == 49); // 50 records were sent, the last of them already too short
     CHECK(sample[Sensor::ring_mcp].value == 10 + 9);
-    CHECK((*glove)->stats().bad_records >= 16); // in a row: no need to wait for a silence
-    CHECK((*glove)->stats().silences == 0);
-    check_conservation((*glove)->stats());
+    CHECK(glove->stats().bad_records >= 16); // in a row: no need to wait for a silence
+    CHECK(glove->stats().silences == 0);
+    check_conservation(glove->stats());
   }
 
   TEST_CASE("stop does not wait for a glove that is away") {
     auto port = std::make_unique<ScriptedPort>();
     SampleRing ring(4096);
-    auto glove = open_port(*port);
-    REQUIRE(glove);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_port(*port));
+    REQUIRE(glove->start(ring));
     port.reset();
     std::this_thread::sleep_for(300ms);
     const auto start = Clock::now();
-    (*glove)->stop();
+    glove->stop();
     CHECK(Clock::now() - start < 1s);
-    CHECK((*glove)->start(ring).error().code == Errc::no_device);
+    CHECK(glove->start(ring).error().code == Errc::no_device);
   }
 
   TEST_CASE(
@@ -254,29 +222,20 @@ TEST_SUITE("cyberglove_driver") {
         EmulatorOptions options;
         options.side = side;
         options.sensors = sensors;
-        auto emulator = GloveEmulator::open(options);
-        REQUIRE_MESSAGE(emulator, emulator.error().message);
-        std::atomic<bool> done{false};
-        std::thread server([&] { CHECK((*emulator)->serve(done)); });
-        {
-          SampleRing ring(1024);
-          auto glove = open_glove("serial:" + (*emulator)->tty_path());
-          CHECK_MESSAGE(glove, glove.error().message);
-          if (glove && (*glove)->start(ring)) {
-            CHECK((*glove)->info().side == side);
-            CHECK((*glove)->info().sensors == (sensors == 18 ? sensors_18 : sensors_22));
-            CHECK((*glove)->info().rate_hz == doctest::Approx(90.0).epsilon(0.01));
-            CHECK(eventually([&] { return ring.size() >= 20; }));
-            (*glove)->stop();
-            GloveSample sample;
-            CHECK(ring.try_pop(sample));
-            CHECK(sample.side == side);
-            CHECK(sample.has_device_time);
-            check_conservation((*glove)->stats());
-          }
-        }
-        done = true;
-        server.join();
+        const ServedEmulator emulator(options);
+        SampleRing ring(1024);
+        auto glove = required(open_glove("serial:" + emulator->tty_path()));
+        REQUIRE(glove->start(ring));
+        CHECK(glove->info().side == side);
+        CHECK(glove->info().sensors == (sensors == 18 ? sensors_18 : sensors_22));
+        CHECK(glove->info().rate_hz == doctest::Approx(90.0).epsilon(0.01));
+        CHECK(eventually([&] { return ring.size() >= 20; }));
+        glove->stop();
+        GloveSample sample;
+        CHECK(ring.try_pop(sample));
+        CHECK(sample.side == side);
+        CHECK(sample.has_device_time);
+        check_conservation(glove->stats());
       }
     }
   }
@@ -289,12 +248,12 @@ TEST_SUITE("cyberglove_driver") {
     auto first = std::make_unique<ScriptedPort>(script);
     std::filesystem::create_symlink(first->path(), link);
     SampleRing ring(1U << 16U);
-    auto glove = open_glove("serial:" + link.string() + "?rate=100&filter=off&mask=0x00000F");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().rate_hz == 100.0);
-    CHECK((*glove)->info().sensors == SensorMask{0x0F});
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
+    auto glove =
+        required(open_glove("serial:" + link.string() + "?rate=100&filter=off&mask=0x00000F"));
+    CHECK(glove->info().rate_hz == 100.0);
+    CHECK(glove->info().sensors == SensorMask{0x0F});
+    REQUIRE(glove->start(ring));
+    REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     const auto times = [](const ScriptedPort& port) {
       const std::string heard = port.control.heard();
       std::size_t filters = 0;
@@ -310,18 +269,18 @@ TEST_SUITE("cyberglove_driver") {
     CHECK(times(*first) == 1);
     first->control.power_cycle = true;
     REQUIRE(eventually([&] { return times(*first) == 2; }));
-    const std::uint64_t before = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
+    const std::uint64_t before = glove->stats().records;
+    CHECK(eventually([&] { return glove->stats().records > before + 3; }));
 
     first.reset();
     std::filesystem::remove(link);
     const ScriptedPort second(script);
     std::filesystem::create_symlink(second.path(), link);
     REQUIRE(eventually([&] { return times(second) == 1; }));
-    REQUIRE(eventually([&] { return (*glove)->stats().reopened == 1; }));
+    REQUIRE(eventually([&] { return glove->stats().reopened == 1; }));
     ring.drain([](const GloveSample& sample) { CHECK(sample.present == SensorMask{0x0F}); });
-    (*glove)->stop();
-    check_conservation((*glove)->stats());
+    glove->stop();
+    check_conservation(glove->stats());
   }
 
   TEST_CASE("a glove at another line rate is found there, and again after it came back") {
@@ -332,17 +291,16 @@ TEST_SUITE("cyberglove_driver") {
     auto first = std::make_unique<ScriptedPort>(script);
     std::filesystem::create_symlink(first->path(), link);
     SampleRing ring(1U << 16U);
-    auto glove = open_glove("serial:" + link.string());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
+    auto glove = required(open_glove("serial:" + link.string()));
+    REQUIRE(glove->start(ring));
+    REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     first.reset();
     std::filesystem::remove(link);
     const ScriptedPort second(script);
     std::filesystem::create_symlink(second.path(), link);
-    CHECK(eventually([&] { return (*glove)->stats().reopened == 1; }));
-    const std::uint64_t before = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return glove->stats().reopened == 1; }));
+    const std::uint64_t before = glove->stats().records;
+    CHECK(eventually([&] { return glove->stats().records > before + 3; }));
   }
 
   TEST_CASE("what a glove is to show pauses its stream, and is shown again after it came back") {
@@ -351,12 +309,11 @@ TEST_SUITE("cyberglove_driver") {
     script.cybertouch = true;
     ScriptedPort port(script);
     SampleRing ring(1U << 16U);
-    auto glove = open_port(port);
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().abilities.light);
-    CHECK((*glove)->info().abilities.vibration);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
+    auto glove = required(open_port(port));
+    CHECK(glove->info().abilities.light);
+    CHECK(glove->info().abilities.vibration);
+    REQUIRE(glove->start(ring));
+    REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     Feedback feedback;
     feedback.light = true;
     feedback.vibration = {1, 2, 3, 4, 5, 6};
@@ -364,55 +321,53 @@ TEST_SUITE("cyberglove_driver") {
                             "A\xFF\x01\x02\x03\x04\x05\x06S",
                             14);
     const auto is_shown = [&] { return port.control.heard().ends_with(shown); };
-    (*glove)->set_feedback(feedback);
+    glove->set_feedback(feedback);
     CHECK(eventually(is_shown));
-    std::uint64_t before = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
-    CHECK((*glove)->stats().silences == 0);
+    std::uint64_t before = glove->stats().records;
+    CHECK(eventually([&] { return glove->stats().records > before + 3; }));
+    CHECK(glove->stats().silences == 0);
 
     port.control.power_cycle = true;
-    CHECK(eventually([&] { return (*glove)->stats().silences >= 1; }));
+    CHECK(eventually([&] { return glove->stats().silences >= 1; }));
     CHECK(eventually(is_shown));
-    before = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
-    (*glove)->stop();
-    check_conservation((*glove)->stats());
+    before = glove->stats().records;
+    CHECK(eventually([&] { return glove->stats().records > before + 3; }));
+    glove->stop();
+    check_conservation(glove->stats());
   }
 
   TEST_CASE("a glove that has nothing to show is not disturbed") {
     const ScriptedPort port; // knows neither light nor vibrators
     SampleRing ring(1U << 16U);
-    auto glove = open_port(port);
-    REQUIRE(glove);
-    CHECK_FALSE((*glove)->info().abilities.light);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
+    auto glove = required(open_port(port));
+    CHECK_FALSE(glove->info().abilities.light);
+    REQUIRE(glove->start(ring));
+    REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     const std::string heard = port.control.heard();
-    (*glove)->set_feedback({true, {}, {}});
-    const std::uint64_t before = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > before + 200; }));
+    glove->set_feedback({true, {}, {}});
+    const std::uint64_t before = glove->stats().records;
+    CHECK(eventually([&] { return glove->stats().records > before + 200; }));
     CHECK(port.control.heard() == heard);
   }
 
   TEST_CASE("a glove that is pulled from its interface unit comes back when it is plugged in") {
     ScriptedPort port;
     SampleRing ring(1U << 16U);
-    auto glove = open_port(port);
-    REQUIRE(glove);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
+    auto glove = required(open_port(port));
+    REQUIRE(glove->start(ring));
+    REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     port.control.unplugged = true;
-    REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
+    REQUIRE(eventually([&] { return glove->stats().silences >= 1; }));
     const std::string heard = port.control.heard();
     REQUIRE(eventually([&] { return port.control.heard().ends_with("?G"); }));
-    const std::uint64_t before = (*glove)->stats().records;
+    const std::uint64_t before = glove->stats().records;
     port.control.unplugged = false;
-    CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
+    CHECK(eventually([&] { return glove->stats().records > before + 3; }));
     // Another one may have been plugged in: the unit was told to look.
     CHECK(port.control.heard().find('\x09', heard.size()) != std::string::npos);
-    (*glove)->stop();
-    CHECK((*glove)->stats().silences == 1);
-    check_conservation((*glove)->stats());
+    glove->stop();
+    CHECK(glove->stats().silences == 1);
+    check_conservation(glove->stats());
   }
 
   TEST_CASE("external sync is switched on last, and off at the end") {
@@ -420,12 +375,11 @@ TEST_SUITE("cyberglove_driver") {
     script.knows_all = true;
     const ScriptedPort port(script);
     SampleRing ring(1024);
-    auto glove = open_glove("serial:" + port.path() + "?sync=on");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().rate_hz == 0.0);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("serial:" + port.path() + "?sync=on"));
+    CHECK(glove->info().rate_hz == 0.0);
+    REQUIRE(glove->start(ring));
     CHECK(eventually([&] { return port.control.heard().ends_with("Y\x01S"); }));
-    (*glove)->stop();
+    glove->stop();
     // Behind it there may be one more \x03, if a busy machine answered late.
     CHECK(eventually([&] {
       const std::string heard = port.control.heard();

@@ -35,22 +35,10 @@ Bytes record_bytes(std::size_t values, int first, std::string_view tail = "") {
   return bytes;
 }
 
-struct Outcome {
-  std::vector<Record> records;
-  nendo::driver::StreamCounters counters;
-  std::size_t pending = 0;
-};
+using Outcome = nendo::test::Outcome<Record>;
 
 Outcome parse(const RecordShape& shape, std::span<const std::byte> input) {
-  Parser parser(shape);
-  Outcome outcome;
-  parser.push(input, [&](const Record& record) { outcome.records.push_back(record); });
-  outcome.counters = parser.counters();
-  outcome.pending = parser.pending();
-  nendo::test::check_accounted(parser, input.size());
-  CHECK(outcome.pending < most_record_bytes);
-  CHECK(outcome.counters.records == outcome.records.size());
-  return outcome;
+  return nendo::test::parse<Record>(Parser(shape), input, most_record_bytes);
 }
 
 } // namespace
@@ -251,17 +239,9 @@ TEST_SUITE("cyberglove_parser") {
                              "\x81\x01\x02\x03\x04\x87"
                              "es"),
                 record_bytes(22, 4, "\x81\x01\x02\x03\x04\x87")});
-    const Outcome whole = parse(full_22, stream);
-    REQUIRE(whole.records.size() == 2);
-    for (std::size_t first = 0; first <= stream.size(); ++first) {
-      Parser parser(full_22);
-      std::vector<int> firsts;
-      const auto sink = [&](const Record& record) { firsts.push_back(record.values[0]); };
-      parser.push(std::span(stream).first(first), sink);
-      parser.push(std::span(stream).subspan(first), sink);
-      CHECK(firsts == std::vector<int>{2, 4});
-      CHECK(parser.counters().discarded_bytes == whole.counters.discarded_bytes);
-    }
+    const auto value_of = [](const Record& record) { return record.values[0]; };
+    CHECK(nendo::test::values_however_cut<Record>(Parser(full_22), {stream, most_record_bytes},
+                                                  value_of) == std::vector<int>{2, 4});
   }
 
   TEST_CASE("every byte is accounted for, however the stream is mutilated") {

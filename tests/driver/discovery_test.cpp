@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include <doctest/doctest.h>
 
@@ -20,7 +21,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-const GloveCandidate& at(const std::vector<GloveCandidate>& found, const std::string& device) {
+const GloveCandidate& at(const std::vector<GloveCandidate>& found, std::string_view device) {
   const auto candidate = std::find_if(found.begin(), found.end(),
                                       [&](const GloveCandidate& c) { return c.device == device; });
   REQUIRE_MESSAGE(candidate != found.end(), device);

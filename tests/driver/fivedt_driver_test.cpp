@@ -1,11 +1,10 @@
 #include <nendo/driver/open_glove.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <doctest/doctest.h>
 
+#include "support/glove_facts.hpp"
 #include "support/stream_laws.hpp"
 #include "units/fivedt_unit.hpp"
 
@@ -49,12 +48,6 @@ Kind wireless() {
           [](const std::string& path) { return "5dt:" + path + "?baud=9600"; }, 9};
 }
 
-std::string fact(const GloveInfo& info, std::string_view name) {
-  const auto found = std::find_if(info.facts.begin(), info.facts.end(),
-                                  [&](const GloveFact& entry) { return entry.name == name; });
-  return found == info.facts.end() ? "" : found->value;
-}
-
 constexpr std::uint32_t five_knuckles =
     (1U << 1U) | (1U << 4U) | (1U << 8U) | (1U << 12U) | (1U << 16U);
 
@@ -65,9 +58,8 @@ TEST_SUITE("fivedt_driver") {
     for (const Side side : {Side::left, Side::right}) {
       const PtyUnit port(wired().make(side));
       // Its own word goes before what the user says.
-      const auto glove = open_glove("5dt:" + port.path() + "?hand=right", Side::right);
-      REQUIRE_MESSAGE(glove, glove.error().message);
-      const GloveInfo& info = (*glove)->info();
+      const auto glove = required(open_glove("5dt:" + port.path() + "?hand=right", Side::right));
+      const GloveInfo& info = glove->info();
       CHECK(info.side == side);
       CHECK(info.model == "DataGlove 5, 5 sensors");
       CHECK(info.sensors.bits == five_knuckles); // no wrist: the tilt sensor knows nothing of it
@@ -84,13 +76,12 @@ TEST_SUITE("fivedt_driver") {
     for (const Side side : {Side::left, Side::right}) {
       const PtyUnit port(wireless().make(Side::right));
       const std::string hand(name_of(side));
-      const auto glove = open_glove("5dt:" + port.path() + "?baud=9600&hand=" + hand);
-      REQUIRE_MESSAGE(glove, glove.error().message);
-      CHECK((*glove)->info().side == side);
-      CHECK((*glove)->info().model == "5DT Data Glove 5, 5 sensors");
-      CHECK((*glove)->info().sensors.bits == five_knuckles);
-      CHECK(fact((*glove)->info(), "link") == "wireless");
-      CHECK(fact((*glove)->info(), "hand_source") == "option");
+      const auto glove = required(open_glove("5dt:" + port.path() + "?baud=9600&hand=" + hand));
+      CHECK(glove->info().side == side);
+      CHECK(glove->info().model == "5DT Data Glove 5, 5 sensors");
+      CHECK(glove->info().sensors.bits == five_knuckles);
+      CHECK(fact(glove->info(), "link") == "wireless");
+      CHECK(fact(glove->info(), "hand_source") == "option");
     }
   }
 
@@ -103,10 +94,9 @@ TEST_SUITE("fivedt_driver") {
       std::this_thread::sleep_for(100ms); // some samples stand in the line
       ::close(other);
     }
-    auto glove = open_glove("5dt:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().side == Side::left);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("5dt:" + port.path()));
+    CHECK(glove->info().side == Side::left);
+    REQUIRE(glove->start(ring));
     CHECK(eventually([&] { return ring.size() > 3; }));
   }
 

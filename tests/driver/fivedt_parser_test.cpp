@@ -34,32 +34,20 @@ Bytes sample_bytes_of(int first, int pitch = 90, int roll = 91) {
   return bytes;
 }
 
-struct Outcome {
-  std::vector<int> firsts; // the thumb's value of each record
-  nendo::driver::StreamCounters counters;
-  std::size_t pending = 0;
-};
+using Firsts = std::vector<int>;
+using Outcome = test::Outcome<Record>;
 
 Outcome parse(std::span<const std::byte> input) {
-  Parser parser;
-  Outcome outcome;
-  parser.push(input, [&](const Record& record) { outcome.firsts.push_back(record.flexion[0]); });
-  outcome.counters = parser.counters();
-  outcome.pending = parser.pending();
-  test::check_accounted(parser, input.size());
+  Outcome outcome = test::parse<Record>(Parser(), input, 9);
   CHECK(outcome.counters.record_bytes == 9 * outcome.counters.records);
-  CHECK(outcome.counters.records == outcome.firsts.size());
-  CHECK(outcome.pending < 9);
   return outcome;
 }
-
-using Firsts = std::vector<int>;
 
 } // namespace
 
 TEST_SUITE("fivedt_parser") {
   TEST_CASE("empty input yields no sample") {
-    CHECK(parse({}).firsts.empty());
+    CHECK(parse({}).firsts().empty());
   }
 
   TEST_CASE("a good sample is delivered as it was sent") {
@@ -75,7 +63,7 @@ TEST_SUITE("fivedt_parser") {
   }
 
   TEST_CASE("two samples in a row are two") {
-    CHECK(parse(joined({sample_bytes_of(9), sample_bytes_of(50)})).firsts == Firsts{9, 50});
+    CHECK(parse(joined({sample_bytes_of(9), sample_bytes_of(50)})).firsts() == Firsts{9, 50});
   }
 
   TEST_CASE("values may look like headers") {
@@ -83,7 +71,7 @@ TEST_SUITE("fivedt_parser") {
         parse(joined({sample_bytes_of(0x80, 0x80, 0x80), sample_bytes_of(0x7E),
                       bytes_of({0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80}),
                       sample_bytes_of(0x80, 0x80, 0x80)}));
-    CHECK(outcome.firsts == Firsts{0x80, 0x7E, 0x80, 0x80});
+    CHECK(outcome.firsts() == Firsts{0x80, 0x7E, 0x80, 0x80});
     CHECK(outcome.counters.bad_records == 0);
   }
 
@@ -92,7 +80,7 @@ TEST_SUITE("fivedt_parser") {
          {bytes_of({1, 2, 3}), bytes_of({0x80}), bytes_of({0x80, 0x80, 0x80}),
           bytes_of({0x55, 0x80, 1, 2, 3, 4, 5})}) {
       const Outcome outcome = parse(joined({garbage, sample_bytes_of(9), sample_bytes_of(50)}));
-      CHECK(outcome.firsts == Firsts{9, 50});
+      CHECK(outcome.firsts() == Firsts{9, 50});
       CHECK(outcome.counters.discarded_bytes == garbage.size());
       CHECK(outcome.counters.bad_records == 0); // nothing tells where a sample should have begun
     }
@@ -104,7 +92,7 @@ TEST_SUITE("fivedt_parser") {
     CHECK(parse(half).pending == 5);
     const Outcome outcome =
         parse(joined({sample_bytes_of(1), half, sample_bytes_of(9), sample_bytes_of(50)}));
-    CHECK(outcome.firsts == Firsts{1, 9, 50});
+    CHECK(outcome.firsts() == Firsts{1, 9, 50});
     CHECK(outcome.counters.bad_records == 1);
     CHECK(outcome.counters.discarded_bytes == 5);
   }
@@ -112,7 +100,7 @@ TEST_SUITE("fivedt_parser") {
   TEST_CASE("an over-long sample is good, and what is too much of it is dropped") {
     const Bytes more = bytes_of({1, 2, 3, 4, 5});
     const Outcome outcome = parse(joined({sample_bytes_of(9), more, sample_bytes_of(50)}));
-    CHECK(outcome.firsts == Firsts{9, 50});
+    CHECK(outcome.firsts() == Firsts{9, 50});
     CHECK(outcome.counters.discarded_bytes == more.size());
     CHECK(outcome.counters.bad_records == 1);
   }
@@ -123,7 +111,7 @@ TEST_SUITE("fivedt_parser") {
       bad[damaged] ^= std::byte{0x01};
       const Outcome outcome =
           parse(joined({sample_bytes_of(1), bad, sample_bytes_of(50), sample_bytes_of(60)}));
-      CHECK(outcome.firsts == Firsts{1, 50, 60});
+      CHECK(outcome.firsts() == Firsts{1, 50, 60});
       CHECK(outcome.counters.bad_records == 1);
       CHECK(outcome.counters.discarded_bytes == 9);
     }
@@ -135,7 +123,7 @@ TEST_SUITE("fivedt_parser") {
       const Bytes byte = bytes_of({extra});
       const Outcome outcome = parse(joined(
           {byte, sample_bytes_of(9), byte, sample_bytes_of(50), byte, sample_bytes_of(70), byte}));
-      CHECK(outcome.firsts == Firsts{9, 50, 70});
+      CHECK(outcome.firsts() == Firsts{9, 50, 70});
       CHECK(outcome.counters.bad_records == 0);
     }
   }
@@ -146,13 +134,8 @@ TEST_SUITE("fivedt_parser") {
     const Bytes stream =
         joined({bytes_of({0x55, 7, 0x80}), sample_bytes_of(1), sample_bytes_of(2), bad,
                 bytes_of({0x80, 0x80}), sample_bytes_of(4), bytes_of({0x55}), sample_bytes_of(5)});
-    const Outcome whole = parse(stream);
-    CHECK(whole.firsts == Firsts{1, 2, 4, 5});
-    test::cut_makes_no_difference(
-        stream, 9, [] { return Parser(); },
-        [](Firsts& firsts) {
-          return [&firsts](const Record& record) { firsts.push_back(record.flexion[0]); };
-        });
+    const auto value_of = [](const Record& record) { return record.flexion[0]; };
+    CHECK(test::values_however_cut<Record>(Parser(), {stream, 9}, value_of) == Firsts{1, 2, 4, 5});
   }
 
   TEST_CASE("every byte of a 5DT stream is accounted for, however it is mutilated") {
@@ -187,17 +170,13 @@ TEST_SUITE("fivedt_parser") {
   }
 
   TEST_CASE("a file of samples yields what was worked out for it by hand") {
-    for (const char* name : {"fivedt_wired", "fivedt_wireless"}) {
-      CAPTURE(name);
-      const std::string input = test::read_capture(std::string(name) + ".bin");
-      std::string output;
-      Parser parser;
-      parser.push(std::as_bytes(std::span(input)), [&](const Record& record) {
+    for (const char* name : {"fivedt_wired.bin", "fivedt_wireless.bin"}) {
+      test::reads_as_expected<Record>(Parser(), {name, 9}, [](const Record& record) {
+        std::string line;
         for (std::size_t k = 0; k < fingers; ++k)
-          output += (k == 0 ? "" : " ") + std::to_string(record.flexion[k]);
-        output += "\n";
+          line += (k == 0 ? "" : " ") + std::to_string(record.flexion[k]);
+        return line;
       });
-      CHECK(output == test::read_capture(std::string(name) + ".expected"));
     }
   }
 }

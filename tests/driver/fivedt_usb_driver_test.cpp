@@ -4,12 +4,13 @@
 #include <array>
 #include <chrono>
 #include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
 
 #include "support/eventually.hpp"
+#include "support/glove_facts.hpp"
 #include "support/mocked_usb.hpp"
+#include "support/required.hpp"
 
 namespace fivedt_usb_driver_test {
 
@@ -24,12 +25,6 @@ std::string spec_of(std::uint16_t product) {
   return "usb:5d70:00" + std::string(product < 16 ? "0" : "1") + std::to_string(product % 16);
 }
 
-bool has_fact(const GloveInfo& info, const std::string& name, const std::string& value) {
-  return std::any_of(info.facts.begin(), info.facts.end(), [&](const GloveFact& fact) {
-    return fact.name == name && fact.value == value;
-  });
-}
-
 } // namespace
 
 TEST_SUITE("fivedt_usb_driver") {
@@ -40,26 +35,24 @@ TEST_SUITE("fivedt_usb_driver") {
       UltraModel model(product);
       bus.plug(model, 3, 7);
       SampleRing ring(4096);
-      auto glove = open_glove(spec_of(product));
-      REQUIRE_MESSAGE(glove, glove.error().message);
+      auto glove = required(open_glove(spec_of(product)));
       const Side side = product % 2 == 0 ? Side::right : Side::left;
-      CHECK((*glove)->info().side == side);
-      CHECK((*glove)->info().counts == CountScale{4095, true});
-      CHECK((*glove)->info().model ==
+      CHECK(glove->info().side == side);
+      CHECK(glove->info().counts == CountScale{4095, true});
+      CHECK(glove->info().model ==
             (product < 16 ? "5DT Data Glove 14 Ultra" : "5DT Data Glove 5 Ultra"));
-      CHECK(has_fact((*glove)->info(), "link",
-                     product == 7      ? "wireless, port B"
-                     : product == 0x13 ? "wireless, port A"
-                                       : "cable"));
-      REQUIRE((*glove)->start(ring));
+      CHECK(fact(glove->info(), "link") == (product == 7      ? "wireless, port B"
+                                            : product == 0x13 ? "wireless, port A"
+                                                              : "cable"));
+      REQUIRE(glove->start(ring));
       CHECK(eventually([&] { return ring.size() >= 40; }));
-      (*glove)->stop();
-      const GloveStats stats = (*glove)->stats();
+      glove->stop();
+      const GloveStats stats = glove->stats();
       CHECK(stats.records == ring.size());
       CHECK(stats.bytes == 64 * stats.records);
       CHECK(stats.record_bytes == stats.bytes);
-      const SensorMask sensors = (*glove)->info().sensors;
-      glove = Error{};
+      const SensorMask sensors = glove->info().sensors;
+      glove.reset();
 
       GloveSample sample;
       REQUIRE(ring.try_pop(sample));
@@ -80,13 +73,12 @@ TEST_SUITE("fivedt_usb_driver") {
     UltraModel model(0x0000);
     auto& device = bus.plug(model, 3, 7);
     SampleRing ring(4096);
-    auto glove = open_glove("usb:5d70:0000");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("usb:5d70:0000"));
+    REQUIRE(glove->start(ring));
     MockedUsb::with_model(device, [&] { model.odd_reports = {UsbBytes(63, 1), UsbBytes(1, 1)}; });
-    CHECK(eventually([&] { return (*glove)->stats().bad_records == 2; }));
-    CHECK((*glove)->stats().discarded_bytes == 64);
-    (*glove)->stop();
+    CHECK(eventually([&] { return glove->stats().bad_records == 2; }));
+    CHECK(glove->stats().discarded_bytes == 64);
+    glove->stop();
   }
 
   TEST_CASE("the hand is the glove's to say, and a receiver without a glove is no glove") {

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "support/mocked_machine.hpp"
+#include "support/required.hpp"
 #include "support/scripted_port.hpp"
 #include "transport/follow_port.hpp"
 #include "transport/ftdi_latency.hpp"
@@ -46,16 +47,13 @@ TEST_SUITE("follow_port") {
     const MockedUsb adapter;
     machine.plug(adapter);
     const auto open = follow_port("/dev/ttyUSB0", 115'200);
-    auto transport = open();
-    REQUIRE_MESSAGE(transport, transport.error().message);
-    CHECK(leads_to(**transport, machine, "ttyUSB0"));
+    auto transport = required(open());
+    CHECK(leads_to(*transport, machine, "ttyUSB0"));
     machine.unplug(adapter);
-    *transport = nullptr;
+    transport.reset();
     CHECK_FALSE(open());
     machine.plug(moved(adapter));
-    transport = open();
-    REQUIRE_MESSAGE(transport, transport.error().message);
-    CHECK(leads_to(**transport, machine, "ttyUSB1"));
+    CHECK(leads_to(*required(open()), machine, "ttyUSB1"));
   }
 
   TEST_CASE("another adapter that took the old name is refused, and the right one found") {
@@ -76,9 +74,7 @@ TEST_SUITE("follow_port") {
     CHECK(refused.error().message.find("serial number A1") != std::string::npos);
     CHECK(machine.modem_lines == 0); // not even opened
     machine.plug(moved(adapter));
-    auto transport = open();
-    REQUIRE_MESSAGE(transport, transport.error().message);
-    CHECK(leads_to(**transport, machine, "ttyUSB1"));
+    CHECK(leads_to(*required(open()), machine, "ttyUSB1"));
   }
 
   TEST_CASE("an adapter without a serial number of its own is known by its place") {
@@ -101,9 +97,7 @@ TEST_SUITE("follow_port") {
     CHECK(refused.error().message.find("USB place 1-2") != std::string::npos);
     adapter.address = 12;
     machine.plug(adapter);
-    auto transport = open();
-    REQUIRE_MESSAGE(transport, transport.error().message);
-    CHECK(leads_to(**transport, machine, "ttyUSB0"));
+    CHECK(leads_to(*required(open()), machine, "ttyUSB0"));
   }
 
   TEST_CASE("nothing is remembered of a port that could not be opened") {
@@ -127,9 +121,7 @@ TEST_SUITE("follow_port") {
     const auto open = follow_port("/dev/serial/by-id/glove", 115'200);
     REQUIRE(open());
     machine.link("serial/by-id/glove", "ttyUSB1");
-    auto transport = open();
-    REQUIRE_MESSAGE(transport, transport.error().message);
-    CHECK(leads_to(**transport, machine, "ttyUSB0"));
+    CHECK(leads_to(*required(open()), machine, "ttyUSB0"));
   }
 
   TEST_CASE("a pseudo-terminal has no adapter and is opened by its path") {

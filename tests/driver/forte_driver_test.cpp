@@ -1,11 +1,10 @@
 #include <nendo/driver/open_glove.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <doctest/doctest.h>
 
+#include "support/glove_facts.hpp"
 #include "support/stream_laws.hpp"
 #include "units/forte_unit.hpp"
 
@@ -37,12 +36,6 @@ Kind by_bluetooth() {
           [](const std::string& path) { return "forte:" + path + "?link=bluetooth"; }, 15};
 }
 
-std::string fact(const GloveInfo& info, std::string_view name) {
-  const auto found = std::find_if(info.facts.begin(), info.facts.end(),
-                                  [&](const GloveFact& entry) { return entry.name == name; });
-  return found == info.facts.end() ? "" : found->value;
-}
-
 // Two joints of each finger, the thumb's MCP and IP, the others' MCP and PIP: slots 1, 2, 4, 5 ...
 constexpr std::uint32_t two_joints_a_finger =
     (3U << 1U) | (3U << 4U) | (3U << 8U) | (3U << 12U) | (3U << 16U);
@@ -53,9 +46,9 @@ TEST_SUITE("forte_driver") {
   TEST_CASE("a Forte glove is known by its records, and its hand by what the user says") {
     for (const Side side : {Side::left, Side::right}) {
       const PtyUnit port(by_usb().make(Side::right));
-      const auto glove = open_glove("forte:" + port.path() + "?hand=" + std::string(name_of(side)));
-      REQUIRE_MESSAGE(glove, glove.error().message);
-      const GloveInfo& info = (*glove)->info();
+      const auto glove =
+          required(open_glove("forte:" + port.path() + "?hand=" + std::string(name_of(side))));
+      const GloveInfo& info = glove->info();
       CHECK(info.side == side);
       CHECK(info.model == "Forte Data Glove, 10 sensors");
       CHECK(info.sensors.bits == two_joints_a_finger);
@@ -72,11 +65,10 @@ TEST_SUITE("forte_driver") {
     const auto silent = open_glove("forte:" + port.path());
     REQUIRE_FALSE(silent);
     CHECK(silent.error().message.find("link (usb, bluetooth)") != std::string::npos);
-    const auto glove = open_glove("forte:" + port.path() + "?link=bluetooth", Side::left);
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().side == Side::left);
-    CHECK(fact((*glove)->info(), "link") == "bluetooth");
-    CHECK(fact((*glove)->info(), "hand_source") == "caller");
+    const auto glove = required(open_glove("forte:" + port.path() + "?link=bluetooth", Side::left));
+    CHECK(glove->info().side == Side::left);
+    CHECK(fact(glove->info(), "link") == "bluetooth");
+    CHECK(fact(glove->info(), "hand_source") == "caller");
   }
 
   TEST_CASE("a Forte glove's options that are none are usage errors that name what there is") {
@@ -98,12 +90,11 @@ TEST_SUITE("forte_driver") {
     const std::string_view frame("\xF0\x01\x0B\x0A\x0B\x0C\x0D\x0E\x0F\x10\x11\x12\x13\x64\xF7");
     const PtyUnit port(std::make_unique<Stranger>(frame));
     SampleRing ring(64);
-    auto glove = open_glove("forte:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("forte:" + port.path()));
+    REQUIRE(glove->start(ring));
     GloveSample sample;
     REQUIRE(eventually([&] { return ring.try_pop(sample); }));
-    (*glove)->stop();
+    glove->stop();
     int place = 10;
     for (const Sensor sensor :
          {Sensor::thumb_mcp, Sensor::thumb_ip, Sensor::index_mcp, Sensor::index_pip,

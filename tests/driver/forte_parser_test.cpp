@@ -35,23 +35,11 @@ Bytes motion_frame() {
 }
 
 using Firsts = std::vector<int>;
-
-struct Outcome {
-  Firsts firsts; // the first sensor's value of each record
-  nendo::driver::StreamCounters counters;
-  std::size_t pending = 0;
-};
+using Outcome = test::Outcome<Record>;
 
 Outcome parse(std::span<const std::byte> input) {
-  Parser parser;
-  Outcome outcome;
-  parser.push(input, [&](const Record& record) { outcome.firsts.push_back(record.flexion[0]); });
-  outcome.counters = parser.counters();
-  outcome.pending = parser.pending();
-  test::check_accounted(parser, input.size());
+  Outcome outcome = test::parse<Record>(Parser(), input, 15);
   CHECK(outcome.counters.record_bytes == 15 * outcome.counters.records);
-  CHECK(outcome.counters.records == outcome.firsts.size());
-  CHECK(outcome.pending < 15);
   return outcome;
 }
 
@@ -59,7 +47,7 @@ Outcome parse(std::span<const std::byte> input) {
 
 TEST_SUITE("forte_parser") {
   TEST_CASE("empty input yields no record") {
-    CHECK(parse({}).firsts.empty());
+    CHECK(parse({}).firsts().empty());
   }
 
   TEST_CASE("a good frame is delivered as it was sent") {
@@ -78,7 +66,7 @@ TEST_SUITE("forte_parser") {
 
   TEST_CASE("two frames in a row are two") {
     const Outcome outcome = parse(joined({frame_of(9), frame_of(50)}));
-    CHECK(outcome.firsts == Firsts{9, 50});
+    CHECK(outcome.firsts() == Firsts{9, 50});
     CHECK(outcome.counters.discarded_bytes == 0);
   }
 
@@ -86,7 +74,7 @@ TEST_SUITE("forte_parser") {
     for (const Bytes& garbage :
          {bytes_of({1, 2, 3}), bytes_of({0x0B, 5, 6, 0xF7}), bytes_of({0xFF, 0x80, 0x00})}) {
       const Outcome outcome = parse(joined({garbage, frame_of(9), frame_of(50)}));
-      CHECK(outcome.firsts == Firsts{9, 50});
+      CHECK(outcome.firsts() == Firsts{9, 50});
       CHECK(outcome.counters.discarded_bytes == garbage.size());
       CHECK(outcome.counters.bad_records == 0);
     }
@@ -99,7 +87,7 @@ TEST_SUITE("forte_parser") {
       half.resize(length);
       CHECK(parse(half).pending == length);
       const Outcome outcome = parse(joined({frame_of(1), half, frame_of(50)}));
-      CHECK(outcome.firsts == Firsts{1, 50});
+      CHECK(outcome.firsts() == Firsts{1, 50});
       CHECK(outcome.counters.bad_records == 1);
       CHECK(outcome.counters.discarded_bytes == length);
     }
@@ -110,14 +98,14 @@ TEST_SUITE("forte_parser") {
       Bytes longer = frame_of(9);
       longer.insert(longer.end() - 1, surplus, std::byte{5});
       const Outcome outcome = parse(joined({frame_of(1), longer, frame_of(50)}));
-      CHECK(outcome.firsts == Firsts{1, 50});
+      CHECK(outcome.firsts() == Firsts{1, 50});
       CHECK(outcome.counters.bad_records == 1);
       CHECK(outcome.counters.discarded_bytes == 15 + surplus);
     }
     Bytes shorter = frame_of(9);
     shorter.erase(shorter.begin() + 4);
     const Outcome outcome = parse(joined({frame_of(1), shorter, frame_of(50)}));
-    CHECK(outcome.firsts == Firsts{1, 50});
+    CHECK(outcome.firsts() == Firsts{1, 50});
     CHECK(outcome.counters.bad_records == 1);
   }
 
@@ -134,7 +122,7 @@ TEST_SUITE("forte_parser") {
       Bytes bad = frame_of(9);
       bad[damage.at] = static_cast<std::byte>(damage.to);
       const Outcome outcome = parse(joined({frame_of(1), bad, frame_of(50), frame_of(60)}));
-      CHECK(outcome.firsts == Firsts{1, 50, 60});
+      CHECK(outcome.firsts() == Firsts{1, 50, 60});
       CHECK(outcome.counters.bad_records >= 1);
       CHECK(outcome.counters.bad_records <= 2); // a begin or end within breaks it in two
       CHECK(outcome.counters.discarded_bytes == 15);
@@ -146,7 +134,7 @@ TEST_SUITE("forte_parser") {
     odd.insert(odd.begin() + 5, 100, std::byte{0xEE});
     const Outcome outcome = parse(
         joined({motion_frame(), frame_of(9), motion_frame(), motion_frame(), frame_of(50), odd}));
-    CHECK(outcome.firsts == Firsts{9, 50});
+    CHECK(outcome.firsts() == Firsts{9, 50});
     CHECK(outcome.counters.bad_records == 0);
     CHECK(outcome.counters.discarded_bytes == 4 * 16 + 100);
     CHECK(outcome.pending == 0);
@@ -155,7 +143,7 @@ TEST_SUITE("forte_parser") {
   TEST_CASE("the battery may say anything") {
     for (int battery = 0; battery <= 0xFF; ++battery) {
       if (battery == 0xF0 || battery == 0xF7) continue;
-      CHECK(parse(frame_of(9, battery)).firsts == Firsts{9});
+      CHECK(parse(frame_of(9, battery)).firsts() == Firsts{9});
     }
   }
 
@@ -167,13 +155,8 @@ TEST_SUITE("forte_parser") {
     const Bytes stream =
         joined({bytes_of({7, 0xF7, 8}), frame_of(1), motion_frame(), frame_of(2), bad, longer,
                 bytes_of({0xF0, 0xF0}), frame_of(4), bytes_of({0xF7}), frame_of(5)});
-    const Outcome whole = parse(stream);
-    CHECK(whole.firsts == Firsts{1, 2, 4, 5});
-    test::cut_makes_no_difference(
-        stream, 15, [] { return Parser(); },
-        [](Firsts& firsts) {
-          return [&firsts](const Record& record) { firsts.push_back(record.flexion[0]); };
-        });
+    const auto value_of = [](const Record& record) { return record.flexion[0]; };
+    CHECK(test::values_however_cut<Record>(Parser(), {stream, 15}, value_of) == Firsts{1, 2, 4, 5});
   }
 
   TEST_CASE("every byte of a Forte stream is accounted for, however it is mutilated") {
@@ -211,16 +194,13 @@ TEST_SUITE("forte_parser") {
   }
 
   TEST_CASE("a file of frames yields what was worked out for it by hand") {
-    const std::string input = test::read_capture("forte_stream.bin");
-    std::string output;
-    Parser parser;
-    parser.push(std::as_bytes(std::span(input)), [&](const Record& record) {
+    test::reads_as_expected<Record>(Parser(), {"forte_stream.bin", 15}, [](const Record& record) {
+      std::string line;
       for (std::size_t k = 0; k < sensor_count; ++k)
-        output += (k == 0 ? "" : " ") + std::string(name_of(slots[k])) + "=" +
-                  std::to_string(record.flexion[k]);
-      output += "\n";
+        line += (k == 0 ? "" : " ") + std::string(name_of(slots[k])) + "=" +
+                std::to_string(record.flexion[k]);
+      return line;
     });
-    CHECK(output == test::read_capture("forte_stream.expected"));
   }
 }
 

@@ -39,22 +39,11 @@ Bytes hi_res(std::string_view time, unsigned first, unsigned step = 100) {
 const Bytes one = hi_res("10:20:30:15:2S", 1); ///< its values hold NULs
 const Bytes two = hi_res("10:20:30:16:0S", 0x0D0A, 0);
 
-struct Outcome {
-  std::vector<Record> records;
-  nendo::driver::StreamCounters counters;
-  std::size_t pending = 0;
-};
+using Outcome = nendo::test::Outcome<Record>;
 
 Outcome parse(std::span<const std::byte> input) {
-  Parser parser(shape);
-  Outcome outcome;
-  parser.push(input, [&](const Record& record) { outcome.records.push_back(record); });
-  outcome.counters = parser.counters();
-  outcome.pending = parser.pending();
-  nendo::test::check_accounted(parser, input.size());
+  Outcome outcome = nendo::test::parse<Record>(Parser(shape), input, 61);
   CHECK(outcome.counters.record_bytes == 61 * outcome.records.size());
-  CHECK(outcome.pending < 61);
-  CHECK(outcome.counters.records == outcome.records.size());
   return outcome;
 }
 
@@ -169,18 +158,9 @@ TEST_SUITE("hi_res_record") {
   TEST_CASE("where the stream is cut into chunks makes no difference") {
     const Bytes stream = joined(
         {bytes_of("e1S"), one, bytes_of("10:20:30:15:2Sx"), two, Bytes(70, std::byte{0}), one});
-    const Outcome whole = parse(stream);
-    CHECK(whole.records.size() == 3);
-    for (std::size_t first = 0; first <= stream.size(); ++first) {
-      Parser parser(shape);
-      std::vector<int> firsts;
-      const auto sink = [&](const Record& record) { firsts.push_back(record.values[0]); };
-      parser.push(std::span(stream).first(first), sink);
-      parser.push(std::span(stream).subspan(first), sink);
-      CHECK(firsts == std::vector<int>{1, 0x0D0A, 1});
-      CHECK(parser.counters().discarded_bytes == whole.counters.discarded_bytes);
-      CHECK(parser.counters().bad_records == whole.counters.bad_records);
-    }
+    const auto value_of = [](const Record& record) { return record.values[0]; };
+    CHECK(nendo::test::values_however_cut<Record>(Parser(shape), {stream, 61}, value_of) ==
+          std::vector<int>{1, 0x0D0A, 1});
   }
 
   TEST_CASE("every byte is accounted for, and untouched records are delivered, under mutation") {

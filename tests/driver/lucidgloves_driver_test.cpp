@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <string>
@@ -12,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "lucidgloves/lucidgloves_driver.hpp"
+#include "support/glove_facts.hpp"
 #include "support/stream_laws.hpp"
 #include "units/lucidgloves_unit.hpp"
 
@@ -88,12 +88,6 @@ Kind lucidgloves() {
           [](const std::string& path) { return "lucidgloves:" + path; }, 256};
 }
 
-std::string fact(const GloveInfo& info, std::string_view name) {
-  const auto found = std::find_if(info.facts.begin(), info.facts.end(),
-                                  [&](const GloveFact& entry) { return entry.name == name; });
-  return found == info.facts.end() ? "" : found->value;
-}
-
 std::array<int, 5> brakes_of(PtyUnit& port) {
   return port.look<LucidGlovesUnit>([](const LucidGlovesUnit& unit) { return unit.brakes(); });
 }
@@ -111,9 +105,9 @@ TEST_SUITE("lucidgloves_driver") {
     for (const Side side : {Side::left, Side::right}) {
       const PtyUnit port(lucidgloves().make(side));
       // Its own word goes before what the user says.
-      const auto glove = open_glove("lucidgloves:" + port.path() + "?hand=right", Side::right);
-      REQUIRE_MESSAGE(glove, glove.error().message);
-      const GloveInfo& info = (*glove)->info();
+      const auto glove =
+          required(open_glove("lucidgloves:" + port.path() + "?hand=right", Side::right));
+      const GloveInfo& info = glove->info();
       CHECK(info.side == side);
       CHECK(info.model == "LucidGloves, 9 sensors");
       CHECK(info.counts == CountScale{4095, true});
@@ -137,23 +131,20 @@ TEST_SUITE("lucidgloves_driver") {
     LucidGlovesUnitOptions options;
     options.answers = false;
     const PtyUnit port(make_lucidgloves_unit(options));
-    const auto glove = open_glove("lucidgloves:" + port.path(), Side::left);
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().side == Side::left);
-    CHECK(fact((*glove)->info(), "hand_source") == "caller");
-    CHECK(fact((*glove)->info(), "firmware").empty());
+    const auto glove = required(open_glove("lucidgloves:" + port.path(), Side::left));
+    CHECK(glove->info().side == Side::left);
+    CHECK(fact(glove->info(), "hand_source") == "caller");
+    CHECK(fact(glove->info(), "firmware").empty());
   }
 
   TEST_CASE("the hand is the option's, else the caller's, else right") {
     const std::string line = "A1B2C3D4E5\n";
-    const auto option = open_one_line(line, "?hand=left", Side::right);
-    REQUIRE(option);
-    CHECK((*option)->info().side == Side::left);
-    CHECK(fact((*option)->info(), "hand_source") == "option");
-    const auto assumed = open_one_line(line, "");
-    REQUIRE(assumed);
-    CHECK((*assumed)->info().side == Side::right);
-    CHECK(fact((*assumed)->info(), "hand_source") == "assumed");
+    const auto option = required(open_one_line(line, "?hand=left", Side::right));
+    CHECK(option->info().side == Side::left);
+    CHECK(fact(option->info(), "hand_source") == "option");
+    const auto assumed = required(open_one_line(line, ""));
+    CHECK(assumed->info().side == Side::right);
+    CHECK(fact(assumed->info(), "hand_source") == "assumed");
   }
 
   TEST_CASE("a glove that somebody stopped is started") {
@@ -161,35 +152,33 @@ TEST_SUITE("lucidgloves_driver") {
     const int other = ::open(port.path().c_str(), O_RDWR | O_NOCTTY);
     REQUIRE(::write(other, "(ZZ)\n", 5) == 5);
     ::close(other);
-    const auto glove = open_glove("lucidgloves:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().side == Side::left);
+    const auto glove = required(open_glove("lucidgloves:" + port.path()));
+    CHECK(glove->info().side == Side::left);
   }
 
   TEST_CASE("a legacy firmware is told nothing, since it takes any line for brakes") {
     const auto unit = [](const Listener& listener) { return listener.received(); };
     PtyUnit port(std::make_unique<Listener>("1&2&3&4&5&6&7&0&0&0&0&0&0\n"));
     SampleRing ring(1U << 14U);
-    auto glove = open_glove("lucidgloves:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK(fact((*glove)->info(), "encoding") == "legacy");
-    CHECK((*glove)->info().model == "LucidGloves, 5 sensors");
-    CHECK_FALSE((*glove)->info().abilities.resistance);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("lucidgloves:" + port.path()));
+    CHECK(fact(glove->info(), "encoding") == "legacy");
+    CHECK(glove->info().model == "LucidGloves, 5 sensors");
+    CHECK_FALSE(glove->info().abilities.resistance);
+    REQUIRE(glove->start(ring));
     Feedback feedback;
     feedback.resistance = {1, 2, 3, 4, 5};
-    (*glove)->set_feedback(feedback);
+    glove->set_feedback(feedback);
     CHECK(eventually([&] { return ring.size() > 100; }));
-    (*glove)->stop();
+    glove->stop();
     CHECK(port.look<Listener>(unit) == 0);
   }
 
   TEST_CASE("what the first lines show is what it has") {
-    const auto joints = open_one_line("A1(AAB)2(AAC)3B4(BAB)5(BAC)6(BAD)7\r\n", "?range=1023");
-    REQUIRE(joints);
-    CHECK((*joints)->info().sensors.bits ==
+    const auto joints =
+        required(open_one_line("A1(AAB)2(AAC)3B4(BAB)5(BAC)6(BAD)7\r\n", "?range=1023"));
+    CHECK(joints->info().sensors.bits ==
           ((1U << 1U) | (1U << 2U) | (1U << 4U) | (1U << 5U) | (1U << 6U)));
-    CHECK((*joints)->info().counts == CountScale{1023, true});
+    CHECK(joints->info().counts == CountScale{1023, true});
   }
 
   TEST_CASE("numbers beyond the range that was named are an error that names it") {
@@ -212,16 +201,15 @@ TEST_SUITE("lucidgloves_driver") {
   TEST_CASE("feedback reaches the brakes, at most locked, and its end frees them") {
     PtyUnit port(lucidgloves().make(Side::right));
     SampleRing ring(1U << 14U);
-    auto glove = open_glove("lucidgloves:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("lucidgloves:" + port.path()));
+    REQUIRE(glove->start(ring));
     Feedback feedback;
     feedback.resistance = {0, 1, 500, 1000, 65535};
-    (*glove)->set_feedback(feedback);
+    glove->set_feedback(feedback);
     CHECK(eventually([&] { return brakes_of(port) == std::array{0, 1, 500, 1000, 1000}; }));
-    (*glove)->stop();
+    glove->stop();
     CHECK(eventually([&] { return brakes_of(port) == std::array{0, 0, 0, 0, 0}; }));
-    CHECK((*glove)->stats().bad_records == 0);
+    CHECK(glove->stats().bad_records == 0);
   }
 
   TEST_CASE("what was cut off is ended before the next command, lest they run into one") {
@@ -229,35 +217,34 @@ TEST_SUITE("lucidgloves_driver") {
     const auto open_port = [&]() -> Result<std::unique_ptr<Transport>> {
       return std::unique_ptr<Transport>(std::make_unique<HalfDeafPort>(written));
     };
-    auto glove = lucidgloves::open_lucidgloves_by("a half-deaf glove", open_port, 4095, {});
-    REQUIRE_MESSAGE(glove, glove.error().message);
+    auto glove =
+        required(lucidgloves::open_lucidgloves_by("a half-deaf glove", open_port, 4095, {}));
     SampleRing ring(8);
-    REQUIRE((*glove)->start(ring));
+    REQUIRE(glove->start(ring));
     Feedback feedback;
     feedback.resistance = {1, 2, 3, 4, 5};
-    (*glove)->set_feedback(feedback);
+    glove->set_feedback(feedback);
     CHECK(eventually([&] { return written.last() == "A1B2C3D4E5\n"; })); // of which it takes a part
     feedback.resistance[0] = 9;
-    (*glove)->set_feedback(feedback);
+    glove->set_feedback(feedback);
     CHECK(eventually([&] { return written.last() == "\nA9B2C3D4E5\n"; }));
-    (*glove)->stop();
+    glove->stop();
     CHECK(written.last() == "A0B0C0D0E0\n");
   }
 
   TEST_CASE("feedback is shown again after a silence") {
     PtyUnit port(lucidgloves().make(Side::right));
     SampleRing ring(1U << 14U);
-    auto glove = open_glove("lucidgloves:" + port.path());
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("lucidgloves:" + port.path()));
+    REQUIRE(glove->start(ring));
     Feedback feedback;
     feedback.resistance = {700, 600, 500, 400, 300};
-    (*glove)->set_feedback(feedback);
+    glove->set_feedback(feedback);
     REQUIRE(eventually([&] { return brakes_of(port)[0] == 700; }));
     port.mute = true;
-    REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
+    REQUIRE(eventually([&] { return glove->stats().silences >= 1; }));
     feedback.resistance[0] = 650; // given while it is silent
-    (*glove)->set_feedback(feedback);
+    glove->set_feedback(feedback);
     port.mute = false;
     CHECK(eventually([&] { return brakes_of(port) == std::array{650, 600, 500, 400, 300}; }));
   }

@@ -28,13 +28,6 @@ struct Outcome {
   std::size_t pending = 0;
 };
 
-void check_conservation(const Parser& parser, std::size_t pushed) {
-  const auto& counters = parser.counters();
-  CHECK(counters.bytes == pushed);
-  CHECK(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
-  CHECK(parser.pending() < most_line_bytes);
-}
-
 /// Of a stream that begins with a line's beginning.
 Outcome parse(std::string_view text, std::uint16_t range = esp32_range) {
   Parser parser(range);
@@ -42,7 +35,7 @@ Outcome parse(std::string_view text, std::uint16_t range = esp32_range) {
   const std::string input = "\n" + std::string(text);
   parser.push(std::as_bytes(std::span(input)),
               [&](const Line& line) { outcome.lines.push_back(line); });
-  check_conservation(parser, input.size());
+  test::check_accounted(parser, input.size(), most_line_bytes);
   outcome.counters = parser.counters();
   outcome.pending = parser.pending();
   return outcome;
@@ -111,7 +104,7 @@ TEST_SUITE("lucidgloves_parser") {
     });
     CHECK(lines == 1);
     CHECK(parser.counters().bad_records == 0);
-    check_conservation(parser, input.size());
+    test::check_accounted(parser, input.size(), most_line_bytes);
   }
 
   TEST_CASE("garbage before a line costs that line and no other") {
@@ -248,22 +241,11 @@ TEST_SUITE("lucidgloves_parser") {
   }
 
   TEST_CASE("where a LucidGlove's stream is cut makes no difference") {
-    const std::string stream = "noise\n" + full + std::string(300, 'Q') + "\r\n" + plain +
-                               "A1A1\n" + full + "(ZH)0\n" + plain;
-    const Outcome whole = parse(stream);
-    REQUIRE(whole.lines.size() == 5);
-    const std::string input = "\n" + stream;
-    const auto bytes = std::as_bytes(std::span(input));
-    for (std::size_t first = 0; first <= bytes.size(); ++first) {
-      Parser parser(esp32_range);
-      std::vector<int> thumbs;
-      const auto sink = [&](const Line& line) { thumbs.push_back(line.curl[0].value_or(0)); };
-      parser.push(bytes.first(first), sink);
-      parser.push(bytes.subspan(first), sink);
-      CHECK(thumbs == std::vector<int>{100, 1, 100, 0, 1});
-      CHECK(parser.counters().discarded_bytes == whole.counters.discarded_bytes);
-      CHECK(parser.counters().bad_records == whole.counters.bad_records);
-    }
+    const auto stream = test::bytes_of("\nnoise\n" + full + std::string(300, 'Q') + "\r\n" + plain +
+                                       "A1A1\n" + full + "(ZH)0\n" + plain);
+    const auto value_of = [](const Line& line) { return line.curl[0].value_or(0); };
+    CHECK(test::values_however_cut<Line>(Parser(esp32_range), {stream, most_line_bytes},
+                                         value_of) == std::vector<int>{100, 1, 100, 0, 1});
   }
 
   TEST_CASE("every byte of a LucidGlove's stream is accounted for, however it is mutilated") {
@@ -308,22 +290,17 @@ TEST_SUITE("lucidgloves_parser") {
     push("C3D4\n" + plain);
     CHECK(lines == 1);
     CHECK(parser.counters().bad_records == 0);
-    check_conservation(parser, 5 + 7 + 5 + plain.size());
+    test::check_accounted(parser, 5 + 7 + 5 + plain.size(), most_line_bytes);
   }
 
   TEST_CASE("a file of lines yields what was worked out for it by hand") {
-    for (const char* name : {"lucidgloves_alpha", "lucidgloves_legacy"}) {
-      CAPTURE(name);
-      const std::string input = test::read_capture(std::string(name) + ".txt");
-      std::string output;
-      Parser parser(esp32_range);
-      parser.push(std::as_bytes(std::span(input)), [&](const Line& line) {
+    for (const char* name : {"lucidgloves_alpha.txt", "lucidgloves_legacy.txt"}) {
+      const auto line_of = [](const Line& line) {
         GloveSample sample;
         fill_slots(line, esp32_range, sample);
-        output += written(sample) + "\n";
-      });
-      check_conservation(parser, input.size());
-      CHECK(output == test::read_capture(std::string(name) + ".expected"));
+        return written(sample);
+      };
+      test::reads_as_expected<Line>(Parser(esp32_range), {name, most_line_bytes}, line_of);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "support/eventually.hpp"
 #include "support/mocked_usb.hpp"
+#include "support/required.hpp"
 
 namespace p5_driver_test {
 
@@ -42,6 +44,17 @@ void check_in_order(SampleRing& ring, const UsbGlove& glove) {
     CHECK(samples[k].sequence == k);
 }
 
+/// A P5 at a bus of its own, streaming.
+struct StreamingP5 {
+  MockedUsb bus;
+  P5Model model;
+  MockedUsb::Device& device = bus.plug(model, 3, 7);
+  SampleRing ring{1U << 15U};
+  std::unique_ptr<Glove> glove = required(open_glove("usb:0d7f:0100"));
+
+  StreamingP5() { REQUIRE(glove->start(ring)); }
+};
+
 void check_conservation(const GloveStats& stats) {
   CHECK(stats.bytes == stats.record_bytes + stats.discarded_bytes);
   CHECK(stats.record_bytes == 24 * stats.records);
@@ -55,23 +68,22 @@ TEST_SUITE("p5_driver") {
     P5Model model;
     bus.plug(model, 3, 7);
     SampleRing ring(4096);
-    auto glove = open_glove("usb:0d7f:0100");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    const GloveInfo& info = (*glove)->info();
+    auto glove = required(open_glove("usb:0d7f:0100"));
+    const GloveInfo& info = glove->info();
     CHECK(info.source == "usb:0d7f:0100");
     CHECK(info.side == Side::right);
     CHECK(info.sensors == knuckles);
     CHECK(info.counts == CountScale{63, true});
     CHECK(info.abilities.wrist_switch);
-    REQUIRE((*glove)->start(ring));
-    CHECK_FALSE((*glove)->start(ring));
+    REQUIRE(glove->start(ring));
+    CHECK_FALSE(glove->start(ring));
     CHECK(eventually([&] { return ring.size() >= 60; }));
-    (*glove)->stop();
-    const GloveStats stats = (*glove)->stats();
+    glove->stop();
+    const GloveStats stats = glove->stats();
     CHECK(stats.records == ring.size());
     CHECK(stats.bad_records == 0);
     check_conservation(stats);
-    glove = Error{};
+    glove.reset();
     check_in_order(ring, model);
   }
 
@@ -80,14 +92,13 @@ TEST_SUITE("p5_driver") {
     P5Model model;
     bus.plug(model, 3, 7, "A1");
     SampleRing ring(64);
-    auto glove = open_glove("usb:0d7f:0100?serial=A1&hand=left");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().side == Side::left);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("usb:0d7f:0100?serial=A1&hand=left"));
+    CHECK(glove->info().side == Side::left);
+    REQUIRE(glove->start(ring));
     GloveSample sample;
     CHECK(eventually([&] { return ring.try_pop(sample); }));
     CHECK(sample.side == Side::left);
-    (*glove)->stop();
+    glove->stop();
     for (const char* wrong : {"usb:0d7f:0100?hand=both", "usb:0d7f:0100?baud=9600", "usb:0d7f",
                               "usb:", "usb:0d7f:01000", "usb:0d7f:zzzz", "usb:0d7f:0100:1",
                               "usb:1234:5678", "usb:5d70:0004", "usb:+d7f:0100"}) {
@@ -102,23 +113,17 @@ TEST_SUITE("p5_driver") {
   }
 
   TEST_CASE("button A is the wrist switch") {
-    MockedUsb bus;
-    P5Model model;
-    auto& device = bus.plug(model, 3, 7);
-    SampleRing ring(1U << 15U);
-    auto glove = open_glove("usb:0d7f:0100");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    StreamingP5 p5;
     const auto arrives = [&](WristSwitch position) {
       GloveSample sample;
-      return eventually([&] { return ring.try_pop(sample) && sample.wrist_switch == position; });
+      return eventually([&] { return p5.ring.try_pop(sample) && sample.wrist_switch == position; });
     };
     CHECK(arrives(WristSwitch::off));
-    MockedUsb::with_model(device, [&] { model.buttons = 1; });
+    MockedUsb::with_model(p5.device, [&] { p5.model.buttons = 1; });
     CHECK(arrives(WristSwitch::on));
-    MockedUsb::with_model(device, [&] { model.buttons = 6; });
+    MockedUsb::with_model(p5.device, [&] { p5.model.buttons = 6; });
     CHECK(arrives(WristSwitch::off));
-    (*glove)->stop();
+    p5.glove->stop();
   }
 
   TEST_CASE(
@@ -129,16 +134,15 @@ TEST_SUITE("p5_driver") {
       model.mouse_mode = before;
       auto& device = bus.plug(model, 3, 7);
       SampleRing ring(4096);
-      auto glove = open_glove("usb:0d7f:0100");
-      REQUIRE_MESSAGE(glove, glove.error().message);
+      auto glove = required(open_glove("usb:0d7f:0100"));
       MockedUsb::with_model(device, [&] { CHECK(model.mouse_modes_set.empty()); });
       for (int round = 0; round < 2; ++round) {
-        REQUIRE((*glove)->start(ring));
+        REQUIRE(glove->start(ring));
         MockedUsb::with_model(device, [&] { CHECK(model.mouse_mode == 0xFF); });
-        CHECK(eventually([&] { return (*glove)->stats().records > 3; }));
+        CHECK(eventually([&] { return glove->stats().records > 3; }));
         const auto start = Clock::now();
-        (*glove)->stop();
-        (*glove)->stop();
+        glove->stop();
+        glove->stop();
         CHECK(Clock::now() - start < 1s);
         MockedUsb::with_model(device, [&] { CHECK(model.mouse_mode == before); });
       }
@@ -153,32 +157,25 @@ TEST_SUITE("p5_driver") {
     model.knows_mouse_mode = false;
     bus.plug(model, 3, 7);
     SampleRing ring(4096);
-    auto glove = open_glove("usb:0d7f:0100");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("usb:0d7f:0100"));
+    REQUIRE(glove->start(ring));
     CHECK(eventually([&] { return ring.size() > 3; }));
   }
 
   TEST_CASE("short, over-long and foreign reports are dropped and counted") {
-    MockedUsb bus;
-    P5Model model;
-    auto& device = bus.plug(model, 3, 7);
-    SampleRing ring(4096);
-    auto glove = open_glove("usb:0d7f:0100");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return ring.size() > 3; }));
+    StreamingP5 p5;
+    REQUIRE(eventually([&] { return p5.ring.size() > 3; }));
     UsbBytes overlong(30, 0x77); // one transfer takes 24 bytes of it, the next one 6
     overlong[0] = 2;
-    MockedUsb::with_model(device, [&] {
-      model.odd_reports = {{1, 2, 3}, overlong, UsbBytes(24, 0x33), UsbBytes(1, 1)};
+    MockedUsb::with_model(p5.device, [&] {
+      p5.model.odd_reports = {{1, 2, 3}, overlong, UsbBytes(24, 0x33), UsbBytes(1, 1)};
     });
-    CHECK(eventually([&] { return (*glove)->stats().bad_records == 5; }));
-    const std::uint64_t records = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > records + 3; }));
-    (*glove)->stop();
-    CHECK((*glove)->stats().discarded_bytes >= 3 + 30 + 24 + 1);
-    check_conservation((*glove)->stats());
+    CHECK(eventually([&] { return p5.glove->stats().bad_records == 5; }));
+    const std::uint64_t records = p5.glove->stats().records;
+    CHECK(eventually([&] { return p5.glove->stats().records > records + 3; }));
+    p5.glove->stop();
+    CHECK(p5.glove->stats().discarded_bytes >= 3 + 30 + 24 + 1);
+    check_conservation(p5.glove->stats());
   }
 
   TEST_CASE("a glove that sends nothing, or something else, is an error that says so in time") {
@@ -203,23 +200,17 @@ TEST_SUITE("p5_driver") {
   }
 
   TEST_CASE("a glove that falls silent is asked anew, and the mouse is given back all the same") {
-    MockedUsb bus;
-    P5Model model;
-    auto& device = bus.plug(model, 3, 7);
-    SampleRing ring(1U << 15U);
-    auto glove = open_glove("usb:0d7f:0100");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return ring.size() > 3; }));
-    MockedUsb::with_model(device, [&] { model.silent = true; });
-    CHECK(eventually([&] { return (*glove)->stats().silences >= 1; }));
-    MockedUsb::with_model(device, [&] { model.silent = false; });
-    const std::uint64_t records = (*glove)->stats().records;
-    CHECK(eventually([&] { return (*glove)->stats().records > records + 3; }));
-    (*glove)->stop();
-    CHECK((*glove)->stats().reopened == 0);
-    check_conservation((*glove)->stats());
-    MockedUsb::with_model(device, [&] { CHECK(model.mouse_mode == 0x01); });
+    StreamingP5 p5;
+    REQUIRE(eventually([&] { return p5.ring.size() > 3; }));
+    MockedUsb::with_model(p5.device, [&] { p5.model.silent = true; });
+    CHECK(eventually([&] { return p5.glove->stats().silences >= 1; }));
+    MockedUsb::with_model(p5.device, [&] { p5.model.silent = false; });
+    const std::uint64_t records = p5.glove->stats().records;
+    CHECK(eventually([&] { return p5.glove->stats().records > records + 3; }));
+    p5.glove->stop();
+    CHECK(p5.glove->stats().reopened == 0);
+    check_conservation(p5.glove->stats());
+    MockedUsb::with_model(p5.device, [&] { CHECK(p5.model.mouse_mode == 0x01); });
   }
 
   TEST_CASE("a glove that is unplugged is found again under another address, as the same glove") {
@@ -232,41 +223,34 @@ TEST_SUITE("p5_driver") {
       P5Model second;
       auto& device = bus.plug(first, 3, 7, serial);
       SampleRing ring(1U << 15U);
-      auto glove = open_glove("usb:0d7f:0100");
-      REQUIRE_MESSAGE(glove, glove.error().message);
-      REQUIRE((*glove)->start(ring));
+      auto glove = required(open_glove("usb:0d7f:0100"));
+      REQUIRE(glove->start(ring));
       REQUIRE(eventually([&] { return ring.size() > 3; }));
       bus.unplug(device);
       // Of the same kind, but not this one: at another port, with another serial number.
       auto& other = bus.plug(stranger, 2, 8, has_serial ? "B2" : "");
       // A serial number is known at any port, a device without one at its own.
       auto& again = bus.plug(second, has_serial ? 4 : 3, 9, serial);
-      CHECK(eventually([&] { return (*glove)->stats().reopened == 1; }));
-      const std::uint64_t records = (*glove)->stats().records;
-      CHECK(eventually([&] { return (*glove)->stats().records > records + 3; }));
+      CHECK(eventually([&] { return glove->stats().reopened == 1; }));
+      const std::uint64_t records = glove->stats().records;
+      CHECK(eventually([&] { return glove->stats().records > records + 3; }));
       CHECK(MockedUsb::log_of(again).claimed);
       CHECK(MockedUsb::log_of(other).detached == 0);
       MockedUsb::with_model(again, [&] { CHECK(second.mouse_mode == 0xFF); });
-      (*glove)->stop();
+      glove->stop();
       MockedUsb::with_model(again, [&] { CHECK(second.mouse_mode == 0x01); });
-      check_conservation((*glove)->stats());
-      glove = Error{};
+      check_conservation(glove->stats());
+      glove.reset();
       CHECK(MockedUsb::log_of(again).kernel_has_glove);
     }
   }
 
   TEST_CASE("stop does not wait for a glove that is away") {
-    MockedUsb bus;
-    P5Model model;
-    auto& device = bus.plug(model, 3, 7);
-    SampleRing ring(4096);
-    auto glove = open_glove("usb:0d7f:0100");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    bus.unplug(device);
-    CHECK(eventually([&] { return MockedUsb::log_of(device).under_way == 0; })); // it is closed
+    StreamingP5 p5;
+    p5.bus.unplug(p5.device);
+    CHECK(eventually([&] { return MockedUsb::log_of(p5.device).under_way == 0; })); // it is closed
     const auto start = Clock::now();
-    (*glove)->stop();
+    p5.glove->stop();
     CHECK(Clock::now() - start < 1s);
   }
 }

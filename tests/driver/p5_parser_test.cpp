@@ -1,12 +1,12 @@
 #include "p5/p5_parser.hpp"
 
-#include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
+
+#include "support/captures.hpp"
 
 namespace p5_parser_test {
 
@@ -14,15 +14,7 @@ using namespace nendo::driver::p5;
 
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-Bytes bytes_of(const std::string& hex) {
-  Bytes bytes;
-  std::istringstream words(hex);
-  for (std::string word; words >> word;)
-    bytes.push_back(static_cast<std::byte>(std::stoul(word, nullptr, 16)));
-  return bytes;
-}
+using Bytes = nendo::test::StreamBytes;
 
 /// A whole report with nothing in it: straight fingers, no button, no light.
 Bytes empty_report() {
@@ -55,19 +47,11 @@ std::string text_of(const Report& report) {
 } // namespace
 
 TEST_SUITE("p5_parser") {
-  TEST_CASE("reports that were put together by hand read as their author meant them") {
-    std::ifstream file(NENDO_CAPTURES "/p5_reports.txt");
-    int cases = 0;
-    for (std::string line; std::getline(file, line);) {
-      if (line.empty() || line.front() == '#') continue;
-      CAPTURE(line);
-      const std::size_t arrow = line.find(" => ");
-      REQUIRE(arrow != std::string::npos);
-      const auto report = decode_report(bytes_of(line.substr(0, arrow)));
-      CHECK((report ? text_of(*report) : "none") == line.substr(arrow + 4));
-      ++cases;
-    }
-    CHECK(cases >= 8);
+  TEST_CASE("P5 reports that were put together by hand read as their author meant them") {
+    nendo::test::reports_read_as_meant("p5_reports.txt", 8, [](const Bytes& bytes) {
+      const auto report = decode_report(bytes);
+      return report ? text_of(*report) : "none";
+    });
   }
 
   TEST_CASE("each of the 30 bits of bend belongs to one finger, the most significant first") {

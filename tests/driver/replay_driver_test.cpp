@@ -53,7 +53,7 @@ struct Take {
       put_sample(writer, {1, sample});
       sample.side = Side::left;
       put_sample(writer, {0, sample});
-      append_chunk(bytes, tape_chunk, chunk++, payload);
+      append_chunk(bytes, log_chunk, chunk++, payload);
     }
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),

@@ -52,10 +52,10 @@ TEST_SUITE("sample_record") {
       writer.u8(3);
       writer.bytes(std::array<std::byte, 3>{});
     }
-    TapeRecords records(payload);
+    LogEntries records(payload);
     std::size_t at = 0;
     while (const auto record = records.next()) {
-      if (!record->is(RecordKind::sample)) continue;
+      if (!record->is(EntryKind::sample)) continue;
       const auto read = sample_of(*record);
       REQUIRE(read);
       CHECK(read->glove == samples[at].glove);
@@ -70,7 +70,7 @@ TEST_SUITE("sample_record") {
     ByteWriter writer(payload);
     put_sample(writer, {});
     for (std::size_t size = 1; size < payload.size(); ++size) {
-      TapeRecords records{std::span(payload).first(size)};
+      LogEntries records{std::span(payload).first(size)};
       CHECK_FALSE(records.next().has_value());
       CHECK_FALSE(records.ended_well());
     }
@@ -81,7 +81,7 @@ TEST_SUITE("sample_record") {
       std::vector<std::byte> payload;
       ByteWriter writer(payload);
       put_sample(writer, {0, sample});
-      return sample_of(*TapeRecords(payload).next()).has_value();
+      return sample_of(*LogEntries(payload).next()).has_value();
     };
     GloveSample sample;
     CHECK(accepted(sample));

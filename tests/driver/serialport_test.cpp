@@ -14,6 +14,7 @@
 #include <nendo/driver/open_glove.hpp>
 
 #include "support/mocked_machine.hpp"
+#include "support/required.hpp"
 #include "support/scripted_port.hpp"
 #include "transport/open_transport.hpp"
 
@@ -68,22 +69,12 @@ TEST_SUITE("serialport") {
     MockedAdapter adapter("FT232R USB UART");
     std::atomic<int>& modem_lines = adapter.machine.modem_lines;
     REQUIRE(is_serial_port("/dev/ttyUSB0"));
-    auto transport = open_transport("/dev/ttyUSB0", 115'200);
-    REQUIRE_MESSAGE(transport, transport.error().message);
+    auto transport = required(open_transport("/dev/ttyUSB0", 115'200));
     CHECK((modem_lines & (TIOCM_DTR | TIOCM_RTS)) == (TIOCM_DTR | TIOCM_RTS));
 
-    constexpr std::array question{std::byte{'?'}, std::byte{'S'}};
-    CHECK((*transport)->write_all(question, 1s) == IoStatus::done);
-    std::string received;
+    check_that_it_answers(*transport);
     std::array<std::byte, 16> buffer{};
-    while (received.size() < 4) {
-      const auto [status, count] = (*transport)->read_some(buffer, 1s);
-      REQUIRE(status == IoStatus::done);
-      for (std::size_t k = 0; k < count; ++k)
-        received.push_back(std::to_integer<char>(buffer[k]));
-    }
-    CHECK(received == std::string("?S\x16\0", 4));
-    CHECK((*transport)->read_some(buffer, 20ms).status == IoStatus::timeout);
+    CHECK(transport->read_some(buffer, 20ms).status == IoStatus::timeout);
 
     const auto second = open_transport("/dev/ttyUSB0", 115'200);
     REQUIRE_FALSE(second);
@@ -92,24 +83,22 @@ TEST_SUITE("serialport") {
 
   TEST_CASE("an adapter that is unplugged is noticed by reading and by writing") {
     MockedAdapter adapter("FT232R USB UART");
-    auto transport = open_transport("/dev/ttyUSB0", 115'200);
-    REQUIRE_MESSAGE(transport, transport.error().message);
+    auto transport = required(open_transport("/dev/ttyUSB0", 115'200));
     adapter.unplug();
     std::array<std::byte, 16> buffer{};
-    CHECK((*transport)->read_some(buffer, 1s).status == IoStatus::gone);
-    CHECK((*transport)->write_all(buffer, 1s) == IoStatus::gone);
+    CHECK(transport->read_some(buffer, 1s).status == IoStatus::gone);
+    CHECK(transport->write_all(buffer, 1s) == IoStatus::gone);
   }
 
   TEST_CASE("a glove behind an adapter streams") {
     const MockedAdapter adapter("FT232R USB UART");
     SampleRing ring(1024);
-    auto glove = open_glove("serial:/dev/ttyUSB0");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
+    auto glove = required(open_glove("serial:/dev/ttyUSB0"));
+    REQUIRE(glove->start(ring));
     std::this_thread::sleep_for(500ms);
-    (*glove)->stop();
+    glove->stop();
     CHECK(ring.size() > 20);
-    CHECK((*glove)->stats().silences == 0);
+    CHECK(glove->stats().silences == 0);
   }
 
   TEST_CASE("a link that udev made is followed") {
@@ -161,9 +150,8 @@ TEST_SUITE("serialport") {
     REQUIRE(found.size() == 1);
     CHECK(found[0].identified);
     CHECK(found[0].spec == "serial:/dev/nendo/right");
-    const auto glove = open_glove("auto");
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    CHECK((*glove)->info().source == "serial:/dev/nendo/right");
+    const auto glove = required(open_glove("auto"));
+    CHECK(glove->info().source == "serial:/dev/nendo/right");
   }
 }
 

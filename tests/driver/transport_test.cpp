@@ -11,6 +11,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/required.hpp"
 #include "support/scripted_port.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -32,27 +33,16 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 TEST_SUITE("transport") {
   TEST_CASE("a question reaches the far end of a pseudo-terminal and its answer comes back") {
     const ScriptedPort port;
-    auto transport = open_transport(port.path(), 115'200);
-    REQUIRE(transport);
-    CHECK((*transport)->write_all(bytes_of("?S"), 1s) == IoStatus::done);
-    std::string received;
-    std::array<std::byte, 16> buffer{};
-    while (received.size() < 4) {
-      const auto [status, count] = (*transport)->read_some(buffer, 1s);
-      REQUIRE(status == IoStatus::done);
-      for (std::size_t k = 0; k < count; ++k)
-        received.push_back(std::to_integer<char>(buffer[k]));
-    }
-    CHECK(received == std::string("?S\x16\0", 4));
+    auto transport = required(open_transport(port.path(), 115'200));
+    check_that_it_answers(*transport);
   }
 
   TEST_CASE("a read of a quiet line ends in time with nothing") {
     const ScriptedPort port;
-    auto transport = open_transport(port.path(), 115'200);
-    REQUIRE(transport);
+    auto transport = required(open_transport(port.path(), 115'200));
     std::array<std::byte, 16> buffer{};
     const auto start = std::chrono::steady_clock::now();
-    const auto [status, count] = (*transport)->read_some(buffer, 50ms);
+    const auto [status, count] = transport->read_some(buffer, 50ms);
     const auto lasted = std::chrono::steady_clock::now() - start;
     CHECK(status == IoStatus::timeout);
     CHECK(count == 0);
@@ -62,28 +52,26 @@ TEST_SUITE("transport") {
 
   TEST_CASE("discarded input is never read") {
     const ScriptedPort port;
-    auto transport = open_transport(port.path(), 115'200);
-    REQUIRE(transport);
-    CHECK((*transport)->write_all(bytes_of("?S"), 1s) == IoStatus::done);
+    auto transport = required(open_transport(port.path(), 115'200));
+    CHECK(transport->write_all(bytes_of("?S"), 1s) == IoStatus::done);
     std::this_thread::sleep_for(100ms);
-    (*transport)->discard_input();
+    transport->discard_input();
     std::array<std::byte, 16> buffer{};
-    CHECK((*transport)->read_some(buffer, 20ms).status == IoStatus::timeout);
+    CHECK(transport->read_some(buffer, 20ms).status == IoStatus::timeout);
   }
 
   TEST_CASE("when the far end goes, reading and writing say so") {
     ScriptedPort port;
-    auto transport = open_transport(port.path(), 115'200);
-    REQUIRE(transport);
-    CHECK((*transport)->write_all(bytes_of("?S"), 1s) == IoStatus::done);
+    auto transport = required(open_transport(port.path(), 115'200));
+    CHECK(transport->write_all(bytes_of("?S"), 1s) == IoStatus::done);
     std::this_thread::sleep_for(100ms);
     port.unplug();
     std::array<std::byte, 16> buffer{};
     for (int reads = 0; reads < 3; ++reads) {
-      if ((*transport)->read_some(buffer, 1s).status != IoStatus::done) break;
+      if (transport->read_some(buffer, 1s).status != IoStatus::done) break;
     }
-    CHECK((*transport)->read_some(buffer, 1s).status == IoStatus::gone);
-    CHECK((*transport)->write_all(bytes_of("S"), 1s) == IoStatus::gone);
+    CHECK(transport->read_some(buffer, 1s).status == IoStatus::gone);
+    CHECK(transport->write_all(bytes_of("S"), 1s) == IoStatus::gone);
   }
 
   TEST_CASE("a far end that does not read makes a write time out, not block") {
@@ -91,11 +79,10 @@ TEST_SUITE("transport") {
     REQUIRE(::unlockpt(master) == 0);
     char name[128] = {};
     REQUIRE(::ptsname_r(master, name, sizeof name) == 0);
-    auto transport = open_transport(name, 115'200);
-    REQUIRE(transport);
+    auto transport = required(open_transport(name, 115'200));
     const std::string much(1U << 20U, 'x');
     const auto start = std::chrono::steady_clock::now();
-    CHECK((*transport)->write_all(bytes_of(much), 100ms) == IoStatus::timeout);
+    CHECK(transport->write_all(bytes_of(much), 100ms) == IoStatus::timeout);
     CHECK(std::chrono::steady_clock::now() - start < 2s);
     ::close(master);
   }
@@ -103,8 +90,7 @@ TEST_SUITE("transport") {
   TEST_CASE("a port is open for one program at a time, and free again after it") {
     const ScriptedPort port;
     for (int round = 0; round < 2; ++round) {
-      auto first = open_transport(port.path(), 115'200);
-      REQUIRE(first);
+      auto first = required(open_transport(port.path(), 115'200));
       const auto second = open_transport(port.path(), 115'200);
       REQUIRE_FALSE(second);
       CHECK(second.error().code == Errc::no_device);

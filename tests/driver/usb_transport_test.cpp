@@ -12,6 +12,7 @@
 #include <nendo/driver/open_glove.hpp>
 
 #include "support/mocked_usb.hpp"
+#include "support/required.hpp"
 
 namespace usb_transport_test {
 
@@ -39,6 +40,15 @@ UsbBytes read_report(UsbTransport& transport, std::chrono::milliseconds timeout 
   return bytes;
 }
 
+/// Whether reading says that the device is gone, after the reports that had arrived.
+bool is_gone_after_reports(UsbTransport& transport) {
+  std::array<std::byte, most_usb_report_bytes> buffer{};
+  for (int k = 0; k < 1000; ++k) {
+    if (transport.read_some(buffer, 2s).status == IoStatus::gone) return true;
+  }
+  return false;
+}
+
 /// Reports of 24 bytes, numbered.
 std::vector<UsbBytes> numbered_reports(std::size_t count) {
   std::vector<UsbBytes> reports;
@@ -60,8 +70,7 @@ TEST_SUITE("usb_transport") {
     P5Model glove;
     auto& device = bus.plug(glove, 3, 7);
     {
-      auto transport = open_usb(a_p5, p5_interface);
-      REQUIRE_MESSAGE(transport, transport.error().message);
+      auto transport = required(open_usb(a_p5, p5_interface));
       const UsbLog open = MockedUsb::log_of(device);
       CHECK(open.claimed);
       CHECK(open.detached == 1);
@@ -81,10 +90,9 @@ TEST_SUITE("usb_transport") {
     P5Model glove;
     glove.odd_reports = numbered_reports(400);
     auto& device = bus.plug(glove, 3, 7);
-    auto transport = open_usb(a_p5, p5_interface);
-    REQUIRE_MESSAGE(transport, transport.error().message);
+    auto transport = required(open_usb(a_p5, p5_interface));
     for (const UsbBytes& expected : numbered_reports(400))
-      REQUIRE(read_report(**transport) == expected);
+      REQUIRE(read_report(*transport) == expected);
     CHECK(MockedUsb::log_of(device).most_under_way >= 8);
   }
 
@@ -93,12 +101,11 @@ TEST_SUITE("usb_transport") {
     P5Model glove;
     glove.odd_reports = numbered_reports(200);
     bus.plug(glove, 3, 7);
-    auto transport = open_usb(a_p5, p5_interface);
-    REQUIRE_MESSAGE(transport, transport.error().message);
+    auto transport = required(open_usb(a_p5, p5_interface));
     int last = -1;
     for (int k = 0; k < 100; ++k) {
-      if (k % 10 == 5) (*transport)->discard_input();
-      const UsbBytes report = read_report(**transport);
+      if (k % 10 == 5) transport->discard_input();
+      const UsbBytes report = read_report(*transport);
       REQUIRE(report.size() == 24);
       if (report[1] != 0 || last >= 150) break;
       CHECK(int{report[0]} > last);
@@ -112,33 +119,27 @@ TEST_SUITE("usb_transport") {
     P5Model glove;
     glove.silent = true;
     auto& device = bus.plug(glove, 3, 7);
-    auto transport = open_usb(a_p5, p5_interface);
-    REQUIRE_MESSAGE(transport, transport.error().message);
+    auto transport = required(open_usb(a_p5, p5_interface));
     std::array<std::byte, most_usb_report_bytes> buffer{};
     const auto start = Clock::now();
-    CHECK((*transport)->read_some(buffer, 50ms).status == IoStatus::timeout);
+    CHECK(transport->read_some(buffer, 50ms).status == IoStatus::timeout);
     CHECK(Clock::now() - start >= 50ms);
     MockedUsb::send_nothing(device);
-    CHECK((*transport)->read_some(buffer, 50ms).status == IoStatus::timeout);
+    CHECK(transport->read_some(buffer, 50ms).status == IoStatus::timeout);
     MockedUsb::with_model(device, [&] { glove.silent = false; });
-    CHECK(read_report(**transport).size() == 24);
+    CHECK(read_report(*transport).size() == 24);
   }
 
   TEST_CASE("single bus errors are survived, errors without end are the end") {
     MockedUsb bus;
     P5Model glove;
     auto& device = bus.plug(glove, 3, 7);
-    auto transport = open_usb(a_p5, p5_interface);
-    REQUIRE_MESSAGE(transport, transport.error().message);
+    auto transport = required(open_usb(a_p5, p5_interface));
     MockedUsb::spoil(device, 20);
     for (int k = 0; k < 40; ++k)
-      REQUIRE(read_report(**transport).size() == 24);
+      REQUIRE(read_report(*transport).size() == 24);
     MockedUsb::spoil(device, 1'000'000);
-    std::array<std::byte, most_usb_report_bytes> buffer{};
-    ReadResult result;
-    for (int k = 0; k < 1000 && result.status != IoStatus::gone; ++k)
-      result = (*transport)->read_some(buffer, 2s);
-    CHECK(result.status == IoStatus::gone);
+    CHECK(is_gone_after_reports(*transport));
   }
 
   TEST_CASE(
@@ -146,23 +147,19 @@ TEST_SUITE("usb_transport") {
     MockedUsb bus;
     P5Model glove;
     auto& device = bus.plug(glove, 3, 7);
-    auto transport = open_usb(a_p5, p5_interface);
-    REQUIRE_MESSAGE(transport, transport.error().message);
-    REQUIRE(read_report(**transport).size() == 24);
+    auto transport = required(open_usb(a_p5, p5_interface));
+    REQUIRE(read_report(*transport).size() == 24);
     bus.unplug(device);
+    CHECK(is_gone_after_reports(*transport));
     std::array<std::byte, most_usb_report_bytes> buffer{};
-    ReadResult result;
-    for (int k = 0; k < 1000 && result.status != IoStatus::gone; ++k)
-      result = (*transport)->read_some(buffer, 2s);
-    CHECK(result.status == IoStatus::gone);
-    CHECK((*transport)->read_some(buffer, 2s).status == IoStatus::gone);
-    CHECK((*transport)->write_all(buffer, 2s) == IoStatus::gone);
+    CHECK(transport->read_some(buffer, 2s).status == IoStatus::gone);
+    CHECK(transport->write_all(buffer, 2s) == IoStatus::gone);
     std::array feature{std::byte{5}, std::byte{0}};
     std::size_t received = 0;
-    CHECK((*transport)->get_feature(feature, received, 100ms) == ControlStatus::gone);
-    CHECK((*transport)->set_feature(feature, 100ms) == ControlStatus::gone);
+    CHECK(transport->get_feature(feature, received, 100ms) == ControlStatus::gone);
+    CHECK(transport->set_feature(feature, 100ms) == ControlStatus::gone);
     const auto start = Clock::now();
-    *transport = nullptr;
+    transport.reset();
     CHECK(Clock::now() - start < 1s);
   }
 
@@ -170,26 +167,25 @@ TEST_SUITE("usb_transport") {
     MockedUsb bus;
     P5Model glove;
     auto& device = bus.plug(glove, 3, 7);
-    auto transport = open_usb(a_p5, p5_interface);
-    REQUIRE_MESSAGE(transport, transport.error().message);
+    auto transport = required(open_usb(a_p5, p5_interface));
     std::array feature{std::byte{5}, std::byte{0}};
     std::size_t received = 0;
-    CHECK((*transport)->get_feature(feature, received, 1s) == ControlStatus::done);
+    CHECK(transport->get_feature(feature, received, 1s) == ControlStatus::done);
     CHECK(received == 2);
     CHECK(feature == std::array{std::byte{5}, std::byte{1}});
-    CHECK((*transport)->set_feature(std::array{std::byte{5}, std::byte{0xFF}}, 1s) ==
+    CHECK(transport->set_feature(std::array{std::byte{5}, std::byte{0xFF}}, 1s) ==
           ControlStatus::done);
     MockedUsb::with_model(device, [&] { CHECK(glove.mouse_mode == 0xFF); });
     std::array stranger{std::byte{99}, std::byte{0}};
-    CHECK((*transport)->get_feature(stranger, received, 1s) == ControlStatus::refused);
-    CHECK((*transport)->set_feature(stranger, 1s) == ControlStatus::refused);
+    CHECK(transport->get_feature(stranger, received, 1s) == ControlStatus::refused);
+    CHECK(transport->set_feature(stranger, 1s) == ControlStatus::refused);
     CHECK(received == 0);
     // A P5 has no output: nothing can be written to it.
-    CHECK((*transport)->write_all(stranger, 20ms) == IoStatus::timeout);
+    CHECK(transport->write_all(stranger, 20ms) == IoStatus::timeout);
     // The kernel's driver asks a device to be silent while nothing changes: that is undone.
     CHECK(MockedUsb::log_of(device).controls.front() ==
           UsbBytes{0x21, 0x0A, 0x00, 25, 0x01, 0x00, 0x00, 0x00});
-    CHECK(read_report(**transport).size() == 24);
+    CHECK(read_report(*transport).size() == 24);
   }
 
   TEST_CASE("of several gloves the wanted one is opened, or the first that is free") {
@@ -202,11 +198,10 @@ TEST_SUITE("usb_transport") {
     bus.plug(third, 5, 9);
     UsbWanted wanted = a_p5;
     wanted.serial = "B2";
-    auto by_serial = open_usb(wanted, p5_interface);
-    REQUIRE_MESSAGE(by_serial, by_serial.error().message);
-    CHECK((*by_serial)->identity().address == 8);
-    CHECK((*by_serial)->identity().serial == "B2");
-    CHECK((*by_serial)->identity().manufacturer == "a maker? of gloves"); // its escape is gone
+    auto by_serial = required(open_usb(wanted, p5_interface));
+    CHECK(by_serial->identity().address == 8);
+    CHECK(by_serial->identity().serial == "B2");
+    CHECK(by_serial->identity().manufacturer == "a maker? of gloves"); // its escape is gone
     CHECK(MockedUsb::log_of(second_device).claimed);
     const auto taken = open_usb(wanted, p5_interface);
     REQUIRE_FALSE(taken);
@@ -215,14 +210,12 @@ TEST_SUITE("usb_transport") {
 
     wanted.serial.clear();
     wanted.port = "1-5";
-    auto by_port = open_usb(wanted, p5_interface);
-    REQUIRE_MESSAGE(by_port, by_port.error().message);
-    CHECK((*by_port)->identity().address == 9);
-    CHECK((*by_port)->identity().serial.empty());
+    auto by_port = required(open_usb(wanted, p5_interface));
+    CHECK(by_port->identity().address == 9);
+    CHECK(by_port->identity().serial.empty());
 
-    auto free = open_usb(a_p5, p5_interface);
-    REQUIRE_MESSAGE(free, free.error().message);
-    CHECK((*free)->identity().place == "1-3");
+    auto free = required(open_usb(a_p5, p5_interface));
+    CHECK(free->identity().place == "1-3");
     CHECK(MockedUsb::log_of(first_device).claimed);
   }
 

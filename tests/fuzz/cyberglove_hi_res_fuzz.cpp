@@ -2,18 +2,13 @@
 
 #include "cyberglove/cyberglove_parser.hpp"
 
-#include <algorithm>
-#include <cstdlib>
+#include "parser_fuzz.hpp"
 
 using namespace nendo::driver::cyberglove;
 
 namespace {
 
 constexpr RecordShape shape{hi_res_values, false, false, RecordForm::hi_res};
-
-void require(bool law) {
-  if (!law) std::abort();
-}
 
 void check_record(const Record& record) {
   const auto values = std::span(record.values).first(hi_res_values);
@@ -29,24 +24,17 @@ void check_record(const Record& record) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const std::size_t longest_chunk = 1 + *data % 70U;
-  const auto stream = std::as_bytes(std::span(data, size)).subspan(1);
+  const auto stream = rest_of({data, size});
   Parser parser(shape);
   std::uint64_t records = 0;
-  for (auto rest = stream; !rest.empty();) {
-    const auto chunk = rest.first(std::min(longest_chunk, rest.size()));
-    rest = rest.subspan(chunk.size());
+  push_stream(parser, {stream, 1 + *data % 70U, hi_res_bytes}, [&](auto chunk) {
     parser.push(chunk, [&](const Record& record) {
       check_record(record);
       ++records;
     });
-    const nendo::driver::StreamCounters& counters = parser.counters();
-    require(counters.bytes == stream.size() - rest.size());
-    require(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
-    require(counters.record_bytes == counters.records * hi_res_bytes);
-    require(parser.pending() < hi_res_bytes);
-  }
-  require(records == parser.counters().records);
+    require(parser.counters().records == records);
+    require(parser.counters().record_bytes == records * hi_res_bytes);
+  });
 
   // What is found does not depend on what stands before it: every whole record of the stream is
   // found, but where it overlaps one found earlier.

@@ -3,26 +3,12 @@
 
 #include "fivedt/fivedt_parser.hpp"
 
-#include <algorithm>
-#include <cstdlib>
-
 #include "fivedt/fivedt_information.hpp"
+#include "parser_fuzz.hpp"
 
 using namespace nendo::driver::fivedt;
 
 namespace {
-
-void require(bool law) {
-  if (!law) std::abort();
-}
-
-void check_conservation(const Parser& parser, std::uint64_t pushed) {
-  const nendo::driver::StreamCounters& counters = parser.counters();
-  require(counters.bytes == pushed);
-  require(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
-  require(counters.record_bytes == counters.records * sample_bytes);
-  require(parser.pending() < sample_bytes);
-}
 
 void check_information(const InformationFinder& finder) {
   const auto information = decode_information(finder.answer());
@@ -39,15 +25,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Parser parser;
   InformationFinder finder;
   std::uint64_t records = 0;
-  auto rest = std::as_bytes(std::span(data, size)).subspan(1);
-  const std::size_t longest_chunk = 1 + *data % 7;
-  for (std::uint64_t pushed = 0; !rest.empty();) {
-    const auto chunk = rest.first(std::min(longest_chunk, rest.size()));
-    rest = rest.subspan(chunk.size());
+  push_stream(parser, {rest_of({data, size}), 1 + *data % 7U, sample_bytes}, [&](auto chunk) {
     parser.push(chunk, [&](const Record&) { ++records; });
-    check_conservation(parser, pushed += chunk.size());
+    require(parser.counters().records == records);
+    require(parser.counters().record_bytes == records * sample_bytes);
     if (finder.push(chunk)) check_information(finder);
-  }
-  require(records == parser.counters().records);
+  });
   return 0;
 }

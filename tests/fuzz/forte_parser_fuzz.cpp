@@ -2,32 +2,14 @@
 
 #include "forte/forte_parser.hpp"
 
-#include <algorithm>
-#include <cstdlib>
+#include "parser_fuzz.hpp"
 
 using namespace nendo::driver::forte;
-
-namespace {
-
-void require(bool law) {
-  if (!law) std::abort();
-}
-
-void check_conservation(const Parser& parser, std::uint64_t pushed) {
-  const nendo::driver::StreamCounters& counters = parser.counters();
-  require(counters.bytes == pushed);
-  require(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
-  require(counters.record_bytes == counters.records * record_bytes);
-  require(parser.pending() < record_bytes);
-}
-
-} // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const auto stream = std::as_bytes(std::span(data, size)).subspan(1);
-  const std::size_t longest_chunk = 1 + *data % 7;
+  const auto stream = rest_of({data, size});
   Parser parser;
   std::uint64_t records = 0;
   const auto sink = [&](const Record& record) {
@@ -35,14 +17,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(std::all_of(record.flexion.begin(), record.flexion.end(),
                         [](std::uint8_t count) { return count <= most_count; }));
   };
-  std::uint64_t pushed = 0;
-  for (auto rest = stream; !rest.empty();) {
-    const auto chunk = rest.first(std::min(longest_chunk, rest.size()));
-    rest = rest.subspan(chunk.size());
+  push_stream(parser, {stream, 1 + *data % 7U, record_bytes}, [&](auto chunk) {
     parser.push(chunk, sink);
-    check_conservation(parser, pushed += chunk.size());
-  }
-  require(records == parser.counters().records);
+    require(parser.counters().records == records);
+    require(parser.counters().record_bytes == records * record_bytes);
+  });
 
   Parser uncut;
   uncut.push(stream, [](const Record&) {});

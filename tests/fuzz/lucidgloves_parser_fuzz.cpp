@@ -2,18 +2,12 @@
 
 #include "lucidgloves/lucidgloves_parser.hpp"
 
-#include <algorithm>
-#include <cstdlib>
-
 #include "lucidgloves/lucidgloves_slots.hpp"
+#include "parser_fuzz.hpp"
 
 using namespace nendo::driver::lucidgloves;
 
 namespace {
-
-void require(bool law) {
-  if (!law) std::abort();
-}
 
 void check_line(const Line& line, std::uint16_t range) {
   require(line.measures() || line.informs());
@@ -25,13 +19,6 @@ void check_line(const Line& line, std::uint16_t range) {
   }
 }
 
-void check_conservation(const Parser& parser, std::uint64_t pushed) {
-  const nendo::driver::StreamCounters& counters = parser.counters();
-  require(counters.bytes == pushed);
-  require(counters.bytes == counters.record_bytes + counters.discarded_bytes + parser.pending());
-  require(parser.pending() < most_line_bytes);
-}
-
 } // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
@@ -41,17 +28,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint16_t range = (choice & 0x80U) != 0 ? avr_range : esp32_range;
   Parser parser(range);
   std::uint64_t records = 0;
-  auto rest = std::as_bytes(std::span(data, size)).subspan(1);
-  const std::size_t longest_chunk = 1 + choice % 7;
-  for (std::uint64_t pushed = 0; !rest.empty();) {
-    const auto chunk = rest.first(std::min(longest_chunk, rest.size()));
-    rest = rest.subspan(chunk.size());
+  push_stream(parser, {rest_of({data, size}), 1 + choice % 7, most_line_bytes}, [&](auto chunk) {
     parser.push(chunk, [&](const Line& line) {
       check_line(line, range);
       if (line.measures()) ++records;
     });
-    check_conservation(parser, pushed += chunk.size());
-  }
+  });
   require(records == parser.counters().records);
   return 0;
 }

@@ -6,10 +6,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include <nendo/timeline/player.hpp>
-#include <nendo/timeline/timeline_file.hpp>
-
 #include "support/test_meshes.hpp"
+#include "timeline/player.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace {
 

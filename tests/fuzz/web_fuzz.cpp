@@ -1,15 +1,14 @@
 // The first byte chooses what the rest is: a request's head, what a client sends over its
 // WebSocket, in chunks, or the words in it.
 
-#include "admission.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
-#include "client_commands.hpp"
-#include "socket_frames.hpp"
+#include "web/admission.hpp"
+#include "web/client_commands.hpp"
+#include "web/socket_frames.hpp"
 
 using namespace nendo::web;
 

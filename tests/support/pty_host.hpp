@@ -18,15 +18,15 @@
 #include <nendo/base/units.hpp>
 #include <nendo/emulator/emulator.hpp>
 
+#include "support/required.hpp"
+
 namespace nendo::test {
 
 /// Serves an emulator from a thread of its own until stop() or the destructor.
 class ServedEmulator {
 public:
   explicit ServedEmulator(const emulator::EmulatorOptions& options = {}) {
-    auto opened = emulator::GloveEmulator::open(options);
-    REQUIRE_MESSAGE(opened, opened.error().message);
-    emulator_ = *std::move(opened);
+    emulator_ = required(emulator::GloveEmulator::open(options));
     thread_ = std::thread([this] { good_ = static_cast<bool>(emulator_->serve(stop_)); });
   }
   ServedEmulator(const ServedEmulator&) = delete;

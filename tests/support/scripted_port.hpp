@@ -1,22 +1,23 @@
 #pragma once
 // A ScriptedUnit, or a stranger device, at the far end of a pseudo-terminal.
 
+#include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
+#include <cstddef>
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <thread>
 
-#include <fcntl.h>
+#include <doctest/doctest.h>
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include "support/scripted_unit.hpp"
+#include "support/served_terminal.hpp"
+#include "transport/transport.hpp"
 
 namespace nendo::test {
 
@@ -100,43 +101,34 @@ inline void serve_script(int fd, const Script& script, const std::atomic<bool>& 
 class ScriptedPort {
 public:
   explicit ScriptedPort(const Script& script = {})
-      : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
-    char name[128] = {};
-    if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0 ||
-        ::ptsname_r(master_, name, sizeof name) != 0) {
-      throw std::runtime_error("no pseudo-terminal");
-    }
-    path_ = name;
-    slave_ = ::open(name, O_RDWR | O_NOCTTY); // kept, so that the terminal lives between two hosts
-    termios settings{};
-    ::tcgetattr(slave_, &settings);
-    ::cfmakeraw(&settings);
-    ::tcsetattr(slave_, TCSANOW, &settings);
-    thread_ = std::thread([this, script] { serve_script(master_, script, stop_, mute, control); });
-  }
-  ~ScriptedPort() { unplug(); }
-  ScriptedPort(const ScriptedPort&) = delete;
-  ScriptedPort& operator=(const ScriptedPort&) = delete;
+      : terminal_([this, script](int master, const std::atomic<bool>& stop) {
+          serve_script(master, script, stop, mute, control);
+        }) {}
 
-  const std::string& path() const { return path_; }
-  /// Removes the device. The host's end hangs up.
-  void unplug() {
-    if (!thread_.joinable()) return;
-    stop_ = true;
-    thread_.join();
-    ::close(slave_);
-    ::close(master_);
-  }
+  const std::string& path() const { return terminal_.path(); }
+  void unplug() { terminal_.unplug(); } ///< the host's end hangs up
 
   std::atomic<bool> mute{false}; // while true, streaming ends as soon as it is asked for
   ScriptControl control;
 
 private:
-  int master_ = -1;
-  int slave_ = -1;
-  std::string path_;
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  ServedTerminal terminal_; // the last member, so that its thread ends first
 };
+
+/// Asks the ScriptedUnit at the far end how many sensors its glove has.
+inline void check_that_it_answers(driver::Transport& transport) {
+  using namespace std::chrono_literals;
+  constexpr std::array question{std::byte{'?'}, std::byte{'S'}};
+  CHECK(transport.write_all(question, 1s) == driver::IoStatus::done);
+  std::string received;
+  std::array<std::byte, 16> buffer{};
+  while (received.size() < 4) {
+    const auto [status, count] = transport.read_some(buffer, 1s);
+    REQUIRE(status == driver::IoStatus::done);
+    for (std::size_t k = 0; k < count; ++k)
+      received.push_back(std::to_integer<char>(buffer[k]));
+  }
+  CHECK(received == std::string("?S\x16\0", 4));
+}
 
 } // namespace nendo::test

@@ -1,6 +1,7 @@
 #pragma once
-// Checks that every streamed glove must pass. Each function is the body of a test case. `Kind` says
-// how to make a glove and how to open it.
+// Checks that every streamed glove must pass. Each function is the body of a test case. Its kind of
+// glove has `plug(side)`, which returns a port with such a glove at the far end, `spec(path)`,
+// which opens that, and `longest_record` in bytes.
 
 #include <array>
 #include <chrono>
@@ -19,16 +20,20 @@
 
 #include "support/eventually.hpp"
 #include "support/pty_unit.hpp"
+#include "support/required.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace nendo::test {
 
 using namespace std::chrono_literals;
 
+/// A kind of which there is an emulated unit.
 struct Kind {
   std::function<std::unique_ptr<emulator::EmulatedUnit>(Side)> make;
   std::function<std::string(const std::string& path)> spec;
-  std::uint64_t longest_record = 0; ///< bytes
+  std::uint64_t longest_record = 0;
+
+  std::unique_ptr<PtyUnit> plug(Side side) const { return std::make_unique<PtyUnit>(make(side)); }
 };
 
 inline void check_conservation(const driver::GloveStats& stats, std::uint64_t longest_record) {
@@ -62,13 +67,12 @@ inline void no_glove_is_an_error_that_says_so(const Kind& kind, std::string_view
 inline void samples_are_in_order_and_add_up(const Kind& kind) {
   const PtyUnit port(kind.make(Side::right));
   SampleRing ring(4096);
-  auto glove = driver::open_glove(kind.spec(port.path()));
-  REQUIRE_MESSAGE(glove, glove.error().message);
+  auto glove = required(driver::open_glove(kind.spec(port.path())));
   const HostTime before = HostClock::now();
-  REQUIRE((*glove)->start(ring));
-  CHECK((*glove)->start(ring).error().code == Errc::failed);
+  REQUIRE(glove->start(ring));
+  CHECK(glove->start(ring).error().code == Errc::failed);
   CHECK(eventually([&] { return ring.size() >= 20; }));
-  (*glove)->stop();
+  glove->stop();
   std::uint64_t next = 0;
   HostTime last = before;
   ring.drain([&](const GloveSample& sample) {
@@ -76,61 +80,61 @@ inline void samples_are_in_order_and_add_up(const Kind& kind) {
     CHECK(sample.arrival >= last);
     CHECK(sample.measured == sample.arrival);
     last = sample.arrival;
-    CHECK(sample.present == (*glove)->info().sensors);
-    CHECK(sample.side == (*glove)->info().side);
+    CHECK(sample.present == glove->info().sensors);
+    CHECK(sample.side == glove->info().side);
     CHECK(sample.wrist_switch == WristSwitch::unknown);
     for (const RawCount count : sample.raw)
-      CHECK(count.value <= (*glove)->info().counts.most);
+      CHECK(count.value <= glove->info().counts.most);
   });
   CHECK(last <= HostClock::now());
-  const driver::GloveStats stats = (*glove)->stats();
+  const driver::GloveStats stats = glove->stats();
   CHECK(stats.records == next);
   CHECK(stats.bad_records == 0);
   check_conservation(stats, kind.longest_record);
 }
 
-inline void a_full_ring_refuses_and_counts(const Kind& kind) {
-  const PtyUnit port(kind.make(Side::right));
+template <class AnyKind>
+void a_full_ring_refuses_and_counts(const AnyKind& kind) {
+  const auto port = kind.plug(Side::right);
   SampleRing ring(8);
-  auto glove = driver::open_glove(kind.spec(port.path()));
-  REQUIRE_MESSAGE(glove, glove.error().message);
-  REQUIRE((*glove)->start(ring));
-  CHECK(eventually([&] { return (*glove)->stats().ring_refused > 5; }));
-  (*glove)->stop();
-  const driver::GloveStats stats = (*glove)->stats();
+  auto glove = required(driver::open_glove(kind.spec(port->path())));
+  REQUIRE(glove->start(ring));
+  CHECK(eventually([&] { return glove->stats().ring_refused > 5; }));
+  glove->stop();
+  const driver::GloveStats stats = glove->stats();
   CHECK(stats.records == stats.ring_refused + ring.size());
   check_conservation(stats, kind.longest_record);
 }
 
-inline void stop_is_prompt_and_start_works_again(const Kind& kind) {
-  const PtyUnit port(kind.make(Side::right));
+template <class AnyKind>
+void stop_is_prompt_and_start_works_again(const AnyKind& kind) {
+  const auto port = kind.plug(Side::right);
   SampleRing ring(4096);
-  auto glove = driver::open_glove(kind.spec(port.path()));
-  REQUIRE_MESSAGE(glove, glove.error().message);
+  auto glove = required(driver::open_glove(kind.spec(port->path())));
   for (int round = 0; round < 2; ++round) {
-    REQUIRE((*glove)->start(ring));
-    CHECK(eventually([&] { return (*glove)->stats().records > 3; }));
+    REQUIRE(glove->start(ring));
+    CHECK(eventually([&] { return glove->stats().records > 3; }));
     const auto start = HostClock::now();
-    (*glove)->stop();
-    (*glove)->stop();
+    glove->stop();
+    glove->stop();
     CHECK(HostClock::now() - start < 1s);
   }
 }
 
-inline void a_silent_stream_is_started_again(const Kind& kind) {
-  PtyUnit port(kind.make(Side::right));
+template <class AnyKind>
+void a_silent_stream_is_started_again(const AnyKind& kind) {
+  const auto port = kind.plug(Side::right);
   SampleRing ring(1U << 14U);
-  auto glove = driver::open_glove(kind.spec(port.path()));
-  REQUIRE_MESSAGE(glove, glove.error().message);
-  REQUIRE((*glove)->start(ring));
-  REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
-  port.mute = true;
-  REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
-  const std::uint64_t before = (*glove)->stats().records;
-  port.mute = false;
-  CHECK(eventually([&] { return (*glove)->stats().records > before + 3; }));
-  (*glove)->stop();
-  const driver::GloveStats stats = (*glove)->stats();
+  auto glove = required(driver::open_glove(kind.spec(port->path())));
+  REQUIRE(glove->start(ring));
+  REQUIRE(eventually([&] { return glove->stats().records > 3; }));
+  port->mute = true;
+  REQUIRE(eventually([&] { return glove->stats().silences >= 1; }));
+  const std::uint64_t before = glove->stats().records;
+  port->mute = false;
+  CHECK(eventually([&] { return glove->stats().records > before + 3; }));
+  glove->stop();
+  const driver::GloveStats stats = glove->stats();
   CHECK(stats.silences == 1);
   CHECK(stats.reopened == 0);
   CHECK(stats.records == ring.size());
@@ -142,19 +146,18 @@ inline void stop_is_prompt_while_silent_or_away(const Kind& kind) {
     CAPTURE(away);
     PtyUnit port(kind.make(Side::right));
     SampleRing ring(1U << 14U);
-    auto glove = driver::open_glove(kind.spec(port.path()));
-    REQUIRE_MESSAGE(glove, glove.error().message);
-    REQUIRE((*glove)->start(ring));
-    REQUIRE(eventually([&] { return (*glove)->stats().records > 3; }));
+    auto glove = required(driver::open_glove(kind.spec(port.path())));
+    REQUIRE(glove->start(ring));
+    REQUIRE(eventually([&] { return glove->stats().records > 3; }));
     port.mute = true;
     if (away) {
       port.unplug();
       std::this_thread::sleep_for(200ms); // nothing tells that the loss was noticed
     } else {
-      REQUIRE(eventually([&] { return (*glove)->stats().silences >= 1; }));
+      REQUIRE(eventually([&] { return glove->stats().silences >= 1; }));
     }
     const auto start = HostClock::now();
-    (*glove)->stop();
+    glove->stop();
     CHECK(HostClock::now() - start < 1s);
   }
 }
@@ -165,23 +168,22 @@ inline void a_glove_that_vanishes_is_found_again(const Kind& kind, bool tells_it
   auto first = std::make_unique<PtyUnit>(kind.make(Side::right));
   std::filesystem::create_symlink(first->path(), link);
   SampleRing ring(1U << 14U);
-  auto glove = driver::open_glove(kind.spec(link.string()));
-  REQUIRE_MESSAGE(glove, glove.error().message);
-  REQUIRE((*glove)->start(ring));
+  auto glove = required(driver::open_glove(kind.spec(link.string())));
+  REQUIRE(glove->start(ring));
   REQUIRE(eventually([&] { return ring.size() > 3; }));
 
   first.reset();
   std::filesystem::remove(link);
   const PtyUnit second(kind.make(Side::left));
   std::filesystem::create_symlink(second.path(), link);
-  REQUIRE(eventually([&] { return (*glove)->stats().reopened == 1; }));
+  REQUIRE(eventually([&] { return glove->stats().reopened == 1; }));
   ring.drain([](const GloveSample&) {});
   GloveSample sample;
   REQUIRE(eventually([&] { return ring.try_pop(sample); }));
-  (*glove)->stop();
+  glove->stop();
   CHECK(sample.side == (tells_its_hand ? Side::left : Side::right));
-  CHECK((*glove)->info().side == Side::right);
-  check_conservation((*glove)->stats(), kind.longest_record);
+  CHECK(glove->info().side == Side::right);
+  check_conservation(glove->stats(), kind.longest_record);
 }
 
 /// An option that a kind of glove does not have or a value that it does not take, and the error's
@@ -220,9 +222,8 @@ inline GloveSample sample_at_rest(std::unique_ptr<emulator::EmulatedUnit> unit,
                                   const std::string& kind) {
   const PtyUnit port(std::move(unit));
   SampleRing ring(1U << 14U);
-  auto glove = driver::open_glove(kind + ":" + port.path());
-  REQUIRE_MESSAGE(glove, glove.error().message);
-  REQUIRE((*glove)->start(ring));
+  auto glove = required(driver::open_glove(kind + ":" + port.path()));
+  REQUIRE(glove->start(ring));
   GloveSample sample;
   REQUIRE(eventually([&] { return ring.try_pop(sample); }));
   return sample;

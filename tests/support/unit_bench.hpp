@@ -1,24 +1,29 @@
 #pragma once
-// An emulated CyberGlove without a terminal, and a host that talks to it.
+// An emulated unit without a terminal, and a host that talks to it.
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include "units/cyberglove_unit.hpp"
+#include "units/emulated_unit.hpp"
 
 namespace nendo::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// A unit and a host that talks to it.
+inline std::string text_of(const Bytes& bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+template <class Unit, class Options>
 struct UnitBench {
-  explicit UnitBench(const emulator::UnitOptions& options = {}) : unit(options) {}
+  explicit UnitBench(const Options& options = {}) : unit(options) {}
 
   void send(const Bytes& bytes) { unit.receive(std::as_bytes(std::span(bytes)), now); }
   Bytes receive() {
@@ -34,18 +39,26 @@ struct UnitBench {
     return receive();
   }
   Bytes ask(std::string_view text) { return ask(Bytes(text.begin(), text.end())); }
-  Bytes after(emulator::CyberGloveUnit::Time time) {
+  Bytes after(emulator::EmulatedUnit::Time time) {
     now += time;
     unit.advance(now);
     return receive();
   }
 
-  emulator::CyberGloveUnit unit;
-  emulator::CyberGloveUnit::Time now =
+  Unit unit;
+  emulator::EmulatedUnit::Time now =
       std::chrono::hours(1); // not 0: a unit has usually been on for a while
 };
 
-// Splits a stream after each NUL. The NULs stay.
+/// A bench whose unit has been advanced to `now`, so that nothing is overdue.
+template <class Unit, class Options>
+struct AdvancedBench : UnitBench<Unit, Options> {
+  explicit AdvancedBench(const Options& options = {}) : UnitBench<Unit, Options>(options) {
+    this->unit.advance(this->now);
+  }
+};
+
+/// Splits a stream of records after each NUL. The NULs stay.
 inline std::vector<Bytes> split(const Bytes& stream) {
   std::vector<Bytes> records(1);
   for (const std::uint8_t byte : stream) {

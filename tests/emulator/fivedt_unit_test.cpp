@@ -1,44 +1,20 @@
 #include "units/fivedt_unit.hpp"
 
 #include <chrono>
-#include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
+
+#include "support/unit_bench.hpp"
 
 namespace fivedt_unit_test {
 
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::emulator;
+using nendo::test::Bytes;
+using Bench = nendo::test::AdvancedBench<FiveDtUnit, FiveDtUnitOptions>;
 
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
-
-struct Bench {
-  explicit Bench(const FiveDtUnitOptions& options = {}) : unit(options) { unit.advance(now); }
-
-  Bytes after(EmulatedUnit::Time time) {
-    unit.advance(now += time);
-    return receive();
-  }
-  Bytes ask(std::string_view command) {
-    unit.receive(std::as_bytes(std::span(command)), now);
-    return receive();
-  }
-  Bytes receive() {
-    const auto output = unit.output();
-    Bytes bytes;
-    for (const std::byte byte : output)
-      bytes.push_back(std::to_integer<std::uint8_t>(byte));
-    unit.take(output.size());
-    return bytes;
-  }
-
-  FiveDtUnit unit;
-  EmulatedUnit::Time now = 1h; // not 0: a unit has usually been on for a while
-};
 
 void check_sample(const Bytes& bytes) {
   REQUIRE(bytes.size() >= 9);
@@ -105,7 +81,7 @@ TEST_SUITE("fivedt_unit") {
     }
   }
 
-  TEST_CASE("what the host does not take is refused and counted") {
+  TEST_CASE("samples that the host does not take are refused and counted") {
     Bench bench;
     bench.ask("D");
     CHECK(bench.after(1h).size() == EmulatedUnit::output_capacity / 9 * 9);

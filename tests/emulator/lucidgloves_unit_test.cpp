@@ -3,50 +3,25 @@
 #include <chrono>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
+
+#include "support/unit_bench.hpp"
 
 namespace lucidgloves_unit_test {
 
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::emulator;
-
-namespace {
-
-struct Bench {
-  explicit Bench(const LucidGlovesUnitOptions& options = {}) : unit(options) { unit.advance(now); }
-
-  std::string after(EmulatedUnit::Time time) {
-    unit.advance(now += time);
-    return receive();
-  }
-  std::string ask(std::string_view command) {
-    unit.receive(std::as_bytes(std::span(command)), now);
-    return receive();
-  }
-  std::string receive() {
-    const auto output = unit.output();
-    std::string text;
-    for (const std::byte byte : output)
-      text.push_back(std::to_integer<char>(byte));
-    unit.take(output.size());
-    return text;
-  }
-
-  LucidGlovesUnit unit;
-  EmulatedUnit::Time now = 1h; // not 0: a unit has usually been on for a while
-};
-
-} // namespace
+using nendo::test::text_of;
+using Bench = nendo::test::AdvancedBench<LucidGlovesUnit, LucidGlovesUnitOptions>;
 
 TEST_SUITE("lucidgloves_unit") {
   TEST_CASE("it sends so many lines a second by itself, with every key that the firmware sends") {
     Bench bench;
     std::size_t lines = 0;
     for (int k = 0; k < 100; ++k) {
-      std::istringstream text(bench.after(10ms));
+      std::istringstream text(text_of(bench.after(10ms)));
       for (std::string line; std::getline(text, line); ++lines) {
         CHECK(line.size() < 82);
         std::size_t at = 0;
@@ -70,7 +45,7 @@ TEST_SUITE("lucidgloves_unit") {
     LucidGlovesUnitOptions options;
     options.side = Side::left;
     Bench bench(options);
-    CHECK(bench.ask("Z\n") == "(ZV)5(ZG)0(ZH)0\n");
+    CHECK(text_of(bench.ask("Z\n")) == "(ZV)5(ZG)0(ZH)0\n");
     CHECK(bench.ask("(ZZ)\n").empty());
     CHECK_FALSE(bench.unit.next_due());
     CHECK(bench.after(1s).empty());
@@ -105,7 +80,7 @@ TEST_SUITE("lucidgloves_unit") {
 
   TEST_CASE("what the host does not take is refused whole and counted, however long that lasts") {
     Bench bench;
-    const std::string text = bench.after(1h);
+    const std::string text = text_of(bench.after(1h));
     CHECK(text.size() <= EmulatedUnit::output_capacity);
     CHECK(text.back() == '\n');
     const auto counters = bench.unit.counters();

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <initializer_list>
 #include <random>
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -19,11 +16,9 @@ namespace cyberglove_unit_test {
 using namespace std::chrono_literals;
 using nendo::Side;
 using nendo::driver::Motion;
-using nendo::emulator::CyberGloveUnit;
-using nendo::emulator::UnitOptions;
-using nendo::test::Bytes;
-using nendo::test::split;
-using Bench = nendo::test::UnitBench;
+using namespace nendo::emulator;
+using namespace nendo::test;
+using Bench = nendo::test::UnitBench<CyberGloveUnit, UnitOptions>;
 
 TEST_SUITE("cyberglove_unit") {
   namespace {

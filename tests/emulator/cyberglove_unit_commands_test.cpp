@@ -1,6 +1,8 @@
 // What an emulated CyberGlove can beyond asking and streaming: calibration, vibration, external
 // sync, the third model's commands, and a glove that is pulled or swapped.
 
+#include "units/cyberglove_unit.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -14,23 +16,17 @@ namespace cyberglove_unit_commands_test {
 using namespace std::chrono_literals;
 using nendo::Side;
 using nendo::driver::Motion;
-using nendo::emulator::Incident;
-using nendo::emulator::UnitOptions;
-using nendo::test::Bytes;
-using nendo::test::split;
-using Bench = nendo::test::UnitBench;
+using namespace nendo::emulator;
+using namespace nendo::test;
+using Bench = nendo::test::UnitBench<CyberGloveUnit, UnitOptions>;
 
-TEST_SUITE("cyberglove_commands") {
+TEST_SUITE("cyberglove_unit_commands") {
   namespace {
   UnitOptions model(unsigned number) {
     UnitOptions options;
     options.model = number;
     options.motion = Motion::rest;
     return options;
-  }
-
-  std::string text_of(const Bytes& bytes) {
-    return {bytes.begin(), bytes.end()};
   }
   } // namespace
 
