@@ -25,7 +25,7 @@ std::optional<std::size_t> slot_named(const std::string& name) {
   return std::nullopt;
 }
 
-/// A number within the range, or nothing.
+/// Returns the number of that key, or nothing if it is not within the range.
 std::optional<double> number(const json& object, const char* key, double least, double most) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return std::nullopt;
@@ -33,7 +33,8 @@ std::optional<double> number(const json& object, const char* key, double least, 
   return value >= least && value <= most ? std::optional(value) : std::nullopt;
 }
 
-/// Calls `take(slot, value)` for each sensor of an object of counts; false if it is none.
+/// Calls `take(slot, value)` for each sensor of an object of counts. Returns false if it is no such
+/// object.
 template <class Take>
 bool for_each_count(const json& line, const char* key, double most, Take&& take) {
   const auto counts = line.find(key);
@@ -93,7 +94,7 @@ bool read_free_motion(const json& line, hand::CountRanges& motion, CountScale& c
          high == motion.present;
 }
 
-/// The hand of a line; nothing if it names none.
+/// Returns the hand that a line names, or nothing.
 std::optional<Side> hand_of(const json& line) {
   const auto found = line.find("hand");
   for (const Side side : {Side::left, Side::right})
@@ -101,7 +102,7 @@ std::optional<Side> hand_of(const json& line) {
   return std::nullopt;
 }
 
-/// What is wrong with the line; empty if nothing is.
+/// Reads a line into `file`. Returns what is wrong with the line, or an empty text.
 std::string take_line(const std::string& text, CaptureFile& file, bool first) {
   const json line = json::parse(text, nullptr, false);
   if (!line.is_object()) return "not a JSON object; use what nendo monitor --json prints";

@@ -20,7 +20,7 @@ constexpr double deviations_allowed = 3.0;
 CalibrationGuide::CalibrationGuide(std::span<const PoseId> poses, CountScale scale)
     : poses_(poses.begin(), poses.end()), kept_(poses.size()), capture_(scale) {}
 
-CalibrationGuide::Event CalibrationGuide::see(const GloveSample& sample) {
+CalibrationGuide::Event CalibrationGuide::push(const GloveSample& sample) {
   if (is_done()) return Event::none;
   const hand::CaptureState state = capture_.push(sample);
   const bool moves = state == hand::CaptureState::moving || state == hand::CaptureState::noisy;
@@ -31,31 +31,31 @@ CalibrationGuide::Event CalibrationGuide::see(const GloveSample& sample) {
   if (state != hand::CaptureState::held) return Event::none;
   const HeldPose held = capture_.held();
   capture_.begin_next();
-  doubted_ = implausible_sensor(held);
-  if (doubted_) return Event::implausible;
+  implausible_ = find_implausible(held);
+  if (implausible_) return Event::implausible;
   kept_[at_] = held;
   same_may_come_ = false;
   advance();
   return Event::captured;
 }
 
-/// To the next pose that is not kept yet.
+/// Goes on to the next pose that is not kept yet.
 void CalibrationGuide::advance() {
   while (at_ < poses_.size() && kept_[at_])
     ++at_;
 }
 
-/// The pose that was held last may be held again, but not held on.
+/// Accepts the pose that was held last once more, but only after the hand has moved.
 void CalibrationGuide::ask_again() noexcept {
   same_may_come_ = true;
-  doubted_.reset();
+  implausible_.reset();
 }
 
-/// Before the one asked for; -1: none.
+/// Returns the number of the kept pose before the one asked for, or -1.
 std::ptrdiff_t CalibrationGuide::last_kept() const noexcept {
   auto last = static_cast<std::ptrdiff_t>(at_) - 1;
   while (last >= 0 && !kept_[static_cast<std::size_t>(last)])
-    --last; // was skipped
+    --last; // it was skipped
   return last;
 }
 
@@ -85,7 +85,7 @@ void CalibrationGuide::take_again() {
 }
 
 void CalibrationGuide::skip() {
-  doubted_.reset();
+  implausible_.reset();
   if (is_done()) return;
   ++at_;
   advance();
@@ -140,8 +140,9 @@ const HeldPose* CalibrationGuide::kept(PoseId pose) const {
   return nullptr;
 }
 
-/// Judged by the lines through flat and fist, once both are kept.
-std::optional<Sensor> CalibrationGuide::implausible_sensor(const HeldPose& held) const {
+/// Returns a sensor whose angle the pose asked for cannot have. The angles are those of the lines
+/// through flat and fist, so nothing is implausible before both are kept.
+std::optional<Sensor> CalibrationGuide::find_implausible(const HeldPose& held) const {
   const HeldPose* flat = kept(PoseId::flat);
   const HeldPose* fist = kept(PoseId::fist);
   if (flat == nullptr || fist == nullptr) return std::nullopt;

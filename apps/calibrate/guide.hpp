@@ -24,14 +24,14 @@ public:
   enum class Event : std::uint8_t {
     none,
     captured,    ///< the pose was held and is kept; the next one is asked for
-    implausible, ///< a pose was held that cannot be the one asked for; see doubted()
+    implausible, ///< a pose was held that cannot be the one asked for; see implausible_sensor()
   };
   /// Takes a sample of the free motion that comes before the poses.
-  void see_free_motion(const GloveSample& sample) { free_motion_.push(sample); }
+  void push_free_motion(const GloveSample& sample) { free_motion_.push(sample); }
   const hand::CountRanges& free_motion() const noexcept { return free_motion_.seen(); }
 
   /// Takes the next sample in time. Does nothing once is_done().
-  Event see(const GloveSample& sample);
+  Event push(const GloveSample& sample);
 
   bool is_done() const noexcept { return at_ == poses_.size(); }
   /// Returns the pose asked for. Must not be called once is_done().
@@ -40,7 +40,7 @@ public:
   std::size_t pose_count() const noexcept { return poses_.size(); }
   const hand::PoseCapture& capture() const noexcept { return capture_; }
   /// Returns the sensor that makes the last held pose implausible, or nullopt.
-  std::optional<Sensor> doubted() const noexcept { return doubted_; }
+  std::optional<Sensor> implausible_sensor() const noexcept { return implausible_; }
 
   /// Tells whether the pose asked for was taken before and is taken again.
   bool is_again() const noexcept;
@@ -62,7 +62,7 @@ private:
   void advance();
   void ask_again() noexcept;
   std::ptrdiff_t last_kept() const noexcept;
-  std::optional<Sensor> implausible_sensor(const hand::HeldPose& held) const;
+  std::optional<Sensor> find_implausible(const hand::HeldPose& held) const;
   const hand::HeldPose* kept(hand::PoseId pose) const;
 
   std::vector<hand::PoseId> poses_;
@@ -71,7 +71,7 @@ private:
   hand::PoseCapture capture_;
   bool same_may_come_ = false; ///< the last pose counts again once the hand has moved
   hand::RangeCapture free_motion_;
-  std::optional<Sensor> doubted_;
+  std::optional<Sensor> implausible_;
 };
 
 } // namespace nendo::calibrate

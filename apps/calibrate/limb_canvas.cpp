@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Which dots a character covers, row by row from the top; four bits a row, the left one highest.
+/// The dots that a character covers, row by row from the top. A row has four bits, of which the
+/// highest is the dot on the left.
 struct Glyph {
   char character;
   std::array<std::uint8_t, LimbCanvas::dots_down> rows;
@@ -44,7 +45,7 @@ LimbCanvas::LimbCanvas(int columns, int rows)
     : width_(columns * dots_across), height_(rows * dots_down),
       parts_(static_cast<std::size_t>(width_ * height_), nothing),
       depths_(parts_.size(), -std::numeric_limits<double>::infinity()) {
-  // A hand, its fingers spread, is as wide as it is long, and the wrist is to be seen.
+  // A hand with spread fingers is as wide as it is long. The wrist must fit, too.
   metres_a_dot_ = std::max(0.235 / height_, 0.21 / width_);
 }
 
@@ -52,7 +53,7 @@ Vector2d LimbCanvas::place_m(int column, int row) const noexcept {
   return {(column - 0.5 * width_) * metres_a_dot_, (0.5 * height_ - row) * metres_a_dot_};
 }
 
-// A dot more at either end, whatever rounding does.
+// The ranges have a dot more at either end, because of rounding.
 LimbCanvas::DotRange LimbCanvas::columns_within(double left_m, double right_m) const noexcept {
   const auto dot = [&](double x_m) { return x_m / metres_a_dot_ + 0.5 * width_; };
   return {dot_of(dot(left_m) - 1.0, width_), dot_of(dot(right_m) + 2.0, width_ - 1)};
@@ -82,7 +83,7 @@ void LimbCanvas::draw_dot(const Limb& limb, int column, int row) {
       length2 > 0.0 ? std::clamp((at - limb.begin.head<2>()).dot(along) / length2, 0.0, 1.0) : 0.0;
   const double radius = limb.begin_radius + part * (limb.end_radius - limb.begin_radius);
   const double off2 = (at - limb.begin.head<2>() - part * along).squaredNorm();
-  if (!(off2 <= radius * radius)) return; // nor what is not a number
+  if (!(off2 <= radius * radius)) return; // also if it is not a number
   const double depth =
       limb.begin.z() + part * (limb.end.z() - limb.begin.z()) + std::sqrt(radius * radius - off2);
   const auto dot = static_cast<std::size_t>(row * width_ + column);

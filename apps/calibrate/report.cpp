@@ -11,7 +11,7 @@
 namespace nendo::calibrate {
 namespace {
 
-// Of the picture, in pixels.
+// The measures of the picture, in pixels.
 constexpr int top = 40;
 constexpr int row_height = 20;
 constexpr int range_left = 190;
@@ -47,7 +47,7 @@ void print_readings(std::ostream& out, const hand::CalibrationFit& fit,
   }
 }
 
-/// One sensor's row of the picture, with its top at `y`.
+/// Returns the row of a sensor in the picture, with its top at `y`.
 std::string row(Sensor sensor, const hand::SensorFit& quality, const hand::SensorCalibration& line,
                 double counts_most, int y) {
   const auto angle_deg = [&](double counts) {

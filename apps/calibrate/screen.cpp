@@ -23,7 +23,8 @@ constexpr int drawing_rows = 16;
 constexpr int least_drawing_rows = 10;
 constexpr double silent_after_s = 1.0;
 
-/// The angles that a pose assumes, as a glove would measure them; what it leaves open is relaxed.
+/// Returns the angles that a pose assumes, as a glove would measure them. Joints that the pose
+/// leaves open are relaxed.
 JointAngles assumed_angles(const hand::CalibrationPose& pose) {
   constexpr double gain = 1e-4; // rad: finer than any eye
   constexpr double offset = 30000.0;
@@ -43,9 +44,9 @@ JointAngles assumed_angles(const hand::CalibrationPose& pose) {
   return hand::joint_angles(sample, calibration);
 }
 
-/// The pads of thumb and finger brought together, from where a half closed hand has them, or, if
-/// the pose asks for a `straight` finger, one that is bent at its base alone; or the thumb's pad
-/// laid on the palm at the base of a finger.
+/// Brings the pads of the thumb and of the finger with the tip `with` together. It begins with a
+/// half closed hand or, if the pose asks for a `straight` finger, with one that is bent at its base
+/// alone. If `with` is no fingertip, it lays the thumb's pad on the palm at that joint.
 JointAngles touching(JointAngles angles, Joint with, bool straight,
                      const hand::HandSkeleton& skeleton) {
   const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
@@ -101,8 +102,9 @@ std::string state_text(const CalibrationPicture& picture) {
   case CaptureState::saturated:
     return "At an end of what it can measure: " + troubled() + ". Bend that joint less.";
   case CaptureState::unchanged:
-    if (picture.guide->doubted())
-      return "That is not it: look at " + std::string(name_of(*picture.guide->doubted())) + ".";
+    if (picture.guide->implausible_sensor())
+      return "That is not it: look at " +
+             std::string(name_of(*picture.guide->implausible_sensor())) + ".";
     return picture.guide->number() == 0 ? "Take this pose." : "Taken. Now take this one.";
   case CaptureState::settling:
   case CaptureState::held:
@@ -142,7 +144,7 @@ std::vector<std::string> bars(const CalibrationPicture& picture, int width, int 
   return lines;
 }
 
-/// Two drawings and the bars beside each other, as far as they fit.
+/// Returns two drawings and the bars beside each other, as far as they fit.
 std::vector<std::string> middle(const CalibrationPicture& picture, int columns, int rows) {
   constexpr int least_columns = 22;
   const bool draws = rows >= least_drawing_rows && columns >= 2 * least_columns;

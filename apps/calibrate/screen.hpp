@@ -20,7 +20,7 @@ struct CalibrationPicture {
   const std::string* user = nullptr;
   const CalibrationGuide* guide = nullptr;       ///< must not be done
   const GloveSample* sample = nullptr;           ///< the latest; null: none came yet
-  const gloves::SeenCounts* seen = nullptr;      ///< has seen `sample`
+  const gloves::SeenCounts* seen = nullptr;      ///< includes `sample`
   double age_s = 0.0;                            ///< of `sample`
   const hand::HandPose* demonstration = nullptr; ///< of the pose that the guide asks for
   bool begun = false;                            ///< false: the guide sees no samples yet

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::chrono::milliseconds frame_time{50};
 
-/// A session while it lasts.
+/// The state of a session.
 struct Session {
   driver::Glove& glove;
   const std::string& user;
@@ -35,13 +35,13 @@ struct Session {
   void take_samples() {
     GloveSample sample;
     while (ring.try_pop(sample)) {
-      seen.see(sample);
+      seen.add(sample);
       latest = sample;
-      if (!begun) guide.see_free_motion(sample);
-      if (begun && guide.see(sample) == CalibrationGuide::Event::captured) look_what_is_known();
+      if (!begun) guide.push_free_motion(sample);
+      if (begun && guide.push(sample) == CalibrationGuide::Event::captured) update_undetermined();
     }
   }
-  void look_what_is_known() {
+  void update_undetermined() {
     const auto readings = guide.readings();
     const auto sensors = glove.info().sensors;
     hand::FitOptions options = fit;
@@ -74,7 +74,7 @@ struct Session {
     if (key == 'b') guide.go_back();
     if (key == 't') guide.take_again();
     if (key == 's') guide.skip();
-    if (key == 'b' || key == 's') look_what_is_known();
+    if (key == 'b' || key == 's') update_undetermined();
     return std::nullopt;
   }
 };
@@ -85,7 +85,7 @@ Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::stri
                                            const hand::FitOptions& fit, CalibrationGuide& guide) {
   Session session{glove, user, fit, guide};
   if (const auto started = glove.start(session.ring); !started) return started.error();
-  session.look_what_is_known();
+  session.update_undetermined();
   SessionEnd end = SessionEnd::complete;
   while (!guide.is_done()) {
     session.take_samples();

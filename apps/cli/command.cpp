@@ -14,7 +14,7 @@
 namespace nendo::cli {
 namespace {
 
-/// Nothing that --help should show as a default.
+/// Tells whether a value is empty or zero. --help does not show it as a default then.
 template <class T>
 bool is_blank(const T& value) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -35,7 +35,7 @@ bool is_shown(const CLI::App* command) {
   return !command->get_group().empty();
 }
 
-/// The words of a type like "TEXT:{left,right}", which is how CLI11 tells what one_of() said.
+/// Returns the words in a type like "TEXT:{left,right}", as CLI11 writes the choices of one_of().
 std::vector<std::string> choices_in(const std::string& type) {
   std::vector<std::string> choices;
   const std::size_t open = type.find('{');
@@ -61,7 +61,8 @@ OptionModel nameless_model_of(const CLI::Option& option) {
   return model;
 }
 
-/// An option that may also be given by its place alone is two in the model, as it is in --help.
+/// Adds the model of an option. An option that may also be given by its place alone becomes two, as
+/// in --help.
 void add_models_of(const CLI::Option& option, std::vector<OptionModel>& models) {
   OptionModel model = nameless_model_of(option);
   if (option.get_positional()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <thread>
 
 #include <poll.h>
 #include <sys/ioctl.h>
@@ -25,6 +26,45 @@ std::string move_to_row(int row) {
 
 } // namespace
 
+Keys::Keys() noexcept {
+  termios settings{};
+  if (tcgetattr(STDIN_FILENO, &settings) != 0) return;
+  const pid_t foreground = tcgetpgrp(STDIN_FILENO); // -1: a terminal that controls nobody
+  if (foreground >= 0 && foreground != getpgrp())
+    return; // the system would stop a process in the background
+  saved_ = settings;
+  settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  settings.c_iflag &= ~static_cast<tcflag_t>(IXON); // a stopped terminal could not be restored
+  settings.c_cc[VSUSP] = _POSIX_VDISABLE;           // nor that of a suspended program
+  settings.c_cc[VQUIT] = _POSIX_VDISABLE;
+  settings.c_cc[VMIN] = 1;
+  settings.c_cc[VTIME] = 0;
+  tcsetattr(STDIN_FILENO, TCSADRAIN, &settings);
+}
+
+Keys::~Keys() {
+  restore();
+}
+
+void Keys::restore() noexcept {
+  if (saved_) tcsetattr(STDIN_FILENO, TCSADRAIN, &*saved_);
+  saved_.reset();
+}
+
+std::optional<char> Keys::next(std::chrono::milliseconds timeout) noexcept {
+  if (!saved_ || gone_) {
+    std::this_thread::sleep_for(timeout);
+    return std::nullopt;
+  }
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (::poll(&input, 1, static_cast<int>(timeout.count())) <= 0) return std::nullopt;
+  char pressed = 0;
+  const ssize_t got = ::read(STDIN_FILENO, &pressed, 1);
+  if (got == 1) return pressed;
+  if (got == 0 || errno != EINTR) gone_ = true;
+  return std::nullopt;
+}
+
 Terminal::Terminal() {
   write_all(enter_sequence);
 }
@@ -37,7 +77,7 @@ void Terminal::leave() noexcept {
   if (!entered_) return;
   entered_ = false;
   write_all(leave_sequence);
-  keys_.give_back();
+  keys_.restore();
 }
 
 ScreenSize Terminal::size() const noexcept {

@@ -16,23 +16,23 @@
 
 namespace nendo::doctor {
 
-enum class Weight : std::uint8_t {
+enum class Severity : std::uint8_t {
   warning, ///< works, but worse than it could, or only if something else does not interfere
   failure, ///< will not work
 };
 
 struct Finding {
-  Weight weight = Weight::warning;
+  Severity severity = Severity::warning;
   std::string_view check; ///< a stable name, e.g. "permission"
-  std::string subject;    ///< what it is about, e.g. /dev/ttyUSB0; empty: the machine
-  std::string what;
-  std::string remedy; ///< the command or deed that mends it
+  std::string subject;    ///< e.g. /dev/ttyUSB0; empty: the machine
+  std::string what;       ///< what is wrong
+  std::string remedy;     ///< the command or deed that mends it
 };
 
 /// The facts that the checks of ports use.
 struct PortFacts {
   std::vector<driver::GloveCandidate> candidates;
-  std::vector<std::string> grabbers; ///< as running_port_grabbers() names them
+  std::vector<std::string> grabbers; ///< driver::running_port_grabbers()
 };
 
 /// Returns all findings about ports and USB devices. Pure.
@@ -42,12 +42,12 @@ std::vector<Finding> check_ports();
 
 /// The facts that the checks of the machine use. A fact that is unknown gives no finding.
 struct MachineFacts {
-  std::optional<std::uint64_t> priority_limit; ///< RLIMIT_RTPRIO, of this process
+  std::optional<std::uint64_t> priority_limit; ///< RLIMIT_RTPRIO of this process
   std::optional<std::uint64_t> memory_limit;   ///< RLIMIT_MEMLOCK in bytes; the largest: unlimited
   bool has_priority = false;                   ///< CAP_SYS_NICE, for which the limit does not count
   bool has_memory = false;                     ///< CAP_IPC_LOCK, likewise
   bool has_limits_file = false;                ///< /etc/security/limits.d/nendo.conf is there
-  std::map<std::string, int> governors;        ///< of the CPUs' frequencies, and how many have each
+  std::map<std::string, int> governors;        ///< each frequency governor, with its number of CPUs
   std::optional<bool> fine_timers;             ///< the kernel's timers are better than its tick
   bool has_udev = false;                       ///< udev runs
   std::vector<udev::RuleFile> rules;

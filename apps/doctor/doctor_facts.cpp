@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
-/// The lines of a file that is small or not there; the first thousand are enough.
+/// Returns the first thousand lines of a file, or nothing if there is no such file.
 std::vector<std::string> lines_of(const fs::path& path) {
   constexpr std::size_t most = 1000;
   std::vector<std::string> lines;
@@ -27,7 +27,7 @@ std::vector<std::string> lines_of(const fs::path& path) {
   return lines;
 }
 
-/// The soft limit in "Max realtime priority     0                    0  ", of proc(5).
+/// Returns the soft limit in a line such as "Max realtime priority     0        0  " (proc(5)).
 std::optional<std::uint64_t> limit_in(const std::string& line, std::string_view name) {
   if (!line.starts_with(name)) return std::nullopt;
   std::istringstream words(line.substr(name.size()));
@@ -70,8 +70,8 @@ void read_governors(const fs::path& root, MachineFacts& facts) {
   }
 }
 
-/// The kernel's list says it; where only root may read that, the clock's resolution does, which is
-/// a tick's length without them.
+/// Returns whether the kernel's list of timers says that they are fine. Where only root may read
+/// the list, the clock's resolution says it: without fine timers it is the length of a tick.
 std::optional<bool> has_fine_timers(const fs::path& root) {
   for (const std::string& line : lines_of(root / "proc/timer_list")) {
     const std::size_t at = line.find(".hres_active");

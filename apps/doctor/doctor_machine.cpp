@@ -1,4 +1,5 @@
-// The checks of the machine: may the loop be punctual here, and are the udev rules in force.
+// The checks of the machine: whether the loop can be punctual here, and the udev rules are in
+// force.
 
 #include "doctor/doctor.hpp"
 
@@ -14,10 +15,10 @@ using Findings = std::vector<Finding>;
 
 void warn(Findings& found, std::string_view check, const std::string& what,
           const std::string& remedy) {
-  found.push_back({Weight::warning, check, "", what, remedy});
+  found.push_back({Severity::warning, check, "", what, remedy});
 }
 
-/// The file first, and then the group that it speaks of.
+/// Returns commands that write the file of limits, if it is missing, and join its group.
 std::string limits_remedy(const MachineFacts& facts) {
   const std::string join = "sudo usermod -aG audio $USER, then log in again";
   if (facts.has_limits_file) return join;
@@ -66,7 +67,7 @@ void check_rules(const MachineFacts& facts, Findings& found) {
   for (const udev::RuleFile& file : facts.rules) {
     if (file.state == udev::RuleState::current) continue;
     const std::string path = file.path.string();
-    Finding finding{Weight::warning, "rules", path, "", "sudo nendo udev install"};
+    Finding finding{Severity::warning, "rules", path, "", "sudo nendo udev install"};
     switch (file.state) {
     case udev::RuleState::outdated:
       finding.what = "is of another version of nendo";

@@ -1,4 +1,4 @@
-// The checks of ports: may they be opened, does anybody else take them, are they fast enough.
+// The checks of ports: whether they may be opened, are used by others, and are fast enough.
 
 #include "doctor/doctor.hpp"
 
@@ -18,15 +18,16 @@ bool runs(const PortFacts& facts, std::string_view program) {
   return std::find(facts.grabbers.begin(), facts.grabbers.end(), program) != facts.grabbers.end();
 }
 
-/// On-board ports and those that nothing names a glove's are often somebody else's business.
-Weight weight_for(const GloveCandidate& candidate, bool likely) {
-  return candidate.identified || likely ? Weight::failure : Weight::warning;
+/// A port that nothing identifies as a glove's may serve another purpose. It gives warnings only,
+/// unless it is `likely` to be a glove's.
+Severity severity_for(const GloveCandidate& candidate, bool likely) {
+  return candidate.identified || likely ? Severity::failure : Severity::warning;
 }
 
 void check_presence(const PortFacts& facts, Findings& found) {
   if (!facts.candidates.empty()) return;
   found.push_back(
-      {Weight::warning, "presence", "", "no serial port and no USB glove is plugged in",
+      {Severity::warning, "presence", "", "no serial port and no USB glove is plugged in",
        "plug the glove in (nendo devices --watch shows whether it arrives); a container "
        "needs its device handed in"});
 }
@@ -35,7 +36,7 @@ void check_permission(const PortFacts& facts, Findings& found) {
   for (const GloveCandidate& candidate : facts.candidates) {
     if (candidate.may_open || candidate.access.empty()) continue;
     if (candidate.kind == DeviceKind::portless_adapter) continue; // not what would be opened
-    found.push_back({weight_for(candidate, candidate.usb.has_value()), "permission",
+    found.push_back({severity_for(candidate, candidate.usb.has_value()), "permission",
                      candidate.device, "only " + candidate.access + " may open it",
                      candidate.remedy});
   }
@@ -45,11 +46,11 @@ void check_portless(const PortFacts& facts, Findings& found) {
   for (const GloveCandidate& candidate : facts.candidates) {
     if (candidate.kind != DeviceKind::portless_adapter) continue;
     if (runs(facts, "brltty")) {
-      found.push_back({Weight::failure, "portless", candidate.device,
+      found.push_back({Severity::failure, "portless", candidate.device,
                        "brltty, which drives Braille displays, took " + candidate.description,
                        "sudo systemctl mask --now brltty brltty-udev, then plug it in again"});
     } else {
-      found.push_back({Weight::failure, "portless", candidate.device,
+      found.push_back({Severity::failure, "portless", candidate.device,
                        candidate.description + " has no serial port: its kernel driver is missing",
                        candidate.remedy});
     }
@@ -61,14 +62,15 @@ void check_holders(const PortFacts& facts, Findings& found) {
     for (const auto& holder : candidate.holders) {
       const std::string pid = std::to_string(holder.pid);
       found.push_back(
-          {weight_for(candidate, false), "holder", candidate.device,
+          {severity_for(candidate, false), "holder", candidate.device,
            "held by " + holder.name + (holder.pid > 0 ? " (pid " + pid + ")" : ""),
            holder.pid > 0 ? "close that program, or: kill " + pid : "close that program"});
     }
   }
 }
 
-/// They open what may be a modem or a Braille display, and talk to it, when it is plugged in.
+/// Finds programs that open a new adapter and talk to it, because it may be a modem or a Braille
+/// display.
 void check_grabbers(const PortFacts& facts, Findings& found) {
   struct Grabber {
     std::string_view name;
@@ -90,7 +92,7 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
     if (!runs(facts, grabber.name)) continue;
     const std::string mask = "sudo systemctl mask --now " + std::string(grabber.units);
     const std::string bind = "sudo nendo udev bind " + unmarked->device + " --as right (or left)";
-    found.push_back({Weight::warning, "grabber", unmarked->device,
+    found.push_back({Severity::warning, "grabber", unmarked->device,
                      std::string(grabber.name) + " runs and " + std::string(grabber.harm),
                      grabber.heeds_rules ? bind + ", or " + mask : mask});
   }
@@ -99,7 +101,7 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
 void check_latency(const PortFacts& facts, Findings& found) {
   for (const GloveCandidate& candidate : facts.candidates) {
     if (!candidate.latency_timer || *candidate.latency_timer <= 1ms) continue;
-    found.push_back({Weight::warning, "latency_timer", candidate.device,
+    found.push_back({Severity::warning, "latency_timer", candidate.device,
                      "the adapter holds replies back for " +
                          std::to_string(candidate.latency_timer->count()) + " ms",
                      driver::latency_timer_remedy(candidate.device)});

@@ -5,9 +5,8 @@
 #include <optional>
 #include <string>
 
-#include <nendo/timeline/timeline.hpp>
-
 #include "cli/command.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::edit {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include <nendo/flow/finger_supports.hpp>
-#include <nendo/timeline/timeline_file.hpp>
 
 #include "edit/edit_words.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
 
@@ -188,7 +188,7 @@ void EditSession::follow_history() {
   view_.export_file = export_file_;
   view_.duration_s = timeline.duration_s;
   view_.rate_hz = timeline.rate_hz;
-  moment_.radius_m =
+  scene_frame_.radius_m =
       flow::radii_on_stage(timeline.sculptor.deformer.supports, timeline.units_per_metre);
   head_.seek(head_.time_s(), timeline.duration_s);
 }
@@ -218,24 +218,24 @@ const viewer::TimelineView& EditSession::view() {
   return view_;
 }
 
-const viewer::SceneFrame& EditSession::moment() {
+const render::SceneFrame& EditSession::scene_frame() {
   const auto& hands = history_.timeline().hands;
   const auto found = shape();
-  moment_.time_s = head_.time_s();
-  moment_.held = found.shape != nullptr && found.shape->held;
-  moment_.hands = {};
+  scene_frame_.time_s = head_.time_s();
+  scene_frame_.held = found.shape != nullptr && found.shape->held;
+  scene_frame_.hands = {};
   for (std::size_t at = 0; at < hands.size(); ++at) {
     const hand::HandSkeleton skeleton = hands[at].skeleton();
     const auto pose_at = [&](double time_s) {
       const Key key = curves_[at].at(time_s);
       return skeleton.pose(key.angles, key.wrist_pose());
     };
-    viewer::SceneHand seen{pose_at(moment_.time_s), {}};
+    render::SceneHand seen{pose_at(scene_frame_.time_s), {}};
     seen.starts =
-        (moment_.held ? pose_at(found.shape->held_since_s) : seen.pose).fingertip_positions();
-    moment_.hands[flow::Placement::index_of(hands[at].side)] = seen;
+        (scene_frame_.held ? pose_at(found.shape->held_since_s) : seen.pose).fingertip_positions();
+    scene_frame_.hands[flow::Placement::index_of(hands[at].side)] = seen;
   }
-  return moment_;
+  return scene_frame_;
 }
 
 } // namespace nendo::edit

@@ -8,14 +8,13 @@
 #include <string>
 #include <vector>
 
-#include <nendo/timeline/edit_history.hpp>
-#include <nendo/timeline/hand_curve.hpp>
-#include <nendo/timeline/play_head.hpp>
-#include <nendo/timeline/shape_cache.hpp>
-#include <nendo/viewer/scene_frame.hpp>
-#include <nendo/viewer/timeline_view.hpp>
-
 #include "edit/glb_export.hpp"
+#include "render/scene_frame.hpp"
+#include "timeline/edit_history.hpp"
+#include "timeline/hand_curve.hpp"
+#include "timeline/play_head.hpp"
+#include "timeline/shape_cache.hpp"
+#include "viewer/timeline_view.hpp"
 
 namespace nendo::edit {
 
@@ -36,7 +35,7 @@ public:
   /// Returns the view of the present state. It is valid until the next call.
   const viewer::TimelineView& view();
   /// Returns the exact hands at the play head, and where they took hold. The frame has no vertices.
-  const viewer::SceneFrame& moment();
+  const render::SceneFrame& scene_frame();
   /// Returns the available shape that is nearest to the play head.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
@@ -78,7 +77,7 @@ private:
   std::vector<timeline::HandCurve> curves_; ///< in the order of the timeline's hands
   std::optional<std::uint64_t> followed_; ///< the revision of the history to which curves_ belongs
   viewer::TimelineView view_;
-  viewer::SceneFrame moment_;
+  render::SceneFrame scene_frame_;
   bool ended_ = false;
 };
 

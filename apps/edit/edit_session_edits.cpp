@@ -3,11 +3,10 @@
 #include <limits>
 #include <utility>
 
-#include <nendo/timeline/edit.hpp>
-
 #include "edit/edit_session.hpp"
 #include "edit/edit_words.hpp"
 #include "takes/timeline_frames.hpp"
+#include "timeline/edit.hpp"
 
 namespace nendo::edit {
 

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include <nendo/timeline/timeline_file.hpp>
-
 #include "cli/output_place.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
 namespace {

@@ -5,7 +5,8 @@
 #include <string>
 
 #include <nendo/base/result.hpp>
-#include <nendo/timeline/reduce.hpp>
+
+#include "timeline/reduce.hpp"
 
 namespace nendo::edit {
 

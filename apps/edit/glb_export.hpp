@@ -6,9 +6,8 @@
 #include <string>
 #include <thread>
 
-#include <nendo/timeline/timeline.hpp>
-
 #include "export/exported.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::edit {
 

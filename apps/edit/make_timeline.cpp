@@ -5,8 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/recording/take_reader.hpp>
-#include <nendo/timeline/from_take.hpp>
-#include <nendo/timeline/timeline_file.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
@@ -14,6 +12,8 @@
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
 #include "takes/recorded_model.hpp"
+#include "timeline/from_take.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
 namespace {

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/base/text.hpp>
-#include <nendo/timeline/timeline_file.hpp>
 
 #include "cli/cli.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
 namespace {

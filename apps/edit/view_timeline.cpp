@@ -6,9 +6,6 @@
 #include <optional>
 #include <string>
 
-#include <nendo/timeline/timeline_file.hpp>
-#include <nendo/viewer/timeline_window.hpp>
-
 #include "cli/cli.hpp"
 #include "cli/command.hpp"
 #include "cli/output_place.hpp"
@@ -16,6 +13,8 @@
 #include "edit/edit_session.hpp"
 #include "edit/edit_words.hpp"
 #include "takes/timeline_frames.hpp"
+#include "timeline/timeline_file.hpp"
+#include "viewer/timeline_window.hpp"
 
 namespace nendo::edit {
 namespace {
@@ -33,7 +32,7 @@ struct Options {
 
 #ifdef NENDO_WINDOW
 
-constexpr viewer::Size window_size{1180, 760};
+constexpr render::Size window_size{1180, 760};
 
 Result<void> check(const Options& options) {
   if (options.key && options.hand.empty())
@@ -76,7 +75,7 @@ Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const
     if (found.shape) window.follow(found.shape->shape);
     const viewer::TimelineView& view = session.view();
     const bool is_settled = found.fresh && !view.computing;
-    session.handle(window.show(view, session.moment()));
+    session.handle(window.show(view, session.scene_frame()));
     if (const auto error = session.progress().error) return *error;
     if (is_settled) ++shown;
   } while (!session.has_ended() && !cli::stop_requested() &&
@@ -101,7 +100,7 @@ int view_timeline(const Options& options) {
       "on a box without a screen `nendo picture` draws a timeline, `nendo export` animates it, and "
       "the other commands of `nendo edit` change it");
   if (!window) return cli::report(window.error());
-  (*window)->set_model((*frames)->layout(), viewer::SceneBuilder(model, timeline.units_per_metre));
+  (*window)->set_model((*frames)->layout(), render::SceneBuilder(model, timeline.units_per_metre));
   const auto done = edit_in(**window, session, options);
   if (session.history().is_modified()) cli::note(*out + ": not saved; the changes are lost");
   return done ? 0 : cli::report(done.error());

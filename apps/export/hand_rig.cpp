@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include <nendo/viewer/hand_skin.hpp>
+#include "render/hand_skin.hpp"
 
 namespace nendo::exporting {
 
@@ -86,8 +86,8 @@ GlbFile::Index add_skin(const HandTrack& track, const hand::HandPose& bind, GlbF
 }
 
 GlbFile::Index add_mesh(const HandTrack& track, const hand::HandPose& bind, GlbFile& file) {
-  const viewer::HandSkin skin(track.side());
-  viewer::Surface surface;
+  const render::HandSkin skin(track.side());
+  render::Surface surface;
   skin.drape(bind, Eigen::Vector3d::Zero(), surface);
   Eigen::Matrix3Xf places(3, static_cast<Eigen::Index>(surface.places.size()));
   Eigen::Matrix3Xf normals(3, places.cols());
@@ -161,7 +161,7 @@ hand::HandPose HandTrack::first_as(const hand::HandPose& turns) const {
 
 void add_hand(const HandTrack& track, GlbFile::Index times, GlbFile& file, Json& animation,
               Json& roots) {
-  const hand::HandPose bind = track.first_as(viewer::HandSkin::bind_pose(track.side()));
+  const hand::HandPose bind = track.first_as(render::HandSkin::bind_pose(track.side()));
   const GlbFile::Index base = add_joints(track, times, file, animation);
   const GlbFile::Index skin = add_skin(track, bind, base, file);
   const GlbFile::Index mesh = add_mesh(track, bind, file);

@@ -9,7 +9,7 @@
 
 namespace nendo::gloves {
 
-/// Returns what is stored on this machine, in the folders that the environment gives. Tells on
+/// Returns what is stored on this machine, in the folders that the environment gives. Says on
 /// standard error which files cannot be read. Blocks.
 hand::CalibrationList stored_calibrations();
 

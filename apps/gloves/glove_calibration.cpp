@@ -4,10 +4,10 @@
 #include <utility>
 
 #include <nendo/base/text.hpp>
+#include <nendo/recording/take_reader.hpp>
 
 #include "cli/cli.hpp"
 #include "gloves/calibration_names.hpp"
-#include "gloves/recorded_hands.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -43,7 +43,19 @@ Result<hand::WearerHand> asked_for(const driver::GloveInfo& glove, Side side,
   return hand_of(file->wearer, glove.counts);
 }
 
-// `wearer` with the best that is stored for either side.
+/// Returns the calibrations and sizes with which the hand of that side was recorded, if `glove`
+/// replays a recording that has such a hand. What adaptation had learned is left out.
+std::optional<hand::Wearer> recorded_wearer(const driver::GloveInfo& glove, Side side) {
+  if (glove.kind != driver::GloveKind::recorded) return std::nullopt;
+  const auto reader = recording::TakeReader::open(glove.recording);
+  if (!reader) return std::nullopt;
+  for (const auto& hand : reader->setup().hands) {
+    if (hand.first.side == side) return hand::Wearer{hand.wearer.left, hand.wearer.right};
+  }
+  return std::nullopt;
+}
+
+/// Returns `wearer` with the best calibration that is stored for either side.
 Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, hand::Wearer wearer,
                                    const std::string& user) {
   const auto stored = stored_calibrations();
@@ -91,6 +103,26 @@ Result<void> check(const CalibrationOptions& options) {
   if (!options.adapt || (options.user.empty() && options.calibration.empty())) return {};
   return Error{Errc::usage, "--adapt learns the hand from how it moves; leave out " +
                                 std::string(options.user.empty() ? "--calibration" : "--user")};
+}
+
+Result<void> HandLength::check() const {
+  constexpr double least_mm = 100.0;
+  constexpr double most_mm = 250.0;
+  if (!length_mm || (*length_mm >= least_mm && *length_mm <= most_mm)) return {};
+  return Error{Errc::usage, "--hand-length: use 100 to 250 millimetres, from the wrist's crease to "
+                            "the tip of the middle finger"};
+}
+
+hand::HandSize HandLength::size(const hand::HandSize& known) const noexcept {
+  if (!length_mm) return known;
+  const double length_m = 1e-3 * *length_mm;
+  return {length_m, length_m / known.length_m * known.breadth_m};
+}
+
+void add_hand_length(cli::Command& command, HandLength& length) {
+  command.add_option("--hand-length", length.length_mm,
+                     "The wearer's hand in millimetres, from the wrist's crease to the tip of the "
+                     "middle finger, 100 to 250; without it, as the calibration says");
 }
 
 Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,

@@ -1,6 +1,6 @@
 #pragma once
-// Chooses the calibration for a glove: the one that is asked for, the stored one, the default, or
-// what is learned while the glove is used.
+// Chooses the wearer of a glove: the calibration that is asked for, the stored one, the default, or
+// what is learned while the glove is used; and the size of the hand. The options for both are here.
 
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@ struct CalibrationOptions {
   bool adapt = false;      ///< learn the wearer's ranges instead
 };
 
-/// Returns the serial number that the glove tells, or an empty text.
+/// Returns the serial number that the glove reports, or an empty text.
 std::string serial_of(const driver::GloveInfo& glove);
 
 /// Adds the options --user, --calibration and --adapt.
@@ -28,8 +28,20 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options)
 /// Fails with usage if the options contradict each other. Call it before a glove is opened.
 Result<void> check(const CalibrationOptions& options);
 
+/// The option --hand-length, which sets the size of a wearer's skeleton.
+struct HandLength {
+  std::optional<double> length_mm; ///< nullopt: not given
+
+  /// Fails with usage if no hand is that long.
+  Result<void> check() const;
+  /// Returns a hand of the length that was given, with the proportions of `known`. Without a
+  /// length it returns `known`.
+  hand::HandSize size(const hand::HandSize& known) const noexcept;
+};
+void add_hand_length(cli::Command& command, HandLength& length);
+
 /// Finds the wearer of a glove that is sewn for `side`. For that side the wearer gets the hand that
-/// is asked for, stored, or recorded (if the glove replays); one line on standard error tells which
+/// is asked for, stored, or recorded (if the glove replays); one line on standard error says which
 /// file it is. A simulated glove gets a stored hand only if it is asked for. For the other side the
 /// wearer gets the stored hand or an average one, and nothing is printed. Blocks. Errors: bad_input
 /// (no such file, another hand's, not readable), usage.

@@ -34,7 +34,8 @@ std::string cut(std::string text, int width) {
   return text;
 }
 
-// `right` stands at the line's end; `left` is cut for it, unless hardly anything would be left.
+// Puts `right` at the end of the line, and cuts `left` for it, unless hardly anything would be
+// left.
 std::string both_ends(const std::string& left, const std::string& right, int width) {
   const int room = width - static_cast<int>(right.size()) - 2;
   if (right.empty() || room < 20) return cut(left, width);
@@ -43,7 +44,7 @@ std::string both_ends(const std::string& left, const std::string& right, int wid
   return line + right;
 }
 
-// Counts must not push what stands behind them off the line.
+// Returns a number in few characters, so that the text behind it stays on the line.
 std::string short_number(std::uint64_t number) {
   if (number < 100'000) return std::to_string(number);
   if (number < 100'000'000) return std::to_string(number / 1000) + "k";
@@ -149,7 +150,7 @@ void add_sensors(const MonitorPicture& picture, cli::ScreenSize size, int rows,
 
 } // namespace
 
-void SeenCounts::see(const GloveSample& sample) noexcept {
+void SeenCounts::add(const GloveSample& sample) noexcept {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const std::uint16_t count = sample.raw[slot].value;
     Range& range = ranges_[slot];

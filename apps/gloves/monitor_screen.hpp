@@ -22,9 +22,9 @@ public:
     std::uint16_t most = 0;
   };
 
-  void see(const GloveSample& sample) noexcept;
-  void forget() noexcept { present_ = {}; }
-  /// Returns the range of a sensor, which must be one of a sample that was seen.
+  void add(const GloveSample& sample) noexcept;
+  void clear() noexcept { present_ = {}; }
+  /// Returns the range of a sensor that the sample added last has.
   const Range& operator[](Sensor sensor) const noexcept {
     return ranges_[static_cast<std::size_t>(sensor)];
   }
@@ -39,7 +39,7 @@ struct MonitorPicture {
   const driver::GloveInfo* info = nullptr;
   driver::GloveStats stats;
   const GloveSample* sample = nullptr;            ///< the latest; null: none came yet
-  const SeenCounts* seen = nullptr;               ///< has seen `sample`
+  const SeenCounts* seen = nullptr;               ///< includes `sample`
   const hand::Calibration* calibration = nullptr; ///< null: counts only
   double age_s = 0.0;                             ///< of `sample`
   bool light = false;

@@ -4,11 +4,39 @@
 #include <thread>
 #include <utility>
 
+#include <nendo/flow/touching_hand.hpp>
+
 #include "cli/cli.hpp"
 
 namespace nendo::gloves {
+namespace {
 
 using std::chrono::milliseconds;
+
+void note_idle_fingers(const std::string& spec, const flow::TouchingHand& hand) {
+  std::string idle;
+  for (std::size_t at = 0; at < hand::finger_count; ++at) {
+    const auto finger = static_cast<hand::Finger>(at);
+    if (!hand.touches(finger)) idle.append(idle.empty() ? "" : ", ").append(name_of(finger));
+  }
+  if (!idle.empty()) cli::note(spec + ": keeps still what does not reach the model: " + idle);
+}
+
+Result<void> wait_for_first_sample(OpenHand& hand) {
+  constexpr auto patience = milliseconds(2000);
+  const HostTime end = HostClock::now() + patience;
+  while (HostClock::now() < end && !cli::stop_requested()) {
+    if (hand.ring->try_pop(hand.first)) return {};
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  if (cli::stop_requested()) return Error{Errc::failed, "stopped before the first sample came"};
+  return Error{Errc::no_device,
+               hand.glove->info().source +
+                   ": opened, but no sample came within 2 s; is the glove plugged into "
+                   "its interface unit?"};
+}
+
+} // namespace
 
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side,
                            EventCount* event_count, const driver::GloveContext& context) {
@@ -32,29 +60,48 @@ OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
   return hand;
 }
 
-Result<void> wait_for_first_sample(OpenHand& hand) {
-  constexpr auto patience = milliseconds(2000);
-  const HostTime end = HostClock::now() + patience;
-  while (HostClock::now() < end && !cli::stop_requested()) {
-    if (hand.ring->try_pop(hand.first)) return {};
-    std::this_thread::sleep_for(milliseconds(5));
+Result<void> start(std::span<OpenHand> hands) {
+  for (OpenHand& hand : hands) {
+    if (auto started = hand.glove->start(*hand.ring); !started) return started;
   }
-  if (cli::stop_requested()) return Error{Errc::failed, "stopped before the first sample came"};
-  return Error{Errc::no_device,
-               hand.glove->info().source +
-                   ": opened, but no sample came within 2 s; is the glove plugged into "
-                   "its interface unit?"};
+  return {};
 }
 
-// A sample tells the side of the glove that sent it, which need not be the one that was identified.
-Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options,
+Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
                        const HandLength& length) {
-  auto wearer = find_wearer(hand.glove->info(), hand.first.side, options);
-  if (!wearer) return wearer.error();
-  hand.wearer = *std::move(wearer);
-  for (hand::HandSize* size : {&hand.wearer.left.size, &hand.wearer.right.size})
-    *size = length.size(*size);
+  for (OpenHand& hand : hands) {
+    if (auto came = wait_for_first_sample(hand); !came) return came;
+    // A sample tells the side of the glove that sent it, which need not be the identified one.
+    auto wearer = find_wearer(hand.glove->info(), hand.first.side, options);
+    if (!wearer) return wearer.error();
+    hand.wearer = *std::move(wearer);
+    for (hand::HandSize* size : {&hand.wearer.left.size, &hand.wearer.right.size})
+      *size = length.size(*size);
+  }
   return {};
+}
+
+driver::GloveContext touching_context(const deform::Mesh& model, std::optional<Side> side,
+                                      const hand::HandSize& size,
+                                      std::optional<Eigen::Isometry3d>& T_stage_wrist) {
+  const auto motion =
+      [=, &model, &T_stage_wrist](
+          const driver::SimulatedGloveOptions& options) -> Result<driver::SensorMotion> {
+    flow::TouchOptions touch;
+    touch.seed = options.seed;
+    const hand::HandSkeleton skeleton(side.value_or(options.side), size);
+    const auto hand = flow::TouchingHand::make(model, skeleton, touch);
+    if (!hand) {
+      return Error{hand.error().code, options.source + ": " + hand.error().message +
+                                          "; choose another model, or another motion, like "
+                                          "sim:sculpt"};
+    }
+    note_idle_fingers(options.source, *hand);
+    T_stage_wrist = hand->wrist_pose();
+    return driver::SensorMotion(
+        [hand = *hand](double time_s) { return hand.sensor_angles(time_s); });
+  };
+  return {motion};
 }
 
 } // namespace nendo::gloves

@@ -1,31 +1,30 @@
 #pragma once
-// A glove that was opened, and the ring that receives its samples. Commands that use hands begin
-// with these.
+// Opens gloves for the commands that use hands. An open hand is a glove and the ring that receives
+// its samples.
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/flow/placement.hpp>
 
 #include "gloves/glove_calibration.hpp"
-#include "gloves/hand_length.hpp"
 
 namespace nendo::gloves {
 
-/// A glove, the ring with its samples, and the first sample.
 struct OpenHand {
-  Side side = Side::right;
+  Side side = Side::right;          ///< the hand as which it shapes
   std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
   std::unique_ptr<driver::Glove> glove;
-  GloveSample first;
+  GloveSample first;   ///< the first sample; set by calibrate()
   hand::Wearer wearer; ///< set by calibrate()
-  /// Where the forearm ends, if something other than the glove tells it.
+  /// The pose of the end of the forearm, if something other than the glove knows it.
   std::optional<Eigen::Isometry3d> T_stage_wrist{};
 };
 
-/// Opens the glove for that hand, and tells on standard error if it calls itself the other one.
+/// Opens the glove for that hand, and says on standard error if it calls itself the other one.
 /// Without `side`, opens it for the hand that it is. Each sample notifies `event_count`. Blocks and
 /// fails as open_glove() does.
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
@@ -36,12 +35,23 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = s
 OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
                  EventCount* event_count);
 
-/// Takes the first sample of a started glove out of the ring. Blocks for 2 s at most. Errors:
-/// no_device if no sample comes, failed if a stop signal comes.
-Result<void> wait_for_first_sample(OpenHand& hand);
+/// Starts the gloves. Blocks and fails as Glove::start() does.
+Result<void> start(std::span<OpenHand> hands);
 
-/// Sets `wearer`; the first sample must have come. Both hands get `length` if it is given. Blocks
-/// and fails as find_wearer() does.
-Result<void> calibrate(OpenHand& hand, const CalibrationOptions& options, const HandLength& length);
+/// Takes the first sample of each started glove out of its ring, and finds the wearer. Both hands
+/// of the wearer get `length` if it is given. Waits for a sample for 2 s at most. Errors: no_device
+/// if no sample comes, failed if a stop signal comes, and those of find_wearer().
+Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
+                       const HandLength& length);
+
+/// Returns the context in which open_glove() can open `sim:touch`, a simulated glove whose hand
+/// touches `model`. The hand is that of `side`, and has that size. Without a side, it is the hand
+/// that the specification names. Opening such a glove takes about 0.2 s, sets `T_stage_wrist` to
+/// the pose of its wrist, which a real glove would not know, and says on standard error which
+/// fingers cannot reach the model. Opening fails with bad_input if the model cannot be touched.
+/// `model` and `T_stage_wrist` must outlive the opening.
+driver::GloveContext touching_context(const deform::Mesh& model, std::optional<Side> side,
+                                      const hand::HandSize& size,
+                                      std::optional<Eigen::Isometry3d>& T_stage_wrist);
 
 } // namespace nendo::gloves

@@ -12,11 +12,13 @@
 
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include <nendo/hand/bvh_file.hpp>
 
 #include "cli/cli.hpp"
-#include "gloves/angle_sources_json.hpp"
-#include "gloves/pose_json.hpp"
+#include "cli/json_line.hpp"
+#include "gloves/glove_json.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -24,6 +26,27 @@ namespace {
 // A rate that the machine cannot keep up with must not fill its memory.
 constexpr std::size_t most_pending_bytes = 1 << 16;
 constexpr std::uint64_t most_pending_frames = 64;
+
+/// Returns the line of a pose without a line end, with the key angles if there are `sensors`.
+std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
+                      std::optional<SensorMask> sensors) {
+  nlohmann::ordered_json joints = nlohmann::ordered_json::object();
+  for (std::size_t at = 0; at < hand::joint_count; ++at) {
+    const Eigen::Isometry3d& joint = pose.joints[at];
+    const Eigen::Vector3d position = joint.translation();
+    Eigen::Quaterniond q(joint.linear());
+    q.normalize();
+    if (q.w() < 0.0) q.coeffs() = -q.coeffs(); // both are the same turn
+    joints[std::string(name_of(static_cast<hand::Joint>(at)))] = {
+        {"position_m", {position.x(), position.y(), position.z()}},
+        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+  }
+  nlohmann::ordered_json line{{"time_s", to_seconds(time.time_since_epoch())},
+                              {"hand", name_of(side)},
+                              {"joints", std::move(joints)}};
+  if (sensors) line["angles"] = angle_sources_json(*sensors);
+  return cli::json_text(line);
+}
 
 class JsonLines final : public PoseOutput {
 public:

@@ -12,8 +12,8 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// So that roff prints it as it is: a hyphen that can be copied into a shell, no backslash, and no
-/// request at the beginning of a line.
+/// Returns the text such that roff prints it as it is: with hyphens that can be copied into a
+/// shell, and without backslashes or requests at the beginnings of lines.
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -40,7 +40,8 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Lines that begin with blanks are a table and stay as they are; the others flow.
+/// Returns a text as paragraphs. Lines that begin with blanks are a table and stay as they are; the
+/// others flow.
 std::string prose(const std::string& text) {
   std::string out;
   bool table = false;
@@ -74,7 +75,7 @@ std::string item(const cli::OptionModel& option) {
   return text;
 }
 
-/// By heading, in the order in which the headings first appear.
+/// Returns all options by heading, in the order in which the headings first appear.
 std::string items(const cli::CommandModel& command) {
   std::vector<std::string> headings;
   for (const cli::OptionModel& option : command.options) {
@@ -91,7 +92,7 @@ std::string items(const cli::CommandModel& command) {
   return text;
 }
 
-/// `path` are the words before the options: "nendo udev bind".
+/// Returns the line of usage. `path` has the words before the options: "nendo udev bind".
 std::string usage(const std::string& path, const cli::CommandModel& command) {
   std::string text = bold(path) + " [" + italic("OPTIONS") + "]";
   for (const cli::OptionModel& option : command.options) {
@@ -109,7 +110,7 @@ std::string head(const std::string& page, const std::string& summary, const Page
          plain(page) + " \\- " + plain(summary) + "\n.SH SYNOPSIS\n";
 }
 
-/// What the program says of itself below its first line: the exit codes.
+/// Returns the section of the exit codes, which the program's summary has below its first line.
 std::string exit_status(const cli::CommandModel& program) {
   const std::size_t line = program.summary.find('\n');
   return line == std::string::npos ? std::string{}

@@ -20,7 +20,6 @@
 #include "calibrate/session.hpp"
 #include "cli/cli.hpp"
 #include "gloves/glove_calibration.hpp"
-#include "gloves/hand_length.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibrate_command {
@@ -40,9 +39,9 @@ struct Options {
   bool fresh = false;
 };
 
-/// Whose calibration it is going to be.
+/// The wearer whose calibration is made.
 struct Wearer {
-  hand::WearerCalibration about; ///< all but the numbers
+  hand::WearerCalibration about; ///< everything but the calibration itself, at first
   SensorMask sensors;
   fs::path path; ///< of its file
 };
@@ -97,7 +96,7 @@ void set_path(Wearer& wearer, const Options& options) {
                     : fs::path(options.out);
 }
 
-/// Beside the calibration: what a session that was quit has taken so far.
+/// Returns the path of the file, beside the calibration, with the poses of a session that was quit.
 fs::path unfinished_path(const Wearer& wearer) {
   return wearer.path.string() + ".unfinished";
 }
@@ -142,15 +141,15 @@ int calibrate_from_capture(const Options& options) {
   SensorMask sensors;
   for (const auto& reading : capture->readings)
     sensors.bits |= reading.held.present.bits;
-  bool doubted = false; // one pose that was missed shifts all that follow
+  bool noted = false; // a pose that was missed shifts all later ones, so one note is enough
   for (const GloveSample& sample : capture->samples) {
     sensors.bits |= sample.present.bits;
-    if (!guide.has_any()) guide.see_free_motion(sample);
-    if (guide.see(sample) == calibrate::CalibrationGuide::Event::implausible &&
-        !std::exchange(doubted, true))
+    if (!guide.has_any()) guide.push_free_motion(sample);
+    if (guide.push(sample) == calibrate::CalibrationGuide::Event::implausible &&
+        !std::exchange(noted, true))
       cli::note(options.from + ": a pose that was held is not " +
                 std::string(hand::pose_of(guide.asked()).name) + ", by " +
-                std::string(name_of(*guide.doubted())) + "; such poses are left out");
+                std::string(name_of(*guide.implausible_sensor())) + "; such poses are left out");
   }
   if (!guide.is_done())
     cli::note(options.from + ": ends before the pose " +

@@ -1,5 +1,5 @@
-// nendo calibration: looks after the files of nendo calibrate. What crosses to other programs is in
-// calibration_exchange.cpp.
+// nendo calibration: lists, shows, compares and removes the files of nendo calibrate. Import and
+// export are in calibration_exchange.cpp.
 
 #include <algorithm>
 #include <cstdio>
@@ -15,7 +15,6 @@
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "gloves/calibration_names.hpp"
-#include "nendo/calibration_exchange.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibration_command {
@@ -156,7 +155,8 @@ int show(const std::string& name, bool json) {
   return 0;
 }
 
-// Of one sensor in degrees: a, b and how far b lies above a, first at no counts, then at the most.
+// Returns six angles of a sensor in degrees: that of a, that of b, and how far b lies above a,
+// first for a count of 0 and then for the largest count.
 std::vector<double> changes_deg(const WearerCalibration& a, const WearerCalibration& b,
                                 std::size_t slot) {
   std::vector<double> deg;

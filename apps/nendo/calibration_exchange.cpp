@@ -1,4 +1,4 @@
-#include "nendo/calibration_exchange.hpp"
+// nendo calibration import and export, which convert from and to the formats of other programs.
 
 #include <chrono>
 #include <iostream>
@@ -12,6 +12,7 @@
 
 #include "cli/cli.hpp"
 #include "gloves/calibration_names.hpp"
+#include "nendo/commands.hpp"
 
 namespace nendo::app::calibration_exchange {
 namespace {
@@ -154,6 +155,6 @@ void add(cli::Command& calibration) {
   exporting.add_option("--format", out->format, "cal, csv or toml").one_of({"cal", "csv", "toml"});
   exporting.add_option("--out", out->out, "Where to write it; without it, standard output");
   exporting.on_chosen([out] { return export_calibration(*out); });
-} // namespace nendo::app::calibration_exchange
+}
 
 } // namespace nendo::app::calibration_exchange

@@ -19,6 +19,10 @@ void add(cli::Command& program);
 namespace calibration_command {
 void add(cli::Command& program);
 }
+namespace calibration_exchange {
+/// Adds the commands import and export to `nendo calibration`.
+void add(cli::Command& calibration);
+} // namespace calibration_exchange
 namespace deform_command {
 void add(cli::Command& program);
 }

@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include <nendo/deform/control_vectors.hpp>
 #include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
-#include "nendo/injective_deform.hpp"
-#include "session/kernel_options.hpp"
+#include "session/loop_options.hpp"
 
 namespace nendo::app::deform_command {
 namespace {
@@ -27,7 +28,7 @@ struct Options {
   std::string radius;
   std::string common_radius;
   bool injective = false;
-  session::KernelOptions kernel;
+  session::KernelArguments kernel;
 };
 
 Result<std::optional<Support>> common_radius(const Options& options, bool is_used) {
@@ -77,13 +78,53 @@ Result<FieldStatus> deform_at_once(Points& vertices, const ControlVectors& vecto
   return status;
 }
 
+/// Ordinary strokes need ten; thousands mean displacements of thousands of radii.
+constexpr int most_links = 2000;
+
+/// Returns one line: links, bound, least determinant at the vertices, and the pairs held apart.
+std::string report_of(const InjectiveChain& chain, double least_determinant) {
+  const ChainReport& report = chain.report();
+  std::ostringstream text;
+  text.precision(3);
+  text << report.links << (report.links == 1 ? " link" : " links") << ", bound " << report.bound;
+  if (report.links > 1) text << " (" << report.whole_bound << " in one step)";
+  text << ", least determinant " << least_determinant << ", " << report.held_pairs
+       << (report.held_pairs == 1 ? " pair held apart" : " pairs held apart");
+  const char* before = ": ";
+  for (const HeldPair& wall : chain.walls()) {
+    if (wall.push <= 0.0) continue;
+    text << before << wall.first + 1 << '-' << wall.second + 1;
+    before = ", ";
+  }
+  return text.str();
+}
+
 Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vectors,
                                     const Supports& supports, const CsrbfOptions& csrbf,
                                     const Options& options) {
-  const auto done = deform_injectively(vertices, vectors, supports, csrbf, options.vectors);
-  if (!done) return done.error();
-  cli::note("injective: " + done->report);
-  return done->status;
+  const auto bad = [&](const std::string& what) {
+    return Error{Errc::bad_input, options.vectors + ": " + what};
+  };
+  InjectiveChain chain(vectors.starts.cols(), supports, csrbf, {.most_links = most_links});
+  FieldStatus status = chain.grab(vectors.starts);
+  if (is_solved(status)) {
+    const FieldStatus asked = chain.from_start(vectors.starts + vectors.displacements);
+    status = std::max(status, asked);
+  }
+  DeterminantProbe probe;
+  probe.start(vertices);
+  while (is_solved(status) && chain.next()) {
+    probe.advance(chain.field());
+    displace(chain.field(), vertices, vertices);
+  }
+  status = std::max(status, chain.report().status);
+  if (!is_solved(status)) return bad(std::string(describe(status)));
+  if (!chain.report().reached)
+    return bad("--injective needs more than " + std::to_string(most_links) +
+               " links; make the displacements shorter");
+  const double least = std::min(probe.least(), chain.report().least_determinant);
+  cli::note("injective: " + report_of(chain, least));
+  return status;
 }
 
 Result<void> deform_file(const Options& options) {

@@ -42,7 +42,8 @@ ordered_json json_of(const driver::UsbIdentity& usb) {
           {"interface", usb.interface_number}};
 }
 
-/// The same keys for every device; null where a device has no such thing.
+/// Returns an object with the same keys for every device. A value is null where a device has no
+/// such thing.
 ordered_json json_of(const GloveCandidate& candidate) {
   ordered_json holders = ordered_json::array();
   for (const auto& holder : candidate.holders)

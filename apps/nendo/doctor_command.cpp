@@ -15,15 +15,15 @@
 namespace nendo::app::doctor_command {
 namespace {
 
-/// A subject each.
+/// The checks, one function for each subject.
 constexpr std::array subjects{doctor::check_ports, doctor::check_machine};
 
-std::string_view name_of(doctor::Weight weight) {
-  return weight == doctor::Weight::failure ? "failure" : "warning";
+std::string_view name_of(doctor::Severity severity) {
+  return severity == doctor::Severity::failure ? "failure" : "warning";
 }
 
 void print_json(const doctor::Finding& finding) {
-  const nlohmann::ordered_json line{{"weight", name_of(finding.weight)},
+  const nlohmann::ordered_json line{{"weight", name_of(finding.severity)},
                                     {"check", finding.check},
                                     {"subject", finding.subject},
                                     {"what", finding.what},
@@ -32,7 +32,7 @@ void print_json(const doctor::Finding& finding) {
 }
 
 void print_text(const doctor::Finding& finding) {
-  std::cout << name_of(finding.weight) << ": " << finding.subject
+  std::cout << name_of(finding.severity) << ": " << finding.subject
             << (finding.subject.empty() ? "" : ": ") << finding.what
             << ". Mend it: " << finding.remedy << '\n';
 }
@@ -45,12 +45,12 @@ int examine(bool json) {
   }
   std::stable_sort(
       findings.begin(), findings.end(), [](const doctor::Finding& a, const doctor::Finding& b) {
-        return a.weight == doctor::Weight::failure && b.weight == doctor::Weight::warning;
+        return a.severity == doctor::Severity::failure && b.severity == doctor::Severity::warning;
       });
   for (const doctor::Finding& finding : findings)
     json ? print_json(finding) : print_text(finding);
   if (findings.empty() && !json) std::cout << "Nothing here keeps gloves from working.\n";
-  const bool well = findings.empty() || findings.front().weight == doctor::Weight::warning;
+  const bool well = findings.empty() || findings.front().severity == doctor::Severity::warning;
   return well ? 0 : static_cast<int>(Errc::failed);
 }
 

@@ -5,14 +5,13 @@
 #include <limits>
 #include <memory>
 
-#include <nendo/timeline/edit.hpp>
-#include <nendo/timeline/timeline_file.hpp>
-
 #include "cli/cli.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
 #include "nendo/commands.hpp"
 #include "takes/timeline_frames.hpp"
+#include "timeline/edit.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace nendo::app::edit_command {
 namespace {
@@ -57,7 +56,7 @@ int edit(const Options& options, const Change& change) {
   return 0;
 }
 
-// One that is about a key of a hand, or a hand.
+// Does the same with a change of one hand.
 int edit_hand(const Options& options,
               const std::function<Result<void>(Timeline& timeline, Side side)>& change) {
   const auto side = edit::parse_hand(options.hand);
@@ -111,7 +110,7 @@ int set_tip(const Options& options) {
   return code;
 }
 
-// The options that an edit has, whatever it does.
+// Adds a command with the options that all edits have.
 cli::Command add_edit_of(cli::Command& edit, const char* name, const char* summary,
                          const std::shared_ptr<Options>& options) {
   cli::Command command = edit.add_command(name, summary);

@@ -11,10 +11,10 @@
 
 #include <nendo/driver/simulated_glove.hpp>
 #include <nendo/emulator/emulator.hpp>
+#include <nendo/emulator/served_emulator.hpp>
 
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"
-#include <nendo/emulator/served_emulator.hpp>
 
 namespace nendo::app::emulate_command {
 namespace {
@@ -46,7 +46,7 @@ std::string faults_explained() {
   return text + "Example: nendo emulate --link /tmp/glove --fault flip=0.1% --fault unplug@5s+2s";
 }
 
-// 1 to 24 bits; anything else is no mask of a glove.
+// Returns the mask, or nothing if the text is no mask of 1 to 24 bits.
 std::optional<std::uint32_t> parse_mask(std::string_view text) {
   if (text.starts_with("0x")) text.remove_prefix(2);
   std::uint32_t mask = 0;

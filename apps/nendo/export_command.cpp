@@ -1,12 +1,11 @@
 // nendo export: a recorded run as files for animators and for plots.
 
-#include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
-
-#include <nendo/timeline/timeline_file.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
@@ -20,6 +19,7 @@
 #include "takes/recorded_frames.hpp"
 #include "takes/recorded_model.hpp"
 #include "takes/timeline_frames.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace nendo::app::export_command {
 namespace {
@@ -43,7 +43,7 @@ bool is_sequence(const std::string& format) {
   return format == "obj" || format == "ply";
 }
 
-/// Whether files can go where --out says, and of which format they are.
+/// Returns the format of the files, or an error if they cannot go where --out says.
 Result<std::string> format_of(const Options& options) {
   if (options.format.empty()) {
     if (const auto fine = cli::check_place(
@@ -85,10 +85,11 @@ Result<Take> read_recorded(const Options& options) {
   Take take;
   for (const auto& hand : setup.hands)
     take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton(hand.first.side));
-  take.open = [path = options.file, mesh = *std::move(model)] {
+  take.open = [path = options.file,
+               mesh = *std::move(model)]() -> Result<std::unique_ptr<takes::FrameSource>> {
     auto frames = takes::RecordedFrames::open(path, mesh);
-    if (!frames) return Result<std::unique_ptr<takes::FrameSource>>(frames.error());
-    return Result<std::unique_ptr<takes::FrameSource>>(*std::move(frames));
+    if (!frames) return frames.error();
+    return std::unique_ptr<takes::FrameSource>(*std::move(frames));
   };
   return take;
 }
@@ -99,15 +100,17 @@ Result<Take> read_edited(const Options& options) {
   Take take;
   for (const auto& hand : timeline->hands)
     take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton());
-  take.open = [path = options.file, mesh = options.mesh] {
+  take.open = [path = options.file,
+               mesh = options.mesh]() -> Result<std::unique_ptr<takes::FrameSource>> {
     auto frames = takes::TimelineFrames::open(path, mesh);
-    if (!frames) return Result<std::unique_ptr<takes::FrameSource>>(frames.error());
-    return Result<std::unique_ptr<takes::FrameSource>>(*std::move(frames));
+    if (!frames) return frames.error();
+    return std::unique_ptr<takes::FrameSource>(*std::move(frames));
   };
   return take;
 }
 
-// glTF and CSV have a time for each frame; the others are even.
+// Sets the rate of formats whose frames have even times. In glTF and CSV each frame has its own
+// time.
 void settle_rate(const std::string& format, const takes::FrameSource& source,
                  exporting::Choice& choice) {
   if (choice.rate_hz || format == "glb" || format == "csv") return;
@@ -151,17 +154,17 @@ void print_json(const std::string& format, const exporting::Exported& done) {
 
 void print(const exporting::Exported& done) {
   const std::string more = done.files.size() > 1 ? " to " + done.files.back() : std::string();
-  std::printf("%s%s: %llu frames, %.2f s, %.1f MB\n", done.files.front().c_str(), more.c_str(),
-              static_cast<unsigned long long>(done.frames), done.last_s - done.first_s,
-              static_cast<double>(done.bytes) / 1e6);
-  if (done.morphs) {
-    std::printf("%zu morph targets of %s; no vertex of any frame is off by more than %.1e of the "
-                "model's diagonal\n",
-                done.morphs->targets,
-                done.morphs->by_control_vectors ? "the control vectors" : "key shapes",
-                done.morphs->greatest_error);
-  }
-  std::fflush(stdout);
+  std::cout << fmt::format("{}{}: {} frames, {:.2f} s, {:.1f} MB\n", done.files.front(), more,
+                           done.frames, done.last_s - done.first_s,
+                           static_cast<double>(done.bytes) / 1e6);
+  if (done.morphs)
+    std::cout << fmt::format(
+        "{} morph targets of {}; no vertex of any frame is off by more than {:.1e} of the "
+        "model's diagonal\n",
+        done.morphs->targets,
+        done.morphs->by_control_vectors ? "the control vectors" : "key shapes",
+        done.morphs->greatest_error);
+  std::cout << std::flush;
 }
 
 int export_command(const Options& options) {

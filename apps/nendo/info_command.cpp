@@ -16,7 +16,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
-#include "gloves/angle_sources_json.hpp"
+#include "gloves/glove_json.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::info_command {
@@ -56,7 +56,7 @@ void print_json(const driver::GloveInfo& info) {
   cli::print_line(line);
 }
 
-// "a, b, c" in lines of at most `width` characters.
+// Returns "a, b, c" in lines of at most `width` characters.
 std::vector<std::string> wrapped(const std::vector<std::string>& words, std::size_t width) {
   std::vector<std::string> lines{""};
   for (std::size_t at = 0; at < words.size(); ++at) {
@@ -91,7 +91,7 @@ std::vector<std::string> angles_from(const hand::AngleSources& sources, hand::An
   return names;
 }
 
-/// Two columns, names and values, that fit 80 characters.
+/// Prints two columns, names and values, that fit 80 characters.
 class Columns {
 public:
   explicit Columns(const driver::GloveInfo& info) {
@@ -112,7 +112,8 @@ private:
   std::size_t name_width_ = 10;
 };
 
-// Which angles of the hand the glove measures; the others by the rule that makes them.
+// Prints how many angles of the hand the glove measures, and the others by the rule that estimates
+// them.
 void print_angles(const Columns& columns, SensorMask sensors) {
   const hand::AngleSources sources = hand::angle_sources(sensors);
   const auto measured = angles_from(sources, hand::AngleSource::measured).size();

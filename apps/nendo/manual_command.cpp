@@ -24,7 +24,7 @@ struct Options {
   std::string bench;
 };
 
-/// Has the commands of nendo-bench, as it described them, stand where `nendo bench` stands.
+/// Replaces the command bench of the program by the description that nendo-bench has written.
 Result<void> add_bench(const std::string& file, cli::CommandModel& program) {
   if (file.empty()) return {};
   constexpr std::uint64_t most_bytes = 1U << 20U;

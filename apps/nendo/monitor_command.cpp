@@ -13,11 +13,10 @@
 
 #include "cli/cli.hpp"
 #include "cli/terminal.hpp"
-#include "gloves/angle_sources_json.hpp"
 #include "gloves/glove_calibration.hpp"
+#include "gloves/glove_json.hpp"
 #include "gloves/glove_light.hpp"
 #include "gloves/monitor_screen.hpp"
-#include "gloves/sample_json.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::monitor_command {
@@ -31,19 +30,19 @@ struct Options {
   gloves::CalibrationOptions calibration;
 };
 
-/// Samples on their way from a glove to what is shown of them.
+/// Takes the samples of a glove and finds the calibration for each.
 struct Monitored {
   driver::Glove& glove;
   SampleRing& ring;
-  hand::ActiveCalibration* calibrations;       ///< null: counts only
-  std::uint64_t most;                          ///< samples to show; 0: no end
-  const hand::Calibration* in_force = nullptr; ///< of the sample that came last; null: none
+  hand::ActiveCalibration* calibrations;     ///< null: counts only
+  std::uint64_t most;                        ///< samples to show; 0: no end
+  const hand::Calibration* active = nullptr; ///< for the latest sample; null: none
   std::uint64_t shown = 0;
 
   bool wanted() const { return !cli::stop_requested() && (most == 0 || shown < most); }
   bool next(GloveSample& sample) {
     if (!wanted() || !ring.try_pop(sample)) return false;
-    if (calibrations != nullptr) in_force = &calibrations->follow(sample);
+    if (calibrations != nullptr) active = &calibrations->follow(sample);
     ++shown;
     return true;
   }
@@ -56,16 +55,16 @@ void show_lines(Monitored& monitored) {
     bool any = false;
     for (; monitored.next(sample); any = true) {
       const bool first = gloves.is_first(sample.side, sample.present);
-      std::cout << gloves::sample_json(sample, monitored.in_force, first) << '\n';
+      std::cout << gloves::sample_json(sample, monitored.active, first) << '\n';
     }
     if (any) std::cout.flush();
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
-/// False: the user wants to end it.
+/// Returns false if the user wants to end.
 bool handle(char key, gloves::SeenCounts& seen, gloves::GloveLight& light) {
-  if (key == 'r') seen.forget();
+  if (key == 'r') seen.clear();
   if (key == 'l') light.show(!light.is_lit());
   return key != 'q';
 }
@@ -81,11 +80,11 @@ void show_screen(Monitored& monitored) {
   bool goes_on = true;
   while (goes_on && monitored.wanted() && !terminal.is_gone()) {
     for (; monitored.next(sample); any = true)
-      seen.see(sample);
+      seen.add(sample);
     const HostTime now = HostClock::now();
     const gloves::MonitorPicture picture{&monitored.glove.info(), monitored.glove.stats(),
                                          any ? &sample : nullptr, &seen,
-                                         monitored.in_force,      to_seconds(now - sample.arrival),
+                                         monitored.active,        to_seconds(now - sample.arrival),
                                          light.is_lit(),          terminal.has_keys()};
     lines = gloves::monitor_lines(picture, terminal.size());
     terminal.draw(lines);

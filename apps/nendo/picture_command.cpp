@@ -9,17 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include <nendo/viewer/picture.hpp>
-
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "render/picture.hpp"
 #include "takes/take.hpp"
 
 namespace nendo::app::picture_command {
 namespace {
 
-using namespace nendo::viewer;
+using namespace nendo::render;
 
 struct Options {
   std::string file;
@@ -68,7 +67,7 @@ Result<Wanted> check(const Options& options) {
   return Wanted{*view, *size};
 }
 
-// Of the take's times, those that are asked for.
+// Returns the times of the take that are asked for.
 Result<std::vector<double>> times_of(const Options& options, const takes::Take& take) {
   if ((options.time_s || options.strip > 0) && !(take.duration_s > 0.0))
     return bad(options.file, "a mesh has no times; leave --time and --strip out");
@@ -92,7 +91,7 @@ std::string seconds_text(double time_s) {
   return text;
 }
 
-// All scenes in one frame, so that a strip does not jump.
+// Returns a camera that shows all scenes, so that a strip does not jump.
 Camera camera_for(const std::vector<Scene>& scenes, View view, Size size) {
   std::vector<Eigen::Vector3f> points;
   for (const Scene& scene : scenes) {
@@ -114,7 +113,7 @@ std::vector<Panel> draw_strip(const std::vector<Scene>& scenes, const std::vecto
   return panels;
 }
 
-// From one distance, so that the model keeps its size as it turns.
+// Draws all pictures from one distance, so that the model keeps its size as it turns.
 std::vector<Panel> draw_turntable(const std::vector<Scene>& scenes, std::uint32_t count,
                                   const Wanted& wanted) {
   std::vector<Camera> cameras;
@@ -163,9 +162,9 @@ Result<void> make_picture(const Options& options) {
   const SceneBuilder builder(take->rest, take->units_per_metre);
   std::vector<Scene> scenes;
   for (const double time : *times) {
-    const auto moment = take->moment_at(time);
-    if (!moment) return moment.error();
-    builder.build(*moment, {}, scenes.emplace_back());
+    const auto scene_frame = take->frame_at(time);
+    if (!scene_frame) return scene_frame.error();
+    builder.build(*scene_frame, {}, scenes.emplace_back());
   }
   return write_panels(options, options.turntable > 0
                                    ? draw_turntable(scenes, options.turntable, *wanted)

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <thread>
 
 #include <nendo/flow/tick_grid.hpp>
@@ -10,7 +11,6 @@
 #include <nendo/hand/sensor_gate.hpp>
 
 #include "cli/cli.hpp"
-#include "gloves/hand_length.hpp"
 #include "gloves/open_hand.hpp"
 #include "gloves/pose_output.hpp"
 #include "gloves/sample_grid.hpp"
@@ -32,7 +32,7 @@ struct Options {
   gloves::CalibrationOptions calibration;
 };
 
-/// As fine as the grid keeps it, so that a file says the rate that it has.
+/// Returns the rate as the grid rounds it, so that a file states the rate that it has.
 double rate_of(const Options& options) {
   const double rate_hz =
       options.rate_hz == 0.0 && !options.bvh.empty() ? default_bvh_rate_hz : options.rate_hz;
@@ -56,7 +56,7 @@ hand::HandSkeleton skeleton_for(Side side, const gloves::OpenHand& hand) {
   return hand::HandSkeleton(side, hand.wearer.of(side).size);
 }
 
-/// From samples to poses in an output, until there are enough.
+/// Makes poses of samples and puts them into an output, until there are enough.
 class PoseStream {
 public:
   PoseStream(const gloves::OpenHand& hand, const Options& options, gloves::PoseOutput& output)
@@ -64,13 +64,13 @@ public:
         left_(skeleton_for(Side::left, hand)), right_(skeleton_for(Side::right, hand)),
         grid_(start_, rate_of(options)) {}
 
-  /// False: no more is wanted, or the output failed.
+  /// Returns false if no more is wanted or the output has failed.
   bool take(const GloveSample& sample) {
     const GloveSample passed = gate_.pass(sample, calibration_.follow(sample));
     return grid_.take(
         passed, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
   }
-  /// False: no more is wanted, or the output failed.
+  /// Returns false if no more is wanted or the output has failed.
   bool pass_time(HostTime now) {
     const bool goes_on = grid_.pass_time(
         now, [this](HostTime time, const GloveSample& newest) { return put(time, newest); });
@@ -131,11 +131,9 @@ int poses(const Options& options) {
   auto hand = gloves::open_hand(options.glove);
   if (!hand) return cli::report(hand.error());
   cli::install_stop_signals();
-  if (const auto started = hand->glove->start(*hand->ring); !started)
-    return cli::report(started.error());
-  if (const auto came = gloves::wait_for_first_sample(*hand); !came)
-    return cli::report(came.error());
-  if (const auto done = gloves::calibrate(*hand, options.calibration, options.length); !done)
+  const std::span hands(&*hand, 1);
+  if (const auto started = gloves::start(hands); !started) return cli::report(started.error());
+  if (const auto done = gloves::calibrate(hands, options.calibration, options.length); !done)
     return cli::report(done.error());
   const auto output = open_output(options, *hand); // a BVH file begins with the wearer's bones
   if (!output) return cli::report(output.error());

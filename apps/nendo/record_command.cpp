@@ -1,16 +1,15 @@
 // nendo record: what gloves send, as a recording.
 
-#include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <thread>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include "cli/cli.hpp"
-#include "cli/durations.hpp"
 #include "cli/json_line.hpp"
-#include "gloves/hand_length.hpp"
 #include "nendo/commands.hpp"
 #include "session/run_recording.hpp"
 
@@ -58,14 +57,9 @@ Result<std::vector<gloves::OpenHand>> open_gloves(const Options& options) {
                      std::string(name_of(hands[0].side)) +
                      "-hand gloves; where that is wrong, add ?hand=left or ?hand=right"};
   }
-  for (auto& hand : hands) {
-    if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
-  }
-  for (auto& hand : hands) {
-    if (const auto came = gloves::wait_for_first_sample(hand); !came) return came.error();
-    if (const auto done = gloves::calibrate(hand, options.calibration, options.length); !done)
-      return done.error();
-  }
+  if (const auto started = gloves::start(hands); !started) return started.error();
+  if (const auto done = gloves::calibrate(hands, options.calibration, options.length); !done)
+    return done.error();
   return hands;
 }
 
@@ -76,7 +70,7 @@ recording::Setup setup_for(const std::vector<gloves::OpenHand>& hands, const Opt
   return setup;
 }
 
-/// From the gloves' rings to the input log, until it is over.
+/// Copies samples from the gloves' rings to the input log, until the recording is over.
 void copy_samples(const std::vector<gloves::OpenHand>& hands, flow::InputLog& input_log,
                   double duration_s) {
   const HostTime start = HostClock::now();
@@ -114,7 +108,7 @@ int record(Options& options) {
   if (!recorder) return cli::report(recorder.error());
   copy_samples(*hands, input_log, options.duration_s);
   const auto recorded = (*recorder)->end();
-  if (!recorded) return static_cast<int>(recorded.error().code); // it was told at once
+  if (!recorded) return static_cast<int>(recorded.error().code); // it was reported at once
   const double elapsed_s = to_seconds(HostClock::now() - start);
   if (options.json) {
     cli::print_line(nlohmann::ordered_json{{"event", "recorded"},
@@ -123,10 +117,9 @@ int record(Options& options) {
                                            {"lost", recorded->lost},
                                            {"bytes", recorded->bytes}});
   } else {
-    std::printf("recorded %llu samples in %.1f s, %llu lost; %llu bytes in %s\n",
-                static_cast<unsigned long long>(recorded->samples), elapsed_s,
-                static_cast<unsigned long long>(recorded->lost),
-                static_cast<unsigned long long>(recorded->bytes), options.out.c_str());
+    std::cout << fmt::format("recorded {} samples in {:.1f} s, {} lost; {} bytes in {}\n",
+                             recorded->samples, elapsed_s, recorded->lost, recorded->bytes,
+                             options.out);
   }
   return 0;
 }

@@ -1,7 +1,9 @@
 // nendo recording: looks after recordings.
 
-#include <cstdio>
+#include <iostream>
 #include <memory>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
@@ -36,11 +38,10 @@ int info(const Options& options) {
 int check(const Options& options) {
   const auto summary = recording::summarise(options.file);
   if (!summary) return cli::report(summary.error());
-  const auto entries = static_cast<unsigned long long>(summary->ticks);
   if (summary->is_whole()) {
-    std::printf("%s: whole, %llu bytes, %llu ticks%s\n", options.file.c_str(),
-                static_cast<unsigned long long>(summary->bytes), entries,
-                summary->ending ? "" : "; it has no end, so the recorder was cut off");
+    std::cout << fmt::format("{}: whole, {} bytes, {} ticks{}\n", options.file, summary->bytes,
+                             summary->ticks,
+                             summary->ending ? "" : "; it has no end, so the recorder was cut off");
     return 0;
   }
   takes::print_damages(*summary);
@@ -52,8 +53,7 @@ int check(const Options& options) {
 
 void print_made(const Options& options, std::uint64_t count, const char* what,
                 std::uint64_t bytes) {
-  std::printf("%s: %llu %s, %llu bytes\n", options.out.c_str(),
-              static_cast<unsigned long long>(count), what, static_cast<unsigned long long>(bytes));
+  std::cout << fmt::format("{}: {} {}, {} bytes\n", options.out, count, what, bytes);
 }
 
 int repair(const Options& options) {

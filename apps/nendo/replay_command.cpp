@@ -1,11 +1,12 @@
 // nendo replay: a recorded run once more, at any speed or without a clock.
 
 #include <algorithm>
-#include <cstdio>
+#include <iostream>
 #include <memory>
 #include <thread>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
@@ -33,14 +34,14 @@ struct Options {
   bool json = false;
 };
 
-/// How a replay went.
+/// The result of a replay.
 struct Replayed {
   std::uint64_t ticks = 0;
   bool to_the_end = false;
-  bool exact = false;           ///< nothing was missing
-  std::optional<bool> the_same; ///< as the live run's shape; nothing: it does not tell
-  std::uint64_t shapes = 0;     ///< recorded ones that were compared
-  double farthest = 0.0;        ///< of a vertex from where they have it, model units
+  bool exact = false;             ///< nothing was missing
+  std::optional<bool> same_shape; ///< as the live run has made; nothing: that is unknown
+  std::uint64_t shapes = 0;       ///< recorded shapes that were compared
+  double farthest = 0.0;          ///< distance of a vertex from where they have it, model units
   double elapsed_s = 0.0;
   deform::Points shape;
 };
@@ -84,7 +85,7 @@ private:
   std::optional<HostTime> begun_;
 };
 
-// With the shape that is recorded behind the latest tick, if one is.
+// Compares the loop's shape with that which is recorded behind the latest tick, if one is.
 void compare_shapes(recording::TakeReader& reader, flow::DeformLoop& loop, Replayed& done) {
   const auto recorded = reader.take_shape();
   if (!recorded) return;
@@ -124,7 +125,7 @@ Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) 
   const auto& ending = reader->ending();
   const bool of_this_model = recording::sum_of(model.vertices) == reader->setup().loop->mesh_sum;
   if (done.to_the_end && done.exact && of_this_model && ending && ending->shape)
-    done.the_same = *ending->shape == recording::sum_of(done.shape);
+    done.same_shape = *ending->shape == recording::sum_of(done.shape);
   return done;
 }
 
@@ -135,26 +136,26 @@ void print(const Options& options, const Replayed& done) {
         {"event", "replayed"},           {"ticks", done.ticks}, {"elapsed_s", done.elapsed_s},
         {"to_the_end", done.to_the_end}, {"exact", done.exact}, {"same_shape", nullptr},
         {"vertices", sum.vertices},      {"crc32c", sum.crc},   {"result", options.out}};
-    if (done.the_same) line["same_shape"] = *done.the_same;
+    if (done.same_shape) line["same_shape"] = *done.same_shape;
     line["shapes"] = done.shapes;
     line["farthest_from_shapes"] = done.farthest;
     cli::print_line(line);
     return;
   }
-  std::printf("replayed %llu ticks in %.2f s; ", static_cast<unsigned long long>(done.ticks),
-              done.elapsed_s);
-  if (done.the_same) {
-    std::printf(*done.the_same ? "the shape is the live run's, bit for bit\n"
-                               : "the shape is NOT the live run's\n");
+  std::cout << fmt::format("replayed {} ticks in {:.2f} s; ", done.ticks, done.elapsed_s);
+  if (done.same_shape) {
+    std::cout << (*done.same_shape ? "the shape is the live run's, bit for bit\n"
+                                   : "the shape is NOT the live run's\n");
   } else {
-    std::printf(done.exact
-                    ? "nothing is missing\n"
-                    : "something is missing in the recording, so the shape may be another\n");
+    std::cout << (done.exact
+                      ? "nothing is missing\n"
+                      : "something is missing in the recording, so the shape may be another\n");
   }
   if (done.shapes > 0)
-    std::printf("%llu recorded shapes; no vertex is farther than %.3g from where they have it\n",
-                static_cast<unsigned long long>(done.shapes), done.farthest);
-  std::fflush(stdout);
+    std::cout << fmt::format(
+        "{} recorded shapes; no vertex is farther than {:.3g} from where they have it\n",
+        done.shapes, done.farthest);
+  std::cout << std::flush;
 }
 
 int replay(const Options& options) {
@@ -179,7 +180,7 @@ int replay(const Options& options) {
       if (const auto written = deform::write_mesh(options.out, *model); !written)
         return cli::report(written.error());
     }
-    return done->the_same.value_or(true) ? 0 : static_cast<int>(Errc::failed);
+    return done->same_shape.value_or(true) ? 0 : static_cast<int>(Errc::failed);
   }
 }
 

@@ -15,8 +15,6 @@
 #include "nendo/commands.hpp"
 #include "service/service_notice.hpp"
 #include "session/browser_view.hpp"
-#include "session/filter_options.hpp"
-#include "session/kernel_options.hpp"
 #include "session/live_view.hpp"
 #include "session/loop_options.hpp"
 #include "session/open_hands.hpp"
@@ -32,7 +30,7 @@ struct CommandOptions {
   std::string mode = "type1";
   std::string switch_action = "none";
   session::FilterArguments filter;
-  session::KernelOptions kernel;
+  session::KernelArguments kernel;
   session::LoopArguments loop;
   session::ViewOptions view;
   std::vector<std::string> publish;
@@ -41,7 +39,7 @@ struct CommandOptions {
   bool not_injective = false;
 };
 
-// Up to this size a tick of 64 links takes less than a tick at 90 Hz has.
+// Up to this size, a tick of 64 links takes less time than a tick at 90 Hz has.
 constexpr Eigen::Index most_injective_unasked = 100'000;
 
 std::string dated_name() {
@@ -108,6 +106,27 @@ Result<void> check(CommandOptions& options) {
   return check_outputs(options);
 }
 
+/// The views that the options ask for.
+struct Views {
+  std::unique_ptr<session::Observer> window;
+  std::unique_ptr<session::BrowserView> browser;
+};
+
+Result<Views> open_views(const CommandOptions& options) {
+  Views views;
+  if (options.view.window) {
+    auto window = session::open_live_view(options.view, options.run);
+    if (!window) return window.error();
+    views.window = *std::move(window);
+  }
+  if (!options.web.empty()) {
+    auto browser = session::open_browser_view(options.web, options.run.mesh);
+    if (!browser) return browser.error();
+    views.browser = *std::move(browser);
+  }
+  return views;
+}
+
 int run(CommandOptions& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   auto published = session::publish_to(options.publish);
@@ -120,18 +139,8 @@ int run(CommandOptions& options) {
   cli::install_stop_signals();
   session::RunOptions& wanted = options.run;
   const flow::RealtimeProcess process(wanted.realtime);
-  std::unique_ptr<session::Observer> window;
-  if (options.view.window) {
-    auto opened = session::open_live_view(options.view, wanted);
-    if (!opened) return cli::report(opened.error());
-    window = *std::move(opened);
-  }
-  std::unique_ptr<session::BrowserView> browser;
-  if (!options.web.empty()) {
-    auto opened = session::open_browser_view(options.web, wanted.mesh);
-    if (!opened) return cli::report(opened.error());
-    browser = *std::move(opened);
-  }
+  const auto views = open_views(options);
+  if (!views) return cli::report(views.error());
   EventCount event_count;
   auto opened = session::open_hands(wanted, *model, event_count);
   if (!opened) return cli::report(opened.error());
@@ -144,11 +153,11 @@ int run(CommandOptions& options) {
   };
   for (const auto& sink : *published)
     participants.sinks.push_back(sink.get());
-  if (browser) {
-    participants.sinks.push_back(browser.get());
-    participants.observers.push_back(browser.get());
+  if (views->browser) {
+    participants.sinks.push_back(views->browser.get());
+    participants.observers.push_back(views->browser.get());
   }
-  if (window) participants.observers.push_back(window.get());
+  if (views->window) participants.observers.push_back(views->window.get());
   auto grants = process.grants();
   grants.insert(grants.end(), opened->grants.begin(), opened->grants.end());
   auto outcome =
@@ -163,8 +172,8 @@ int run(CommandOptions& options) {
   return recorded ? 0 : static_cast<int>(Errc::failed);
 }
 
-void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions>& options) {
-  session::RunOptions& run_options = options->run;
+void add_shape_options(cli::Command& command, CommandOptions& options) {
+  session::RunOptions& run_options = options.run;
   std::string gloves;
   for (const auto& [grammar, summary] : driver::driver_summaries()) {
     gloves += "\n  " + std::string(grammar) + "\n      " + std::string(summary);
@@ -177,20 +186,25 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
   command.add_option("MODEL,--mesh", run_options.mesh,
                      "OBJ or PLY file to shape; without it, the shipped Moai");
   command.add_option(
-      "--mode", options->mode,
+      "--mode", options.mode,
       "type1: the rest shape follows the fingertips; type2: strokes along their paths");
   command.add_option(
-      "--radius", options->radius,
+      "--radius", options.radius,
       "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix");
   gloves::add_calibration_options(command, run_options.calibration);
   gloves::add_hand_length(command, run_options.length);
-  session::add_kernel_options(command, options->kernel);
-  command.add_flag("--injective", options->injective,
+  session::add_kernel_options(command, options.kernel);
+  command.add_flag("--injective", options.injective,
                    "Never fold: in links that each stay injective; fingertips whose ways cross are "
                    "held apart. By default with models of up to " +
                        std::to_string(most_injective_unasked) + " vertices");
-  command.add_flag("--no-injective", options->not_injective, "Whatever the fingertips ask for");
+  command.add_flag("--no-injective", options.not_injective, "Whatever the fingertips ask for");
+}
+
+void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions>& options) {
+  session::RunOptions& run_options = options->run;
+  add_shape_options(command, *options);
   command.add_option("--rate", run_options.loop.rate_hz, "Ticks a second, 1 to 10000");
   options->loop.add_to(command);
   command.add_option("--switch", options->switch_action,

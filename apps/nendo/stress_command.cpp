@@ -1,10 +1,10 @@
 // nendo stress: how punctual the loop is on this machine, and why not.
 
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
 #include <nendo/base/files.hpp>
@@ -41,14 +41,11 @@ stress::StressProgress progress_for(const stress::StressOptions& options) {
              const stress::TickTally& tally, double elapsed_s) mutable {
     if (!terminal && elapsed_s < next_s) return;
     next_s += 2.0;
-    char line[160];
     const auto& lateness = tally[stress::Measure::lateness].raw;
-    std::snprintf(line, sizeof line,
-                  "%5.1f of %.1f s  %llu ticks, lateness p50 %.1f us, p99 %.1f us, max %.1f us",
-                  elapsed_s, duration_s, static_cast<unsigned long long>(tally.ticks()),
-                  static_cast<double>(lateness.percentile(0.5).count()) / 1e3,
-                  static_cast<double>(lateness.percentile(0.99).count()) / 1e3,
-                  static_cast<double>(lateness.max().count()) / 1e3);
+    const std::string line = fmt::format(
+        "{:5.1f} of {:.1f} s  {} ticks, lateness p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us",
+        elapsed_s, duration_s, tally.ticks(), to_microseconds(lateness.percentile(0.5)),
+        to_microseconds(lateness.percentile(0.99)), to_microseconds(lateness.max()));
     std::cerr << (terminal ? "\r" : "") << line << (terminal ? "\x1b[K" : "\n") << std::flush;
   };
 }

@@ -3,10 +3,9 @@
 #include <array>
 #include <filesystem>
 
-#include <nendo/web/model_message.hpp>
-
 #include "cli/cli.hpp"
 #include "session/loop_change.hpp"
+#include "web/model_message.hpp"
 
 namespace nendo::session {
 
@@ -19,9 +18,9 @@ Result<void> BrowserView::begin(const LoopStart& start) {
                                       " vertices, and a browser takes " +
                                       std::to_string(web::max_vertices) +
                                       " at most; run it without --web, or thin it out"};
-  const FrameRoom room = room_of_frames(placed);
-  stream_ = std::make_shared<web::FrameStream>(layout, options.sculptor.mode, room.fields,
-                                               room.functions);
+  const FrameCapacity most = frame_capacity(placed);
+  stream_ = std::make_shared<web::FrameStream>(layout, options.sculptor.mode, most.fields,
+                                               most.functions);
   server_->present(stream_, web::model_message(layout, start.model, placed.setup.inputs,
                                                {model_name_, options.rate_hz,
                                                 placed.setup.placement.units_per_metre,

@@ -4,10 +4,9 @@
 #include <memory>
 #include <string>
 
-#include <nendo/web/server.hpp>
-
 #include "session/observer.hpp"
 #include "session/sink.hpp"
+#include "web/server.hpp"
 
 namespace nendo::session {
 

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <utility>
 
-#include <nendo/viewer/live_window.hpp>
-
 #include "session/loop_change.hpp"
+#include "viewer/live_window.hpp"
 
 namespace nendo::session {
 
+using namespace nendo::render;
 using namespace nendo::viewer;
 
 namespace {

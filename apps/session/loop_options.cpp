@@ -1,6 +1,7 @@
 #include "session/loop_options.hpp"
 
 #include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include "cli/two_processors.hpp"
 
@@ -42,8 +43,8 @@ void LoopArguments::add_to(cli::Command& command, bool short_names) {
       .under("Timing");
 }
 
-/// The loop may have to wait for the second thread, which therefore must not come after others;
-/// but a thread that spins above all others leaves them no processor.
+/// The loop may have to wait for the second thread, so other threads must not delay it. But a
+/// thread that spins above all others would leave them no processor.
 Result<void> LoopArguments::check_threads() const {
   if (threads != 1 && threads != 2)
     return Error{Errc::usage, "--threads " + std::to_string(threads) + ": use 1 or 2"};
@@ -85,6 +86,72 @@ Result<void> LoopArguments::parse(flow::LoopOptions& loop, flow::RealtimeOptions
                               "thread that spins later, not sooner"};
   loop.sculptor.deformer.evaluation.threads = static_cast<int>(threads);
   return check_threads();
+}
+
+Result<hand::FilterOptions> FilterArguments::parse() const {
+  // The limits are wider than any use: below, a hand would be minutes late, and above, nothing is
+  // smoothed.
+  constexpr double least_cutoff_hz = 0.01;
+  constexpr double most_cutoff_hz = 1000.0;
+  constexpr double most_beta = 1000.0;
+  hand::FilterOptions options;
+  const auto known = hand::filter_named(kind);
+  if (!known) return Error{Errc::usage, "--filter " + kind + ": unknown; use off or one-euro"};
+  options.kind = *known;
+  if (options.kind == hand::FilterKind::off && (min_cutoff_hz || beta)) {
+    return Error{Errc::usage, std::string(min_cutoff_hz ? "--filter-min-cutoff" : "--filter-beta") +
+                                  ": there is no filter; add --filter one-euro"};
+  }
+  options.min_cutoff_hz = min_cutoff_hz.value_or(options.min_cutoff_hz);
+  options.beta_hz_per_rad_s = beta.value_or(options.beta_hz_per_rad_s);
+  // Written so that NaN is refused.
+  if (!(options.min_cutoff_hz >= least_cutoff_hz && options.min_cutoff_hz <= most_cutoff_hz))
+    return Error{Errc::usage, "--filter-min-cutoff: use 0.01 to 1000 Hz"};
+  if (!(options.beta_hz_per_rad_s >= 0.0 && options.beta_hz_per_rad_s <= most_beta))
+    return Error{Errc::usage, "--filter-beta: use 0 to 1000 Hz for each rad/s"};
+  return options;
+}
+
+void add_filter_options(cli::Command& command, FilterArguments& arguments) {
+  const hand::FilterOptions usual;
+  command.add_option("--filter", arguments.kind,
+                     "off, or one-euro: smooths the joints' angles, at rest more than in motion; "
+                     "the summary says how late that makes them");
+  command.add_option(
+      "--filter-min-cutoff", arguments.min_cutoff_hz,
+      fmt::format("The filter's cutoff for a joint at rest, Hz; lower is calmer, and later. "
+                  "Without it, {:g}",
+                  usual.min_cutoff_hz));
+  command.add_option(
+      "--filter-beta", arguments.beta,
+      fmt::format("Hz by which the cutoff rises with each rad/s of a joint's speed; higher is less "
+                  "late in motion. Without it, {:g}",
+                  usual.beta_hz_per_rad_s));
+}
+
+Result<deform::CsrbfOptions> KernelArguments::parse() const {
+  deform::CsrbfOptions options;
+  const auto known_kernel = deform::wendland_named(kernel);
+  if (!known_kernel) {
+    return Error{Errc::usage,
+                 "--kernel " + kernel +
+                     ": unknown; use wendland-c0, wendland-c2, wendland-c4 or wendland-c6"};
+  }
+  const auto known_polynomial = deform::polynomial_named(polynomial);
+  if (!known_polynomial) {
+    return Error{Errc::usage,
+                 "--polynomial " + polynomial + ": unknown; use none, constant or linear"};
+  }
+  options.kernel = *known_kernel;
+  options.polynomial = *known_polynomial;
+  return options;
+}
+
+void add_kernel_options(cli::Command& command, KernelArguments& arguments) {
+  command.add_option("--kernel", arguments.kernel,
+                     "wendland-c0, wendland-c2, wendland-c4 or wendland-c6");
+  command.add_option("--polynomial", arguments.polynomial,
+                     "none, constant or linear; anything but none moves the whole model");
 }
 
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants) {

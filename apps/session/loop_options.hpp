@@ -1,7 +1,8 @@
 #pragma once
-// The options of the commands that run the loop: the pace, the rights that it asks of the system,
-// and whether a second thread helps.
+// The options of the commands that run the loop or deform: the pace, the rights that the loop asks
+// of the system, a second thread, the filter, and the kernel.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/realtime.hpp>
+#include <nendo/hand/joint_filter.hpp>
 
 #include "cli/command.hpp"
 
@@ -32,6 +34,27 @@ struct LoopArguments {
 private:
   Result<void> check_threads() const;
 };
+
+/// The options --filter, --filter-min-cutoff and --filter-beta.
+struct FilterArguments {
+  std::string kind = "off";
+  std::optional<double> min_cutoff_hz; ///< nullopt: hand::FilterOptions' own
+  std::optional<double> beta;          ///< Hz for each rad/s; nullopt: hand::FilterOptions' own
+
+  /// Error: usage, naming what can be used.
+  Result<hand::FilterOptions> parse() const;
+};
+void add_filter_options(cli::Command& command, FilterArguments& arguments);
+
+/// The options --kernel and --polynomial.
+struct KernelArguments {
+  std::string kernel = "wendland-c2";
+  std::string polynomial = "none";
+
+  /// Error: usage, naming the known names.
+  Result<deform::CsrbfOptions> parse() const;
+};
+void add_kernel_options(cli::Command& command, KernelArguments& arguments);
 
 /// Returns an object for each right that was asked for, with name, wanted, granted, why and remedy.
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants);

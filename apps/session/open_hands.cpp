@@ -6,13 +6,13 @@
 #include <nendo/driver/devices.hpp>
 
 #include "cli/cli.hpp"
-#include "gloves/touching_glove.hpp"
 
 namespace nendo::session {
 namespace {
 
-// Both hands that the machine has, or simulated ones. A glove that is there but may not be used is
-// an error; one that does not answer is told of, and the other hand goes on alone.
+// Opens the gloves that the machine has, one for each hand, or simulated ones. A glove that is
+// there but may not be used is an error. If one does not answer, a note says so, and the other hand
+// goes on alone.
 Result<std::vector<gloves::OpenHand>> open_any(EventCount* event_count) {
   std::vector<gloves::OpenHand> hands;
   std::vector<std::string> why;
@@ -77,8 +77,8 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
                             EventCount& event_count) {
   if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.event_count = &event_count;
   const bool named = !options.left.empty() || !options.right.empty();
-  EventCount* const rung = options.loop.event_count;
-  auto hands = named ? open_named(options, model, rung) : open_any(rung);
+  EventCount* const notified = options.loop.event_count;
+  auto hands = named ? open_named(options, model, notified) : open_any(notified);
   if (!hands) return hands.error();
   if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
     return fine.error();
@@ -86,15 +86,10 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
   {
     const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
     if (readers.grant()) opened.grants.push_back(*readers.grant());
-    for (auto& hand : opened.hands) {
-      if (const auto started = hand.glove->start(*hand.ring); !started) return started.error();
-    }
+    if (const auto started = gloves::start(opened.hands); !started) return started.error();
   }
-  for (auto& hand : opened.hands) {
-    if (const auto came = gloves::wait_for_first_sample(hand); !came) return came.error();
-    if (const auto done = gloves::calibrate(hand, options.calibration, options.length); !done)
-      return done.error();
-  }
+  if (const auto done = gloves::calibrate(opened.hands, options.calibration, options.length); !done)
+    return done.error();
   return opened;
 }
 

@@ -12,15 +12,15 @@ namespace nendo::session {
 
 struct RunHands {
   std::vector<gloves::OpenHand> hands;
-  std::vector<flow::Grant> grants; ///< what the system said to the readers' priority
+  std::vector<flow::Grant> grants; ///< whether the readers got their priority
 };
 
 /// Opens and starts the gloves and waits for the first sample of each. If none is named, it uses
 /// the gloves that are identified or, if there are none, simulated hands, and says so. Hands of
 /// sim:touch touch `model`. The readers get the priority that belongs to the loop's. With
 /// OverrunPolicy::sample, `event_count` wakes the loop; it must outlive the loop and the gloves.
-/// Errors: those of open_glove(), known_hands() and touching_context(); no_device if no sample
-/// comes.
+/// Errors: usage (a switch action without a wrist switch), and those of open_glove(),
+/// gloves::calibrate() and touching_context().
 Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
                             EventCount& event_count);
 

@@ -9,12 +9,12 @@
 namespace nendo::session {
 namespace {
 
-// Of the model's longest side. On the stage that is 16 cm: a finger shapes what is about it, and
-// its neighbours' supports overlap with it enough that no ridge is left between two fingers that
+// A fraction of the model's longest side, 16 cm on the stage. A finger shapes what is about it, and
+// the supports of its neighbours overlap enough that no ridge is left between two fingers that
 // press together.
 constexpr double default_radius_fraction = 0.2;
-// A cut of type 2, of the radius: far below the step at which a single finger would fold the
-// surface (0.47).
+// The length of a piece of type 2, as a fraction of the radius. It is far below the step at which a
+// single finger would fold the surface (0.47).
 constexpr double piece_fraction = 0.05;
 
 std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hands,
@@ -121,7 +121,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   return PlacedLoop{std::move(loop), largest_radius, std::move(setup), options.recording.on};
 }
 
-FrameRoom room_of_frames(const PlacedLoop& placed) {
+FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto points = 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
   const auto& supports = placed.setup.options.sculptor.deformer.supports;
   return {placed.loop->frames().front().fields.room(),

@@ -22,9 +22,9 @@ struct PlacedSetup {
 
 struct PlacedLoop {
   std::unique_ptr<flow::DeformLoop> loop;
-  double radius = 0.0; ///< the largest
+  double radius = 0.0; ///< the largest of its supports, in model units
   PlacedSetup setup;
-  bool recorded = false; ///< to a file, as long as it runs
+  bool recorded = false; ///< it is recorded to a file
 };
 
 /// The things with which a loop begins. All of them outlive the loop.
@@ -49,11 +49,11 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
                               const std::optional<Carryover>& carryover = {});
 
 /// The most that a frame of a loop may hold.
-struct FrameRoom {
+struct FrameCapacity {
   std::size_t fields = 0;
-  std::size_t functions = 0; ///< of a field
+  std::size_t functions = 0; ///< of each field
 };
-FrameRoom room_of_frames(const PlacedLoop& placed);
+FrameCapacity frame_capacity(const PlacedLoop& placed);
 
 /// Returns the supports that --radius asks for, or nothing if the text is empty. Error: usage.
 Result<std::optional<deform::Supports>> parse_radius(const std::string& text);

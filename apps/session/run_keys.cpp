@@ -6,15 +6,16 @@
 
 namespace nendo::session {
 
-RunKeys::RunKeys(std::chrono::milliseconds patience, bool keeps) : patience_(patience) {
-  if (!keys_.are_there()) return;
+RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : timeout_(timeout) {
+  if (!keys_.are_available()) return;
   cli::note(
       "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes; s saves; " +
-      std::string(keeps ? "k keeps the recording of what was just done; " : "") + "q ends");
+      std::string(keeps_last_minute ? "k keeps the recording of what was just done; " : "") +
+      "q ends");
 }
 
 void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
-  const auto key = keys_.next(patience_);
+  const auto key = keys_.next(timeout_);
   if (!key) return;
   const bool held = status.frame.held;
   if (*key == 'g') commands.try_push(held ? flow::Request::let_go : flow::Request::grab);
@@ -27,7 +28,7 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
 }
 
 void RunKeys::report(const std::string& message) {
-  std::cerr << '\n'; // a line that progress has begun stays as it is
+  std::cerr << '\n'; // so that a line of progress stays as it is
   cli::note(message);
 }
 

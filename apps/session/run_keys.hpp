@@ -4,16 +4,16 @@
 #include <chrono>
 #include <string>
 
-#include "cli/keys.hpp"
+#include "cli/terminal.hpp"
 #include "session/observer.hpp"
 
 namespace nendo::session {
 
 class RunKeys final : public Observer {
 public:
-  /// Prints the keys on standard error, if keys can come. `patience` is how long update() waits for
-  /// a key. `keeps` says that a recording is kept in memory.
-  RunKeys(std::chrono::milliseconds patience, bool keeps);
+  /// Prints the keys on standard error, if keys can come. `timeout` is how long update() waits for
+  /// a key. `keeps_last_minute` adds the key that saves it.
+  RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute);
 
   void update(const RunStatus& status, flow::CommandRing& commands) override;
   /// Writes to standard error, also if no keys can come.
@@ -21,7 +21,7 @@ public:
 
 private:
   cli::Keys keys_;
-  std::chrono::milliseconds patience_;
+  std::chrono::milliseconds timeout_;
 };
 
 } // namespace nendo::session

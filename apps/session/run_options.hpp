@@ -8,7 +8,6 @@
 #include <nendo/flow/realtime.hpp>
 
 #include "gloves/glove_calibration.hpp"
-#include "gloves/hand_length.hpp"
 #include "session/run_recording.hpp"
 
 namespace nendo::session {

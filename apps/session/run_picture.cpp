@@ -4,11 +4,12 @@
 #include <vector>
 
 #include <nendo/flow/finger_supports.hpp>
-#include <nendo/viewer/picture.hpp>
+
+#include "render/picture.hpp"
 
 namespace nendo::session {
 
-using namespace nendo::viewer;
+using namespace nendo::render;
 
 namespace {
 
@@ -23,7 +24,7 @@ RunPicture::RunPicture(std::filesystem::path path, const deform::Mesh& model,
   if (!path_.empty()) before_ = model;
 }
 
-void RunPicture::see(const flow::Frame& frame) {
+void RunPicture::add(const flow::Frame& frame) {
   if (path_.empty()) return;
   holds_.follow(frame);
   set_hands(frame, holds_, last_);

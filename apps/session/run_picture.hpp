@@ -4,7 +4,8 @@
 #include <filesystem>
 
 #include <nendo/flow/deform_loop.hpp>
-#include <nendo/viewer/scene_frame.hpp>
+
+#include "render/scene_frame.hpp"
 
 namespace nendo::session {
 
@@ -15,7 +16,7 @@ public:
 
   /// Takes a frame. Call it for each frame that the main thread sees, from the beginning on.
   /// Allocates.
-  void see(const flow::Frame& frame);
+  void add(const flow::Frame& frame);
   /// Draws and writes the picture. Call it after the last frame, with the final shape. Blocks for
   /// some seconds. Error: failed.
   Result<void> write(const deform::Points& final_shape);
@@ -24,9 +25,9 @@ private:
   std::filesystem::path path_;
   deform::Mesh before_;
   deform::Supports supports_;
-  viewer::HoldTracker holds_;
-  viewer::SceneFrame first_, last_;
-  double units_per_metre_ = 0.0; ///< 0: no frame has been seen
+  render::HoldTracker holds_;
+  render::SceneFrame first_, last_;
+  double units_per_metre_ = 0.0; ///< 0: no frame was added
 };
 
 } // namespace nendo::session

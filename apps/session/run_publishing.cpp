@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include <nendo/publish/datagrams.hpp>
-#include <nendo/publish/segment.hpp>
-#include <nendo/publish/target.hpp>
+#include "publish/datagrams.hpp"
+#include "publish/segment.hpp"
+#include "publish/target.hpp"
 
 namespace nendo::session {
 namespace {
@@ -13,15 +13,15 @@ namespace {
 publish::LoopOutline outline_of(const LoopStart& start) {
   const PlacedLoop& placed = start.placed;
   const auto& options = placed.setup.options;
-  const FrameRoom room = room_of_frames(placed);
+  const FrameCapacity most = frame_capacity(placed);
   publish::LoopOutline outline;
   outline.model = &start.model;
   outline.layout = &placed.loop->layout();
   outline.mode = options.sculptor.mode;
   outline.rate_hz = options.rate_hz;
   outline.units_per_metre = placed.setup.placement.units_per_metre;
-  outline.most_fields = room.fields;
-  outline.functions = room.functions;
+  outline.most_fields = most.fields;
+  outline.functions = most.functions;
   return outline;
 }
 

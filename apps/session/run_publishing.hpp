@@ -10,8 +10,7 @@
 
 namespace nendo::session {
 
-/// The result of one --publish. `lost` counts records that were overwritten before they were sent,
-/// or datagrams that the system refused.
+/// The result of one --publish.
 struct PublishedTo {
   std::string target; ///< as it was asked for
   std::uint64_t records = 0;
@@ -20,8 +19,8 @@ struct PublishedTo {
   bool is_segment = false;
   bool is_locked = false; ///< of a segment: no page of it can be swapped out
   std::uint64_t datagrams = 0;
-  std::uint64_t lost_records = 0;
-  std::uint64_t refused_datagrams = 0;
+  std::uint64_t lost_records = 0;      ///< overwritten before they were sent
+  std::uint64_t refused_datagrams = 0; ///< by the system
 };
 
 /// Publishes to one place.

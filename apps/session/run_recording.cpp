@@ -6,7 +6,6 @@
 #include <nendo/deform/simd.hpp>
 
 #include "cli/cli.hpp"
-#include "cli/durations.hpp"
 #include "cli/output_place.hpp"
 #include "session/place_loop.hpp"
 
@@ -104,19 +103,19 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
   auto recorder = recording::Recorder::begin(setup, *input_log_, std::move(wanted));
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);
-  keeps_ = asked.keep_last_s > 0.0;
+  keeps_last_minute_ = asked.keep_last_s > 0.0;
   return {};
 }
 
-void RunRecorder::keep() noexcept {
-  if (keeps_) recorder_->keep();
+void RunRecorder::save_last_minute() noexcept {
+  if (keeps_last_minute_) recorder_->save_last_minute();
 }
 
 void RunRecorder::end(const deform::Mesh& shape) {
-  keeps_ = false;
+  keeps_last_minute_ = false;
   if (!recorder_) return;
   const auto recorded = recorder_->end(recording::sum_of(shape.vertices));
-  if (recorded) outcomes_.back().recorded = *recorded; // otherwise what it is was told at once
+  if (recorded) outcomes_.back().recorded = *recorded; // otherwise the error was reported at once
   recorder_.reset();
 }
 

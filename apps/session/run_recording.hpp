@@ -18,10 +18,10 @@ struct RunOptions;
 
 struct RecordingOptions {
   bool on = false;       ///< a file is recorded
-  std::string file;      ///< its name, or what the names of later ones are made of
-  std::string keep_last; ///< as parse_duration(); empty: nothing is kept in memory
+  std::string file;      ///< the name of the first file, of which later names are made
+  std::string keep_last; ///< as for cli::parse_duration(); empty: nothing is kept in memory
   double keep_last_s = 0.0;
-  std::string kept_stem; ///< what kept files are called by
+  std::string kept_stem; ///< the beginning of the names of kept files
 
   bool wanted() const noexcept { return on || keep_last_s > 0.0; }
   /// Checks the options and reads `keep_last`. Files without a name get one beside `out`. Errors:
@@ -34,8 +34,8 @@ void add_recording_options(cli::Command& command, RecordingOptions& options);
 
 /// The result of one loop's recording.
 struct RecordingOutcome {
-  std::string file;                            ///< empty: only kept in memory
-  std::optional<recording::Recorded> recorded; ///< nothing: not all was
+  std::string file;                            ///< empty: it was only kept in memory
+  std::optional<recording::Recorded> recorded; ///< nothing: it is not complete
 };
 
 /// Begins a recording's setup: the program, the time, the wearer, and the gloves in the order of
@@ -50,16 +50,17 @@ public:
   /// `loaded` is the model as it is in the run's file.
   explicit RunRecorder(const deform::Mesh& loaded) : loaded_(recording::sum_of(loaded.vertices)) {}
 
-  /// Makes the log that the next loop writes to; returns null if it is not to be recorded.
+  /// Makes the log that the next loop writes to. Returns null if the loop is not to be recorded.
   flow::InputLog* input_log_for(const RecordingOptions& options);
   /// Begins to record. Call it before the loop runs. Error: failed, if the files cannot be made;
   /// nothing is recorded then.
   Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
                      const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model);
-  /// Tells whether keep() does anything. It does with --keep-last, from begin() to end().
-  bool keeps() const noexcept { return keeps_; }
-  /// Asks for the recording in memory to be written to a file. Wait-free.
-  void keep() noexcept;
+  /// Returns true with --keep-last, from begin() to end().
+  bool keeps_last_minute() const noexcept { return keeps_last_minute_; }
+  /// Asks for the recording in memory to be written to a file. Does nothing unless
+  /// keeps_last_minute(). Wait-free.
+  void save_last_minute() noexcept;
   /// Ends the recording. Call it after the loop's last tick.
   void end(const deform::Mesh& shape);
   /// Returns one outcome for each loop that was to be recorded.
@@ -73,7 +74,7 @@ private:
   recording::ShapeSum loaded_;
   int number_ = 1; ///< of the latest recording's name
   std::vector<RecordingOutcome> outcomes_;
-  bool keeps_ = false;
+  bool keeps_last_minute_ = false;
 };
 
 } // namespace nendo::session

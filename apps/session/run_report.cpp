@@ -1,37 +1,166 @@
 #include "session/run_report.hpp"
 
-#include <cstdio>
+#include <algorithm>
 #include <iostream>
+#include <numeric>
+#include <string_view>
 
+#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
-
-#include "session/run_report_parts.hpp"
 
 namespace nendo::session {
 namespace {
 
 std::string progress_line(const flow::Frame& frame, double elapsed_s, double duration_s) {
-  char text[160];
-  std::string line;
-  if (duration_s > 0.0) {
-    std::snprintf(text, sizeof text, "%5.1f of %.1f s", elapsed_s, duration_s);
-  } else {
-    std::snprintf(text, sizeof text, "%5.1f s (Ctrl-C ends)", elapsed_s);
-  }
-  line = text;
-  std::snprintf(text, sizeof text, "  %llu ticks, %llu missed",
-                static_cast<unsigned long long>(frame.ticks_run),
-                static_cast<unsigned long long>(frame.missed));
-  line += text;
+  std::string line = duration_s > 0.0 ? fmt::format("{:5.1f} of {:.1f} s", elapsed_s, duration_s)
+                                      : fmt::format("{:5.1f} s (Ctrl-C ends)", elapsed_s);
+  line += fmt::format("  {} ticks, {} missed", frame.ticks_run, frame.missed);
   for (const Side side : {Side::left, Side::right}) {
     const auto& hand = frame.hands[flow::Placement::index_of(side)];
     if (!hand.present) continue;
-    line += "  " + std::string(name_of(side)) + ": ";
-    line += hand.silent ? "silent" : std::to_string(hand.samples) + " samples";
+    line += fmt::format("  {}: {}", name_of(side),
+                        hand.silent ? "silent" : std::to_string(hand.samples) + " samples");
   }
   if (!frame.held) line += "  let go";
   if (frame.chain.held_pairs > 0) line += "  fingertips held apart";
   return line;
+}
+
+/// Returns the whole part of a number, with a comma after each three digits.
+template <class Number>
+std::string thousands(Number value) {
+  std::string digits = std::to_string(static_cast<long long>(value));
+  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
+    digits.insert(static_cast<std::size_t>(at), ",");
+  }
+  return digits;
+}
+
+void print_row(std::string_view heading, const std::string& text) {
+  std::cout << fmt::format("  {:14} {}\n", heading, text);
+}
+
+void print_percentiles(std::string_view name, const flow::Histogram& histogram) {
+  const auto ms = [&](double fraction) { return to_milliseconds(histogram.percentile(fraction)); };
+  print_row(name, fmt::format("p50 {:.3f} ms, p90 {:.3f} ms, p99 {:.3f} ms, max {:.3f} ms",
+                              ms(0.50), ms(0.90), ms(0.99), to_milliseconds(histogram.max())));
+}
+
+// The spikes that the velocity gate has kept out, and the sensor that had most of them.
+void print_spikes(const std::array<std::uint64_t, sensor_slots>& spikes) {
+  const auto worst = std::max_element(spikes.begin(), spikes.end());
+  if (*worst == 0) return;
+  const auto all = std::accumulate(spikes.begin(), spikes.end(), std::uint64_t{0});
+  print_row("", fmt::format(
+                    "{} spikes kept out, most of them {}'s ({}): see to its cable or sensor",
+                    thousands(all), sensor_names[static_cast<std::size_t>(worst - spikes.begin())],
+                    thousands(*worst)));
+}
+
+void print_ranges(const hand::SensorRanges& ranges, SensorMask sensors) {
+  print_row("", "ranges learned, in counts, from so many turns of the joint:");
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!sensors.has(static_cast<Sensor>(slot))) continue;
+    const hand::SensorRange& range = ranges[slot];
+    print_row("",
+              fmt::format("{:22} {:5.0f} to {:5.0f}  {}", sensor_names[slot], range.low_counts,
+                          range.high_counts,
+                          range.turns > 0 ? std::to_string(range.turns) : "none: the default's"));
+  }
+}
+
+void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
+  const auto& stats = outcome.stats;
+  const std::size_t slot = flow::Placement::index_of(hand.side);
+  const auto glove = hand.glove->stats();
+  const driver::GloveInfo& info = hand.glove->info();
+  print_row(fmt::format("{} hand", name_of(hand.side)),
+            fmt::format("{} samples ({:.1f}/s), {} bad records, {} lost, {} silences; {}",
+                        thousands(stats.samples[slot]),
+                        static_cast<double>(stats.samples[slot]) / outcome.elapsed_s,
+                        glove.bad_records, glove.ring_refused, stats.silences[slot], info.source));
+  print_spikes(stats.spikes[slot]);
+  if (hand.wearer.adapt) print_ranges(stats.ranges[slot], info.sensors);
+}
+
+void print_holds(const RunOptions& options, const flow::LoopStats& stats) {
+  if (options.loop.switch_action != flow::SwitchAction::none)
+    print_row("wrist switch",
+              fmt::format("{}; turned on {} times", flow::name_of(options.loop.switch_action),
+                          stats.switch_uses[0] + stats.switch_uses[1]));
+  if (stats.commits + stats.grabs + stats.undos == 0) return;
+  print_row("shapes kept", fmt::format("{} commits, {} grabs, {} undone, {} redone", stats.commits,
+                                       stats.grabs, stats.undos, stats.redos));
+  if (stats.forgotten_steps > 0)
+    print_row("undo", fmt::format("reached {} steps back; the {} before went for want of memory, "
+                                  "--undo-memory makes more room",
+                                  stats.undo_steps, stats.forgotten_steps));
+}
+
+void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
+  if (filter.kind == hand::FilterKind::off) return;
+  print_percentiles("filter's lag", stats.filter_moving);
+  print_row("", fmt::format("{}, min cutoff {:g} Hz, beta {:g}: of the joints that move; {:.1f} ms "
+                            "at rest; comes on top of all these",
+                            hand::name_of(filter.kind), filter.min_cutoff_hz,
+                            filter.beta_hz_per_rad_s, to_milliseconds(stats.filter_worst.max())));
+}
+
+void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
+  if (!options.loop.sculptor.deformer.injective) return;
+  print_row("injective", fmt::format("at most {} links a tick, bound in one step {:.3g}, least "
+                                     "determinant {:.3g}; fingertips held apart in {} ticks",
+                                     stats.most_links, stats.most_bound, stats.least_determinant,
+                                     stats.held_apart_ticks));
+}
+
+void print_recordings(const std::vector<RecordingOutcome>& recordings) {
+  for (const auto& [file, recorded] : recordings) {
+    const std::string name = file.empty() ? "" : file + ", ";
+    print_row("recording",
+              recorded ? fmt::format("{}{} bytes, {} entries lost, {} kept", name,
+                                     thousands(recorded->bytes), recorded->lost, recorded->kept)
+                       : name + "not complete, as was told");
+  }
+}
+
+void print_published(const RunOutcome& outcome) {
+  for (const auto& to : outcome.published) {
+    const std::string counts =
+        to.is_segment ? fmt::format("{} bytes{}", thousands(to.bytes),
+                                    to.is_locked ? "" : ", not locked in memory (see --mlockall)")
+                      : fmt::format("{} datagrams, {} refused, {} ticks lost", to.datagrams,
+                                    to.refused_datagrams, to.lost_records);
+    print_row("published", fmt::format("{}, {} ticks, {}", to.target, to.records, counts));
+  }
+}
+
+void print_summary_text(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                        const RunOutcome& outcome) {
+  const auto& stats = outcome.stats;
+  const flow::SculptorOptions& sculptor = options.loop.sculptor;
+  std::cout << fmt::format("\nnendo run: {:.1f} s, {}, {}, radius {:.3g}\n", outcome.elapsed_s,
+                           flow::name_of(sculptor.mode),
+                           deform::name_of(sculptor.deformer.csrbf.kernel), outcome.radius);
+  for (const auto& hand : hands)
+    print_hand(hand, outcome);
+  print_holds(options, stats);
+  print_row("ticks", fmt::format("{} at {:g} Hz, {} overruns, {} missed", thousands(stats.ticks),
+                                 options.loop.rate_hz, stats.overruns, stats.missed));
+  print_percentiles("wake-up", stats.wake_latency);
+  print_percentiles("work a tick", stats.work);
+  print_percentiles("end to end", stats.end_to_end);
+  print_row("", "from a sample's last byte to the finished mesh");
+  print_filter(options.filter, stats);
+  print_injective(options, stats);
+  print_row("vertices", fmt::format("{} a second ({} in the model)",
+                                    thousands(static_cast<double>(outcome.vertices) *
+                                              static_cast<double>(stats.ticks) / outcome.elapsed_s),
+                                    thousands(outcome.vertices)));
+  print_recordings(outcome.recordings);
+  print_published(outcome);
+  print_row("result", outcome.result);
+  std::cout << std::flush;
 }
 
 } // namespace
@@ -56,11 +185,7 @@ Progress progress_for(const RunOptions& options) {
 
 void print_summary(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                    const RunOutcome& outcome) {
-  if (options.json) {
-    print_summary_json(options, hands, outcome);
-  } else {
-    print_summary_text(options, hands, outcome);
-  }
+  (options.json ? print_summary_json : print_summary_text)(options, hands, outcome);
 }
 
 } // namespace nendo::session

@@ -6,12 +6,18 @@
 
 namespace nendo::session {
 
-/// Returns what reports progress. In a terminal it rewrites one line of standard error, and
-/// elsewhere it prints a line every two seconds. With `json` it prints an object a second on
-/// standard output.
+/// Returns the function that reports progress. In a terminal it rewrites one line of standard
+/// error, and elsewhere it prints a line every two seconds. With `options.json` it prints an object
+/// a second on standard output.
 Progress progress_for(const RunOptions& options);
 
+/// Prints the summary on standard output: a table, or with `options.json` one object.
 void print_summary(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                    const RunOutcome& outcome);
+
+/// The JSON forms of both. Each prints one line on standard output.
+void print_progress_json(const flow::Frame& frame, double elapsed_s);
+void print_summary_json(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                        const RunOutcome& outcome);
 
 } // namespace nendo::session

@@ -1,10 +1,9 @@
-#include "session/run_report_parts.hpp"
+#include "session/run_report.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include "cli/json_line.hpp"
 #include "session/loop_options.hpp"
-#include "session/range_report.hpp"
 
 namespace nendo::session {
 namespace {
@@ -22,7 +21,7 @@ ordered_json percentiles(const flow::Histogram& histogram) {
   return line;
 }
 
-// Only the sensors that had any.
+// Contains only the sensors that had spikes.
 ordered_json spikes_json(const std::array<std::uint64_t, sensor_slots>& spikes) {
   ordered_json by_sensor = ordered_json::object();
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
@@ -31,7 +30,18 @@ ordered_json spikes_json(const std::array<std::uint64_t, sensor_slots>& spikes) 
   return by_sensor;
 }
 
-// What the filter was and how late it made the hands; its lag comes on top of end to end.
+ordered_json ranges_json(const hand::SensorRanges& ranges, SensorMask sensors) {
+  ordered_json by_sensor = ordered_json::object();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!sensors.has(static_cast<Sensor>(slot))) continue;
+    by_sensor[std::string(sensor_names[slot])] = {{"low_counts", ranges[slot].low_counts},
+                                                  {"high_counts", ranges[slot].high_counts},
+                                                  {"turns", ranges[slot].turns}};
+  }
+  return by_sensor;
+}
+
+// The filter, and how late it made the hands. Its lag comes on top of end to end.
 ordered_json filter_json(const hand::FilterOptions& filter, const flow::LoopStats& stats) {
   ordered_json line{{"kind", hand::name_of(filter.kind)}};
   if (filter.kind == hand::FilterKind::off) return line;

@@ -1,5 +1,6 @@
 #include "session/run_saving.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include <nendo/deform/mesh_file.hpp>
@@ -12,6 +13,20 @@ namespace {
 constexpr std::chrono::milliseconds least_between_saves(250);
 
 } // namespace
+
+Result<void> write_shape(const std::string& out, const deform::Mesh& shape) {
+  const auto written = deform::write_mesh(out, shape);
+  if (written) return {};
+  const std::filesystem::path wanted(out);
+  std::error_code ignored, no_folder;
+  auto folder = std::filesystem::temp_directory_path(no_folder);
+  if (no_folder) folder = "/tmp"; // TMPDIR may name a place that is not there
+  const auto elsewhere = folder / wanted.filename();
+  if (std::filesystem::exists(elsewhere, ignored) || !deform::write_mesh(elsewhere, shape))
+    return written.error();
+  return Error{Errc::failed,
+               written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
+}
 
 RunSaving::RunSaving(std::string out, const deform::Mesh& model, RunRecorder& recorder)
     : out_(std::move(out)), model_(model), recorder_(recorder) {}
@@ -29,8 +44,9 @@ std::string RunSaving::save(flow::DeformLoop& loop) {
 }
 
 std::string RunSaving::save_recording() {
-  if (!recorder_.keeps()) return "nothing is kept in memory; start with --keep-last 60s";
-  recorder_.keep();
+  if (!recorder_.keeps_last_minute())
+    return "nothing is kept in memory; start with --keep-last 60s";
+  recorder_.save_last_minute();
   return "what was just done is being kept";
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Saves while a run goes on, without a pause of its loop.
+// Saves shapes and recordings: while a run goes on, without a pause of its loop, and at its end.
 
 #include <string>
 
@@ -10,6 +10,11 @@
 
 namespace nendo::session {
 
+/// Writes the shape to `out`. If that is impossible, on a full disk for example, it writes to the
+/// folder for temporary files, so that the shape is not lost. Blocks. Error: failed, also if the
+/// shape is in the other folder; the message says where.
+Result<void> write_shape(const std::string& out, const deform::Mesh& shape);
+
 /// Saves a few times a second at most, even if it is asked more often.
 class RunSaving {
 public:
@@ -19,9 +24,9 @@ public:
   /// Takes note of flow::SaveShape and flow::SaveRecording for save(). Other commands change
   /// nothing.
   void add(const flow::Command& command) noexcept;
-  /// Tells whether anything waits to be saved.
+  /// Returns whether anything waits to be saved.
   bool is_due() const noexcept { return shape_ || recording_; }
-  /// Tells whether anything waits to be saved and the last save() was long enough ago.
+  /// Returns whether anything waits to be saved and the last save() was long enough ago.
   bool is_due_now() const noexcept { return is_due() && HostClock::now() >= next_; }
   /// Saves what waits. The shape is that of the newest frame. Blocks while it writes. Returns a
   /// message for people that says what was saved.

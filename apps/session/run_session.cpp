@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <utility>
 
-#include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/undo_memory.hpp>
 
 #include "cli/cli.hpp"
-#include "session/hold_lights.hpp"
+#include "gloves/glove_light.hpp"
 #include "session/loop_change.hpp"
 #include "session/loop_thread.hpp"
 #include "session/run_keys.hpp"
@@ -24,11 +22,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// What a loop lasts at least, before it is made anew.
+// A loop lasts so long at least, before it is made anew.
 constexpr milliseconds least_loop(250);
 
-// What is there from the beginning, for some dozens of whole shapes, of which strokes mostly change
-// parts.
+// Returns the memory for undo at the beginning: room for some dozens of whole shapes, of which
+// strokes mostly change parts.
 std::size_t undo_bytes_for(const deform::Mesh& model) noexcept {
   constexpr std::size_t most = std::size_t{64} << 20;
   constexpr std::size_t shapes_of_a_vertex = std::size_t{64} * 3 * sizeof(float);
@@ -41,23 +39,7 @@ std::size_t most_undo_bytes(const RunOptions& options) noexcept {
                                 : deform::half_of_memory();
 }
 
-// A shape that cannot be written where it was wanted, on a full disk say, is not lost if there is
-// room elsewhere.
-Result<void> write_shape(const std::string& out, const deform::Mesh& shape) {
-  const auto written = deform::write_mesh(out, shape);
-  if (written) return {};
-  const std::filesystem::path wanted(out);
-  std::error_code ignored, no_folder;
-  auto folder = std::filesystem::temp_directory_path(no_folder);
-  if (no_folder) folder = "/tmp"; // TMPDIR may name a place that is not there
-  const auto elsewhere = folder / wanted.filename();
-  if (std::filesystem::exists(elsewhere, ignored) || !deform::write_mesh(elsewhere, shape))
-    return written.error();
-  return Error{Errc::failed,
-               written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
-}
-
-// No loop drains the rings now: each hand's newest sample is where the next loop begins.
+// No loop drains the rings now. The next loop begins with the newest sample of each hand.
 void take_newest(std::vector<gloves::OpenHand>& hands) {
   for (auto& hand : hands) {
     const HostTime end = HostClock::now() + milliseconds(25); // a silent glove keeps its pose
@@ -70,16 +52,18 @@ void take_newest(std::vector<gloves::OpenHand>& hands) {
   }
 }
 
-// One run: its loops, one after another, and who takes part.
+// A run: its loops, one after another, and its participants.
 class Session {
 public:
   Session(RunOptions options, std::vector<gloves::OpenHand>& hands, deform::Mesh model,
           const RunParticipants& participants, std::vector<flow::Grant> grants)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
         loaded_(model_.vertices), participants_(participants), grants_(std::move(grants)),
-        recorder_(model_), saving_(options_.out, model_, recorder_),
-        lights_(options_.loop.switch_action, hands_) {
-    options_.loop.commands = &for_loop_;
+        recorder_(model_), saving_(options_.out, model_, recorder_) {
+    for (const auto& hand : hands_)
+      if (options_.loop.switch_action != flow::SwitchAction::none)
+        lights_.emplace_back(*hand.glove);
+    options_.loop.commands = &loop_commands_;
     const std::size_t most = most_undo_bytes(options_);
     const std::size_t at_once = std::min(undo_bytes_for(model_), most);
     options_.loop.sculptor.deformer.undo_bytes = at_once;
@@ -90,14 +74,15 @@ public:
   Result<RunOutcome> run() {
     if (const auto begun = begin_loop({}); !begun) return begun.error();
     RunPicture picture(options_.picture, model_, placed_.setup.options);
-    RunKeys keys(patience(), recorder_.keeps());
+    RunKeys keys(key_timeout(), recorder_.keeps_last_minute());
     observers_.push_back(&keys);
     observers_.insert(observers_.end(), participants_.observers.begin(),
                       participants_.observers.end());
     while (run_loop(picture)) {
       if (const auto renewed = renew(); !renewed) return after_writing(renewed.error());
     }
-    lights_.put_out();
+    for (auto& light : lights_)
+      light.put_out();
     for (const auto& hand : hands_)
       hand.glove->stop();
     if (const auto written = write_shape(options_.out, model_); !written) return written.error();
@@ -112,8 +97,8 @@ public:
 private:
   LoopStart start() const { return {placed_, model_, hands_}; }
 
-  // How long the keys wait, unless somebody else sets the pace.
-  milliseconds patience() const {
+  // Returns how long the keys wait, which is not at all if another observer sets the pace.
+  milliseconds key_timeout() const {
     const auto& observers = participants_.observers;
     const bool paced = std::any_of(observers.begin(), observers.end(),
                                    [](const Observer* observer) { return observer->sets_pace(); });
@@ -139,25 +124,26 @@ private:
 
   void save() { report(saving_.save(*placed_.loop)); }
 
-  void ask_observers(bool fresh) {
+  void update_observers(bool fresh) {
     const RunStatus status{placed_.loop->frames().front(), fresh, gloves_};
     for (Observer* observer : observers_)
       observer->update(status, commands_);
-    commands_.drain([this](const flow::Command& command) noexcept { take(command); });
+    commands_.drain([this](const flow::Command& command) noexcept { dispatch(command); });
     for (auto& wrist : wrists_)
-      if (wrist) for_loop_.try_push(*std::exchange(wrist, {})); // full: the next one says it again
-    if (const auto refused = std::exchange(refused_, {}); refused && !deaf_) {
-      deaf_ = true;
+      if (wrist)
+        loop_commands_.try_push(*std::exchange(wrist, {})); // if it is full, the next move counts
+    if (const auto refused = std::exchange(refused_, {}); refused && !refusal_reported_) {
+      refusal_reported_ = true;
       report("the loop does not answer, so it was not asked to " + std::string(name_of(*refused)));
     }
   }
 
-  void take(const flow::Command& command) noexcept {
+  void dispatch(const flow::Command& command) noexcept {
     if (const auto* move = std::get_if<flow::WristMove>(&command)) {
       wrists_[flow::Placement::index_of(move->side)] = *move; // only the newest counts
     } else if (const auto* request = std::get_if<flow::Request>(&command)) {
-      if (for_loop_.try_push(command)) {
-        deaf_ = false;
+      if (loop_commands_.try_push(command)) {
+        refusal_reported_ = false;
       } else {
         refused_ = *request;
       }
@@ -167,20 +153,21 @@ private:
     change_.add(command);
   }
 
-  // Whether somebody has asked for a change for which it is time.
+  // Returns whether somebody has asked for a change, and the loop has lasted long enough for it.
   bool is_change_due(HostTime loop_began) {
     if (!differs(change_, placed_, options_)) change_ = {};
     return !change_.is_empty() && HostClock::now() - loop_began >= least_loop;
   }
 
-  // What was asked for just before the end is done before it, if the loop ticks at all.
-  void wait_until_heard() const {
+  // Commands that came just before the end are still obeyed, if the loop ticks at all.
+  void wait_until_taken() const {
     const HostTime latest = HostClock::now() + std::chrono::seconds(1);
-    while (for_loop_.size() > 0 && HostClock::now() < latest)
+    while (loop_commands_.size() > 0 && HostClock::now() < latest)
       std::this_thread::sleep_for(milliseconds(1));
   }
 
-  // Until the loop has ended; model_ is then as it left it. True: another one is wanted.
+  // Runs the loop until it ends, and leaves its shape in model_. Returns whether another loop is
+  // wanted.
   bool run_loop(RunPicture& picture) {
     flow::DeformLoop& loop = *placed_.loop;
     gloves_ = status_of(hands_);
@@ -189,17 +176,17 @@ private:
     LoopThread thread(loop, options_);
     report_refusals(thread.grants());
     const bool is_another_wanted = watch(thread, picture);
-    if (ends_) wait_until_heard();
+    if (ends_) wait_until_taken();
     if (saving_.is_due()) save(); // asked for just before the end
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
     model_.vertices = loop.final_shape();
     recorder_.end(model_);
-    if (loop.frames().update()) picture.see(loop.frames().front());
+    if (loop.frames().update()) picture.add(loop.frames().front());
     return is_another_wanted;
   }
 
-  // Each loop's thread asks for the same rights; what was refused is said once.
+  // Each loop's thread asks for the same rights, so refusals are reported only once.
   void report_refusals(std::vector<flow::Grant> of_thread) {
     if (std::exchange(refusals_reported_, true)) return;
     std::move(of_thread.begin(), of_thread.end(), std::back_inserter(grants_));
@@ -216,10 +203,11 @@ private:
       const bool fresh = frames.update();
       if (fresh) {
         is_news = true;
-        lights_.show(frames.front().held);
-        picture.see(frames.front());
+        for (auto& light : lights_) // the LED shows whether the hands hold the model
+          light.show(frames.front().held);
+        picture.add(frames.front());
       }
-      ask_observers(fresh);
+      update_observers(fresh);
       if (ends_) return false;
       if (is_change_due(thread.start)) return true;
       if (saving_.is_due_now()) save();
@@ -234,7 +222,7 @@ private:
     return false;
   }
 
-  // What has been shaped is not lost with what cannot go on.
+  // The run cannot go on, but its shape is not lost.
   Error after_writing(const Error& error) {
     const auto written = write_shape(options_.out, model_);
     return written ? error : written.error();
@@ -263,20 +251,20 @@ private:
   RunOptions options_;
   std::vector<gloves::OpenHand>& hands_;
   deform::Mesh model_;
-  const deform::Points loaded_; ///< what a reset goes back to
+  const deform::Points loaded_; ///< the model to which a reset goes back
   const RunParticipants& participants_;
   std::vector<Observer*> observers_;
   std::vector<flow::Grant> grants_;
   flow::CommandRing commands_{2048}; ///< of all observers
-  flow::CommandRing for_loop_{64};
+  flow::CommandRing loop_commands_{64};
   std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
   std::optional<flow::Request> refused_;                 ///< the loop had no room for it
-  bool deaf_ = false;                                    ///< that was reported, and is still so
+  bool refusal_reported_ = false;                        ///< and no request was accepted since
   bool ends_ = false;                                    ///< somebody has asked for the end
-  LoopChange change_;                                    ///< what the next loop is to have
+  LoopChange change_;                                    ///< for the next loop
   RunRecorder recorder_;
   RunSaving saving_;
-  HoldLights lights_;
+  std::vector<gloves::GloveLight> lights_; ///< of all gloves, if their switches do something
   PlacedLoop placed_;
   GloveStatuses gloves_;
   double before_s_ = 0.0;  ///< of all loops but the latest

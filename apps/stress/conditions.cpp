@@ -35,14 +35,15 @@ struct Unit {
 constexpr std::array<Unit, 5> units{
     {{"", 1.0}, {"us", 1.0}, {"ns", 1e-3}, {"ms", 1e3}, {"s", 1e6}}};
 
-/// Takes `prefix` and the dot after it off the front.
+/// Removes `prefix` and the dot after it from the front. Returns false if they are not there.
 bool take(std::string_view& text, std::string_view prefix) {
   if (!text.starts_with(prefix) || text.substr(prefix.size(), 1) != ".") return false;
   text.remove_prefix(prefix.size() + 1);
   return true;
 }
 
-/// Where it is in the report; empty if there is no such figure. A count has no unit.
+/// Returns the path of a figure in the report, or an empty one if there is no such figure. Sets
+/// `is_count` if the figure is a count, which has no unit.
 std::vector<std::string> path_of(std::string_view name, bool& is_count) {
   for (const Count& count : counts) {
     if (count.name != name) continue;

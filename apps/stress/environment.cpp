@@ -4,12 +4,15 @@
 #include <fstream>
 #include <sstream>
 #include <string_view>
+#include <thread>
 
 #include <sys/utsname.h>
 #include <unistd.h>
 
 namespace nendo::stress {
 namespace {
+
+using namespace std::chrono_literals;
 
 std::string first_line(const char* path) {
   std::ifstream file(path);
@@ -29,6 +32,20 @@ void read_processor(Environment& environment) {
     if (line.starts_with("flags"))
       environment.hypervisor = (" " + value + " ").find(" hypervisor ") != std::string::npos;
   }
+}
+
+void spin(HostTime end, PlatformFloor& floor) {
+  const HostTime begin = HostClock::now();
+  HostTime before = begin;
+  while (before < end) {
+    const HostTime now = HostClock::now();
+    if (now - before > 1us) {
+      floor.gaps.record(now - before);
+      floor.stalled_s += to_seconds(now - before);
+    }
+    before = now;
+  }
+  floor.spun_s += to_seconds(before - begin);
 }
 
 } // namespace
@@ -65,6 +82,19 @@ std::optional<double> stolen_s() {
     line >> value;
   if (!line) return std::nullopt;
   return value / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+PlatformFloor measure_floor(double seconds, const flow::RealtimeOptions& realtime,
+                            const std::atomic<bool>& stop) {
+  PlatformFloor floor;
+  std::thread([&] {
+    flow::make_thread_realtime(realtime);
+    while (floor.spun_s < seconds && !stop) {
+      spin(HostClock::now() + 20ms, floor);
+      std::this_thread::sleep_for(3ms);
+    }
+  }).join();
+  return floor;
 }
 
 } // namespace nendo::stress

@@ -36,7 +36,7 @@ namespace {
   const auto here = std::make_unique<std::byte[]>(bytes);
   const auto there = std::make_unique<std::byte[]>(bytes);
   for (unsigned round = 0;; ++round) {
-    here[round % bytes] = static_cast<std::byte>(round); // so that no copy is one too many
+    here[round % bytes] = static_cast<std::byte>(round); // so that no copy can be left out
     std::memcpy(there.get(), here.get(), bytes);
     std::memcpy(here.get(), there.get(), bytes);
   }
@@ -51,7 +51,7 @@ namespace {
   constexpr off_t most_bytes = off_t{16} << 20U;
   for (off_t at = 0;; at = (at + static_cast<off_t>(block.size())) % most_bytes) {
     if (::pwrite(file, block.data(), block.size(), at) < 0 || ::fdatasync(file) != 0)
-      ::usleep(10'000); // a full disk is no reason to burn the processor instead
+      ::usleep(10'000); // with a full disk, it must not keep the processor busy instead
   }
 }
 
@@ -64,7 +64,7 @@ constexpr std::array kinds_known{Kind{"cpu", compute}, Kind{"mem", copy_memory},
 
 [[noreturn]] void be_worker(const Kind& kind, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(0); // it died before the kernel knew
+  if (::getppid() != parent) ::_exit(0); // the parent died before prctl()
   // Ctrl-C reaches the whole group; the parent then ends the workers when it is done with them.
   ::signal(SIGINT, SIG_IGN);
   ::signal(SIGTERM, SIG_DFL);

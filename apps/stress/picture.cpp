@@ -38,7 +38,7 @@ std::string time_text(double us) {
   return text;
 }
 
-/// A rectangle of the page and what its logarithmic axes reach from and to.
+/// A rectangle of the page, and the ranges of its axes. The y axis is logarithmic.
 struct Axes {
   double left, top, width, height;
   double x_low, x_high; ///< decades if `log_x`
@@ -157,13 +157,13 @@ void draw_histogram(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   draw_percentiles(drawing, axes, lateness.corrected);
 }
 
-void draw_course(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
-  const LatenessTrace& course = outcome.tally.timeline();
+void draw_trace(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
+  const LatenessTrace& trace = outcome.tally.trace();
   const double length_s =
-      to_seconds(course.slice_length()) * static_cast<double>(course.slices().size());
+      to_seconds(trace.slice_length()) * static_cast<double>(trace.slices().size());
   double least_us = 10.0;
   double most_us = 100.0;
-  for (const auto& slice : course.slices()) {
+  for (const auto& slice : trace.slices()) {
     if (slice.count == 0) continue;
     least_us = std::min(least_us, to_microseconds(slice.sum) / static_cast<double>(slice.count));
     most_us = std::max(most_us, to_microseconds(slice.max));
@@ -179,11 +179,11 @@ void draw_course(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
                   std::ceil(std::log10(most_us))};
   drawing.words(80, 432, "When", heading);
   draw_decades(drawing, axes, true);
-  const double slice_s = to_seconds(course.slice_length());
+  const double slice_s = to_seconds(trace.slice_length());
   const double width = std::max(1.0, axes.x(slice_s) - axes.x(0.0));
   std::string means;
-  for (std::size_t k = 0; k < course.slices().size(); ++k) {
-    const auto& slice = course.slices()[k];
+  for (std::size_t k = 0; k < trace.slices().size(); ++k) {
+    const auto& slice = trace.slices()[k];
     if (slice.count == 0) continue;
     const double x = axes.x(slice_s * static_cast<double>(k));
     const double mean_us = to_microseconds(slice.sum) / static_cast<double>(slice.count);
@@ -200,7 +200,7 @@ void draw_course(cli::SvgDrawing& drawing, const StressOutcome& outcome) {
   }
 }
 
-/// From the right, the last first.
+/// Draws the key from the right, the last entry first.
 void draw_key(cli::SvgDrawing& drawing, double y,
               std::initializer_list<std::pair<const char*, const char*>> entries) {
   double right = 1160;
@@ -243,7 +243,7 @@ std::string stress_picture(const StressOptions& options, const StressOutcome& ou
            {{machine, "gaps that this machine leaves"},
             {scheduled, "every tick that was due"},
             {ran, "ticks that ran"}});
-  draw_course(drawing, outcome);
+  draw_trace(drawing, outcome);
   draw_key(drawing, 432, {{scheduled, "up to the latest"}, {ran, "mean"}});
   drawing.words(600, 396, "lateness, and how many ticks had it", below);
   drawing.words(600, 702, "since the start", below);

@@ -1,14 +1,37 @@
 #pragma once
-// The report of a stress test: a table for people, an object for programs, files for plotters.
+// The report of a stress test: a table for people, an object for programs, files for plotters, and
+// the figures of which they are made.
 
+#include <array>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "stress/stress_session.hpp"
 
 namespace nendo::stress {
+
+/// How a histogram is reported. Times are in microseconds.
+struct Figures {
+  static constexpr std::array<std::string_view, 7> names{"min",   "p50",    "p90", "p99",
+                                                         "p99_9", "p99_99", "max"};
+  std::uint64_t count = 0;
+  std::array<double, names.size()> us{}; ///< in the order of `names`
+};
+
+/// Returns nothing if nothing was recorded.
+std::optional<Figures> figures_of(const flow::Histogram& histogram);
+
+/// Returns the names of the stages that a tick runs, with "sleep" first.
+std::vector<std::string> stage_names(const flow::TickStages& stages);
+
+/// Returns a time of the run as ISO 8601 in UTC, with microseconds.
+std::string wall_time(const StressOutcome& outcome, HostTime time);
 
 /// Returns everything that was measured, with the environment. Times are in microseconds unless a
 /// key says otherwise. Keys are stable, because --compare reads earlier reports.
@@ -19,8 +42,8 @@ nlohmann::ordered_json stress_json(const StressOptions& options, const StressOut
 void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,
                   const nlohmann::ordered_json& earlier);
 
-/// Prints the lateness as cyclictest does: a line for each microsecond up to `most_us`, and what is
-/// beyond.
+/// Prints the lateness on standard output as cyclictest does: a line for each microsecond up to
+/// `most_us`, and the number of ticks beyond.
 void print_histogram(const flow::Histogram& lateness, unsigned most_us);
 
 /// Returns the lateness of each scheduled tick as an HdrHistogram percentile file, in microseconds,

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "stress/report.hpp"
-#include "stress/report_parts.hpp"
 
 namespace nendo::stress {
 namespace {
@@ -26,7 +25,7 @@ std::string words(std::string_view name) {
   return text;
 }
 
-/// A part of the earlier report; null if it has none.
+/// Returns a part of the earlier report, or null if it has none.
 ordered_json part(const ordered_json& whole, const std::string& key) {
   return whole.is_object() && whole.contains(key) ? whole[key] : ordered_json(nullptr);
 }

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/durations.hpp"
 #include "session/loop_options.hpp"
 #include "session/run_options.hpp"
 #include "stress/conditions.hpp"

@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// 65 s at 1 kHz: the main thread may be starved for long under load.
+/// Room for 65 s at 1 kHz. Under load the main thread may not run for long.
 constexpr std::size_t records_kept = 65'536;
 
 rusage usage_of_thread() {
@@ -36,13 +36,13 @@ ThreadCosts difference(const rusage& before, const rusage& after) {
               seconds(before.ru_stime)};
 }
 
-/// What the loop's thread says once it has its rights.
+/// The message of the loop's thread once it has its rights.
 struct Prepared {
   pid_t thread = 0;
   std::vector<flow::Grant> grants;
 };
 
-/// Takes what the loop has recorded, after a look at how long it had to wait for a CPU.
+/// Takes the records of the loop's ticks, and samples how long its thread had to wait for a CPU.
 class Collector {
 public:
   Collector(flow::TickRing& ring, pid_t thread, StressOutcome& outcome)
@@ -65,14 +65,15 @@ private:
   std::vector<flow::TickRecord> batch_;
 };
 
-/// The observer, if there is one, and what it asks for.
+/// The observer, if there is one, and its commands.
 struct Watch {
   session::Observer* observer = nullptr;
   session::GloveStatuses gloves{};
   flow::CommandRing commands{256};
   flow::CommandRing for_loop{64};
 
-  /// Waits some milliseconds, or as long as the observer takes. True: it asks for the end.
+  /// Waits some milliseconds, or as long as the observer takes. Returns true if it asks for the
+  /// end.
   bool update(flow::DeformLoop& loop, std::uint64_t& pictures) {
     if (observer == nullptr) {
       std::this_thread::sleep_for(milliseconds(4));

@@ -9,7 +9,6 @@
 
 #include "session/run_session.hpp"
 #include "stress/environment.hpp"
-#include "stress/platform_floor.hpp"
 #include "stress/stress_options.hpp"
 #include "stress/tick_tally.hpp"
 
@@ -39,9 +38,9 @@ struct StressOutcome {
   std::optional<double> stolen_s;
   double elapsed_s = 0.0;
   Eigen::Index vertices = 0;
-  std::vector<std::string> gloves;                  ///< what opened them
+  std::vector<std::string> gloves;                  ///< GloveInfo::source of each
   std::uint64_t pictures = 0;                       ///< that the observer made of the loop
-  std::chrono::system_clock::time_point wall_start; ///< by the clock on the wall, of:
+  std::chrono::system_clock::time_point wall_start; ///< `start` by the system clock
   HostTime start{};
   bool spins = false;   ///< the spin tail was asked for, and SCHED_FIFO granted
   bool broke = false;   ///< --break ended it

@@ -92,7 +92,7 @@ void TickTally::add_step(const flow::TickRecord& before, const flow::TickRecord&
     longest_outage_ = std::max(longest_outage_, step);
     if (on_grid_) record(Measure::period_error, std::chrono::abs(step - period_));
   }
-  timeline_.add(now.woke, now.woke - now.scheduled);
+  trace_.add(now.woke, now.woke - now.scheduled);
 
   Incident incident = incident_of(before, now, period_);
   const bool among_worst = worst_.size() < most_worst || incident.lateness > worst_.back().lateness;

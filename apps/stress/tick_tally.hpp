@@ -12,7 +12,6 @@
 #include <nendo/flow/pacer.hpp>
 
 #include "stress/incident.hpp"
-#include "stress/run_delay.hpp"
 
 namespace nendo::stress {
 
@@ -82,7 +81,7 @@ public:
   /// Returns the fraction of the incidents' lateness whose cause is known; 1 if there was no
   /// incident.
   double explained() const noexcept;
-  const LatenessTrace& timeline() const noexcept { return timeline_; }
+  const LatenessTrace& trace() const noexcept { return trace_; }
 
 private:
   void add_stages(const flow::TickRecord& record) noexcept;
@@ -103,7 +102,7 @@ private:
   std::array<flow::Histogram, phase_names.size()> busy_stages_;
   std::vector<Incident> worst_;
   std::array<Share, cause_names.size()> causes_{};
-  LatenessTrace timeline_;
+  LatenessTrace trace_;
 };
 
 } // namespace nendo::stress

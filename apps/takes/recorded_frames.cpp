@@ -6,7 +6,7 @@
 namespace nendo::takes {
 namespace {
 
-// Times do not fall, whatever a recording says.
+// Returns the time of a tick. Times do not fall, whatever the recording says.
 double time_after(double before_s, const recording::Setup& setup, const flow::LoggedTick& tick) {
   return std::max(before_s, seconds_between(setup.begun_host, tick.woke));
 }

@@ -6,7 +6,8 @@
 #include <functional>
 
 #include <nendo/base/result.hpp>
-#include <nendo/viewer/scene_frame.hpp>
+
+#include "render/scene_frame.hpp"
 
 namespace nendo::takes {
 
@@ -16,7 +17,7 @@ struct Take {
   double duration_s = 0.0;      ///< 0 if nothing moves
   /// Makes the scene at a time from 0 to duration_s, in any order. May block. Errors: those of
   /// read_take().
-  std::function<Result<viewer::SceneFrame>(double time_s)> moment_at;
+  std::function<Result<render::SceneFrame>(double time_s)> frame_at;
 };
 
 /// Reads a take from a file. A timeline is known by its name, a mesh or a recording by its content.

@@ -2,9 +2,8 @@
 
 #include <utility>
 
-#include <nendo/timeline/timeline_file.hpp>
-
 #include "takes/recorded_model.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace nendo::takes {
 

@@ -6,9 +6,9 @@
 #include <string>
 
 #include <nendo/base/result.hpp>
-#include <nendo/timeline/player.hpp>
 
 #include "takes/frame_source.hpp"
+#include "timeline/player.hpp"
 
 namespace nendo::takes {
 

@@ -37,7 +37,7 @@ struct Session {
       GloveSample sample = wearer.read(angles);
       sample.arrival = HostTime(from_seconds(time_s));
       sample.measured = sample.arrival;
-      const auto event = guide.see(sample);
+      const auto event = guide.push(sample);
       if (event != CalibrationGuide::Event::none) last = event;
     }
     return last;
@@ -86,8 +86,9 @@ TEST_SUITE("calibration_guide") {
     // A flat hand's fingers are asked for; a hand with fingers bent is none.
     const auto event = session.do_pose(PoseId::hook);
     CHECK(event == CalibrationGuide::Event::implausible);
-    REQUIRE(session.guide.doubted());
-    CHECK(std::string(name_of(*session.guide.doubted())).find("ip") != std::string::npos);
+    REQUIRE(session.guide.implausible_sensor());
+    CHECK(std::string(name_of(*session.guide.implausible_sensor())).find("ip") !=
+          std::string::npos);
     CHECK(session.guide.asked() == PoseId::spread);
     CHECK(session.do_pose(PoseId::spread) == CalibrationGuide::Event::captured);
   }
@@ -124,7 +125,7 @@ TEST_SUITE("calibration_guide") {
     CHECK(after.guide.readings().size() == 4);
     const GloveSample sample = after.wearer.read(after.wearer.perform(PoseId::flat));
     for (int n = 0; n < 3; ++n)
-      after.guide.see_free_motion(sample);
+      after.guide.push_free_motion(sample);
     CHECK(after.guide.free_motion().low_counts[slot] == 3.0);
     CHECK(after.guide.free_motion().high_counts[slot] == 254.0);
     CHECK(after.guide.free_motion().present.has(Sensor::index_mcp));
@@ -233,7 +234,7 @@ TEST_SUITE("calibration_guide") {
     const std::string user = "d\033[2Jo";
     GloveSample sample = session.wearer.read(session.wearer.perform(PoseId::fist));
     SeenCounts seen;
-    seen.see(sample);
+    seen.add(sample);
     const hand::HandPose pose = demonstrated(session.guide.asked(), info.side);
     const CalibrationPicture picture{&info, &user, &session.guide, &sample,   &seen,
                                      0.0,   &pose, true,           sensors_22};

@@ -49,7 +49,7 @@ TEST_SUITE("doctor") {
   TEST_CASE("a machine without ports is a warning, for simulated gloves need none") {
     const auto found = diagnose_ports({});
     REQUIRE(found.size() == 1);
-    CHECK(found[0].weight == Weight::warning);
+    CHECK(found[0].severity == Severity::warning);
     CHECK(found[0].check == "presence");
   }
 
@@ -59,14 +59,14 @@ TEST_SUITE("doctor") {
     port.access = "group dialout";
     port.remedy = "sudo usermod -aG dialout $USER, then log in again";
     Finding finding = only_finding(port);
-    CHECK(finding.weight == Weight::failure);
+    CHECK(finding.severity == Severity::failure);
     CHECK(finding.check == "permission");
     CHECK(finding.what.find("group dialout") != std::string::npos);
     CHECK(finding.remedy == port.remedy);
     port.usb.reset();
-    CHECK(only_finding(port).weight == Weight::warning);
+    CHECK(only_finding(port).severity == Severity::warning);
     port.identified = true;
-    CHECK(only_finding(port).weight == Weight::failure);
+    CHECK(only_finding(port).severity == Severity::failure);
   }
 
   TEST_CASE("a port that vanished meanwhile is no finding") {
@@ -82,7 +82,7 @@ TEST_SUITE("doctor") {
     CHECK(diagnose_ports({{port}, {}}).empty());
     for (const std::string program : {"ModemManager", "brltty"}) {
       const Finding finding = only_finding(port, {program});
-      CHECK(finding.weight == Weight::warning);
+      CHECK(finding.severity == Severity::warning);
       CHECK(finding.check == "grabber");
       CHECK(finding.what.starts_with(program));
       CHECK(finding.remedy.find(program) != std::string::npos);
@@ -95,7 +95,7 @@ TEST_SUITE("doctor") {
     GloveCandidate port = good_adapter();
     port.latency_timer = 16ms;
     const Finding finding = only_finding(port);
-    CHECK(finding.weight == Weight::warning);
+    CHECK(finding.severity == Severity::warning);
     CHECK(finding.what.find("16 ms") != std::string::npos);
     CHECK(finding.remedy == "echo 1 | sudo tee /sys/bus/usb-serial/devices/ttyUSB0/latency_timer");
   }
@@ -103,10 +103,10 @@ TEST_SUITE("doctor") {
   TEST_CASE("a program that holds a port is named, and weighs more on a known glove") {
     GloveCandidate port = good_adapter();
     port.holders = {{812, "gpsd"}};
-    CHECK(only_finding(port).weight == Weight::warning);
+    CHECK(only_finding(port).severity == Severity::warning);
     port.identified = true;
     const Finding finding = only_finding(port);
-    CHECK(finding.weight == Weight::failure);
+    CHECK(finding.severity == Severity::failure);
     CHECK(finding.what == "held by gpsd (pid 812)");
     port.holders = {{0, "another user's program"}};
     CHECK(only_finding(port).what == "held by another user's program");
@@ -119,7 +119,7 @@ TEST_SUITE("doctor") {
     adapter.may_open = false;
     adapter.access = "root";
     adapter.remedy = "sudo modprobe ftdi_sio, then plug it in again";
-    CHECK(only_finding(adapter).weight == Weight::failure);
+    CHECK(only_finding(adapter).severity == Severity::failure);
     CHECK(only_finding(adapter).remedy == adapter.remedy);
     const Finding finding = only_finding(adapter, {"brltty"});
     CHECK(finding.check == "portless");

@@ -53,7 +53,7 @@ public:
     const auto found = examine();
     REQUIRE(found.size() == 1);
     CHECK(found[0].check == check);
-    CHECK(found[0].weight == Weight::warning);
+    CHECK(found[0].severity == Severity::warning);
     CHECK_FALSE(found[0].what.empty());
     CHECK_FALSE(found[0].remedy.empty());
     return found[0];

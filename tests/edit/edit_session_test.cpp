@@ -6,12 +6,11 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/timeline/timeline_file.hpp>
-
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 #include "support/text_files.hpp"
 #include "support/timelines.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace edit_session_test {
 
@@ -70,20 +69,20 @@ TEST_SUITE("edit_session") {
     Edited edited;
     auto player = Player::make(edited.first, edited.model);
     REQUIRE(player);
-    viewer::HoldTracker holds;
+    render::HoldTracker holds;
     while (edited.session.view().computing)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    for (int frame = 0; (*player)->next(); ++frame) {
+    while ((*player)->next()) {
       holds.follow((*player)->frame());
       edited.session.seek((*player)->time_s());
       CHECK_FALSE(edited.session.view().shape_is_old);
-      const viewer::SceneFrame& moment = edited.session.moment();
-      CHECK(moment.held == (*player)->frame().held);
+      const render::SceneFrame& scene_frame = edited.session.scene_frame();
+      CHECK(scene_frame.held == (*player)->frame().held);
       for (std::size_t slot = 0; slot < 2; ++slot) {
-        REQUIRE(moment.hands[slot]);
-        CHECK(moment.hands[slot]->pose.fingertip_positions() ==
+        REQUIRE(scene_frame.hands[slot]);
+        CHECK(scene_frame.hands[slot]->pose.fingertip_positions() ==
               (*player)->frame().hands[slot].pose.fingertip_positions());
-        if (moment.held) CHECK(moment.hands[slot]->starts == holds.starts(slot));
+        if (scene_frame.held) CHECK(scene_frame.hands[slot]->starts == holds.starts(slot));
       }
     }
   }

@@ -2,8 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nendo/viewer/hand_skin.hpp>
-
+#include "render/hand_skin.hpp"
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"
 
@@ -128,8 +127,8 @@ TEST_SUITE("gltf_export") {
         const Eigen::MatrixXd places = glb.accessor(attributes["POSITION"]);
         const Eigen::MatrixXd joints = glb.accessor(attributes["JOINTS_0"]);
         const Eigen::MatrixXd weights = glb.accessor(attributes["WEIGHTS_0"]);
-        viewer::Surface surface;
-        viewer::HandSkin(side).drape(pose, Eigen::Vector3d::Zero(), surface);
+        render::Surface surface;
+        render::HandSkin(side).drape(pose, Eigen::Vector3d::Zero(), surface);
         REQUIRE(static_cast<std::size_t>(places.cols()) == surface.places.size());
         double worst = 0.0;
         for (Eigen::Index v = 0; v < places.cols(); ++v) {

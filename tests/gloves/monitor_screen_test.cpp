@@ -25,7 +25,7 @@ struct Glove {
     info.model = "CyberGlove, 22 sensors";
     sample.present = sensors;
     sample.raw.fill(RawCount{100});
-    seen.see(sample);
+    seen.add(sample);
     picture.info = &info;
     picture.sample = &sample;
     picture.seen = &seen;
@@ -127,13 +127,13 @@ TEST_SUITE("monitor_screen") {
   TEST_CASE("what was seen grows with the samples and is forgotten on request") {
     Glove glove(SensorMask{3});
     glove.sample.raw[0] = RawCount{50};
-    glove.seen.see(glove.sample);
+    glove.seen.add(glove.sample);
     glove.sample.raw[0] = RawCount{70};
-    glove.seen.see(glove.sample);
+    glove.seen.add(glove.sample);
     CHECK(glove.seen[Sensor::thumb_roll].least == 50);
     CHECK(glove.seen[Sensor::thumb_roll].most == 100);
-    glove.seen.forget();
-    glove.seen.see(glove.sample);
+    glove.seen.clear();
+    glove.seen.add(glove.sample);
     CHECK(glove.seen[Sensor::thumb_roll].least == 70);
     CHECK(glove.seen[Sensor::thumb_roll].most == 70);
   }

@@ -12,7 +12,7 @@
 #include <nendo/hand/calibration_store.hpp>
 
 #include "calibrate/capture_file.hpp"
-#include "gloves/sample_json.hpp"
+#include "gloves/glove_json.hpp"
 #include "reference/wearers.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"

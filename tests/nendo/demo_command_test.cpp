@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/viewer/image.hpp>
 
+#include "render/image.hpp"
 #include "support/program.hpp"
 
 namespace demo_command_test {
@@ -26,7 +26,7 @@ TEST_SUITE("demo") {
     REQUIRE(model);
     REQUIRE(shaped->vertices.cols() == model->vertices.cols());
     CHECK((shaped->vertices - model->vertices).cwiseAbs().maxCoeff() > 0.001);
-    CHECK(viewer::read_png(picture));
+    CHECK(render::read_png(picture));
     CHECK(done.out.find("left hand") != std::string::npos);
     CHECK(done.out.find("right hand") != std::string::npos);
   }

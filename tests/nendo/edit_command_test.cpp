@@ -4,13 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/timeline/timeline_file.hpp>
-#include <nendo/viewer/image.hpp>
 
+#include "render/image.hpp"
 #include "support/eventually.hpp"
 #include "support/memory_screen.hpp"
 #include "support/program.hpp"
 #include "support/restraint.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace edit_command_test {
 
@@ -233,7 +233,7 @@ TEST_SUITE("edit_command") {
       Arguments arguments{"view", run.timeline, "--frames", "2", "--screenshot", run.path(name)};
       arguments.insert(arguments.end(), more.begin(), more.end());
       run.fine(arguments);
-      const auto image = viewer::read_png(run.path(name));
+      const auto image = render::read_png(run.path(name));
       REQUIRE(image);
       return *image;
     };
@@ -248,7 +248,7 @@ TEST_SUITE("edit_command") {
     REQUIRE(test::eventually([&] { return catches(looking.id(), SIGTERM); }));
     looking.signal(SIGTERM);
     CHECK(looking.wait().exit_code == 0);
-    CHECK(viewer::read_png(last));
+    CHECK(render::read_png(last));
   }
 #endif
 }

@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/mesh_file.hpp>
-#include <nendo/viewer/image.hpp>
 
+#include "render/image.hpp"
 #include "support/program.hpp"
 #include "support/test_meshes.hpp"
 
@@ -11,8 +11,8 @@ namespace picture_command_test {
 using namespace nendo;
 using nendo::test::is_one_line_about;
 using nendo::test::TemporaryFolder;
-using viewer::read_png;
-using viewer::Size;
+using render::read_png;
+using render::Size;
 
 namespace {
 

@@ -1,10 +1,9 @@
-#include <nendo/publish/datagrams.hpp>
-
 #include <array>
 #include <cstring>
 #include <map>
 #include <optional>
 
+#include "publish/datagrams.hpp"
 #include "publish/publish_fixtures.hpp"
 
 namespace datagrams_test {

@@ -12,8 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <nendo/publish/segment.hpp>
-
+#include "publish/segment.hpp"
 #include "support/flow_fixtures.hpp"
 
 namespace nendo::test {

@@ -1,5 +1,3 @@
-#include <nendo/publish/record_ring.hpp>
-
 #include <array>
 #include <memory>
 #include <thread>
@@ -7,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "publish/record_ring.hpp"
 #include "support/parked.hpp"
 
 namespace record_ring_test {

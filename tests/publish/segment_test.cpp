@@ -1,5 +1,3 @@
-#include <nendo/publish/segment.hpp>
-
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -7,6 +5,7 @@
 #include <thread>
 
 #include "publish/publish_fixtures.hpp"
+#include "publish/segment.hpp"
 
 namespace segment_test {
 

@@ -1,5 +1,3 @@
-#include <nendo/publish/shared_memory.hpp>
-
 #include <array>
 #include <chrono>
 #include <fstream>
@@ -16,6 +14,7 @@
 
 #include <nendo/base/units.hpp>
 
+#include "publish/shared_memory.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace shared_memory_test {

@@ -1,11 +1,11 @@
-#include <nendo/publish/target.hpp>
-
 #include <array>
 #include <string>
 #include <vector>
 
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
+
+#include "publish/target.hpp"
 
 namespace target_test {
 

@@ -5,10 +5,9 @@
 
 #include <sys/resource.h>
 
-#include <nendo/publish/datagrams.hpp>
-#include <nendo/publish/segment.hpp>
-
+#include "publish/datagrams.hpp"
 #include "publish/publish_fixtures.hpp"
+#include "publish/segment.hpp"
 #include "support/restraint.hpp"
 #include "support/sleep_only.hpp"
 

@@ -131,7 +131,7 @@ TEST_SUITE("recorder") {
     Result<Recorded> recorded = Recorded{};
     {
       const test::SmallDisk small(1000);
-      live.recorder->keep();
+      live.recorder->save_last_minute();
       recorded = live.end();
     }
     REQUIRE_FALSE(recorded);

@@ -236,7 +236,7 @@ TEST_SUITE("take_reader") {
     std::vector<std::byte> input_log;
     ByteWriter writer(input_log);
     put_entry(writer, flow::Request::grab);
-    driver::append_chunk(bytes, driver::tape_chunk, 0, input_log);
+    driver::append_chunk(bytes, driver::log_chunk, 0, input_log);
     while (const auto chunk = source->next())
       driver::append_chunk(bytes, chunk->type, chunk->number + 1, chunk->payload);
     auto reader = TakeReader::of(bytes, "test");

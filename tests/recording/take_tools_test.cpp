@@ -87,12 +87,12 @@ std::vector<std::byte> with_late_gloves(std::uint8_t gloves) {
   const auto put_sample_of = [](ByteWriter writer, std::uint8_t glove) {
     put_entry(writer, driver::RecordedSample{glove, GloveSample{}});
   };
-  append(driver::tape_chunk, [&](ByteWriter writer) { put_sample_of(writer, 0); });
+  append(driver::log_chunk, [&](ByteWriter writer) { put_sample_of(writer, 0); });
   for (std::uint8_t glove = 1; glove < gloves; ++glove)
     append(driver::glove_chunk, [&](ByteWriter writer) {
       driver::put_glove(writer, {glove, driver::GloveInfo{}});
     });
-  append(driver::tape_chunk, [&](ByteWriter writer) {
+  append(driver::log_chunk, [&](ByteWriter writer) {
     for (std::uint8_t glove = 0; glove < gloves; ++glove)
       put_sample_of(writer, glove);
   });

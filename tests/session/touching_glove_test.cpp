@@ -1,9 +1,10 @@
 // Hands that touch the model, from `--right sim:touch` to the loop's frames.
 
-#include "gloves/touching_glove.hpp"
-
 #include <doctest/doctest.h>
 
+#include <nendo/flow/touching_hand.hpp>
+
+#include "gloves/open_hand.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_session.hpp"
 #include "support/program.hpp"

@@ -6,8 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include <nendo/viewer/scene.hpp>
-
+#include "render/scene.hpp"
 #include "support/flow_fixtures.hpp"
 
 namespace nendo::test {
@@ -33,19 +32,19 @@ public:
 
 private:
   void look_on(LoopUnderTest& test) {
-    const viewer::SceneBuilder builder(test.model, test.placement.units_per_metre);
-    viewer::HoldTracker holds;
-    viewer::SceneFrame moment;
-    viewer::Scene scene;
+    const render::SceneBuilder builder(test.model, test.placement.units_per_metre);
+    render::HoldTracker holds;
+    render::SceneFrame scene_frame;
+    render::Scene scene;
     for (auto next = HostClock::now(); !over_;) {
       next += std::chrono::milliseconds(1);
       std::this_thread::sleep_until(next);
       if (!test.loop->frames().update() && scenes_ > 0) continue;
       const flow::Frame& frame = test.loop->frames().front();
       holds.follow(frame);
-      viewer::set_hands(frame, holds, moment);
-      test.loop->layout().unpack(frame.shape, moment.vertices);
-      builder.build(moment, {}, scene);
+      render::set_hands(frame, holds, scene_frame);
+      test.loop->layout().unpack(frame.shape, scene_frame.vertices);
+      builder.build(scene_frame, {}, scene);
       ++scenes_;
     }
   }

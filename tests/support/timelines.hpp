@@ -4,9 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include <nendo/timeline/timeline.hpp>
-
 #include "support/random_poses.hpp"
+#include "timeline/timeline.hpp"
 
 namespace nendo::test {
 

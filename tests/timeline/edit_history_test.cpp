@@ -1,11 +1,9 @@
-#include <nendo/timeline/edit_history.hpp>
-
 #include <doctest/doctest.h>
 
-#include <nendo/timeline/edit.hpp>
-#include <nendo/timeline/timeline_file.hpp>
-
 #include "support/timelines.hpp"
+#include "timeline/edit.hpp"
+#include "timeline/edit_history.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace edit_history_test {
 

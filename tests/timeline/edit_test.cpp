@@ -1,13 +1,12 @@
-#include <nendo/timeline/edit.hpp>
-
 #include <limits>
 
 #include <doctest/doctest.h>
 
 #include <nendo/hand/joint_limits.hpp>
-#include <nendo/timeline/hand_curve.hpp>
 
 #include "support/timelines.hpp"
+#include "timeline/edit.hpp"
+#include "timeline/hand_curve.hpp"
 
 namespace edit_test {
 

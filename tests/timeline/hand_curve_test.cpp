@@ -1,8 +1,7 @@
-#include <nendo/timeline/hand_curve.hpp>
-
 #include <doctest/doctest.h>
 
 #include "support/timelines.hpp"
+#include "timeline/hand_curve.hpp"
 
 namespace hand_curve_test {
 

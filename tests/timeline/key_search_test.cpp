@@ -1,8 +1,7 @@
-#include <nendo/timeline/key_search.hpp>
-
 #include <doctest/doctest.h>
 
 #include "support/timelines.hpp"
+#include "timeline/key_search.hpp"
 
 namespace key_search_test {
 

@@ -1,8 +1,8 @@
-#include <nendo/timeline/play_head.hpp>
-
 #include <limits>
 
 #include <doctest/doctest.h>
+
+#include "timeline/play_head.hpp"
 
 namespace play_head_test {
 

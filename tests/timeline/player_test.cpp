@@ -1,13 +1,12 @@
-#include <nendo/timeline/player.hpp>
-
 #include <doctest/doctest.h>
 
 #include <nendo/recording/loop_replay.hpp>
-#include <nendo/timeline/edit.hpp>
-#include <nendo/timeline/from_take.hpp>
-#include <nendo/timeline/timeline_file.hpp>
 
 #include "support/takes.hpp"
+#include "timeline/edit.hpp"
+#include "timeline/from_take.hpp"
+#include "timeline/player.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace player_test {
 

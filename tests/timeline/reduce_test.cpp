@@ -1,10 +1,8 @@
-#include <nendo/timeline/reduce.hpp>
-
 #include <doctest/doctest.h>
 
-#include <nendo/timeline/hand_curve.hpp>
-
 #include "support/timelines.hpp"
+#include "timeline/hand_curve.hpp"
+#include "timeline/reduce.hpp"
 
 namespace reduce_test {
 

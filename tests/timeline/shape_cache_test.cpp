@@ -1,14 +1,12 @@
-#include <nendo/timeline/shape_cache.hpp>
-
 #include <cmath>
 #include <cstring>
 
 #include <doctest/doctest.h>
 
-#include <nendo/timeline/edit.hpp>
-
 #include "support/test_meshes.hpp"
 #include "support/timelines.hpp"
+#include "timeline/edit.hpp"
+#include "timeline/shape_cache.hpp"
 
 namespace shape_cache_test {
 

@@ -1,5 +1,3 @@
-#include <nendo/timeline/timeline_file.hpp>
-
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -7,6 +5,7 @@
 #include "support/takes.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/timelines.hpp"
+#include "timeline/timeline_file.hpp"
 
 namespace timeline_file_test {
 

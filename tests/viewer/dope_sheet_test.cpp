@@ -1,10 +1,10 @@
-#include <nendo/viewer/dope_sheet.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <doctest/doctest.h>
+
+#include "viewer/dope_sheet.hpp"
 
 namespace dope_sheet_test {
 

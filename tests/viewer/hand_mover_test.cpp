@@ -1,14 +1,14 @@
-#include <nendo/viewer/hand_mover.hpp>
-
 #include <doctest/doctest.h>
 
 #include <nendo/base/units.hpp>
 
 #include "support/flow_fixtures.hpp"
+#include "viewer/hand_mover.hpp"
 
 namespace hand_mover_test {
 
 using namespace nendo;
+using namespace nendo::render;
 using namespace nendo::viewer;
 using Eigen::Vector2d;
 using Eigen::Vector3d;

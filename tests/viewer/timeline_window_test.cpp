@@ -5,15 +5,15 @@
 #include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
 
-#include <nendo/viewer/timeline_window.hpp>
-
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
+#include "viewer/timeline_window.hpp"
 
 namespace timeline_window_test {
 
 using namespace nendo;
+using namespace nendo::render;
 using namespace nendo::viewer;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -28,7 +28,7 @@ struct Seat {
   test::LoopUnderTest test{flow::Mode::type1, {.rings_of_ball = 12}};
   std::unique_ptr<TimelineWindow> window;
   TimelineView view;
-  SceneFrame moment;
+  SceneFrame scene_frame;
   SimulatedInput input;
   DopeSheet strip;
 
@@ -40,7 +40,7 @@ struct Seat {
                       SceneBuilder(test.model, test.placement.units_per_metre));
     const flow::Frame& frame = test.frame_after_tick(0);
     window->follow(frame.shape);
-    set_hands(frame, {}, moment);
+    set_hands(frame, {}, scene_frame);
     view.file = "take.timeline.toml";
     view.duration_s = 4.0;
     view.rate_hz = rate_hz;
@@ -49,7 +49,7 @@ struct Seat {
     strip.fit(size.width - 12.0, view.duration_s);
     show();
   }
-  EditActions show() { return window->show(view, moment); }
+  EditActions show() { return window->show(view, scene_frame); }
   /// The strip stands 6 pixels from the window's edges, below 36 of controls.
   Vector2d on_strip(double time_s, double y) const {
     return {6.0 + strip.x_of(time_s), window->scene_window().scene_size().height + 6.0 + 36.0 + y};
@@ -197,7 +197,7 @@ TEST_SUITE("timeline_window") {
     const Room room;
     if (!room.seat) return;
     Seat& seat = *room.seat;
-    const auto tips = seat.moment.hands[1]->pose.fingertip_positions();
+    const auto tips = seat.scene_frame.hands[1]->pose.fingertip_positions();
     Eigen::Index finger = 0; // one that the panel does not cover
     while (finger < 4 && seat.seen_at(tips.col(finger)).x() < 330.0)
       ++finger;

@@ -1,11 +1,12 @@
-#include <nendo/viewer/tip_mover.hpp>
-
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
+
+#include "viewer/tip_mover.hpp"
 
 namespace tip_mover_test {
 
 using namespace nendo;
+using namespace nendo::render;
 using namespace nendo::viewer;
 using Eigen::Vector2d;
 using Eigen::Vector3d;

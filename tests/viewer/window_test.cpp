@@ -6,16 +6,16 @@
 #include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
 
-#include <nendo/viewer/live_window.hpp>
-#include <nendo/viewer/picture.hpp>
-
+#include "render/picture.hpp"
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
+#include "viewer/live_window.hpp"
 
 namespace window_test {
 
 using namespace nendo;
+using namespace nendo::render;
 using namespace nendo::viewer;
 
 namespace {
@@ -73,11 +73,11 @@ TEST_SUITE("window") {
       CHECK(window.blocks_sent() == sent);
 
       holds.follow(frame);
-      SceneFrame moment;
-      set_hands(frame, holds, moment);
-      test.loop->layout().unpack(frame.shape, moment.vertices);
+      SceneFrame scene_frame;
+      set_hands(frame, holds, scene_frame);
+      test.loop->layout().unpack(frame.shape, scene_frame.vertices);
       Scene scene;
-      builder.build(moment, {}, scene);
+      builder.build(scene_frame, {}, scene);
       const Image by_processor = silhouette(scene, window.camera(), size);
       CHECK(intersection_over_union(by_processor, window.silhouette(size)) > 0.97);
     }
@@ -85,9 +85,9 @@ TEST_SUITE("window") {
     Camera other = window.camera();
     other.orbit(200.0, 0.0);
     Scene scene = window.scene();
-    SceneFrame moment;
-    moment.vertices = 0.7 * test.model.vertices;
-    builder.build(moment, {}, scene);
+    SceneFrame scene_frame;
+    scene_frame.vertices = 0.7 * test.model.vertices;
+    builder.build(scene_frame, {}, scene);
     CHECK(intersection_over_union(silhouette(scene, other, size), window.silhouette(size)) < 0.9);
     const Image shown = window.screenshot();
     CHECK(shown.size() == size);

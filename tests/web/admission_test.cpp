@@ -1,9 +1,9 @@
-#include "admission.hpp"
-
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
+
+#include "web/admission.hpp"
 
 namespace admission_test {
 

@@ -1,9 +1,9 @@
-#include "client_commands.hpp"
-
 #include <array>
 #include <string>
 
 #include <doctest/doctest.h>
+
+#include "web/client_commands.hpp"
 
 namespace client_commands_test {
 

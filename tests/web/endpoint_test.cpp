@@ -1,6 +1,6 @@
-#include <nendo/web/endpoint.hpp>
-
 #include <doctest/doctest.h>
+
+#include "web/endpoint.hpp"
 
 namespace endpoint_test {
 

@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include "feed.hpp"
 #include "following_client.hpp"
 #include "streamed_loop.hpp"
+#include "web/feed.hpp"
 
 namespace follow_test {
 

@@ -1,6 +1,6 @@
-#include "handshake.hpp"
-
 #include <doctest/doctest.h>
+
+#include "web/handshake.hpp"
 
 namespace handshake_test {
 

@@ -1,8 +1,8 @@
-#include "http_request.hpp"
-
 #include <string>
 
 #include <doctest/doctest.h>
+
+#include "web/http_request.hpp"
 
 namespace http_request_test {
 

@@ -1,8 +1,7 @@
-#include <nendo/web/server.hpp>
-
 #include <doctest/doctest.h>
 
 #include "served.hpp"
+#include "web/server.hpp"
 
 namespace server_test {
 

@@ -1,9 +1,8 @@
-#include "socket_frames.hpp"
-
 #include <random>
 
 #include <doctest/doctest.h>
 
+#include "web/socket_frames.hpp"
 #include "web_client.hpp"
 
 namespace socket_frames_test {

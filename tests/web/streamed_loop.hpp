@@ -3,10 +3,9 @@
 
 #include <memory>
 
-#include <nendo/web/frame_stream.hpp>
-#include <nendo/web/model_message.hpp>
-
 #include "support/flow_fixtures.hpp"
+#include "web/frame_stream.hpp"
+#include "web/model_message.hpp"
 
 namespace nendo::test {
 

@@ -14,7 +14,8 @@
 #include <unistd.h>
 
 #include <nendo/base/descriptor.hpp>
-#include <nendo/web/server.hpp>
+
+#include "web/server.hpp"
 
 namespace nendo::test {
 

@@ -62,7 +62,8 @@ set(CPACK_DEBIAN_UDEV_PACKAGE_ARCHITECTURE all)
 
 # Files that debhelper would make.
 string(TIMESTAMP when "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH, if that is set
-file(WRITE ${PROJECT_BINARY_DIR}/debian/changelog "nendo (${PROJECT_VERSION}) bookworm; urgency=medium
+cmake_host_system_information(RESULT suite QUERY DISTRIB_VERSION_CODENAME)
+file(WRITE ${PROJECT_BINARY_DIR}/debian/changelog "nendo (${PROJECT_VERSION}) ${suite}; urgency=medium
 
   * CHANGELOG.md says what changed.
 

@@ -34,6 +34,8 @@ function(nendo_settings target scope)
     return()
   endif()
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET default)
+  # Every target, because some libraries ask for it, and a precompiled header serves only those that are compiled alike.
+  target_compile_options(${target} PRIVATE -pthread)
   nendo_harden(${target})
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion
     -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2

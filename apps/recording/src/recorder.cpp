@@ -13,9 +13,8 @@
 #include <unistd.h>
 
 #include <nendo/flow/wrist_switch.hpp>
-#include <nendo/recording/kept_ring.hpp>
 
-#include "crash_keeper.hpp"
+#include "crash_handler.hpp"
 #include "take_file.hpp"
 
 namespace nendo::recording {
@@ -25,8 +24,8 @@ constexpr std::size_t largest_payload = std::size_t{1} << 18;
 /// How often the input log is emptied.
 constexpr std::chrono::milliseconds drain_time{20};
 
-/// What the last minute may take in memory: gloves that are twice as fast as they say, or send 250
-/// samples a second without saying so, and a loop in time.
+/// Returns how many bytes of memory a span may take. Gloves are counted as twice as fast as they
+/// say, and as sending 250 samples a second at least.
 std::size_t memory_for(const Setup& setup, HostClock::duration span) {
   constexpr double sample_bytes = 88.0;
   constexpr double tick_bytes = 26.0;
@@ -42,13 +41,13 @@ std::size_t memory_for(const Setup& setup, HostClock::duration span) {
 class InputLogRecorder final : public Recorder {
 public:
   InputLogRecorder(flow::InputLog& input_log, RecorderOptions options, std::optional<TakeFile> file,
-                   std::unique_ptr<KeptRing> ring)
+                   std::unique_ptr<LastMinute> last_minute)
       : input_log_(input_log), options_(std::move(options)), file_(std::move(file)),
-        ring_(std::move(ring)) {
+        last_minute_(std::move(last_minute)) {
     payload_.reserve(2 * largest_payload);
-    if (!ring_) return;
+    if (!last_minute_) return;
     auto crash_path = options_.kept_stem;
-    crash_.emplace(*ring_, crash_path += ".crash.nendo");
+    crash_handler_.emplace(*last_minute_, crash_path += ".crash.nendo");
   }
   ~InputLogRecorder() override { (void)InputLogRecorder::end({}); }
 
@@ -56,7 +55,7 @@ public:
     thread_ = std::jthread([this](const std::stop_token& stop) { record(stop); });
   }
 
-  void keep() noexcept override { keeps_.fetch_add(1, std::memory_order_relaxed); }
+  void save_last_minute() noexcept override { saves_.fetch_add(1, std::memory_order_relaxed); }
 
   Result<Recorded> end(const std::optional<ShapeSum>& shape) override {
     if (!std::exchange(ended_, true)) {
@@ -70,7 +69,7 @@ public:
 
 private:
   void record(const std::stop_token& stop) {
-    std::mutex mutex; // nobody else takes it: the wait wants one
+    std::mutex mutex; // nobody else locks it; the wait needs one
     std::condition_variable_any wake;
     std::unique_lock lock(mutex);
     HostTime next_chunk = HostClock::now() + options_.chunk_time;
@@ -83,7 +82,7 @@ private:
         write_chunk();
         next_chunk = now + options_.chunk_time;
       }
-      if (ring_ && keeps_.exchange(0, std::memory_order_relaxed) > 0) write_kept();
+      if (last_minute_ && saves_.exchange(0, std::memory_order_relaxed) > 0) write_last_minute();
     }
   }
 
@@ -99,7 +98,7 @@ private:
     ++recorded_.samples;
     auto& edge = switches_[taken.hand % switches_.size()];
     if (options_.keep_on_switch && edge.turned_on(taken.sample.wrist_switch, taken.sample.arrival))
-      keep();
+      save_last_minute();
   }
   void add(const flow::Command& command) {
     if (const auto* request = std::get_if<flow::Request>(&command)) {
@@ -110,7 +109,7 @@ private:
     }
   }
   void add(const flow::LoggedTick& tick) {
-    tell_lost(tick.lost);
+    note_lost(tick.lost);
     put(tick);
     ++recorded_.ticks;
   }
@@ -119,7 +118,7 @@ private:
     put_entry(writer, entry);
     ++entries_;
   }
-  void tell_lost(std::uint64_t lost) {
+  void note_lost(std::uint64_t lost) {
     if (lost == recorded_.lost) return;
     put(Gap{lost - recorded_.lost});
     if (recorded_.lost == 0)
@@ -129,8 +128,8 @@ private:
 
   void write_chunk() {
     if (payload_.empty()) return;
-    if (ring_) ring_->push(payload_, entries_, HostClock::now());
-    append(driver::tape_chunk);
+    if (last_minute_) last_minute_->push(payload_, entries_, HostClock::now());
+    append(driver::log_chunk);
     payload_.clear();
     entries_ = 0;
   }
@@ -140,7 +139,7 @@ private:
     recorded_.bytes = file_->bytes();
   }
 
-  void write_kept() {
+  void write_last_minute() {
     write_chunk();
     std::filesystem::path path;
     for (;;) { // names that are taken by earlier runs stay
@@ -151,20 +150,20 @@ private:
     }
     auto file = NewFile::create(path);
     if (!file) return fail(file.error());
-    if (!ring_->write(file->fd()) || ::fdatasync(file->fd()) != 0 || !file->close()) {
+    if (!last_minute_->write(file->fd()) || ::fdatasync(file->fd()) != 0 || !file->close()) {
       const std::string why = std::generic_category().message(errno);
       return fail({Errc::failed, path.string() + ": cannot be kept: " + why + "; make room"});
     }
-    file->keep();
+    file->make_permanent();
     ++recorded_.kept;
     report("kept as " + path.string());
   }
 
   void finish(const std::optional<ShapeSum>& shape) {
     drain();
-    tell_lost(input_log_.lost());
+    note_lost(input_log_.lost());
     write_chunk();
-    if (ring_ && keeps_.exchange(0, std::memory_order_relaxed) > 0) write_kept();
+    if (last_minute_ && saves_.exchange(0, std::memory_order_relaxed) > 0) write_last_minute();
     ByteWriter writer(payload_);
     put_ending(writer, {HostClock::now(), recorded_.samples, recorded_.requests, recorded_.ticks,
                         recorded_.lost, shape});
@@ -183,8 +182,8 @@ private:
   flow::InputLog& input_log_;
   RecorderOptions options_;
   std::optional<TakeFile> file_;
-  std::unique_ptr<KeptRing> ring_;
-  std::optional<CrashKeeper> crash_;
+  std::unique_ptr<LastMinute> last_minute_;
+  std::optional<CrashHandler> crash_handler_;
   std::vector<std::byte> payload_;
   std::uint64_t entries_ = 0; ///< in the payload
   std::array<flow::WristSwitchEdge, 2> switches_{};
@@ -192,8 +191,8 @@ private:
   std::optional<Error> failure_; ///< the first one
   unsigned kept_number_ = 0;
   bool ended_ = false;
-  std::atomic<unsigned> keeps_{0};
-  std::jthread thread_; // last: joined before what it uses is gone
+  std::atomic<unsigned> saves_{0}; ///< asked for, and not begun
+  std::jthread thread_;            // last: joined before what it uses is gone
 };
 
 } // namespace
@@ -208,13 +207,13 @@ Result<std::unique_ptr<Recorder>> Recorder::begin(const Setup& setup, flow::Inpu
     if (!created) return created.error();
     file.emplace(*std::move(created));
   }
-  std::unique_ptr<KeptRing> ring;
+  std::unique_ptr<LastMinute> last_minute;
   if (options.keep_last > HostClock::duration::zero()) {
-    ring = std::make_unique<KeptRing>(std::move(bytes), chunks, options.keep_last,
-                                      memory_for(setup, options.keep_last));
+    last_minute = std::make_unique<LastMinute>(std::move(bytes), chunks, options.keep_last,
+                                               memory_for(setup, options.keep_last));
   }
   auto recorder = std::make_unique<InputLogRecorder>(input_log, std::move(options), std::move(file),
-                                                     std::move(ring));
+                                                     std::move(last_minute));
   try {
     recorder->start();
   } catch (const std::system_error& error) {

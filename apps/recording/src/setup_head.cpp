@@ -1,45 +1,27 @@
 #include "setup_parts.hpp"
 
-#include <cmath>
-
 #include <nendo/driver/sample_record.hpp>
 
 namespace nendo::recording {
 namespace {
 
 constexpr std::size_t most_hands = 2;
-constexpr double largest = 1e6; // of anything that a hand is described by
+constexpr double largest = 1e6; // of all numbers that describe a hand
 constexpr double least_hand_m = 0.01;
 constexpr double most_hand_m = 1.0;
 
-bool is_number(double value) {
-  return std::abs(value) <= largest; // false for NaN
+double bounded_number(CheckedReader& checked) {
+  return checked.number(-largest, largest);
 }
-
-bool is_hand_length(double length_m) {
-  return length_m >= least_hand_m && length_m <= most_hand_m;
-}
-
-/// The next numbers, and whether all of them are some.
-struct Numbers {
-  ByteReader& reader;
-  bool fine = true;
-
-  double next() {
-    const double value = reader.f64_le();
-    fine = fine && is_number(value);
-    return value;
-  }
-};
 
 void put_line(ByteWriter& writer, const hand::SensorCalibration& line) {
   writer.f64_le(line.gain_rad_per_count);
   writer.f64_le(line.offset_counts);
 }
 
-void read_line(Numbers& numbers, hand::SensorCalibration& line) {
-  line.gain_rad_per_count = numbers.next();
-  line.offset_counts = numbers.next();
+void read_line(CheckedReader& checked, hand::SensorCalibration& line) {
+  line.gain_rad_per_count = bounded_number(checked);
+  line.offset_counts = bounded_number(checked);
 }
 
 void put_calibration(ByteWriter& writer, const hand::Calibration& calibration) {
@@ -50,14 +32,12 @@ void put_calibration(ByteWriter& writer, const hand::Calibration& calibration) {
   writer.f64_le(calibration.middle_bias);
 }
 
-bool read_calibration(ByteReader& reader, hand::Calibration& calibration) {
-  Numbers numbers{reader};
+void read_calibration(CheckedReader& checked, hand::Calibration& calibration) {
   for (auto& line : calibration.sensors)
-    read_line(numbers, line);
+    read_line(checked, line);
   for (double& part : calibration.mixed_in)
-    part = numbers.next();
-  calibration.middle_bias = numbers.next();
-  return numbers.fine;
+    part = bounded_number(checked);
+  calibration.middle_bias = bounded_number(checked);
 }
 
 void put_learned(ByteWriter& writer, const hand::LearnedRanges& learned) {
@@ -71,29 +51,23 @@ void put_learned(ByteWriter& writer, const hand::LearnedRanges& learned) {
   }
 }
 
-/// Whether they can have been learned is for RangeAdaptation to judge.
-bool read_learned(ByteReader& reader, hand::LearnedRanges& learned) {
-  const unsigned side = reader.u8();
-  learned.side = side == 0 ? Side::left : Side::right;
-  Numbers numbers{reader};
+/// RangeAdaptation judges whether such ranges can have been learned.
+void read_learned(ByteReader& reader, CheckedReader& checked, hand::LearnedRanges& learned) {
+  learned.side = checked.one_of(Side::right);
   for (auto& sensor : learned.sensors) {
-    sensor.low_counts = numbers.next();
-    sensor.high_counts = numbers.next();
+    sensor.low_counts = bounded_number(checked);
+    sensor.high_counts = bounded_number(checked);
     sensor.bottoms = reader.u32_le();
     sensor.tops = reader.u32_le();
-    read_line(numbers, sensor.line);
+    read_line(checked, sensor.line);
   }
-  return side <= 1 && numbers.fine;
 }
 
-bool read_filter(ByteReader& reader, hand::FilterOptions& filter) {
-  const unsigned kind = reader.u8();
-  filter.kind = static_cast<hand::FilterKind>(kind);
-  Numbers numbers{reader};
-  filter.min_cutoff_hz = numbers.next();
-  filter.beta_hz_per_rad_s = numbers.next();
-  filter.derivative_cutoff_hz = numbers.next();
-  return kind <= static_cast<unsigned>(hand::FilterKind::one_euro) && numbers.fine;
+void read_filter(CheckedReader& checked, hand::FilterOptions& filter) {
+  filter.kind = checked.one_of(hand::FilterKind::one_euro);
+  filter.min_cutoff_hz = bounded_number(checked);
+  filter.beta_hz_per_rad_s = bounded_number(checked);
+  filter.derivative_cutoff_hz = bounded_number(checked);
 }
 
 void put_size(ByteWriter& writer, const hand::HandSize& size) {
@@ -101,10 +75,9 @@ void put_size(ByteWriter& writer, const hand::HandSize& size) {
   writer.f64_le(size.breadth_m);
 }
 
-bool read_size(ByteReader& reader, hand::HandSize& size) {
-  size.length_m = reader.f64_le();
-  size.breadth_m = reader.f64_le();
-  return is_hand_length(size.length_m) && is_hand_length(size.breadth_m);
+void read_size(CheckedReader& checked, hand::HandSize& size) {
+  size.length_m = checked.number(least_hand_m, most_hand_m);
+  size.breadth_m = checked.number(least_hand_m, most_hand_m);
 }
 
 } // namespace
@@ -154,28 +127,26 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
 }
 
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
+  CheckedReader checked(reader);
   flow::HandInput hand;
   hand::WearerHand own, other;
-  const unsigned side = reader.u8();
-  hand.side = side == 0 ? Side::left : Side::right;
-  const bool sized = read_size(reader, own.size);
+  hand.side = checked.one_of(Side::right);
+  read_size(checked, own.size);
   const auto first = driver::read_sample_body(reader);
   if (!first || first->glove != hands.size() || hands.size() >= most_hands) return false;
   if (!hands.empty() && hands.front().side == hand.side) return false;
   hand.first = first->sample;
   hand.gated = reader.u8() != 0;
-  const bool filters = read_filter(reader, hand.filter);
+  read_filter(checked, hand.filter);
   const bool adapts = reader.u8() != 0;
   const CountScale counts{reader.u16_le(), reader.u8() != 0};
   if (adapts) hand.wearer.adapt = counts;
-  const bool calibrated = read_calibration(reader, own.calibration) &&
-                          read_calibration(reader, other.calibration) &&
-                          read_size(reader, other.size);
-  bool has_learned = true;
+  read_calibration(checked, own.calibration);
+  read_calibration(checked, other.calibration);
+  read_size(checked, other.size);
   if (reader.remaining() > 0 && reader.u8() != 0) // format 1.0 ends before it
-    has_learned = read_learned(reader, hand.wearer.learned.emplace());
-  if (reader.overrun() || side > 1 || !sized || !filters || !calibrated || !has_learned)
-    return false;
+    read_learned(reader, checked, hand.wearer.learned.emplace());
+  if (!checked.fine()) return false;
   hand.wearer.of(hand.first.side) = own;
   hand.wearer.of(opposite(hand.first.side)) = other;
   hands.push_back(hand);

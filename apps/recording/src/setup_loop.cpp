@@ -15,40 +15,6 @@ constexpr std::uint32_t most_catch_up = 1000; // as parse_policy()
 constexpr double most_points = 10.0;          // two hands' fingertips
 constexpr double largest_number = 1e100;      // as the solver takes
 
-/// Reads one value after another and remembers whether all of them were usable.
-class CheckedReader {
-public:
-  explicit CheckedReader(ByteReader& reader) : reader_(&reader) {}
-
-  double number(double least, double most) {
-    const double value = reader_->f64_le();
-    require(value >= least && value <= most);
-    return value;
-  }
-  template <class Enum>
-  Enum one_of(Enum last) {
-    const unsigned value = reader_->u8();
-    require(value <= static_cast<unsigned>(last));
-    return static_cast<Enum>(value);
-  }
-  std::uint64_t memory() {
-    const std::uint64_t bytes = reader_->u64_le();
-    require(bytes <= most_memory);
-    return bytes;
-  }
-  std::size_t count(std::size_t most) {
-    const std::size_t counted = reader_->u16_le();
-    require(counted <= most);
-    return fine_ ? counted : 0;
-  }
-  void require(bool fine) { fine_ = fine_ && fine; }
-  bool fine() const { return fine_ && !reader_->overrun(); }
-
-private:
-  ByteReader* reader_;
-  bool fine_ = true;
-};
-
 void put_placement(ByteWriter& writer, const flow::Placement& placement) {
   writer.f64_le(placement.units_per_metre);
   for (const auto& pose : placement.T_stage_wrist) {
@@ -124,8 +90,8 @@ void read_deformer(ByteReader& reader, CheckedReader& checked, deform::DeformerO
   options.csrbf.polynomial = checked.one_of(deform::Polynomial::linear);
   options.csrbf.merge_fraction = checked.number(0.0, 1.0);
   reader.u16_le(); // two bytes that were the solver's order and storage; any are good
-  options.evaluation.weight_bytes = checked.memory();
-  options.undo_bytes = checked.memory();
+  options.evaluation.weight_bytes = checked.size(most_memory);
+  options.undo_bytes = checked.size(most_memory);
   const bool injects = reader.u8() != 0;
   deform::InjectiveOptions injective;
   injective.most_bound = checked.number(0.01, 0.999);

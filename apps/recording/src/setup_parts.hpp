@@ -18,6 +18,41 @@ constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
          type == driver::glove_chunk;
 }
 
+/// Reads one value after another and remembers whether all of them were usable. After an unusable
+/// count, count() returns 0.
+class CheckedReader {
+public:
+  explicit CheckedReader(ByteReader& reader) : reader_(&reader) {}
+
+  double number(double least, double most) {
+    const double value = reader_->f64_le();
+    require(value >= least && value <= most);
+    return value;
+  }
+  template <class Enum>
+  Enum one_of(Enum last) {
+    const unsigned value = reader_->u8();
+    require(value <= static_cast<unsigned>(last));
+    return static_cast<Enum>(value);
+  }
+  std::uint64_t size(std::uint64_t most) {
+    const std::uint64_t bytes = reader_->u64_le();
+    require(bytes <= most);
+    return bytes;
+  }
+  std::size_t count(std::size_t most) {
+    const std::size_t counted = reader_->u16_le();
+    require(counted <= most);
+    return fine_ ? counted : 0;
+  }
+  void require(bool fine) { fine_ = fine_ && fine; }
+  bool fine() const { return fine_ && !reader_->overrun(); }
+
+private:
+  ByteReader* reader_;
+  bool fine_ = true;
+};
+
 void put_head(ByteWriter& writer, const Setup& setup);
 void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand);
 void put_loop(ByteWriter& writer, const LoopSetup& loop);

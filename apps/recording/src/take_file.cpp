@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,11 +13,30 @@
 namespace nendo::recording {
 namespace {
 
-std::string why(int error_number) {
-  return std::generic_category().message(error_number);
+std::string last_error() {
+  return std::generic_category().message(errno);
 }
 
 } // namespace
+
+Result<NewFile> NewFile::create(const std::filesystem::path& path) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666));
+  if (file.is_open()) return NewFile(path, std::move(file));
+  if (errno == EEXIST)
+    return Error{Errc::failed, path.string() + ": is there already, and no recording is written "
+                                               "over; name another file or move it away"};
+  return Error{Errc::failed, path.string() + ": cannot be made: " + last_error() +
+                                 "; choose a folder that is there and that you may write to"};
+}
+
+NewFile::~NewFile() {
+  if (provisional_) ::unlink(path_.c_str());
+}
+
+void NewFile::make_permanent() {
+  provisional_ = false;
+  sync_folder_of(path_);
+}
 
 Result<TakeFile> TakeFile::create(const std::filesystem::path& path,
                                   std::span<const std::byte> setup, std::uint32_t chunks,
@@ -25,7 +45,7 @@ Result<TakeFile> TakeFile::create(const std::filesystem::path& path,
   if (!created) return created.error();
   TakeFile file(*std::move(created), chunks, kind);
   if (const auto written = file.write(setup); !written) return written.error();
-  if (kind == Kind::live) file.file_.keep();
+  if (kind == Kind::live) file.file_.make_permanent();
   return file;
 }
 
@@ -39,14 +59,14 @@ Result<void> TakeFile::append(driver::ChunkType type, std::span<const std::byte>
 
 Result<void> TakeFile::sync() {
   if (failed_) return {};
-  if (::fdatasync(file_.fd()) != 0) return give_up(why(errno), "make room");
-  file_.keep();
+  if (::fdatasync(file_.fd()) != 0) return give_up(last_error(), "make room");
+  file_.make_permanent();
   return {};
 }
 
 Result<void> TakeFile::write(std::span<const std::byte> bytes) {
   if (!write_all(file_.fd(), bytes) || (kind_ == Kind::live && ::fdatasync(file_.fd()) != 0))
-    return give_up(why(errno), "make room");
+    return give_up(last_error(), "make room");
   bytes_ += bytes.size();
   struct stat info {};
   if (::fstat(file_.fd(), &info) == 0 && info.st_nlink == 0)
@@ -56,8 +76,8 @@ Result<void> TakeFile::write(std::span<const std::byte> bytes) {
 
 Error TakeFile::give_up(const std::string& reason, const std::string& remedy) {
   failed_ = true;
-  const std::string& name = path().string();
-  if (!file_.is_kept())
+  const std::string& name = file_.path().string();
+  if (!file_.is_permanent())
     return Error{Errc::failed, name + ": cannot be written: " + reason + "; " + remedy +
                                    " and try again: nothing of it was kept"};
   // What is half-written goes; should that fail, too, the chunk's checksum tells.

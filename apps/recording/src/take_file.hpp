@@ -1,17 +1,48 @@
 #pragma once
-// Writes a recording. The file only grows, chunk by chunk, and is whole after each chunk.
+// Writes recordings: a new file that is removed again unless it is made permanent, and a file that
+// only grows, chunk by chunk, and is whole after each chunk. All functions block as long as the
+// disk does.
 
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <nendo/base/descriptor.hpp>
+#include <nendo/base/result.hpp>
 #include <nendo/driver/chunk_file.hpp>
 
-#include "new_file.hpp"
-
 namespace nendo::recording {
+
+class NewFile {
+public:
+  /// Creates the file. Error: failed (a file of that name exists already, or it cannot be created).
+  static Result<NewFile> create(const std::filesystem::path& path);
+  NewFile(NewFile&& other) noexcept
+      : path_(std::move(other.path_)), file_(std::move(other.file_)),
+        provisional_(std::exchange(other.provisional_, false)) {}
+  NewFile& operator=(NewFile&&) = delete;
+  /// Removes the file unless make_permanent() was called.
+  ~NewFile();
+
+  /// Lets the file stay. Its name is on the disk when this returns.
+  void make_permanent();
+  bool is_permanent() const noexcept { return !provisional_; }
+
+  int fd() const noexcept { return file_.get(); }
+  bool close() noexcept { return file_.close(); } ///< false, with errno, if the system refuses
+  const std::filesystem::path& path() const noexcept { return path_; }
+
+private:
+  NewFile(std::filesystem::path path, Descriptor file)
+      : path_(std::move(path)), file_(std::move(file)), provisional_(true) {}
+
+  std::filesystem::path path_;
+  Descriptor file_;
+  bool provisional_;
+};
 
 class TakeFile {
 public:
@@ -31,15 +62,13 @@ public:
   /// Writes everything to the disk and makes a copy permanent. Error: failed.
   Result<void> sync();
 
-  bool has_failed() const noexcept { return failed_; }
   std::uint64_t bytes() const noexcept { return bytes_; }
-  const std::filesystem::path& path() const noexcept { return file_.path(); }
 
 private:
   TakeFile(NewFile file, std::uint32_t chunks, Kind kind)
       : file_(std::move(file)), chunks_(chunks), kind_(kind) {}
   Result<void> write(std::span<const std::byte> bytes);
-  Error give_up(const std::string& why, const std::string& remedy);
+  Error give_up(const std::string& reason, const std::string& remedy);
 
   NewFile file_;
   std::uint32_t chunks_;

@@ -8,7 +8,7 @@
 namespace nendo::recording {
 namespace {
 
-using driver::RecordKind;
+using driver::EntryKind;
 
 constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
@@ -22,17 +22,17 @@ struct EntryWriter {
     driver::put_sample(writer, sample);
   }
   void operator()(flow::Request request) const {
-    driver::put_record_head(writer, RecordKind::request, request_bytes);
+    driver::put_entry_head(writer, EntryKind::request, request_bytes);
     writer.u8(static_cast<std::uint8_t>(request));
   }
   void operator()(const flow::LoggedTick& tick) const {
-    driver::put_record_head(writer, RecordKind::tick, tick_bytes);
+    driver::put_entry_head(writer, EntryKind::tick, tick_bytes);
     writer.u64_le(tick.number);
     driver::put_time(writer, tick.scheduled);
     driver::put_time(writer, tick.woke);
   }
   void operator()(const flow::WristMove& move) const {
-    driver::put_record_head(writer, RecordKind::wrist, wrist_bytes);
+    driver::put_entry_head(writer, EntryKind::wrist, wrist_bytes);
     writer.u8(static_cast<std::uint8_t>(move.side));
     for (const double number : move.position_m)
       writer.f64_le(number);
@@ -40,7 +40,7 @@ struct EntryWriter {
       writer.f64_le(number);
   }
   void operator()(const Gap& gap) const {
-    driver::put_record_head(writer, RecordKind::gap, gap_bytes);
+    driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
     writer.u64_le(gap.entries);
   }
 };
@@ -128,14 +128,16 @@ Result<TakeReader> TakeReader::of(std::span<const std::byte> bytes, std::string_
   return TakeReader(*std::move(chunks));
 }
 
-/// On to the next chunk of an input log; false if there is none.
+/// Goes on to the next chunk of an input log. Returns false if there is none.
 bool TakeReader::next_chunk() {
-  while (const auto chunk = chunks_.next()) {
-    gap_due_ = gap_due_ || chunks_.damage_count() > damages_told_;
-    damages_told_ = chunks_.damage_count();
-    if (chunk->type == driver::tape_chunk) {
+  for (;;) {
+    const auto chunk = chunks_.next();
+    gap_due_ = gap_due_ || chunks_.damage_count() > damages_seen_;
+    damages_seen_ = chunks_.damage_count();
+    if (!chunk) return false;
+    if (chunk->type == driver::log_chunk) {
       setup_done_ = true;
-      records_ = driver::TapeRecords(chunk->payload);
+      records_ = driver::LogEntries(chunk->payload);
       return true;
     }
     if (chunk->type == ending_chunk) {
@@ -145,31 +147,29 @@ bool TakeReader::next_chunk() {
       shape_ = read_shape(chunk->payload);
       ++(shape_ ? shapes_ : strange_);
     } else if (setup_done_ && is_setup_chunk(chunk->type)) {
-      ++strange_; // whoever reads has counted gloves and hands
+      ++strange_; // the setup does not change once it has been read
     } else if (!read_setup_chunk(chunk->type, chunk->payload, setup_)) {
       ++strange_;
     }
   }
-  gap_due_ = gap_due_ || chunks_.damage_count() > damages_told_;
-  damages_told_ = chunks_.damage_count();
-  return false;
 }
 
-/// Nothing, and a gap due, if it cannot be used; nothing if its kind is not known.
-std::optional<Entry> TakeReader::entry_of(const driver::TapeRecord& record) {
+/// Returns nothing if the kind of the entry is unknown. Returns nothing, and makes a gap due, if
+/// the entry cannot be used.
+std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
   ByteReader reader(record.body);
   std::optional<Entry> entry;
-  if (record.is(RecordKind::sample)) {
+  if (record.is(EntryKind::sample)) {
     const auto sample = driver::sample_of(record);
     if (sample && sample->glove < setup_.gloves.size()) entry = *sample;
-  } else if (record.is(RecordKind::request)) {
+  } else if (record.is(EntryKind::request)) {
     const std::uint8_t request = reader.u8();
     if (!reader.overrun()) entry = request_of(request);
-  } else if (record.is(RecordKind::tick)) {
+  } else if (record.is(EntryKind::tick)) {
     entry = tick_of(reader);
-  } else if (record.is(RecordKind::wrist)) {
+  } else if (record.is(EntryKind::wrist)) {
     entry = wrist_of(reader);
-  } else if (record.is(RecordKind::gap)) {
+  } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;
   } else {
@@ -193,7 +193,7 @@ std::optional<Entry> TakeReader::next() {
       ++strange_;
       gap_due_ = true;
     }
-    records_ = driver::TapeRecords({});
+    records_ = driver::LogEntries({});
     if (!next_chunk() && !gap_due_) return std::nullopt;
   }
 }

@@ -1,20 +1,92 @@
 #include <nendo/recording/take_tools.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "take_copy.hpp"
+#include <nendo/recording/loop_replay.hpp>
+
+#include "take_file.hpp"
 
 namespace nendo::recording {
 namespace {
 
-/// Entries that belong together: all that a tick took, or one sample where no loop ran.
+/// Makes a recording from the entries of another one. The new file exists only if end() succeeded.
+/// Error of all functions: failed.
+class TakeCopy {
+public:
+  /// Creates the file, which must not exist yet.
+  static Result<TakeCopy> create(const std::filesystem::path& path, const Setup& setup) {
+    std::uint32_t chunks = 0;
+    const auto bytes = setup_bytes(setup, chunks);
+    auto file = TakeFile::create(path, bytes, chunks, TakeFile::Kind::copy);
+    if (!file) return file.error();
+    return TakeCopy(*std::move(file));
+  }
+
+  /// Appends an entry.
+  Result<void> put(const Entry& entry) {
+    ByteWriter writer(payload_);
+    put_entry(writer, entry);
+    ++made_.entries;
+    if (std::holds_alternative<driver::RecordedSample>(entry)) ++ending_.samples;
+    if (std::holds_alternative<flow::Request>(entry)) ++ending_.requests;
+    if (std::holds_alternative<flow::LoggedTick>(entry)) ++ending_.ticks;
+    return payload_.size() < chunk_bytes ? Result<void>() : flush();
+  }
+  /// Appends a shape after all entries so far.
+  Result<void> put(const RecordedShape& shape) {
+    if (auto flushed = flush(); !flushed) return flushed;
+    ++made_.shapes;
+    std::vector<std::byte> payload;
+    ByteWriter writer(payload);
+    put_shape(writer, shape);
+    return file_.append(shape_chunk, payload);
+  }
+  /// Writes the ending, whose time is `host`. All of it except the counts is taken from
+  /// `of_original`, if given.
+  Result<NewTake> end(HostTime host, const std::optional<Ending>& of_original = {}) {
+    if (const auto flushed = flush(); !flushed) return flushed.error();
+    ending_.host = host;
+    if (of_original) {
+      ending_.lost = of_original->lost;
+      ending_.shape = of_original->shape;
+    }
+    ByteWriter writer(payload_);
+    put_ending(writer, ending_);
+    if (const auto written = file_.append(ending_chunk, payload_); !written) return written.error();
+    if (const auto synced = file_.sync(); !synced) return synced.error();
+    made_.bytes = file_.bytes();
+    return made_;
+  }
+
+private:
+  static constexpr std::size_t chunk_bytes = std::size_t{1} << 16;
+
+  explicit TakeCopy(TakeFile file) : file_(std::move(file)) {}
+
+  Result<void> flush() {
+    if (payload_.empty()) return {};
+    auto written = file_.append(driver::log_chunk, payload_);
+    payload_.clear();
+    return written;
+  }
+
+  TakeFile file_;
+  std::vector<std::byte> payload_;
+  Ending ending_;
+  NewTake made_;
+};
+
+/// Gives the entries of a recording in groups that belong together: all that a tick took, or one
+/// sample where no loop ran.
 class Groups {
 public:
   explicit Groups(TakeReader& reader) : reader_(reader) {}
 
   struct Group {
     std::vector<Entry> entries;
-    std::optional<HostTime> time; ///< nothing: of a rest that no tick has taken
+    std::optional<HostTime> time; ///< nothing if no tick has taken the entries
   };
   std::optional<Group> next() {
     Group group;
@@ -25,7 +97,7 @@ public:
       if (tick != nullptr) group.time = tick->woke;
       if (sample != nullptr && !has_loop) group.time = sample->sample.arrival;
       group.entries.push_back(*std::move(entry));
-      // A file that has no tick for long is no reason to hold all of it.
+      // A file may have no tick for long. It must not fill the memory.
       if (group.time || group.entries.size() >= most_entries) return group;
     }
     if (group.entries.empty()) return std::nullopt;
@@ -37,7 +109,7 @@ private:
   TakeReader& reader_;
 };
 
-Error nothing(const std::filesystem::path& from, const std::string& what) {
+Error bad_input(const std::filesystem::path& from, const std::string& what) {
   return Error{Errc::bad_input, from.string() + ": " + what};
 }
 
@@ -48,10 +120,10 @@ Result<std::uint64_t> append_all(TakeFile& file, driver::ChunkReader& reader, dr
   std::uint64_t chunks = 0;
   std::uint64_t damages = 0;
   for (std::optional<driver::Chunk> next = chunk; next; next = reader.next()) {
-    // Not among the chunks of the setup, which stand before the first input log.
-    const bool here = next->type == driver::tape_chunk || next->type == ending_chunk;
+    // A gap must not stand among the chunks of the setup, which come before the first input log.
+    const bool here = next->type == driver::log_chunk || next->type == ending_chunk;
     if (here && std::exchange(damages, reader.damage_count()) != reader.damage_count()) {
-      if (const auto written = file.append(driver::tape_chunk, gap); !written)
+      if (const auto written = file.append(driver::log_chunk, gap); !written)
         return written.error();
     }
     if (const auto written = file.append(next->type, next->payload); !written)
@@ -61,13 +133,18 @@ Result<std::uint64_t> append_all(TakeFile& file, driver::ChunkReader& reader, dr
   return chunks;
 }
 
+/// Returns the number of ticks from one shape to the next.
+std::uint64_t stride(double loop_hz, double wanted_hz) {
+  return static_cast<std::uint64_t>(std::max(1.0, std::round(loop_hz / wanted_hz)));
+}
+
 } // namespace
 
 Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesystem::path& to) {
   auto reader = driver::ChunkReader::open_damaged(from);
   if (!reader) return reader.error();
   const auto first = reader->next();
-  if (!first) return nothing(from, "nothing in it is whole; there is nothing to save");
+  if (!first) return bad_input(from, "nothing in it is whole; there is nothing to save");
   auto file = TakeFile::create(to, driver::file_header(), 0, TakeFile::Kind::copy);
   if (!file) return file.error();
   const auto chunks = append_all(*file, *reader, *first);
@@ -89,8 +166,8 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
   for (; group && (!group->time || *group->time < first); group = groups.next())
     left_out += group->entries.size();
   if (!group || *group->time >= last)
-    return nothing(from, "nothing happened in that part of it; `nendo recording info` tells how "
-                         "long it is");
+    return bad_input(from, "nothing happened in that part of it; `nendo recording info` tells how "
+                           "long it is");
   if (left_out > 0) {
     setup.begun += std::chrono::duration_cast<std::chrono::nanoseconds>(begin);
     setup.begun_host = first;
@@ -108,6 +185,33 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
     ended = *group->time;
   }
   return copy->end(ended);
+}
+
+Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesystem::path& to,
+                           const deform::Mesh& model, double rate_hz) {
+  if (static_cast<std::size_t>(model.vertices.cols()) > most_recorded_vertices)
+    return bad_input(from, "a shape in a recording has at most " +
+                               std::to_string(most_recorded_vertices) + " vertices");
+  auto reader = TakeReader::open(from);
+  if (!reader) return reader.error();
+  auto replay = LoopReplay::make(reader->setup(), model);
+  if (!replay) return Error{replay.error().code, from.string() + ": " + replay.error().message};
+  flow::DeformLoop& loop = (*replay)->loop();
+  auto copy = TakeCopy::create(to, reader->setup());
+  if (!copy) return copy.error();
+  const std::uint64_t every = stride(reader->setup().loop->options.rate_hz, rate_hz);
+  HostTime ended = reader->setup().begun_host;
+  deform::Points vertices;
+  while (const auto entry = reader->next()) {
+    if (const auto put = copy->put(*entry); !put) return put.error();
+    if (!(*replay)->feed(*entry)) continue;
+    ended = std::get<flow::LoggedTick>(*entry).woke;
+    if ((loop.stats().ticks - 1) % every != 0 || !loop.frames().update()) continue;
+    const flow::Frame& frame = loop.frames().front();
+    loop.layout().unpack(frame.shape, vertices);
+    if (const auto put = copy->put(shape_of(frame.tick, vertices)); !put) return put.error();
+  }
+  return copy->end(reader->ending() ? reader->ending()->host : ended, reader->ending());
 }
 
 } // namespace nendo::recording

@@ -59,14 +59,14 @@ public:
       const auto chunk = reader_.next();
       if (!chunk) return std::nullopt;
       records_ =
-          TapeRecords(chunk->type == tape_chunk ? chunk->payload : std::span<const std::byte>{});
+          LogEntries(chunk->type == log_chunk ? chunk->payload : std::span<const std::byte>{});
     }
   }
 
 private:
   ChunkReader reader_;
   std::uint8_t glove_;
-  TapeRecords records_{{}};
+  LogEntries records_{{}};
 };
 
 class ReplayedGlove final : public Glove {
@@ -169,7 +169,7 @@ private:
 std::vector<RecordedGlove> gloves_of(ChunkReader reader) {
   std::vector<RecordedGlove> gloves;
   while (const auto chunk = reader.next()) {
-    if (chunk->type == tape_chunk) break; // the gloves are told before their samples
+    if (chunk->type == log_chunk) break; // the gloves are told before their samples
     if (chunk->type != glove_chunk) continue;
     if (auto glove = glove_of(chunk->payload)) gloves.push_back(*std::move(glove));
   }

@@ -43,16 +43,16 @@ unsigned bit(bool set, unsigned at) noexcept {
 
 } // namespace
 
-std::optional<TapeRecord> TapeRecords::next() noexcept {
+std::optional<LogEntry> LogEntries::next() noexcept {
   if (reader_.remaining() == 0) return std::nullopt;
-  TapeRecord record;
+  LogEntry record;
   record.kind = reader_.u8();
   record.body = reader_.take(reader_.u8());
   if (reader_.overrun()) return std::nullopt;
   return record;
 }
 
-void put_record_head(ByteWriter& writer, RecordKind kind, std::size_t body_bytes) {
+void put_entry_head(ByteWriter& writer, EntryKind kind, std::size_t body_bytes) {
   writer.u8(static_cast<std::uint8_t>(kind));
   writer.u8(static_cast<std::uint8_t>(body_bytes));
 }
@@ -102,12 +102,12 @@ std::optional<RecordedSample> read_sample_body(ByteReader& reader) noexcept {
 }
 
 void put_sample(ByteWriter& writer, const RecordedSample& recorded) {
-  put_record_head(writer, RecordKind::sample, sample_bytes);
+  put_entry_head(writer, EntryKind::sample, sample_bytes);
   put_sample_body(writer, recorded);
 }
 
-std::optional<RecordedSample> sample_of(const TapeRecord& record) noexcept {
-  if (!record.is(RecordKind::sample) || record.body.size() < sample_bytes) return std::nullopt;
+std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept {
+  if (!record.is(EntryKind::sample) || record.body.size() < sample_bytes) return std::nullopt;
   ByteReader reader(record.body);
   return read_sample_body(reader);
 }

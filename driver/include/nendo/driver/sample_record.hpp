@@ -14,26 +14,26 @@
 namespace nendo::driver {
 
 inline constexpr ChunkType glove_chunk = chunk_type("GLOV"); ///< one for each glove
-inline constexpr ChunkType tape_chunk = chunk_type("TAPE");  ///< what happened, in its order
+inline constexpr ChunkType log_chunk = chunk_type("TAPE");   ///< what happened, in its order
 
 /// Kinds of entries; unknown ones are passed over.
-enum class RecordKind : std::uint8_t { sample = 1, request = 2, tick = 3, gap = 4, wrist = 5 };
+enum class EntryKind : std::uint8_t { sample = 1, request = 2, tick = 3, gap = 4, wrist = 5 };
 
 /// One entry of an input log: its kind and what it holds.
-struct TapeRecord {
+struct LogEntry {
   std::uint8_t kind = 0;
   std::span<const std::byte> body;
 
-  bool is(RecordKind wanted) const noexcept { return kind == static_cast<std::uint8_t>(wanted); }
+  bool is(EntryKind wanted) const noexcept { return kind == static_cast<std::uint8_t>(wanted); }
 };
 
 /// Goes through the entries of a TAPE chunk's payload. Pure.
-class TapeRecords {
+class LogEntries {
 public:
-  explicit TapeRecords(std::span<const std::byte> payload) noexcept : reader_(payload) {}
+  explicit LogEntries(std::span<const std::byte> payload) noexcept : reader_(payload) {}
   /// Returns the next entry; nullopt at the end. ended_well() then says whether the payload ended
   /// with a whole entry.
-  std::optional<TapeRecord> next() noexcept;
+  std::optional<LogEntry> next() noexcept;
   bool ended_well() const noexcept { return !reader_.overrun(); }
 
 private:
@@ -41,7 +41,7 @@ private:
 };
 
 /// Writes the kind and length with which every entry begins.
-void put_record_head(ByteWriter& writer, RecordKind kind, std::size_t body_bytes);
+void put_entry_head(ByteWriter& writer, EntryKind kind, std::size_t body_bytes);
 
 struct RecordedSample {
   std::uint8_t glove = 0; ///< the number that its GLOV chunk gives it
@@ -57,7 +57,7 @@ HostTime read_time(ByteReader& reader) noexcept;
 /// Writes a sample as a whole entry.
 void put_sample(ByteWriter& writer, const RecordedSample& recorded);
 /// Returns the sample of an entry; nullopt if the entry is no sample, or holds what no glove sends.
-std::optional<RecordedSample> sample_of(const TapeRecord& record) noexcept;
+std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept;
 /// Writes or reads a sample without the kind and length of an entry, for other chunks.
 void put_sample_body(ByteWriter& writer, const RecordedSample& recorded);
 std::optional<RecordedSample> read_sample_body(ByteReader& reader) noexcept;

@@ -22,20 +22,21 @@ struct RecorderOptions {
   /// The beginning of the names of kept files: "clay" gives clay.kept-1.nendo and so on, and
   /// clay.crash.nendo.
   std::filesystem::path kept_stem{};
-  bool keep_on_switch = false; ///< keep() when a glove's switch is turned on
+  bool keep_on_switch = false; ///< save_last_minute() when a glove's switch is turned on
   /// Receives one line for people, from the recorder's thread: which file was kept, or what failed.
   std::function<void(std::string_view)> report{};
   /// The period in which a chunk is written to the disk. A crash can lose that much.
   HostClock::duration chunk_time = std::chrono::milliseconds(500);
 };
 
+/// The counts of a recording that has ended.
 struct Recorded {
   std::uint64_t samples = 0;
   std::uint64_t requests = 0;
   std::uint64_t ticks = 0;
   std::uint64_t lost = 0;  ///< entries that found the input log full
   std::uint64_t bytes = 0; ///< of the file
-  std::uint64_t kept = 0;  ///< files that keep() made
+  std::uint64_t kept = 0;  ///< files that save_last_minute() made
 };
 
 class Recorder {
@@ -55,7 +56,7 @@ public:
 
   /// Requests that what is in memory is written to a file soon. Does nothing without keep_last. Any
   /// thread may call it. Wait-free.
-  virtual void keep() noexcept = 0;
+  virtual void save_last_minute() noexcept = 0;
   /// To be called after the loop's last tick. Writes the remaining entries and the ending, and
   /// joins the thread. Further calls do nothing and return the same. Error: failed, if anything
   /// could not be written; all that is in the file is whole.

@@ -73,15 +73,15 @@ public:
 private:
   explicit TakeReader(driver::ChunkReader chunks);
   bool next_chunk();
-  std::optional<Entry> entry_of(const driver::TapeRecord& record);
+  std::optional<Entry> entry_of(const driver::LogEntry& record);
 
   driver::ChunkReader chunks_;
   Setup setup_;
-  driver::TapeRecords records_{{}};
+  driver::LogEntries records_{{}};
   std::optional<Ending> ending_;
   std::optional<RecordedShape> shape_;
   std::uint64_t shapes_ = 0;
-  std::uint64_t damages_told_ = 0;
+  std::uint64_t damages_seen_ = 0;
   std::uint64_t strange_ = 0;
   bool setup_done_ = false; ///< true from the first input log chunk on
   bool gap_due_ = false;

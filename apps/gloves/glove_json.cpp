@@ -1,0 +1,57 @@
+#include "gloves/glove_json.hpp"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/hand/angle_sources.hpp>
+
+#include "cli/json_line.hpp"
+
+namespace nendo::gloves {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json switch_json(WristSwitch position) {
+  if (position == WristSwitch::unknown) return nullptr;
+  return position == WristSwitch::on ? "on" : "off";
+}
+
+} // namespace
+
+ordered_json angle_sources_json(SensorMask sensors) {
+  const hand::AngleSources sources = hand::angle_sources(sensors);
+  ordered_json by_angle = ordered_json::object();
+  for (std::size_t n = 0; n < hand::angle_count; ++n)
+    by_angle[std::string(hand::angle_names[n])] = name_of(sources[n]);
+  return by_angle;
+}
+
+std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
+                        bool with_sources) {
+  ordered_json raw = ordered_json::object();
+  ordered_json angles = ordered_json::object();
+  const auto angles_rad =
+      calibration != nullptr ? calibration->angles_rad(sample) : hand::SensorAngles{};
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!sample.present.has(sensor)) continue;
+    const std::string name(name_of(sensor));
+    raw[name] = sample[sensor].value;
+    if (calibration != nullptr && (*calibration)[sensor].gain_rad_per_count != 0.0)
+      angles[name] = angles_rad[slot];
+  }
+  ordered_json line{{"time_s", to_seconds(sample.arrival.time_since_epoch())},
+                    {"measured_s", to_seconds(sample.measured.time_since_epoch())},
+                    {"sequence", sample.sequence},
+                    {"hand", name_of(sample.side)},
+                    {"switch", switch_json(sample.wrist_switch)},
+                    {"raw", std::move(raw)}};
+  if (sample.has_device_time) line["device_time_s"] = to_seconds(sample.device_time);
+  if (calibration != nullptr) line["angle_rad"] = std::move(angles);
+  if (calibration != nullptr && with_sources) line["angles"] = angle_sources_json(sample.present);
+  return cli::json_text(line);
+}
+
+} // namespace nendo::gloves

@@ -1,0 +1,42 @@
+#pragma once
+// Gloves and their samples as JSON, for `nendo info` and `nendo monitor`.
+
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <nendo/driver/sample.hpp>
+#include <nendo/hand/calibration.hpp>
+
+namespace nendo::gloves {
+
+/// Returns an object with the name of each angle's hand::AngleSource: "measured", the rule that
+/// estimates it, or "zero".
+nlohmann::ordered_json angle_sources_json(SensorMask sensors);
+
+/// Distinguishes the first sample of each glove from the others, by its hand and sensors.
+class GloveChanges {
+public:
+  bool is_first(Side side, SensorMask sensors) noexcept {
+    const bool first = !sensors_ || side != side_ || sensors != *sensors_;
+    side_ = side;
+    sensors_ = sensors;
+    return first;
+  }
+
+private:
+  Side side_ = Side::right;
+  std::optional<SensorMask> sensors_; ///< nullopt: no sample came yet
+};
+
+/// Returns one object without a line end. Its keys are time_s and measured_s (host clock),
+/// sequence, hand, switch ("on", "off", or null if the glove does not tell), raw (counts by
+/// sensor), device_time_s if the glove has a clock, and angle_rad (by sensor) unless `calibration`
+/// is null. It contains only sensors that the sample has, and only angles that the calibration
+/// knows. With `with_sources`, unless `calibration` is null, there is also the key angles, with
+/// what angle_sources_json() returns.
+std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
+                        bool with_sources = false);
+
+} // namespace nendo::gloves

@@ -1,0 +1,134 @@
+#include "publish/frame_record.hpp"
+
+#include <cstring>
+
+#include <nendo_publish.h>
+
+namespace nendo::publish {
+namespace {
+
+constexpr std::size_t head_words = sizeof(nendo_publish_record) / 8;
+constexpr std::size_t field_words = sizeof(nendo_publish_field) / 8;
+constexpr std::size_t function_words = sizeof(nendo_publish_function) / 8;
+
+std::int64_t nanoseconds(HostClock::duration time) noexcept {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(time).count();
+}
+
+void describe_hand(const flow::HandFrame& hand, nendo_publish_hand& out) noexcept {
+  out = {};
+  if (!hand.present) return;
+  out.flags = NENDO_PUBLISH_PRESENT;
+  if (hand.silent) out.flags |= NENDO_PUBLISH_SILENT;
+  out.samples = hand.samples;
+  for (std::size_t at = 0; at < hand::joint_count; ++at) {
+    const Eigen::Isometry3d& pose = hand.pose.joints[at];
+    const Eigen::Vector3f place = pose.translation().cast<float>();
+    const Eigen::Quaternionf turn = Eigen::Quaterniond(pose.linear()).normalized().cast<float>();
+    std::memcpy(out.joints[at].position, place.data(), sizeof out.joints[at].position);
+    std::memcpy(out.joints[at].orientation, turn.coeffs().data(),
+                sizeof out.joints[at].orientation);
+  }
+}
+
+std::uint32_t status_number(deform::FieldStatus status) noexcept {
+  switch (status) {
+  case deform::FieldStatus::ok:
+    return 0;
+  case deform::FieldStatus::merged:
+    return 1;
+  case deform::FieldStatus::singular:
+    return 2;
+  case deform::FieldStatus::too_dense:
+    return 3;
+  case deform::FieldStatus::not_finite:
+    return 4;
+  }
+  return 2;
+}
+
+std::uint32_t kernel_number(deform::Wendland kernel) noexcept {
+  switch (kernel) {
+  case deform::Wendland::c0:
+    return 0;
+  case deform::Wendland::c2:
+    return 1;
+  case deform::Wendland::c4:
+    return 2;
+  case deform::Wendland::c6:
+    return 3;
+  }
+  return 1;
+}
+
+} // namespace
+
+static_assert(std::size_t{NENDO_PUBLISH_JOINTS} == hand::joint_count);
+
+std::size_t most_record_words(const LoopOutline& outline) noexcept {
+  return head_words + outline.most_fields * (field_words + outline.functions * function_words);
+}
+
+FrameRecord::FrameRecord(const LoopOutline& outline, std::uint64_t generation)
+    : words_(most_record_words(outline)), generation_(generation),
+      mode_(outline.mode == flow::Mode::type1 ? 1 : 2) {}
+
+std::size_t FrameRecord::put_field(const deform::CsrbfField& field, std::size_t at) noexcept {
+  const auto functions = static_cast<std::size_t>(field.centres.cols());
+  const std::size_t end = at + field_words + functions * function_words;
+  if (end > words_.size()) return 0;
+  nendo_publish_field head{};
+  head.kernel = kernel_number(field.kernel);
+  head.functions = static_cast<std::uint32_t>(functions);
+  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = field.polynomial;
+  std::memcpy(head.polynomial, rows.data(), sizeof head.polynomial);
+  std::memcpy(&words_[at], &head, sizeof head);
+  at += field_words;
+  for (Eigen::Index n = 0; n < field.centres.cols(); ++n, at += function_words) {
+    nendo_publish_function function{};
+    std::memcpy(function.centre, field.centres.col(n).data(), sizeof function.centre);
+    function.radius = field.radii[n];
+    std::memcpy(function.coefficient, field.coefficients.col(n).data(),
+                sizeof function.coefficient);
+    std::memcpy(&words_[at], &function, sizeof function);
+  }
+  return end;
+}
+
+void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
+                           std::uint64_t shape_changes) noexcept {
+  nendo_publish_record head{};
+  head.number = number;
+  head.generation = generation_;
+  head.tick = frame.tick;
+  head.ticks = frame.ticks_run;
+  head.missed = frame.missed;
+  head.commits = frame.commits;
+  head.undos = frame.undos;
+  head.scheduled_ns = nanoseconds(frame.scheduled.time_since_epoch());
+  head.woke_ns = nanoseconds(frame.woke.time_since_epoch());
+  head.since_last_ns = nanoseconds(frame.since_last);
+  head.shape_changes = shape_changes;
+  head.units_per_metre = frame.units_per_metre;
+  if (frame.held) head.flags |= NENDO_PUBLISH_HELD;
+  head.status = status_number(frame.status);
+  head.mode = mode_;
+  used_ = head_words;
+  for (const auto& field : frame.fields.fields()) {
+    const std::size_t end = put_field(field, used_);
+    if (end == 0) { // a part of them would lead to another shape
+      head.flags |= NENDO_PUBLISH_FIELDS_LEFT_OUT;
+      head.fields = 0;
+      used_ = head_words;
+      break;
+    }
+    used_ = end;
+    ++head.fields;
+  }
+  head.fields_bytes = 8 * (used_ - head_words);
+  for (std::size_t side = 0; side < 2; ++side)
+    describe_hand(frame.hands[side], head.hands[side]);
+  std::memcpy(words_.data(), &head, sizeof head);
+}
+
+} // namespace nendo::publish

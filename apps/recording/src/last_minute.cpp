@@ -1,0 +1,119 @@
+#include "last_minute.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <poll.h>
+
+#include <nendo/base/crc32c.hpp>
+#include <nendo/base/files.hpp>
+#include <nendo/driver/chunk_file.hpp>
+#include <nendo/driver/sample_record.hpp>
+
+namespace nendo::recording {
+namespace {
+
+// Each payload takes a slot. With payloads of a quarter of a second the slots last 17 minutes.
+constexpr std::size_t slot_count = 4096;
+
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free &&
+              std::atomic<bool>::is_always_lock_free); // or a signal handler must not touch them
+
+template <std::size_t size>
+void put_le(std::array<std::byte, size>& to, std::size_t at, std::uint64_t value,
+            std::size_t count) noexcept {
+  for (std::size_t byte = 0; byte < count; ++byte, value >>= 8U)
+    to[at + byte] = static_cast<std::byte>(value & 0xFFU);
+}
+
+bool write_chunk(int fd, std::uint32_t number, std::span<const std::byte> payload,
+                 std::uint32_t crc) noexcept {
+  std::array<std::byte, 4> sum{};
+  put_le(sum, 0, crc, 4);
+  return write_all(fd, driver::chunk_header(driver::log_chunk, number, payload)) &&
+         write_all(fd, payload) && write_all(fd, sum);
+}
+
+} // namespace
+
+LastMinute::LastMinute(std::vector<std::byte> setup, std::uint32_t setup_chunks,
+                       HostClock::duration span, std::size_t bytes)
+    : setup_(std::move(setup)), setup_chunks_(setup_chunks), span_(span), memory_(bytes),
+      slots_(slot_count) {}
+
+void LastMinute::drop_oldest() noexcept {
+  const std::uint64_t oldest = oldest_.load(std::memory_order_relaxed);
+  dropped_.store(dropped_.load(std::memory_order_relaxed) + slot(oldest).entries,
+                 std::memory_order_relaxed);
+  oldest_.store(oldest + 1, std::memory_order_release);
+}
+
+/// Drops the payloads that lie in the way of so many bytes, and returns where these may go.
+std::size_t LastMinute::place_for(std::size_t bytes) noexcept {
+  const std::size_t begin = next_offset_ + bytes <= memory_.size() ? next_offset_ : 0;
+  const auto is_in_the_way = [&](const Slot& there) {
+    // When writing goes on at the front, the payloads at the end are the oldest.
+    const bool passed = begin < next_offset_ && there.offset >= next_offset_;
+    return passed || (there.offset < begin + bytes && begin < there.offset + there.bytes);
+  };
+  while (oldest_.load(std::memory_order_relaxed) != end_.load(std::memory_order_relaxed) &&
+         is_in_the_way(slot(oldest_.load(std::memory_order_relaxed))))
+    drop_oldest();
+  return begin;
+}
+
+void LastMinute::push(std::span<const std::byte> payload, std::uint64_t entries,
+                      HostTime time) noexcept {
+  pushing_.store(true); // in one order with freeze()
+  if (!frozen_.load()) {
+    const std::uint64_t end = end_.load(std::memory_order_relaxed);
+    const auto oldest = [&] { return oldest_.load(std::memory_order_relaxed); };
+    while (oldest() != end &&
+           (time - slot(oldest()).time > span_ || end - oldest() == slots_.size()))
+      drop_oldest();
+    if (payload.size() > memory_.size() / 8) {
+      dropped_.store(dropped_.load(std::memory_order_relaxed) + entries, std::memory_order_relaxed);
+    } else {
+      const std::size_t offset = place_for(payload.size());
+      std::memcpy(memory_.data() + offset, payload.data(), payload.size());
+      slots_[end % slots_.size()] = {offset, payload.size(), crc32c(payload), entries, time};
+      next_offset_ = offset + payload.size();
+      end_.store(end + 1, std::memory_order_release);
+    }
+  }
+  pushing_.store(false);
+}
+
+void LastMinute::freeze() noexcept {
+  constexpr int most_milliseconds = 100;
+  frozen_.store(true);
+  for (int waited = 0; pushing_.load() && waited < most_milliseconds; ++waited)
+    ::poll(nullptr, 0, 1);
+}
+
+bool LastMinute::write(int fd) const noexcept {
+  if (!write_all(fd, setup_)) return false;
+  std::uint32_t number = setup_chunks_;
+  const std::uint64_t dropped = dropped_.load(std::memory_order_acquire);
+  if (dropped > 0) {
+    std::array<std::byte, 10> gap{}; // an entry's head, and how many entries
+    gap[0] = static_cast<std::byte>(driver::EntryKind::gap);
+    gap[1] = std::byte{8};
+    put_le(gap, 2, dropped, 8);
+    if (!write_chunk(fd, number++, gap, crc32c(gap))) return false;
+  }
+  const std::uint64_t end = end_.load(std::memory_order_acquire);
+  // What is left out keeps its number, by which a reader knows that it is missing.
+  for (std::uint64_t at = oldest_.load(std::memory_order_acquire); at != end; ++at, ++number) {
+    const Slot& kept = slot(at);
+    if (kept.bytes > memory_.size() || kept.offset > memory_.size() - kept.bytes) continue;
+    const auto payload = std::span(memory_).subspan(kept.offset, kept.bytes);
+    if (crc32c(payload) != kept.crc) continue; // its thread died in the middle of it
+    if (!write_chunk(fd, number, payload, kept.crc)) return false;
+  }
+  return true;
+}
+
+} // namespace nendo::recording

@@ -1,0 +1,88 @@
+#include "render/image.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+
+#include <png.h>
+
+#include <nendo/base/files.hpp>
+
+namespace nendo::render {
+namespace {
+
+constexpr std::uint64_t most_png_bytes = std::uint64_t{256} << 20;
+
+png_image header_of(Size size) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(size.width);
+  header.height = static_cast<png_uint_32>(size.height);
+  header.format = PNG_FORMAT_RGB;
+  return header;
+}
+
+} // namespace
+
+std::optional<Size> size_named(std::string_view text) noexcept {
+  Size size;
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.width);
+  if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return std::nullopt;
+  const auto height = std::from_chars(width.ptr + 1, end, size.height);
+  if (height.ec != std::errc() || height.ptr != end) return std::nullopt;
+  const auto fits = [](int pixels) { return pixels >= 16 && pixels <= Size::most; };
+  if (!fits(size.width) || !fits(size.height)) return std::nullopt;
+  return size;
+}
+
+Image::Image(Size size, Pixel colour)
+    : size_(size),
+      pixels_(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height),
+              colour) {}
+
+void Image::paste(const Image& other, int x, int y) noexcept {
+  for (int row = std::max(0, -y); row < std::min(other.size_.height, size_.height - y); ++row)
+    for (int column = std::max(0, -x); column < std::min(other.size_.width, size_.width - x);
+         ++column)
+      at(x + column, y + row) = other.at(column, row);
+}
+
+Result<void> write_png(const std::filesystem::path& path, const Image& image) {
+  png_image header = header_of(image.size());
+  const auto stride = static_cast<png_int_32>(3 * image.size().width);
+  png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(header);
+  std::string contents(bytes, '\0');
+  if (png_image_write_to_memory(&header, contents.data(), &bytes, 0, image.pixels().data(), stride,
+                                nullptr) == 0) {
+    return Error{Errc::failed, path.string() + ": no PNG can be made: " + header.message};
+  }
+  contents.resize(bytes);
+  return replace_file(path, contents);
+}
+
+Result<Image> read_png(const std::filesystem::path& path) {
+  const auto contents = read_file(path, most_png_bytes, "picture");
+  if (!contents) return contents.error();
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&header, contents->data(), contents->size()) == 0)
+    return Error{Errc::bad_input, path.string() + ": not a PNG picture: " + header.message};
+  if (header.width > Size::most || header.height > Size::most) {
+    png_image_free(&header);
+    return Error{Errc::bad_input, path.string() + ": more than " + std::to_string(Size::most) +
+                                      " pixels wide or high; use a smaller picture"};
+  }
+  header.format = PNG_FORMAT_RGB;
+  Image image({static_cast<int>(header.width), static_cast<int>(header.height)});
+  std::vector<Pixel> pixels(image.pixels().size());
+  if (png_image_finish_read(&header, nullptr, pixels.data(), 0, nullptr) == 0)
+    return Error{Errc::bad_input, path.string() + ": a damaged picture: " + header.message};
+  for (int y = 0; y < image.size().height; ++y)
+    for (int x = 0; x < image.size().width; ++x)
+      image.at(x, y) =
+          pixels[static_cast<std::size_t>(y) * header.width + static_cast<std::size_t>(x)];
+  return image;
+}
+
+} // namespace nendo::render

@@ -1,0 +1,67 @@
+#pragma once
+// A picture in memory, and its PNG files.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::render {
+
+using Pixel = std::array<std::uint8_t, 3>; ///< red, green, blue in sRGB
+
+struct Size {
+  int width = 0;  ///< pixels
+  int height = 0; ///< pixels
+  friend bool operator==(Size, Size) = default;
+
+  static constexpr int most = 8192; ///< of width and height
+};
+
+/// Parses "WxH" in pixels, each from 16 to Size::most. Returns nullopt if the text is something
+/// else.
+std::optional<Size> size_named(std::string_view text) noexcept;
+
+class Image {
+public:
+  explicit Image(Size size, Pixel colour = {255, 255, 255});
+
+  Size size() const noexcept { return size_; }
+  Pixel& at(int x, int y) noexcept { return pixels_[index(x, y)]; }
+  const Pixel& at(int x, int y) const noexcept { return pixels_[index(x, y)]; }
+  /// Returns the pixels row by row from the top.
+  const std::vector<Pixel>& pixels() const noexcept { return pixels_; }
+  /// Copies `other` to the place with its top left corner at (x, y). Parts outside of this image
+  /// are left out.
+  void paste(const Image& other, int x, int y) noexcept;
+
+  friend bool operator==(const Image&, const Image&) = default;
+
+private:
+  std::size_t index(int x, int y) const noexcept {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+           static_cast<std::size_t>(x);
+  }
+  Size size_;
+  std::vector<Pixel> pixels_;
+};
+
+/// Writes the file atomically and replaces an existing one. Blocks. Error: failed.
+Result<void> write_png(const std::filesystem::path& path, const Image& image);
+/// Reads a PNG file. Blocks. Error: bad_input (no PNG, or too large).
+Result<Image> read_png(const std::filesystem::path& path);
+
+/// Writes words in a plain upright stroke font. `height` is the height of capitals above the
+/// baseline in pixels, and (x, y) is where the baseline begins. A character that the font does not
+/// have appears as a box.
+void write_words(Image& image, double x, double y, double height, std::string_view words,
+                 Pixel colour);
+/// Returns the width of the words in pixels.
+double width_of_words(std::string_view words, double height) noexcept;
+
+} // namespace nendo::render

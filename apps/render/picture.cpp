@@ -1,0 +1,241 @@
+#include "render/picture.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <thread>
+
+#include "render/raster.hpp"
+#include "render/shading.hpp"
+
+namespace nendo::render {
+
+using Eigen::Vector3f;
+
+namespace {
+
+constexpr int samples_across = 2; // of a pixel
+constexpr int band_pixels = 32;   // rows that one thread draws at a time
+constexpr double nearest_m = 0.01;
+
+// A surface as the camera sees it.
+struct Seen {
+  const Surface* surface = nullptr;
+  const std::vector<float>* sky = nullptr; ///< nullptr: lit as if nothing were about
+  std::vector<RasterCorner> corners;
+  std::vector<float> inverse_depth; ///< 0: behind the camera
+};
+
+class Projection {
+public:
+  Projection(const Camera& camera, Size size, int samples)
+      : rows_(camera.axes()), eye_(camera.eye()),
+        scale_(samples * size.height / (2.0 * camera.tangent())),
+        middle_{samples * size.width / 2.0, samples * size.height / 2.0} {}
+
+  Seen see(const Surface& surface, const std::vector<float>* sky) const {
+    Seen seen{&surface, sky, {}, {}};
+    seen.corners.resize(surface.places.size());
+    seen.inverse_depth.resize(surface.places.size());
+    for (std::size_t at = 0; at < surface.places.size(); ++at) {
+      const Eigen::Vector3d along = rows_ * (surface.places[at].cast<double>() - eye_);
+      const double depth = -along.z();
+      if (!(depth > nearest_m && std::isfinite(depth))) continue;
+      seen.inverse_depth[at] = static_cast<float>(1.0 / depth);
+      seen.corners[at] = {middle_.x + scale_ * along.x() / depth,
+                          middle_.y - scale_ * along.y() / depth};
+    }
+    return seen;
+  }
+  Vector3f eye() const { return eye_.cast<float>(); }
+  float footprint_m(float depth) const noexcept { return depth / static_cast<float>(scale_); }
+
+private:
+  Eigen::Matrix3d rows_;
+  Eigen::Vector3d eye_;
+  double scale_;
+  RasterCorner middle_;
+};
+
+// What of which surface a sample shows.
+struct Hit {
+  float inverse_depth = 0.0F; ///< 0: nothing
+  std::uint32_t surface = 0;
+  std::uint32_t triangle = 0;    ///< where its corners begin
+  std::array<float, 3> shares{}; ///< of the corners
+};
+
+using Hits = std::vector<Hit>;
+
+void cover(const Seen& seen, std::uint32_t number, int width, Rows rows, Hits& hits) {
+  const auto& corners = seen.surface->corners;
+  for (std::size_t at = 0; at + 2 < corners.size(); at += 3) {
+    std::array<RasterCorner, 3> on;
+    std::array<double, 3> inverse{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      on[k] = seen.corners[corners[at + k]];
+      inverse[k] = static_cast<double>(seen.inverse_depth[corners[at + k]]);
+    }
+    if (!(inverse[0] > 0.0 && inverse[1] > 0.0 && inverse[2] > 0.0)) continue;
+    each_covered(on, width, rows, [&](int x, int y, const std::array<double, 3>& b) {
+      const double depth = b[0] * inverse[0] + b[1] * inverse[1] + b[2] * inverse[2];
+      Hit& hit = hits[static_cast<std::size_t>(y - rows.first) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+      if (static_cast<float>(depth) <= hit.inverse_depth) return;
+      hit = {static_cast<float>(depth), number, static_cast<std::uint32_t>(at), {}};
+      for (std::size_t k = 0; k < 3; ++k)
+        hit.shares[k] = static_cast<float>(b[k] * inverse[k] / depth);
+    });
+  }
+}
+
+ShadedPlace place_of(const Hit& hit, const Seen& seen) {
+  const Surface& surface = *seen.surface;
+  ShadedPlace at{Vector3f::Zero(), Vector3f::Zero(), seen.sky != nullptr ? 0.0F : 0.9F,
+                 seen.sky != nullptr};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t corner = surface.corners[hit.triangle + k];
+    at.place += hit.shares[k] * surface.places[corner];
+    at.normal += hit.shares[k] * surface.normals[corner];
+    if (seen.sky != nullptr) at.sky += hit.shares[k] * (*seen.sky)[corner];
+  }
+  return at;
+}
+
+struct View3d {
+  const Lighting* lighting;
+  Projection projection;
+  Size size;
+  std::vector<Seen> opaque; ///< grounds last
+  std::size_t grounds_from;
+  std::vector<Seen> veils; ///< the farthest first
+};
+
+View3d seen_by(const Lighting& lighting, const Camera& camera, Size size) {
+  const Scene& scene = lighting.scene();
+  const auto& maps = lighting.maps();
+  View3d view{&lighting, Projection(camera, size, samples_across), size, {}, 0, {}};
+  view.opaque.push_back(view.projection.see(scene.model, &maps.model_sky));
+  for (const Surface& solid : scene.solids)
+    view.opaque.push_back(view.projection.see(solid, nullptr));
+  view.grounds_from = view.opaque.size();
+  for (std::size_t at = 0; at < scene.grounds.size(); ++at)
+    view.opaque.push_back(view.projection.see(scene.grounds[at], &maps.ground_sky[at]));
+  std::vector<std::pair<float, std::size_t>> order;
+  for (std::size_t at = 0; at < scene.veils.size(); ++at) {
+    Vector3f sum = Vector3f::Zero();
+    for (const Vector3f& place : scene.veils[at].places)
+      sum += place;
+    const auto count = static_cast<float>(std::max<std::size_t>(1, scene.veils[at].places.size()));
+    order.emplace_back(-(sum / count - view.projection.eye()).norm(), at);
+  }
+  std::sort(order.begin(), order.end());
+  for (const auto& [away, at] : order) {
+    const bool is_reach = maps.veil_sky[at].empty();
+    view.veils.push_back(
+        view.projection.see(scene.veils[at], is_reach ? nullptr : &maps.veil_sky[at]));
+  }
+  return view;
+}
+
+Vector3f opaque_colour(const View3d& view, const Hit& hit, float height) {
+  const Vector3f behind = background(height);
+  if (!(hit.inverse_depth > 0.0F)) return behind;
+  const Seen& seen = view.opaque[hit.surface];
+  const auto& maps = view.lighting->maps();
+  const ShadedPlace at = place_of(hit, seen);
+  const Material& material = seen.surface->material;
+  if (hit.surface < view.grounds_from) return shade(at, material, view.projection.eye(), maps);
+  return ground_brightness(at, material, view.projection.footprint_m(1.0F / hit.inverse_depth),
+                           maps) *
+         behind;
+}
+
+// One band of pixel rows, into the picture.
+void draw_band(const View3d& view, Rows pixel_rows, Image& image) {
+  const int width = samples_across * view.size.width;
+  const Rows rows{samples_across * pixel_rows.first, samples_across * pixel_rows.end};
+  const std::size_t count =
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(rows.end - rows.first);
+  Hits hits(count);
+  for (std::uint32_t number = 0; number < view.opaque.size(); ++number)
+    cover(view.opaque[number], number, width, rows, hits);
+  std::vector<Vector3f> colours(count);
+  for (std::size_t at = 0; at < count; ++at) {
+    const auto row =
+        static_cast<float>(rows.first) + static_cast<float>(at / static_cast<std::size_t>(width));
+    colours[at] =
+        opaque_colour(view, hits[at], row / static_cast<float>(samples_across * view.size.height));
+  }
+  for (const Seen& veil : view.veils) {
+    Hits over(count);
+    cover(veil, 0, width, rows, over);
+    for (std::size_t at = 0; at < count; ++at) {
+      if (over[at].inverse_depth <= hits[at].inverse_depth) continue;
+      const ShadedPlace place = place_of(over[at], veil);
+      const Material& material = veil.surface->material;
+      const float part = opacity_of(place, material, view.projection.eye());
+      const Vector3f colour = veil.sky == nullptr ? material.colour
+                                                  : shade(place, material, view.projection.eye(),
+                                                          view.lighting->maps());
+      colours[at] += part * (colour - colours[at]);
+    }
+  }
+  constexpr float share = 1.0F / (samples_across * samples_across);
+  for (int y = pixel_rows.first; y < pixel_rows.end; ++y)
+    for (int x = 0; x < view.size.width; ++x) {
+      Vector3f sum = Vector3f::Zero();
+      for (int dy = 0; dy < samples_across; ++dy)
+        for (int dx = 0; dx < samples_across; ++dx) {
+          const int row = samples_across * (y - pixel_rows.first) + dy;
+          sum += colours[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                         static_cast<std::size_t>(samples_across * x + dx)]
+                     .cwiseMin(1.2F);
+        }
+      image.at(x, y) = encoded(share * sum);
+    }
+}
+
+} // namespace
+
+Image draw(const Lighting& lighting, const Camera& camera, Size size, unsigned threads) {
+  const View3d view = seen_by(lighting, camera, size);
+  Image image(size);
+  std::atomic<int> next{0};
+  const auto work = [&] {
+    for (int first; (first = band_pixels * next++) < size.height;)
+      draw_band(view, {first, std::min(size.height, first + band_pixels)}, image);
+  };
+  std::vector<std::thread> others;
+  for (unsigned thread = 1; thread < threads; ++thread)
+    others.emplace_back(work);
+  work();
+  for (auto& other : others)
+    other.join();
+  return image;
+}
+
+Image silhouette(const Scene& scene, const Camera& camera, Size size) {
+  const Projection projection(camera, size, 1);
+  Hits hits(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
+  const auto add = [&](const Surface& surface) {
+    if (surface.material.opacity > 0.0F)
+      cover(projection.see(surface, nullptr), 0, size.width, {0, size.height}, hits);
+  };
+  add(scene.model);
+  for (const auto* surfaces : {&scene.solids, &scene.veils})
+    for (const Surface& surface : *surfaces)
+      add(surface);
+  Image image(size, {0, 0, 0});
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      if (hits[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
+               static_cast<std::size_t>(x)]
+              .inverse_depth > 0.0F)
+        image.at(x, y) = {255, 255, 255};
+  return image;
+}
+
+} // namespace nendo::render

@@ -1,0 +1,137 @@
+#include "render/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nendo/deform/triangles.hpp>
+
+namespace nendo::render {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+namespace {
+
+// Linear colours. Clay is warm and the hands are cool, so that one is told from the other at a
+// glance, also without seeing red from green.
+const Material clay{{0.50F, 0.235F, 0.135F}, 0.07F};
+const Material skin{{0.10F, 0.19F, 0.30F}, 0.22F, 0.74F, 1.0F};
+const Material silent_skin{{0.22F, 0.22F, 0.22F}, 0.10F, 0.60F, 1.0F};
+const Material bone{{0.80F, 0.78F, 0.70F}, 0.10F};
+const Material arrow{{0.95F, 0.52F, 0.02F}, 0.20F};
+const Material reach{{0.80F, 0.40F, 0.05F}, 0.0F, 0.0F, 0.30F};
+const Material ground{{0.74F, 0.74F, 0.74F}, 0.0F, 1.0F, 1.0F, 0.1F, 1.0F};
+
+constexpr float arrow_width_m = 0.007F;
+constexpr double ground_of_size = 2.6; // half its side, of the model's longest
+constexpr int ground_cells = 96;
+
+// Made when the first is drawn, for all of a program's scenes.
+const HandSkin& skin_of(std::size_t slot) {
+  static const std::array<HandSkin, 2> skins{HandSkin(Side::left), HandSkin(Side::right)};
+  return skins[slot];
+}
+
+} // namespace
+
+std::vector<Vector3f> Scene::outline() const {
+  std::vector<Vector3f> points = model.places;
+  for (const auto* surfaces : {&solids, &veils})
+    for (const Surface& surface : *surfaces)
+      if (surface.material.opacity > 0.0F) // not how far a support reaches
+        points.insert(points.end(), surface.places.begin(), surface.places.end());
+  return points;
+}
+
+SceneBuilder::SceneBuilder(const deform::Mesh& rest, double units_per_metre)
+    : units_per_metre_(units_per_metre) {
+  const auto box = deform::finite_box_of(rest.vertices);
+  const bool any = box.lowest[0] <= box.highest[0];
+  // Halves, so that a model of any size has a finite one.
+  const Vector3d half = any ? Vector3d(box.highest / 2 - box.lowest / 2) : Vector3d::Zero();
+  const double longest = 2 * half.maxCoeff();
+  if (!(units_per_metre_ > 0.0 && std::isfinite(units_per_metre_)))
+    units_per_metre_ = longest > 0.0 && std::isfinite(longest)
+                           ? longest / flow::PlacementOptions{}.model_size_m
+                           : 1.0;
+  size_m_ = 2 * (half / units_per_metre_);
+  if (any) {
+    origin_m_ = (box.lowest / 2 + box.highest / 2) / units_per_metre_;
+    origin_m_.y() = box.lowest.y() / units_per_metre_;
+  }
+  corners_ = deform::corners_of_triangles(rest);
+}
+
+void SceneBuilder::build(const SceneFrame& scene_frame, const SceneParts& parts,
+                         Scene& scene) const {
+  const auto count = static_cast<std::size_t>(scene_frame.vertices.cols());
+  scene.model.places.resize(count);
+  for (std::size_t at = 0; at < count; ++at)
+    scene.model.places[at] =
+        (scene_frame.vertices.col(static_cast<Eigen::Index>(at)) / units_per_metre_ - origin_m_)
+            .cast<float>();
+  scene.model.corners = corners_;
+  compute_normals(scene.model.places, corners_, scene.model.normals);
+  build_beside(scene_frame, parts, scene);
+}
+
+void SceneBuilder::build_beside(const SceneFrame& scene_frame, const SceneParts& parts,
+                                Scene& scene) const {
+  scene.model.material = clay;
+  scene.solids.clear();
+  scene.veils.clear();
+  scene.grounds.clear();
+  for (std::size_t slot = 0; slot < scene_frame.hands.size(); ++slot)
+    if (scene_frame.hands[slot])
+      add_hand(*scene_frame.hands[slot], slot, scene_frame, parts, scene);
+  if (parts.ground) add_ground(scene);
+}
+
+void SceneBuilder::add_hand(const SceneHand& hand, std::size_t slot, const SceneFrame& scene_frame,
+                            const SceneParts& parts, Scene& scene) const {
+  if (parts.bones) {
+    scene.solids.push_back({{}, {}, {}, bone});
+    add_bones(hand.pose, origin_m_, scene.solids.back());
+  }
+  if (parts.hands) {
+    scene.veils.push_back({{}, {}, {}, hand.silent ? silent_skin : skin});
+    if (!parts.bones) scene.veils.back().material.opacity = 1.0F;
+    skin_of(slot).drape(hand.pose, origin_m_, scene.veils.back());
+  }
+  Surface arrows{{}, {}, {}, arrow};
+  const auto tips = hand.pose.fingertip_positions();
+  for (Eigen::Index finger = 0; finger < tips.cols(); ++finger) {
+    const Vector3f start = (hand.starts.col(finger) - origin_m_).cast<float>();
+    const Vector3f tip = (tips.col(finger) - origin_m_).cast<float>();
+    if (parts.vectors && scene_frame.held) add_arrow(arrows, start, tip, arrow_width_m);
+    const double radius = scene_frame.radius_m[static_cast<std::size_t>(finger)];
+    if (!parts.radii || !scene_frame.held || !(radius > 0.0)) continue;
+    scene.veils.push_back({{}, {}, {}, reach});
+    add_sphere(scene.veils.back(), start, static_cast<float>(std::min(radius, 10.0)), 40);
+  }
+  if (!arrows.is_empty()) scene.solids.push_back(std::move(arrows));
+}
+
+// In cells, for what light reaches it is known at its vertices.
+void SceneBuilder::add_ground(Scene& scene) const {
+  Surface surface{{}, {}, {}, ground};
+  const double longest = std::clamp(size_m_.maxCoeff(), 0.1, 2.0);
+  const auto half = static_cast<float>(ground_of_size * longest);
+  surface.material.fade_m = half;
+  const float cell = 2.0F * half / ground_cells;
+  for (int row = 0; row <= ground_cells; ++row)
+    for (int column = 0; column <= ground_cells; ++column)
+      surface.places.emplace_back(static_cast<float>(column) * cell - half, 0.0F,
+                                  static_cast<float>(row) * cell - half);
+  surface.normals.assign(surface.places.size(), Vector3f::UnitY());
+  constexpr std::uint32_t side = ground_cells + 1;
+  for (std::uint32_t row = 0; row + 1 < side; ++row)
+    for (std::uint32_t column = 0; column + 1 < side; ++column) {
+      const std::uint32_t at = row * side + column;
+      surface.corners.insert(surface.corners.end(),
+                             {at, at + side, at + side + 1, at, at + side + 1, at + 1});
+    }
+  scene.grounds.push_back(std::move(surface));
+}
+
+} // namespace nendo::render

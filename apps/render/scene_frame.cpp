@@ -1,0 +1,22 @@
+#include "render/scene_frame.hpp"
+
+namespace nendo::render {
+
+void HoldTracker::follow(const flow::Frame& frame) noexcept {
+  if (!watch_.follow(frame)) return;
+  for (std::size_t slot = 0; slot < starts_.size(); ++slot)
+    starts_[slot] = frame.hands[slot].pose.fingertip_positions();
+}
+
+void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& scene_frame) {
+  scene_frame.held = frame.held;
+  for (std::size_t slot = 0; slot < scene_frame.hands.size(); ++slot) {
+    const flow::HandFrame& hand = frame.hands[slot];
+    scene_frame.hands[slot].reset();
+    if (!hand.present) continue;
+    scene_frame.hands[slot] = SceneHand{
+        hand.pose, frame.held ? holds.starts(slot) : hand.pose.fingertip_positions(), hand.silent};
+  }
+}
+
+} // namespace nendo::render

@@ -1,0 +1,47 @@
+#pragma once
+// What a picture shows at one moment. It is made from a mesh, from a frame of the running loop, or
+// from a recording. The renderers need not know from which.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <nendo/flow/hold_watch.hpp>
+
+namespace nendo::render {
+
+using TipPlaces = Eigen::Matrix<double, 3, 5>; ///< thumb to little finger
+
+struct SceneHand {
+  hand::HandPose pose; ///< on the stage, metres
+  /// Where the control vectors begin, on the stage, metres; no vectors if equal to the tips.
+  TipPlaces starts;
+  bool silent = false; ///< its glove has stopped sending
+};
+
+struct SceneFrame {
+  double time_s = 0.0;
+  deform::Points vertices;                       ///< 3 by #vertices, model units
+  std::array<std::optional<SceneHand>, 2> hands; ///< by flow::Placement::index_of(side)
+  bool held = false; ///< the hands hold the model; otherwise there are no control vectors
+  /// The radius of each fingertip's support, on the stage; 0 means not shown.
+  std::array<double, 5> radius_m{};
+};
+
+/// Remembers where the fingertips took hold. The places are exact if the tracker sees every frame.
+/// Otherwise they are off by the distance that the fingers moved between two frames that it saw.
+class HoldTracker {
+public:
+  void follow(const flow::Frame& frame) noexcept;
+  /// Returns the places on the stage in metres. slot: flow::Placement::index_of(side).
+  const TipPlaces& starts(std::size_t slot) const noexcept { return starts_[slot]; }
+
+private:
+  std::array<TipPlaces, 2> starts_{TipPlaces::Zero(), TipPlaces::Zero()};
+  flow::HoldWatch watch_;
+};
+
+/// Sets everything of `scene_frame` from a frame except its vertices and its time.
+void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& scene_frame);
+
+} // namespace nendo::render

@@ -1,0 +1,27 @@
+#pragma once
+// Makes a timeline of a recorded run.
+
+#include <filesystem>
+
+#include <nendo/base/result.hpp>
+
+#include "timeline/reduce.hpp"
+
+namespace nendo::timeline {
+
+struct MadeTimeline {
+  Timeline timeline;
+  std::vector<Reduction> hands; ///< in the order of the timeline's hands, without their keys
+  bool exact = false;           ///< nothing was missing in the recording
+};
+
+/// Runs the recorded loop again over `model`, which should be the recorded one. The hands' angles
+/// become keys; requests, and what the wrist switch did, become events. The key at 0 s is the pose
+/// in which a hand took hold, one period before the first tick. Blocks. Errors: those of
+/// TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most` frames or
+/// events).
+Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
+                                      const Tolerance& tolerance, std::size_t most = most_keys);
+static_assert(most_keys == most_events);
+
+} // namespace nendo::timeline

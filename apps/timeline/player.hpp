@@ -1,0 +1,60 @@
+#pragma once
+// Plays a timeline frame by frame, without a clock. Poses come from its keys, fingertips from the
+// poses, and the shape from the fingertips, as in the loop.
+
+#include <memory>
+
+#include <nendo/base/result.hpp>
+
+#include "timeline/hand_curve.hpp"
+#include "timeline/timeline.hpp"
+
+namespace nendo::timeline {
+
+class Player {
+public:
+  /// `model` should be the timeline's (Timeline::mesh_sum). Error: bad_input, without the file's
+  /// name, if complaint_about() has a complaint or the hands cannot take hold of the model.
+  static Result<std::unique_ptr<Player>> make(Timeline timeline, const deform::Mesh& model);
+
+  /// Makes the next frame, the first one at 0 s. Returns false if there is none. Allocates for
+  /// undo.
+  bool next();
+  /// Returns true if there is a next frame that is not later than time_s, except for rounding.
+  bool has_frame_by(double time_s) const noexcept;
+  const flow::Frame& frame() const noexcept { return frame_; } ///< not before next()
+  double time_s() const noexcept;                              ///< of frame()
+  /// Returns the time of the timeline's last frame.
+  double last_time_s() const noexcept;
+  std::uint64_t frame_count() const noexcept { return frames_; } ///< in all
+  const flow::LoopStats& stats() const noexcept { return stats_; }
+  const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
+  const Timeline& timeline() const noexcept { return timeline_; }
+  /// Returns the present shape, 3 by #vertices. It includes a stroke that has not ended.
+  deform::Points final_shape() { return shaping_.final_shape(tips_); }
+
+private:
+  struct Hand {
+    hand::HandSkeleton skeleton;
+    HandCurve curve;
+    std::size_t slot;
+  };
+
+  Player(Timeline timeline, const deform::Mesh& model);
+  double time_of(std::uint64_t frame) const noexcept;
+  void pose_hands(double time_s);
+  bool ask_what_is_due(double time_s);
+  void describe(std::uint64_t number);
+
+  Timeline timeline_;
+  std::vector<Hand> hands_;
+  deform::Points tips_;
+  flow::Shaping shaping_;
+  flow::Frame frame_;
+  flow::LoopStats stats_;
+  std::size_t next_event_ = 0;
+  std::uint64_t made_ = 0;   ///< frames
+  std::uint64_t frames_ = 0; ///< in all
+};
+
+} // namespace nendo::timeline

@@ -1,0 +1,160 @@
+#include "timeline/reduce.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "timeline/hand_curve.hpp"
+
+namespace nendo::timeline {
+namespace {
+
+using Tips = Eigen::Matrix<double, 3, 6>;
+
+// The wrist is the sixth: what carries the fingers counts as they do.
+Tips tips_of(const hand::HandSkeleton& skeleton, const Key& key) {
+  Tips tips;
+  tips.leftCols<5>() = skeleton.pose(key.angles, key.wrist_pose()).fingertip_positions();
+  tips.col(5) = key.wrist_m;
+  return tips;
+}
+
+double angle_between(const Key& one, const Key& other) {
+  double most = one.wrist_turn.angularDistance(other.wrist_turn);
+  if (one.wrist_turn.coeffs() == other.wrist_turn.coeffs()) most = 0.0; // but for its rounding
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    most =
+        std::max(most, std::abs(one.angles[hand::angle_at(at)] - other.angles[hand::angle_at(at)]));
+  return most;
+}
+
+// Which frames are keys, and how far the others are from the curve through those.
+class Reducer {
+public:
+  Reducer(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
+          const Tolerance& tolerance)
+      : skeleton_(skeleton), frames_(frames), tolerance_(tolerance), is_key_(frames.size(), false) {
+    for (const Key& frame : frames)
+      tips_.push_back(tips_of(skeleton, frame));
+    is_key_.front() = is_key_.back() = true;
+  }
+
+  // Until nothing is too far off.
+  void add_keys() {
+    for (bool added = true; added;) {
+      added = false;
+      const HandCurve curve(keys());
+      std::size_t begin = 0;
+      for (std::size_t end = 1; end < frames_.size(); ++end) {
+        if (!is_key_[end]) continue;
+        if (const std::size_t worst = worst_between(curve, begin, end); worst != begin)
+          added = is_key_[worst] = true;
+        begin = end;
+      }
+    }
+  }
+
+  // A key's going changes the slopes at its neighbours, and with them the pieces beyond these.
+  void drop_keys() {
+    std::vector<std::size_t> keys;
+    for (std::size_t at = 0; at < frames_.size(); ++at)
+      if (is_key_[at]) keys.push_back(at);
+    for (std::size_t at = 1; at + 1 < keys.size();) {
+      if (!can_drop(keys, at)) {
+        ++at;
+        continue;
+      }
+      is_key_[keys[at]] = false;
+      keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+  }
+
+  Reduction result() const {
+    Reduction reduction{keys(), frames_.size(), {}};
+    const HandCurve curve(reduction.keys);
+    for (std::size_t at = 0; at < frames_.size(); ++at) {
+      const Deviation off = deviation(curve, at);
+      reduction.worst.angle_rad = std::max(reduction.worst.angle_rad, off.angle_rad);
+      reduction.worst.tip_m = std::max(reduction.worst.tip_m, off.tip_m);
+    }
+    return reduction;
+  }
+
+private:
+  static constexpr std::size_t reach = 3; // keys on either side that a slope's change can be felt
+
+  std::vector<Key> keys() const {
+    std::vector<Key> keys;
+    for (std::size_t at = 0; at < frames_.size(); ++at)
+      if (is_key_[at]) keys.push_back(frames_[at]);
+    return keys;
+  }
+
+  Deviation deviation(const HandCurve& curve, std::size_t frame) const {
+    if (is_key_[frame]) return {};
+    const Key made = curve.at(frames_[frame].time_s);
+    const Tips off = tips_of(skeleton_, made) - tips_[frame];
+    return {angle_between(made, frames_[frame]), off.colwise().norm().maxCoeff()};
+  }
+
+  bool is_fine(const Deviation& off) const {
+    return off.angle_rad <= tolerance_.angle_rad && off.tip_m <= tolerance_.tip_m;
+  }
+
+  // `begin`, if none is too far off.
+  std::size_t worst_between(const HandCurve& curve, std::size_t begin, std::size_t end) const {
+    constexpr double least = 1e-300; // a tolerance of 0 is none to divide by
+    std::size_t worst = begin;
+    double most = 0.0;
+    for (std::size_t at = begin + 1; at < end; ++at) {
+      const Deviation off = deviation(curve, at);
+      const double badness = std::max(off.angle_rad / std::max(tolerance_.angle_rad, least),
+                                      off.tip_m / std::max(tolerance_.tip_m, least));
+      if (is_fine(off) || (worst != begin && !(badness > most))) continue;
+      worst = at;
+      most = badness;
+    }
+    return worst;
+  }
+
+  bool can_drop(const std::vector<std::size_t>& keys, std::size_t at) {
+    const std::size_t first = at - std::min(at, reach);
+    const std::size_t last = std::min(at + reach, keys.size() - 1);
+    std::vector<Key> others;
+    for (std::size_t key = first; key <= last; ++key)
+      if (key != at) others.push_back(frames_[keys[key]]);
+    const HandCurve curve(std::move(others));
+    // Beyond, slopes at this curve's ends are not those of the whole.
+    const std::size_t from = first == 0 ? 0 : keys[first + 1];
+    const std::size_t to = last + 1 == keys.size() ? keys[last] : keys[last - 1];
+    is_key_[keys[at]] = false;
+    bool fine = true;
+    for (std::size_t frame = from; frame <= to && fine; ++frame)
+      fine = is_fine(deviation(curve, frame));
+    is_key_[keys[at]] = true;
+    return fine;
+  }
+
+  const hand::HandSkeleton& skeleton_;
+  std::span<const Key> frames_;
+  Tolerance tolerance_;
+  std::vector<bool> is_key_;
+  std::vector<Tips> tips_;
+};
+
+} // namespace
+
+Deviation deviation_between(const hand::HandSkeleton& skeleton, const Key& one, const Key& other) {
+  return {angle_between(one, other),
+          (tips_of(skeleton, one) - tips_of(skeleton, other)).colwise().norm().maxCoeff()};
+}
+
+Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
+                      const Tolerance& tolerance) {
+  if (frames.empty()) return {};
+  Reducer reducer(skeleton, frames, tolerance);
+  reducer.add_keys();
+  reducer.drop_keys();
+  return reducer.result();
+}
+
+} // namespace nendo::timeline

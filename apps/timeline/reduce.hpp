@@ -1,0 +1,40 @@
+#pragma once
+// Reduces a pose for each frame to a few keys.
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "timeline/timeline.hpp"
+
+namespace nendo::timeline {
+
+/// The greatest allowed distance between a frame and the curve through the keys. With 0, every
+/// frame that is not exactly on the curve becomes a key.
+struct Tolerance {
+  double angle_rad =
+      std::numeric_limits<double>::infinity();            ///< of any joint, and the wrist's turn
+  double tip_m = std::numeric_limits<double>::infinity(); ///< of any fingertip, and the wrist
+};
+
+struct Deviation {
+  double angle_rad = 0.0; ///< as in Tolerance
+  double tip_m = 0.0;
+};
+
+/// Returns the deviation between two poses of a hand.
+Deviation deviation_between(const hand::HandSkeleton& skeleton, const Key& one, const Key& other);
+
+struct Reduction {
+  std::vector<Key> keys;
+  std::size_t frames = 0;
+  Deviation worst; ///< of any frame from the HandCurve of the keys
+};
+
+/// Returns keys for the frames, which must fulfil the conditions of HandTrack::keys. The first and
+/// the last frame become keys. As long as the curve is too far off, the worst frame between two
+/// keys becomes a key. At the end, keys that are not needed are removed.
+Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
+                      const Tolerance& tolerance);
+
+} // namespace nendo::timeline

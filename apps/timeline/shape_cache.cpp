@@ -1,0 +1,170 @@
+#include "timeline/shape_cache.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <nendo/flow/hold_watch.hpp>
+
+#include "timeline/first_change.hpp"
+
+namespace nendo::timeline {
+namespace {
+
+std::size_t bytes_of(const deform::BlockShape& shape) {
+  constexpr std::size_t block_bytes = sizeof(deform::VertexBlock) + sizeof(std::uint64_t);
+  return sizeof(CachedShape) + shape.block_count() * block_bytes;
+}
+
+// Of a shape that is kept and the next.
+std::uint64_t stride_for(std::uint64_t frames, std::size_t shape_bytes, std::size_t most_bytes) {
+  const std::uint64_t most_gaps = std::max<std::uint64_t>(2, most_bytes / shape_bytes) - 1;
+  return std::max<std::uint64_t>(1, (frames - 1 + most_gaps - 1) / most_gaps);
+}
+
+} // namespace
+
+ShapeCache::ShapeCache(deform::Mesh model, std::size_t most_bytes)
+    : model_(std::move(model)), most_bytes_(most_bytes), worker_([this] { work(); }) {}
+
+ShapeCache::~ShapeCache() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+    ++number_;
+  }
+  changed_.notify_all();
+  worker_.join();
+}
+
+void ShapeCache::follow(Timeline timeline) {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = std::move(timeline);
+    ++number_;
+    done_ = false;
+  }
+  changed_.notify_all();
+}
+
+void ShapeCache::work() {
+  for (;;) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return ends_ || wanted_; });
+    if (ends_) return;
+    Timeline timeline = *std::exchange(wanted_, std::nullopt);
+    const std::uint64_t number = number_;
+    lock.unlock();
+    make_shapes(std::move(timeline), number);
+  }
+}
+
+void ShapeCache::make_shapes(Timeline timeline, std::uint64_t number) {
+  const auto player = Player::make(std::move(timeline), model_);
+  std::optional<Error> error;
+  if (player) {
+    settle(**player, number);
+    flow::HoldWatch holds;
+    double held_since_s = 0.0;
+    std::size_t slot = 0;
+    for (std::uint64_t frame = 0; (*player)->next(); ++frame) {
+      if (is_superseded(number)) return;
+      if (holds.follow((*player)->frame())) held_since_s = (*player)->time_s();
+      if (frame == frame_of(slot)) put(**player, slot++, held_since_s);
+    }
+  } else {
+    error = player.error();
+  }
+  const std::lock_guard lock(mutex_);
+  if (number != number_) return;
+  error_ = std::move(error);
+  done_ = true;
+  changed_.notify_all();
+}
+
+/// Room for the shapes of another timeline; what is true of it, too, stays fresh.
+void ShapeCache::settle(const Player& player, std::uint64_t number) {
+  const Timeline& timeline = player.timeline();
+  const std::uint64_t frames = player.frame_count();
+  const std::uint64_t stride = stride_for(frames, bytes_of(player.frame().shape), most_bytes_);
+  const auto count = static_cast<std::size_t>((frames - 1 + stride - 1) / stride + 1);
+  std::uint64_t unchanged = 0;
+  if (made_of_ && stride == stride_ && timeline.rate_hz == rate_hz_)
+    unchanged = unchanged_frames(*made_of_, frames_, timeline, frames, fresh_ * stride);
+  made_of_ = timeline;
+  const std::lock_guard lock(mutex_);
+  if (stride != stride_ || timeline.rate_hz != rate_hz_) slots_.clear();
+  slots_.resize(count);
+  frames_ = frames;
+  stride_ = stride;
+  rate_hz_ = timeline.rate_hz;
+  fresh_ = std::min(fresh_, count);
+  while (fresh_ > 0 && frame_of(fresh_ - 1) >= unchanged)
+    --fresh_;
+  settled_ = number;
+  error_.reset();
+}
+
+void ShapeCache::put(const Player& player, std::size_t slot, double held_since_s) {
+  if (slot < fresh_) return; // only this thread changes it
+  const flow::Frame& frame = player.frame();
+  Shape shape = std::make_shared<const CachedShape>(
+      CachedShape{frame.tick, player.time_s(), frame.held, held_since_s, frame.shape});
+  const std::lock_guard lock(mutex_);
+  std::swap(slots_[slot], shape); // the old one goes after the lock
+  fresh_ = slot + 1;
+}
+
+bool ShapeCache::is_superseded(std::uint64_t number) const {
+  const std::lock_guard lock(mutex_);
+  return number != number_;
+}
+
+std::uint64_t ShapeCache::frame_of(std::size_t slot) const noexcept {
+  return std::min<std::uint64_t>(slot * stride_, frames_ - 1);
+}
+
+std::size_t ShapeCache::slot_near(double time_s) const noexcept {
+  const double frame = std::clamp(time_s * rate_hz_, 0.0, static_cast<double>(frames_ - 1));
+  const auto before = static_cast<std::size_t>(frame / static_cast<double>(stride_));
+  if (before + 1 >= slots_.size()) return slots_.size() - 1;
+  const auto distance = [&](std::size_t slot) {
+    return std::abs(static_cast<double>(frame_of(slot)) - frame);
+  };
+  return distance(before + 1) < distance(before) ? before + 1 : before;
+}
+
+ShapeCache::Found ShapeCache::nearest(double time_s) const {
+  const std::lock_guard lock(mutex_);
+  if (slots_.empty()) return {};
+  const std::size_t wanted = slot_near(time_s);
+  for (std::size_t off = 0; off < slots_.size(); ++off) {
+    if (off <= wanted && slots_[wanted - off] != nullptr)
+      return {slots_[wanted - off], off == 0 && wanted < fresh_ && settled_ == number_};
+    if (wanted + off < slots_.size() && slots_[wanted + off] != nullptr)
+      return {slots_[wanted + off], false};
+  }
+  return {};
+}
+
+ShapeCache::Progress ShapeCache::progress() const {
+  const std::lock_guard lock(mutex_);
+  Progress progress;
+  progress.done = done_;
+  progress.error = error_;
+  progress.stride = stride_;
+  progress.shapes = static_cast<std::size_t>(std::count_if(
+      slots_.begin(), slots_.end(), [](const Shape& shape) { return shape != nullptr; }));
+  if (frames_ == 0) return progress;
+  progress.duration_s = static_cast<double>(frames_ - 1) / rate_hz_;
+  if (settled_ == number_ && fresh_ > 0)
+    progress.until_s = static_cast<double>(frame_of(fresh_ - 1)) / rate_hz_;
+  return progress;
+}
+
+void ShapeCache::wait() const {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return done_; });
+}
+
+} // namespace nendo::timeline

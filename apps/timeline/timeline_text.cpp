@@ -1,0 +1,138 @@
+// Writing timelines, and files of them.
+
+#include <array>
+#include <cstdio>
+
+#include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
+
+#include "timeline/timeline_file.hpp"
+
+namespace nendo::timeline {
+namespace {
+
+template <class Numbers>
+std::string list(const Numbers& numbers) {
+  std::string text;
+  for (const double value : numbers)
+    text += (text.empty() ? "" : ", ") + decimal_text(value);
+  return "[" + text + "]";
+}
+
+std::string toml_string(std::string_view text) {
+  std::string written = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      char escaped[8];
+      std::snprintf(escaped, sizeof escaped, "\\u%04X", unsigned{byte});
+      written += escaped;
+      continue;
+    }
+    if (c == '"' || c == '\\') written += '\\';
+    written += c;
+  }
+  return written + "\"";
+}
+
+std::string line(std::string_view name, const std::string& value) {
+  return std::string(name) + " = " + value + "\n";
+}
+
+std::string supports_text(const deform::Supports& supports) {
+  std::string shared;
+  for (const auto& support : supports.shared)
+    shared += (shared.empty() ? "" : ", ") + list(std::array{support.radius, support.weight});
+  std::string own;
+  for (const auto& one : supports.own)
+    own += (own.empty() ? "" : ", ") + std::string("{ tip = ") + std::to_string(one.point) +
+           ", radius = " + decimal_text(one.support.radius) +
+           ", weight = " + decimal_text(one.support.weight) + " }";
+  return line("shared", "[" + shared + "]") + line("own", "[" + own + "]");
+}
+
+std::string sculptor_text(const flow::SculptorOptions& sculptor) {
+  const auto& options = sculptor.deformer;
+  const auto word = [](std::string_view name) { return toml_string(name); };
+  std::string text = "\n[sculptor]\n" + line("mode", word(name_of(sculptor.mode))) +
+                     line("piece_length", decimal_text(sculptor.piece_length)) +
+                     line("kernel", word(name_of(options.csrbf.kernel))) +
+                     line("polynomial", word(name_of(options.csrbf.polynomial))) +
+                     line("merge_fraction", decimal_text(options.csrbf.merge_fraction)) +
+                     line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
+                     supports_text(options.supports);
+  if (options.injective)
+    text +=
+        line("injective", "{ most_bound = " + decimal_text(options.injective->most_bound) +
+                              ", most_links = " + std::to_string(options.injective->most_links) +
+                              ", least_gap = " + decimal_text(options.injective->least_gap) + " }");
+  return text;
+}
+
+std::string key_text(const Key& key) {
+  std::string angles;
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    angles += (at == 0 ? "" : ", ") + std::string(hand::angle_names[at]) + " = " +
+              decimal_text(key.angles[hand::angle_at(at)]);
+  const Eigen::Quaterniond& turn = key.wrist_turn;
+  return "\n[[hands.keys]]\n" + line("time_s", decimal_text(key.time_s)) +
+         line("wrist_m", list(std::array{key.wrist_m.x(), key.wrist_m.y(), key.wrist_m.z()})) +
+         line("wrist_turn", list(std::array{turn.w(), turn.x(), turn.y(), turn.z()})) +
+         line("angles_rad", "{ " + angles + " }");
+}
+
+std::string head_text(const Timeline& timeline) {
+  std::string events;
+  for (const Event& event : timeline.events)
+    events += "  { time_s = " + decimal_text(event.time_s) +
+              ", request = " + toml_string(name_of(event.request)) + " },\n";
+  return "# Key poses of hands over a model; `nendo edit` works on it, and so does a text "
+         "editor.\n" +
+         line("version", "1") + line("take", toml_string(timeline.take)) +
+         line("units_per_metre", decimal_text(timeline.units_per_metre)) +
+         line("rate_hz", decimal_text(timeline.rate_hz)) +
+         line("duration_s", decimal_text(timeline.duration_s)) +
+         line("held", timeline.held ? "true" : "false") + "events = [\n" + events + "]\n" +
+         "\n[model]\n" + line("file", toml_string(timeline.mesh)) +
+         line("vertices", std::to_string(timeline.mesh_sum.vertices)) +
+         line("crc32c", std::to_string(timeline.mesh_sum.crc));
+}
+
+} // namespace
+
+Result<std::string> timeline_text(const Timeline& timeline) {
+  const auto failed = [](const std::string& what) { return Error{Errc::failed, what}; };
+  if (std::string wrong = complaint_about(timeline); !wrong.empty()) return failed(wrong);
+  if (!is_utf8(timeline.mesh) || !is_utf8(timeline.take))
+    return failed("the name of the model's or the take's file is no UTF-8; rename it");
+  std::string text = head_text(timeline) + sculptor_text(timeline.sculptor);
+  for (const HandTrack& hand : timeline.hands) {
+    text += "\n[[hands]]\n" + line("side", toml_string(name_of(hand.side))) +
+            line("length_m", decimal_text(hand.size.length_m)) +
+            line("breadth_m", decimal_text(hand.size.breadth_m));
+    for (const Key& key : hand.keys) {
+      text += key_text(key);
+      if (text.size() > most_file_bytes)
+        return failed("so many keys are too much for a file; make it with a greater --tolerance");
+    }
+  }
+  return text;
+}
+
+Result<Timeline> read_timeline(const std::filesystem::path& path) {
+  const auto text = read_file(path, most_file_bytes, "timeline");
+  if (!text) return text.error();
+  return parse_timeline(*text, path.string());
+}
+
+Result<void> write_timeline(const std::filesystem::path& path, const Timeline& timeline) {
+  const auto text = timeline_text(timeline);
+  if (!text) return Error{text.error().code, path.string() + ": " + text.error().message};
+  return replace_file(path, *text);
+}
+
+bool is_timeline(const std::filesystem::path& path) {
+  return path.filename().string().ends_with(file_ending);
+}
+
+} // namespace nendo::timeline

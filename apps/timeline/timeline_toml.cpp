@@ -1,0 +1,177 @@
+// Reading timelines.
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "timeline/timeline_file.hpp"
+#include "timeline/toml_reader.hpp"
+
+namespace nendo::timeline {
+namespace {
+
+deform::Support read_support(TomlReader& reader, const toml::node& node) {
+  const auto values = reader.numbers<2>(node, "a shared support");
+  return {values[0], values[1]};
+}
+
+void read_supports(TomlReader& reader, const toml::table& table, deform::Supports& supports) {
+  supports = {};
+  constexpr std::size_t most_supports = 64;
+  const toml::array* const shared = reader.array(table, "shared");
+  const toml::array* const own = reader.array(table, "own");
+  if (shared == nullptr || own == nullptr) return;
+  if (shared->size() > most_supports || own->size() > most_supports)
+    return reader.complain(table, "there are more than 64 supports of a kind");
+  for (const toml::node& node : *shared)
+    supports.shared.push_back(read_support(reader, node));
+  for (const toml::node& node : *own) {
+    const toml::table* const one = reader.as_table(node, "an own support");
+    if (one == nullptr) return;
+    reader.allow_only(*one, {"tip", "radius", "weight"});
+    const auto tip = static_cast<Eigen::Index>(reader.count(*one, "tip", 9));
+    supports.own.push_back({tip, {reader.number(*one, "radius"), reader.number(*one, "weight")}});
+  }
+}
+
+void read_injective(TomlReader& reader, const toml::table& table,
+                    deform::DeformerOptions& options) {
+  if (table.get("injective") == nullptr) return;
+  const toml::table* const injective = reader.table(table, "injective");
+  if (injective == nullptr) return;
+  reader.allow_only(*injective, {"most_bound", "most_links", "least_gap"});
+  options.injective.emplace();
+  options.injective->most_bound = reader.number(*injective, "most_bound");
+  options.injective->most_links = static_cast<int>(reader.count(*injective, "most_links", 1024));
+  options.injective->least_gap = reader.number(*injective, "least_gap");
+}
+
+void read_sculptor(TomlReader& reader, const toml::table& root, flow::SculptorOptions& sculptor) {
+  const toml::table* const table = reader.table(root, "sculptor");
+  if (table == nullptr) return;
+  // order and storage stand in older files; they are ignored.
+  reader.allow_only(*table, {"mode", "piece_length", "kernel", "polynomial", "merge_fraction",
+                             "order", "storage", "weight_bytes", "shared", "own", "injective"});
+  auto& options = sculptor.deformer;
+  sculptor.mode = reader.named(*table, "mode", flow::mode_named);
+  sculptor.piece_length = reader.number(*table, "piece_length");
+  options.csrbf.kernel = reader.named(*table, "kernel", deform::wendland_named);
+  options.csrbf.polynomial = reader.named(*table, "polynomial", deform::polynomial_named);
+  options.csrbf.merge_fraction = reader.number(*table, "merge_fraction");
+  options.evaluation.weight_bytes =
+      reader.count(*table, "weight_bytes", std::numeric_limits<std::int64_t>::max());
+  read_supports(reader, *table, options.supports);
+  read_injective(reader, *table, options);
+}
+
+Key read_key(TomlReader& reader, const toml::table& table) {
+  reader.allow_only(table, {"time_s", "wrist_m", "wrist_turn", "angles_rad"});
+  Key key;
+  key.time_s = reader.number(table, "time_s");
+  const toml::node* const place = reader.find(table, "wrist_m");
+  const toml::node* const turn = reader.find(table, "wrist_turn");
+  const toml::table* const angles = reader.table(table, "angles_rad");
+  if (place == nullptr || turn == nullptr || angles == nullptr) return key;
+  const auto place_m = reader.numbers<3>(*place, "wrist_m");
+  key.wrist_m = {place_m[0], place_m[1], place_m[2]};
+  const auto parts = reader.numbers<4>(*turn, "wrist_turn");
+  key.wrist_turn = {parts[0], parts[1], parts[2], parts[3]};
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    key.angles[hand::angle_at(at)] = reader.number(*angles, hand::angle_names[at]);
+  if (angles->size() > hand::angle_count)
+    reader.complain(*angles, "angles_rad has an angle that no hand has; `nendo edit show --json` "
+                             "names them");
+  if (const std::string wrong = complaint_about(key); !wrong.empty()) reader.complain(table, wrong);
+  return key;
+}
+
+std::optional<Side> side_named(std::string_view name) {
+  if (name == "left") return Side::left;
+  if (name == "right") return Side::right;
+  return std::nullopt;
+}
+
+HandTrack read_hand(TomlReader& reader, const toml::table& table) {
+  reader.allow_only(table, {"side", "length_m", "breadth_m", "keys"});
+  HandTrack hand;
+  hand.side = reader.named(table, "side", side_named);
+  hand.size = {reader.number(table, "length_m"), reader.number(table, "breadth_m")};
+  const toml::array* const keys = reader.array(table, "keys");
+  if (keys == nullptr) return hand;
+  for (const toml::node& node : *keys) {
+    const toml::table* const key = reader.as_table(node, "a key");
+    if (key == nullptr || reader.error()) return hand;
+    hand.keys.push_back(read_key(reader, *key));
+  }
+  return hand;
+}
+
+void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline) {
+  const toml::array* const events = reader.array(root, "events");
+  if (events == nullptr) return;
+  for (const toml::node& node : *events) {
+    const toml::table* const event = reader.as_table(node, "an event");
+    if (event == nullptr || reader.error()) return;
+    reader.allow_only(*event, {"time_s", "request"});
+    const double time_s = reader.number(*event, "time_s");
+    timeline.events.push_back({time_s, reader.named(*event, "request", flow::request_named)});
+  }
+}
+
+void read_model(TomlReader& reader, const toml::table& root, Timeline& timeline) {
+  const toml::table* const model = reader.table(root, "model");
+  if (model == nullptr) return;
+  reader.allow_only(*model, {"file", "vertices", "crc32c"});
+  timeline.mesh = reader.text(*model, "file");
+  timeline.mesh_sum.vertices =
+      reader.count(*model, "vertices", std::numeric_limits<std::int64_t>::max());
+  timeline.mesh_sum.crc = static_cast<std::uint32_t>(
+      reader.count(*model, "crc32c", std::numeric_limits<std::uint32_t>::max()));
+}
+
+Timeline read_root(TomlReader& reader, const toml::table& root) {
+  reader.allow_only(root, {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
+                           "events", "model", "sculptor", "hands"});
+  Timeline timeline;
+  timeline.take = reader.text(root, "take");
+  timeline.units_per_metre = reader.number(root, "units_per_metre");
+  timeline.rate_hz = reader.number(root, "rate_hz");
+  timeline.duration_s = reader.number(root, "duration_s");
+  timeline.held = reader.truth(root, "held");
+  read_events(reader, root, timeline);
+  read_model(reader, root, timeline);
+  read_sculptor(reader, root, timeline.sculptor);
+  const toml::array* const hands = reader.array(root, "hands");
+  if (hands == nullptr) return timeline;
+  for (const toml::node& node : *hands) {
+    const toml::table* const hand = reader.as_table(node, "a hand");
+    if (hand == nullptr || reader.error()) break;
+    timeline.hands.push_back(read_hand(reader, *hand));
+  }
+  if (const std::string wrong = complaint_about(timeline); !wrong.empty())
+    reader.complain(root, wrong);
+  return timeline;
+}
+
+} // namespace
+
+Result<Timeline> parse_timeline(std::string_view text, std::string_view name) {
+  toml::table root;
+  TomlReader reader(name);
+  try {
+    root = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    reader.complain(error.source().begin.line, std::string(error.description()) + "; mend it");
+    return *reader.error();
+  }
+  const toml::node* const version = reader.find(root, "version");
+  if (version != nullptr && version->value_exact<std::int64_t>() != 1)
+    reader.complain(*version, "is of a version that this program does not know; it reads 1");
+  Timeline timeline;
+  if (!reader.error()) timeline = read_root(reader, root);
+  if (reader.error()) return *reader.error();
+  return timeline;
+}
+
+} // namespace nendo::timeline

@@ -1,0 +1,250 @@
+#include "viewer/gl_renderer.hpp"
+
+#include <algorithm>
+#include <string>
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
+#include <nendo/base/units.hpp>
+
+#include "render/light_maps.hpp"
+#include "viewer/gl_shaders.hpp"
+
+namespace nendo::viewer {
+
+using deform::block_size;
+using Eigen::Vector3f;
+
+namespace {
+
+constexpr std::size_t block_floats = 3 * block_size;
+
+Result<GLuint> compiled(GLenum kind, const char* text) {
+  const GLuint shader = glCreateShader(kind);
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  GLint fine = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &fine);
+  if (fine != 0) return shader;
+  std::string log(1000, '\0');
+  GLsizei length = 0;
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  std::replace(log.begin(), log.end(), '\n', ' ');
+  return Error{Errc::failed, "this OpenGL refuses a shader: " + log};
+}
+
+void set(GLuint program, const char* name, const Vector3f& value) {
+  glUniform3f(glGetUniformLocation(program, name), value.x(), value.y(), value.z());
+}
+void set(GLuint program, const char* name, float value) {
+  glUniform1f(glGetUniformLocation(program, name), value);
+}
+void set(GLuint program, const char* name, int value) {
+  glUniform1i(glGetUniformLocation(program, name), value);
+}
+
+template <class T>
+GLsizeiptr bytes_of(const std::vector<T>& values) {
+  return static_cast<GLsizeiptr>(values.size() * sizeof(T));
+}
+
+} // namespace
+
+Result<std::unique_ptr<GlRenderer>> GlRenderer::make() {
+  GLint major = 0;
+  GLint minor = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  if (10 * major + minor < 33)
+    return Error{Errc::failed, "OpenGL 3.3 is needed, and this is " + std::to_string(major) + "." +
+                                   std::to_string(minor)};
+  const auto vertex = compiled(GL_VERTEX_SHADER, vertex_shader);
+  if (!vertex) return vertex.error();
+  const auto fragment = compiled(GL_FRAGMENT_SHADER, fragment_shader);
+  if (!fragment) return fragment.error();
+  std::unique_ptr<GlRenderer> renderer(new GlRenderer);
+  renderer->program_ = glCreateProgram();
+  for (const GLuint shader : {*vertex, *fragment}) {
+    glAttachShader(renderer->program_, shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(renderer->program_);
+  GLint linked = 0;
+  glGetProgramiv(renderer->program_, GL_LINK_STATUS, &linked);
+  if (linked == 0) return Error{Errc::failed, "this OpenGL cannot link the shaders"};
+  glGenVertexArrays(1, &renderer->vertex_array_);
+  glGenBuffers(1, &renderer->model_indices_);
+  glGenBuffers(2, renderer->model_buffers_.data());
+  glGenTextures(2, renderer->model_textures_.data());
+  glGenBuffers(3, renderer->stream_.data());
+  return renderer;
+}
+
+GlRenderer::~GlRenderer() {
+  glDeleteBuffers(3, stream_.data());
+  glDeleteTextures(2, model_textures_.data());
+  glDeleteBuffers(2, model_buffers_.data());
+  glDeleteBuffers(1, &model_indices_);
+  glDeleteVertexArrays(1, &vertex_array_);
+  glDeleteProgram(program_);
+}
+
+void GlRenderer::set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder) {
+  std::vector<std::uint32_t> place_of(layout.vertex_count());
+  for (std::size_t at = 0; at < place_of.size(); ++at)
+    place_of[layout.order()[at]] = static_cast<std::uint32_t>(at);
+  corners_.clear();
+  for (const std::uint32_t corner : builder.corners())
+    corners_.push_back(place_of[corner]);
+  scale_ = static_cast<float>(layout.unit() / builder.units_per_metre());
+  offset_ = (layout.origin() / builder.units_per_metre() - builder.origin_m()).cast<float>();
+  const std::size_t blocks = layout.block_count();
+  places_.assign(blocks * block_size, Vector3f::Zero());
+  normals_.clear();
+  for (std::size_t which = 0; which < 2; ++which) {
+    glBindBuffer(GL_TEXTURE_BUFFER, model_buffers_[which]);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(blocks * block_floats * sizeof(float)),
+                 nullptr, GL_DYNAMIC_DRAW);
+    glBindTexture(GL_TEXTURE_BUFFER, model_textures_[which]);
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, model_buffers_[which]);
+  }
+  glBindVertexArray(vertex_array_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, model_indices_);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes_of(corners_), corners_.data(), GL_STATIC_DRAW);
+  whole_ = false;
+  blocks_sent_ = 0;
+}
+
+void GlRenderer::follow(const deform::BlockShape& shape) {
+  const auto send = [](GLuint buffer, std::size_t block, const float* floats) {
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer);
+    glBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(block * block_floats * sizeof(float)),
+                    static_cast<GLsizeiptr>(block_floats * sizeof(float)), floats);
+  };
+  if (!whole_) shape_ = deform::BlockShape(std::vector<deform::VertexBlock>(shape.block_count()));
+  bool changed = false;
+  for (std::size_t block = 0; block < shape.block_count(); ++block) {
+    if (whole_ && shape_.stamp(block) == shape.stamp(block)) continue;
+    shape_.follow(shape, block);
+    const deform::VertexBlock& now = shape[block];
+    send(model_buffers_[0], block, now.x.data());
+    for (std::size_t lane = 0; lane < block_size; ++lane)
+      places_[block * block_size + lane] = {now.x[lane], now.y[lane], now.z[lane]};
+    ++blocks_sent_;
+    changed = true;
+  }
+  if (!changed) return;
+  whole_ = true;
+  render::compute_normals(places_, corners_, new_normals_);
+  block_.resize(block_floats);
+  for (std::size_t block = 0; block < shape.block_count(); ++block) {
+    const auto first = static_cast<std::ptrdiff_t>(block * block_size);
+    const auto begin = new_normals_.begin() + first;
+    const auto end = begin + block_size;
+    if (!normals_.empty() && std::equal(begin, end, normals_.begin() + first)) continue;
+    for (std::size_t lane = 0; lane < block_size; ++lane)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        block_[axis * block_size + lane] =
+            begin[static_cast<std::ptrdiff_t>(lane)][static_cast<Eigen::Index>(axis)];
+    send(model_buffers_[1], block, block_.data());
+  }
+  normals_.swap(new_normals_);
+}
+
+void GlRenderer::send_surface(const render::Surface& surface) {
+  const std::array<const std::vector<Vector3f>*, 2> vectors{&surface.places, &surface.normals};
+  for (GLuint which = 0; which < 2; ++which) {
+    glBindBuffer(GL_ARRAY_BUFFER, stream_[which]);
+    glBufferData(GL_ARRAY_BUFFER, bytes_of(*vectors[which]), vectors[which]->data(),
+                 GL_STREAM_DRAW);
+    glEnableVertexAttribArray(which);
+    glVertexAttribPointer(which, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+  }
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, stream_[2]);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes_of(surface.corners), surface.corners.data(),
+               GL_STREAM_DRAW);
+}
+
+void GlRenderer::use_material(const render::Material& material) const {
+  set(program_, "colour", material.colour);
+  set(program_, "gloss", material.gloss);
+  set(program_, "opacity", material.opacity);
+  set(program_, "rim_opacity", material.rim_opacity);
+  set(program_, "grid", material.grid_m);
+  set(program_, "fade", material.fade_m);
+  set(program_, "unlit", material.opacity > 0.0F ? 0 : 1);
+}
+
+void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
+  const std::size_t count = model ? corners_.size() : surface.corners.size();
+  if (count == 0) return;
+  use_material(surface.material);
+  set(program_, "from_blocks", model ? 1 : 0);
+  if (model) {
+    glDisableVertexAttribArray(0);
+    glDisableVertexAttribArray(1);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, model_indices_);
+  } else {
+    send_surface(surface);
+  }
+  const bool veil = surface.material.opacity < 1.0F;
+  const auto triangles = [&] {
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, nullptr);
+  };
+  if (veil) { // depth first, so that only its nearest layer is mixed in
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    triangles();
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_BLEND);
+  }
+  triangles();
+  if (veil) glDisable(GL_BLEND);
+}
+
+void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera, render::Size size,
+                      Look look, int below) {
+  const bool shaded = look == Look::shaded;
+  glViewport(0, below, size.width, size.height);
+  glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+  if (shaded) glClearColor(0.90F, 0.91F, 0.92F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_CULL_FACE);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBindVertexArray(vertex_array_);
+  glUseProgram(program_);
+  const Eigen::Matrix4f clip = camera.projection(1.0 * size.width / size.height).cast<float>();
+  glUniformMatrix4fv(glGetUniformLocation(program_, "clip_of_world"), 1, GL_FALSE, clip.data());
+  set(program_, "eye", camera.eye().cast<float>());
+  set(program_, "key", render::turned({-0.55F, 0.75F, 0.55F}, camera.view.azimuth_deg));
+  set(program_, "fill", render::turned({0.85F, 0.25F, 0.50F}, camera.view.azimuth_deg));
+  set(program_, "rim", render::turned({0.45F, 0.45F, -0.80F}, camera.view.azimuth_deg));
+  set(program_, "height", static_cast<float>(size.height));
+  set(program_, "below", static_cast<float>(below));
+  set(program_, "scale", scale_);
+  set(program_, "offset", offset_);
+  set(program_, "flat_white", shaded ? 0 : 1);
+  for (std::size_t which = 0; which < 2; ++which) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(which));
+    glBindTexture(GL_TEXTURE_BUFFER, model_textures_[which]);
+  }
+  set(program_, "block_places", 0);
+  set(program_, "block_normals", 1);
+  if (whole_) draw_surface(beside.model, true);
+  for (const render::Surface& solid : beside.solids)
+    draw_surface(solid, false);
+  if (shaded)
+    for (const render::Surface& ground : beside.grounds)
+      draw_surface(ground, false);
+  // Hands, then what has no depth of its own.
+  for (const bool reaches : {false, true})
+    for (const render::Surface& veil : beside.veils)
+      if ((veil.material.opacity <= 0.0F) == reaches && (shaded || !reaches))
+        draw_surface(veil, false);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+} // namespace nendo::viewer

@@ -1,0 +1,62 @@
+#pragma once
+// Draws a scene with OpenGL 3.3. Only those blocks of the model whose stamps changed are sent to
+// the graphics card. All calls belong to the thread that has the OpenGL context.
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+
+#include "render/camera.hpp"
+#include "render/image.hpp"
+#include "render/scene.hpp"
+
+namespace nendo::viewer {
+
+class GlRenderer {
+public:
+  /// Needs a current context. Error: failed (no OpenGL 3.3; the message tells what there is
+  /// instead).
+  static Result<std::unique_ptr<GlRenderer>> make();
+  ~GlRenderer();
+  GlRenderer(const GlRenderer&) = delete;
+  GlRenderer& operator=(const GlRenderer&) = delete;
+
+  /// Sets another model: its faces and the layout of its blocks. follow() must be called before
+  /// draw().
+  void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
+  /// Sends the blocks that changed since the last call, and the normals that changed with them.
+  void follow(const deform::BlockShape& shape);
+  /// Returns the number of blocks that follow() has sent since set_model().
+  std::uint64_t blocks_sent() const noexcept { return blocks_sent_; }
+
+  enum class Look { shaded, silhouette };
+  /// Draws the model, and everything of `beside` except its model, into the bound frame buffer. The
+  /// picture begins `below` pixels above the bottom. The whole buffer is cleared.
+  void draw(const render::Scene& beside, const render::Camera& camera, render::Size size,
+            Look look = Look::shaded, int below = 0);
+
+private:
+  GlRenderer() = default;
+  void send_surface(const render::Surface& surface);
+  void draw_surface(const render::Surface& surface, bool model);
+  void use_material(const render::Material& material) const;
+
+  unsigned program_ = 0;
+  unsigned vertex_array_ = 0;
+  unsigned model_indices_ = 0;
+  std::array<unsigned, 2> model_buffers_{};  ///< positions and normals, in blocks
+  std::array<unsigned, 2> model_textures_{}; ///< the shader reads the buffers through them
+  std::array<unsigned, 3> stream_{};   ///< positions, normals and corners of the other surfaces
+  std::vector<std::uint32_t> corners_; ///< indices into the blocks
+  deform::BlockShape shape_;           ///< as the graphics card has it
+  std::vector<Eigen::Vector3f> places_, normals_, new_normals_;
+  std::vector<float> block_;
+  Eigen::Vector3f offset_ = Eigen::Vector3f::Zero();
+  float scale_ = 1.0F;
+  bool whole_ = false; ///< the graphics card has the whole model
+  std::uint64_t blocks_sent_ = 0;
+};
+
+} // namespace nendo::viewer

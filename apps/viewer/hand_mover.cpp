@@ -1,0 +1,64 @@
+#include "viewer/hand_mover.hpp"
+
+#include <algorithm>
+
+#include <nendo/base/units.hpp>
+
+#include "viewer/pointing.hpp"
+
+namespace nendo::viewer {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+// Of the wrist from the stage's middle: as far as arms reach, and in the picture.
+constexpr double most_m = 2.0;
+constexpr double degrees_a_pixel = 0.35; // as the camera turns
+
+} // namespace
+
+void HandMover::take(const render::Camera& camera, const flow::Frame& frame,
+                     const Vector2d& pointer, render::Size size) noexcept {
+  slot_.reset();
+  double nearest = reach;
+  for (std::size_t slot = 0; slot < frame.hands.size(); ++slot) {
+    const auto& hand = frame.hands[slot];
+    if (!hand.present) continue;
+    for (const auto& joint : hand.pose.joints) {
+      const auto pixel = pixel_of(camera, joint.translation(), size);
+      if (!pixel || !((*pixel - pointer).norm() < nearest)) continue;
+      nearest = (*pixel - pointer).norm();
+      slot_ = slot;
+      wrist_ = hand.T_stage_wrist;
+    }
+  }
+}
+
+void HandMover::go_by(const Vector3d& way_m) noexcept {
+  wrist_.translation() = (wrist_.translation() + way_m).cwiseMax(-most_m).cwiseMin(most_m);
+}
+
+void HandMover::shift(const render::Camera& camera, double dx, double dy, double height) noexcept {
+  go_by(way_in_picture(camera, wrist_.translation(), dx, dy, height));
+}
+
+void HandMover::turn(const render::Camera& camera, double dx, double dy) noexcept {
+  const Eigen::Matrix3d rows = camera.axes();
+  const Eigen::AngleAxisd about_up(from_degrees(degrees_a_pixel * dx), rows.row(1).transpose());
+  const Eigen::AngleAxisd about_level(from_degrees(degrees_a_pixel * dy), rows.row(0).transpose());
+  const Eigen::Quaterniond turned = about_level * about_up * Eigen::Quaterniond(wrist_.linear());
+  wrist_.linear() = turned.normalized().toRotationMatrix();
+}
+
+void HandMover::push(const render::Camera& camera, double steps) noexcept {
+  go_by(way_by_wheel(camera, steps));
+}
+
+flow::WristMove HandMover::move() const noexcept {
+  const Side side = slot_ == flow::Placement::index_of(Side::left) ? Side::left : Side::right;
+  return flow::WristMove::to(side, wrist_);
+}
+
+} // namespace nendo::viewer

@@ -1,0 +1,77 @@
+#include "viewer/live_window.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <imgui.h>
+
+#include "viewer/panel.hpp"
+
+namespace nendo::viewer {
+
+LiveWindow::LiveWindow(std::unique_ptr<SceneWindow> window)
+    : window_(std::move(window)), panel_(std::make_unique<Panel>()) {}
+
+LiveWindow::~LiveWindow() = default;
+
+Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, render::Size size) {
+  auto window = SceneWindow::open(
+      title, size,
+      "on a box without a screen `nendo run --web 8080` shows the run in a browser, and `nendo "
+      "picture` and `nendo run --picture` draw files");
+  if (!window) return window.error();
+  return std::unique_ptr<LiveWindow>(new LiveWindow(*std::move(window)));
+}
+
+void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
+                       const flow::LoopSettings& settings) {
+  window_->set_model(layout, builder);
+  panel_->in_force = panel_->wanted = settings;
+  panel_->one_radius = std::all_of(settings.radius_m.begin(), settings.radius_m.end(),
+                                   [&](double radius) { return radius == settings.radius_m[0]; });
+  scene_frame_.radius_m = settings.radius_m;
+  scene_frame_.vertices = layout.original();
+  holds_ = {};
+}
+
+Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gauges) {
+  const HostTime begin = HostClock::now();
+  Commands commands;
+  if (fresh) {
+    holds_.follow(frame);
+    panel_->follow(frame, gauges.rate_hz);
+    window_->follow(frame.shape);
+  }
+  set_hands(frame, holds_, scene_frame_);
+  window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there
+  if (!move_hand(frame, commands)) window_->move_camera();
+  draw_panel(frame, gauges, commands);
+  window_->end_picture();
+  panel_->pictures_ms.add(static_cast<float>(1e3 * to_seconds(HostClock::now() - begin)));
+  if (window_->take_close_request()) commands.emplace_back(flow::EndRun{});
+  return commands;
+}
+
+// True: the mouse holds a hand, and does nothing else.
+bool LiveWindow::move_hand(const flow::Frame& frame, Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse) return false;
+  const render::Camera camera = window_->stage_camera();
+  const render::Size size = window_->scene_size();
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Right)) hand_mover_.let_go();
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Right))
+    hand_mover_.take(camera, frame, {io.MousePos.x, io.MousePos.y}, size);
+  if (!hand_mover_.holds()) return false;
+  const auto dx = static_cast<double>(io.MouseDelta.x);
+  const auto dy = static_cast<double>(io.MouseDelta.y);
+  if (io.KeyShift) {
+    hand_mover_.turn(camera, dx, dy);
+  } else {
+    hand_mover_.shift(camera, dx, dy, size.height);
+  }
+  hand_mover_.push(camera, static_cast<double>(io.MouseWheel));
+  if (dx != 0.0 || dy != 0.0 || io.MouseWheel != 0.0F) commands.emplace_back(hand_mover_.move());
+  return true;
+}
+
+} // namespace nendo::viewer

@@ -1,0 +1,70 @@
+#pragma once
+// The live window: the scene, a camera that the mouse moves, and a panel that shows the state of
+// the loop and has buttons for every command. The window reads frames. It never waits for the loop,
+// and the loop never waits for it. All calls belong to the main thread.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nendo/flow/command.hpp>
+#include <nendo/flow/frame.hpp>
+
+#include "viewer/hand_mover.hpp"
+#include "viewer/scene_window.hpp"
+
+namespace nendo::viewer {
+
+/// What the panel shows in addition to the frame.
+struct Gauges {
+  std::string model;                 ///< its name
+  double rate_hz = 0.0;              ///< wanted
+  std::array<std::string, 2> gloves; ///< their names; empty means no glove
+  std::array<std::uint64_t, 2> bad_records{};
+  std::array<std::uint64_t, 2> lost{}; ///< samples that found no room
+  bool recording = false;              ///< to a file
+  double restart_ms = 0.0;             ///< of the last change of settings; 0 means none yet
+  std::string report;                  ///< the result of the last command that saved something
+};
+
+/// The commands that a person has given since the last picture, in their order.
+using Commands = std::vector<flow::Command>;
+
+class LiveWindow {
+public:
+  /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message tells what to do
+  /// instead.
+  static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, render::Size size);
+  ~LiveWindow();
+  LiveWindow(const LiveWindow&) = delete;
+  LiveWindow& operator=(const LiveWindow&) = delete;
+
+  /// Begins to show another loop over this model. The camera stays where it was.
+  void begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
+             const flow::LoopSettings& settings);
+  /// Draws one picture of the latest frame and waits for the screen, or for at most 8 ms if there
+  /// is none. fresh: the frame differs from that of the previous call.
+  Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
+
+  /// The following functions are those of SceneWindow.
+  render::Image screenshot() const { return window_->screenshot(); }
+  render::Image silhouette(render::Size size) { return window_->silhouette(size); }
+  const render::Camera& camera() const noexcept { return window_->camera(); }
+  const render::Scene& scene() const noexcept { return window_->scene(); }
+  std::uint64_t blocks_sent() const noexcept { return window_->blocks_sent(); }
+  void simulate(const SimulatedInput& input) { window_->simulate(input); }
+
+private:
+  struct Panel;
+  explicit LiveWindow(std::unique_ptr<SceneWindow> window);
+  bool move_hand(const flow::Frame& frame, Commands& commands);
+  void draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
+
+  std::unique_ptr<SceneWindow> window_;
+  std::unique_ptr<Panel> panel_;
+  render::HoldTracker holds_;
+  render::SceneFrame scene_frame_;
+  HandMover hand_mover_;
+};
+
+} // namespace nendo::viewer

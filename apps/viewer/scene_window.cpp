@@ -1,0 +1,249 @@
+#include "viewer/scene_window.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <thread>
+#include <utility>
+
+#include <GL/gl.h>
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include "viewer/quick_input.hpp"
+#include "viewer/widgets.hpp"
+
+namespace nendo::viewer {
+namespace {
+
+Error without_window(const std::string& why, const std::string& instead) {
+  return {Errc::failed, "no window: " + why + "; " + instead};
+}
+
+std::string glfw_error() {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return words != nullptr ? words : "GLFW does not say why";
+}
+
+render::Image read_pixels(render::Size size) {
+  std::vector<render::Pixel> rows(static_cast<std::size_t>(size.width) *
+                                  static_cast<std::size_t>(size.height));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadBuffer(GL_BACK);
+  glReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, rows.data());
+  render::Image image(size);
+  for (int y = 0; y < size.height; ++y) // OpenGL begins at the bottom
+    for (int x = 0; x < size.width; ++x)
+      image.at(x, y) = rows[static_cast<std::size_t>(size.height - 1 - y) *
+                                static_cast<std::size_t>(size.width) +
+                            static_cast<std::size_t>(x)];
+  return image;
+}
+
+render::Size pixels_of(GLFWwindow* window) {
+  render::Size size;
+  glfwGetFramebufferSize(window, &size.width, &size.height);
+  return {std::max(1, size.width), std::max(1, size.height)};
+}
+
+constexpr std::chrono::milliseconds least_period(8); // where no screen sets the pace
+
+QuickInput& quick_of(GLFWwindow* window) {
+  return *static_cast<QuickInput*>(glfwGetWindowUserPointer(window));
+}
+
+void on_key(GLFWwindow* window, int key, int, int action, int modifiers) {
+  if (action != GLFW_PRESS) return;
+  quick_of(window).press(key, (modifiers & GLFW_MOD_CONTROL) != 0,
+                         (modifiers & GLFW_MOD_SHIFT) != 0);
+}
+
+// Not glfwGetCursorPos(): that asks where the pointer is now, and not where it was at this event.
+void on_pointer(GLFWwindow* window, double x, double y) {
+  quick_of(window).point(x, y);
+}
+
+void on_button(GLFWwindow* window, int, int action, int) {
+  if (action == GLFW_PRESS) quick_of(window).click();
+}
+
+} // namespace
+
+SceneWindow::SceneWindow() : quick_(std::make_unique<QuickInput>()) {}
+
+Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title, render::Size size,
+                                                       const std::string& instead) {
+#ifdef GLFW_PLATFORM
+  // Where there is no compositor, Wayland's library would add words of its own to the error.
+  if (std::getenv("WAYLAND_DISPLAY") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
+  if (glfwInit() == GLFW_FALSE) return without_window(glfw_error(), instead);
+  std::unique_ptr<SceneWindow> window(new SceneWindow);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_SAMPLES, 4);
+  window->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  if (window->window_ == nullptr) { // perhaps only for want of samples
+    glfwWindowHint(GLFW_SAMPLES, 0);
+    window->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  }
+  if (window->window_ == nullptr)
+    return without_window("no OpenGL 3.3 here: " + glfw_error(), instead);
+  glfwMakeContextCurrent(window->window_);
+  glfwSwapInterval(1);
+  auto renderer = GlRenderer::make();
+  if (!renderer) return without_window(renderer.error().message, instead);
+  window->renderer_ = *std::move(renderer);
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
+  ImGui::GetStyle().Colors[ImGuiCol_TextDisabled] = {0.68F, 0.70F, 0.72F, 1.0F}; // to be read, too
+  glfwSetWindowUserPointer(window->window_, window->quick_.get());
+  if (!imgui_queues_events) { // ImGui's own callbacks call these
+    glfwSetKeyCallback(window->window_, on_key);
+    glfwSetMouseButtonCallback(window->window_, on_button);
+    glfwSetCursorPosCallback(window->window_, on_pointer);
+  }
+  ImGui_ImplGlfw_InitForOpenGL(window->window_, true);
+  ImGui_ImplOpenGL3_Init("#version 330");
+  return window;
+}
+
+SceneWindow::~SceneWindow() {
+  if (ImGui::GetCurrentContext() != nullptr) {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  renderer_.reset();
+  if (window_ != nullptr) glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void SceneWindow::set_model(const deform::BlockLayout& layout,
+                            const render::SceneBuilder& builder) {
+  builder_.emplace(builder);
+  renderer_->set_model(layout, builder);
+}
+
+void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_whole) {
+  begun_ = HostClock::now();
+  glfwPollEvents();
+  builder_->build_beside(scene_frame, parts_, scene_);
+  if (!framed_) choose_camera();
+  framed_ = framed_ || is_whole;
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  if (simulated_) put_simulated();
+  quick_->put();
+  ImGui::NewFrame();
+}
+
+void SceneWindow::choose_camera() {
+  auto points = scene_.outline();
+  const Eigen::Vector3f half = (builder_->size_m() / 2).cast<float>();
+  for (const float x : {-half.x(), half.x()})
+    for (const float y : {0.0F, 2.0F * half.y()})
+      for (const float z : {-half.z(), half.z()})
+        points.emplace_back(x, y, z);
+  const render::Size size = scene_size();
+  camera_ = render::framing(points, {22.0, 10.0}, 1.0 * size.width / size.height, 0.1);
+}
+
+void SceneWindow::simulate(const SimulatedInput& input) {
+#if IMGUI_VERSION_NUM >= 18700
+  ImGui::GetIO().ConfigInputTrickleEventQueue =
+      false; // each picture shows what is simulated for it
+#endif
+  if (simulated_ && simulated_->key > 0 && simulated_->key != input.key)
+    put_key(simulated_->key, false);
+  simulated_ = input;
+  for (const int key : input.taps)
+    quick_->press(key, input.control, input.shift);
+  if (!input.clicked_at) return;
+  quick_->point(input.clicked_at->x(), input.clicked_at->y());
+  quick_->click();
+}
+
+// As the window's back end tells ImGui of those that are there.
+void SceneWindow::put_simulated() const {
+  put_pointer(static_cast<float>(simulated_->pointer.x()),
+              static_cast<float>(simulated_->pointer.y()));
+  for (std::size_t button = 0; button < simulated_->buttons.size(); ++button)
+    put_button(static_cast<int>(button), simulated_->buttons[button]);
+  put_wheel(static_cast<float>(simulated_->wheel));
+  put_modifiers(simulated_->control, simulated_->shift);
+  if (simulated_->key > 0) put_key(simulated_->key, true);
+}
+
+void SceneWindow::move_camera() {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse) return;
+  const auto dx = static_cast<double>(io.MouseDelta.x);
+  const auto dy = static_cast<double>(io.MouseDelta.y);
+  const bool shifts = ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
+                      (ImGui::IsMouseDown(ImGuiMouseButton_Left) && io.KeyShift);
+  if (shifts) {
+    camera_.pan(dx, dy, scene_size().height);
+  } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    camera_.orbit(dx, dy);
+  }
+  if (io.MouseWheel != 0.0F) camera_.zoom(static_cast<double>(io.MouseWheel));
+}
+
+void SceneWindow::follow_part_keys() {
+  if (!takes_keys() || ImGui::GetIO().KeyCtrl) return;
+  for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts_.hands},
+                                  {GLFW_KEY_B, &parts_.bones},
+                                  {GLFW_KEY_V, &parts_.vectors},
+                                  {GLFW_KEY_D, &parts_.radii}})
+    if (pressed(key)) *part = !*part;
+}
+
+void SceneWindow::end_picture() {
+  ImGui::Render();
+  quick_->take_back();
+  draw_all();
+  glfwSwapBuffers(window_);
+  std::this_thread::sleep_until(begun_ + least_period);
+}
+
+void SceneWindow::draw_all() const {
+  const render::Size all = pixels_of(window_);
+  const int below = std::clamp(below_, 0, all.height - 1);
+  renderer_->draw(scene_, camera_, {all.width, all.height - below}, GlRenderer::Look::shaded,
+                  below);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool SceneWindow::take_close_request() noexcept {
+  const bool wanted = glfwWindowShouldClose(window_) != 0;
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  return wanted;
+}
+
+render::Size SceneWindow::scene_size() const noexcept {
+  const render::Size all = pixels_of(window_);
+  return {all.width, std::max(1, all.height - below_)};
+}
+
+render::Camera SceneWindow::stage_camera() const noexcept {
+  render::Camera camera = camera_;
+  if (builder_) camera.target += builder_->origin_m();
+  return camera;
+}
+
+render::Image SceneWindow::screenshot() const {
+  draw_all(); // anew, for what was shown may be gone
+  return read_pixels(pixels_of(window_));
+}
+
+render::Image SceneWindow::silhouette(render::Size size) {
+  renderer_->draw(scene_, camera_, size, GlRenderer::Look::silhouette);
+  return read_pixels(size);
+}
+
+} // namespace nendo::viewer

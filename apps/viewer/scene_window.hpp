@@ -1,0 +1,94 @@
+#pragma once
+// A window with the scene, a camera that the mouse moves, and room for widgets. All calls belong to
+// the main thread, as window systems demand.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/gl_renderer.hpp"
+
+struct GLFWwindow;
+
+namespace nendo::viewer {
+
+class QuickInput;
+
+/// Simulated input of a mouse and a keyboard, for tests.
+struct SimulatedInput {
+  Eigen::Vector2d pointer{-1.0, -1.0}; ///< pixels from the window's top left corner
+  std::array<bool, 3> buttons{};       ///< left, right, middle
+  double wheel = 0.0;
+  bool control = false;
+  bool shift = false;
+  int key = 0; ///< GLFW's number of the key that is down; 0 means none
+  // Since the last picture:
+  std::vector<int> taps;                     ///< keys that went down and up again
+  std::optional<Eigen::Vector2d> clicked_at; ///< where the pointer was when a button went down
+};
+
+class SceneWindow {
+public:
+  /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`,
+  /// which must tell what to do without a window.
+  static Result<std::unique_ptr<SceneWindow>> open(const std::string& title, render::Size size,
+                                                   const std::string& instead);
+  ~SceneWindow();
+  SceneWindow(const SceneWindow&) = delete;
+  SceneWindow& operator=(const SceneWindow&) = delete;
+
+  void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
+  void follow(const deform::BlockShape& shape) { renderer_->follow(shape); }
+
+  /// Begins a picture: processes the input since the last one and builds the scene's parts other
+  /// than the model. The camera is chosen anew for each frame until the first one with is_whole.
+  /// Widgets may follow.
+  void begin_picture(const render::SceneFrame& scene_frame, bool is_whole = true);
+  /// Turns, shifts and zooms the camera by the mouse, unless the mouse is over a widget.
+  void move_camera();
+  /// Lets the keys h, b, v and d show and hide parts of the scene, unless a text is being entered
+  /// or a question is open.
+  void follow_part_keys();
+  /// Draws the picture and waits for the screen, or for at most 8 ms if there is none.
+  void end_picture();
+
+  /// Returns whether the person has asked to close the window since the last call.
+  bool take_close_request() noexcept;
+  /// Reserves that many pixels at the bottom of the window, which the scene does not use.
+  void leave_below(int pixels) noexcept { below_ = pixels; }
+  render::Size scene_size() const noexcept; ///< from the window's top left corner
+  const render::Camera& camera() const noexcept { return camera_; }
+  /// Returns the same camera for places on the stage, such as those of hands. camera() is for
+  /// places in the scene.
+  render::Camera stage_camera() const noexcept;
+  const render::Scene& scene() const noexcept { return scene_; } ///< without the model's positions
+  std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
+
+  render::Image screenshot() const; ///< of what was shown last
+  /// Does the same as render::silhouette() with OpenGL, for the scene that was shown last.
+  render::Image silhouette(render::Size size);
+  /// Replaces the real mouse and keyboard by `input` from the next picture on.
+  void simulate(const SimulatedInput& input);
+
+private:
+  SceneWindow();
+  void choose_camera();
+  void put_simulated() const;
+  void draw_all() const;
+
+  GLFWwindow* window_ = nullptr;
+  std::unique_ptr<GlRenderer> renderer_;
+  std::optional<render::SceneBuilder> builder_;
+  std::optional<SimulatedInput> simulated_;
+  std::unique_ptr<QuickInput> quick_;
+  render::SceneParts parts_;
+  render::Scene scene_;
+  render::Camera camera_;
+  HostTime begun_{};
+  int below_ = 0;
+  bool framed_ = false;
+};
+
+} // namespace nendo::viewer

@@ -1,0 +1,97 @@
+#include "web/client_commands.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <span>
+
+namespace nendo::web {
+namespace {
+
+using deform::Wendland;
+
+/// Takes a text apart at single spaces.
+class Words {
+public:
+  explicit Words(std::string_view text) noexcept : rest_(text) {}
+
+  /// The next one; empty at the end, and where two spaces meet.
+  std::string_view next() noexcept {
+    if (ended_) return {};
+    const auto space = rest_.find(' ');
+    const auto word = rest_.substr(0, space);
+    ended_ = space == std::string_view::npos;
+    if (!ended_) rest_.remove_prefix(space + 1);
+    return word;
+  }
+  bool are_over() const noexcept { return ended_; }
+
+  /// Whether as many words follow, all of them finite numbers.
+  bool take(std::span<double> numbers) noexcept {
+    for (double& number : numbers) {
+      const auto word = next();
+      const auto* const end = word.data() + word.size();
+      const auto [stopped, error] = std::from_chars(word.data(), end, number);
+      if (error != std::errc{} || stopped != end || !std::isfinite(number)) return false;
+    }
+    return true;
+  }
+
+private:
+  std::string_view rest_;
+  bool ended_ = false;
+};
+
+std::optional<Wendland> kernel_of(std::string_view word) noexcept {
+  if (word == "c0") return Wendland::c0;
+  if (word == "c2") return Wendland::c2;
+  if (word == "c4") return Wendland::c4;
+  if (word == "c6") return Wendland::c6;
+  return std::nullopt;
+}
+
+std::optional<flow::Command> settings_in(Words words) noexcept {
+  const auto mode = flow::mode_named(words.next());
+  const auto kernel = kernel_of(words.next());
+  flow::LoopSettings settings;
+  if (!mode || !kernel || !words.take(settings.radius_m) || !words.are_over()) return std::nullopt;
+  for (const double radius_m : settings.radius_m)
+    if (radius_m < min_radius_m || radius_m > max_radius_m) return std::nullopt;
+  settings.mode = *mode;
+  settings.kernel = *kernel;
+  return flow::ChangeSettings{settings};
+}
+
+std::optional<flow::Command> wrist_in(Words words) noexcept {
+  const auto hand = words.next();
+  flow::WristMove move;
+  move.side = hand == "left" ? Side::left : Side::right;
+  if (hand != "left" && hand != "right") return std::nullopt;
+  if (!words.take(move.position_m) || !words.take(move.turn_xyzw) || !words.are_over())
+    return std::nullopt;
+  double squared = 0.0;
+  for (const double part : move.turn_xyzw)
+    squared += part * part;
+  const double length = std::sqrt(squared);
+  if (!(std::abs(length - 1.0) <= max_norm_error) || !move.is_usable()) return std::nullopt;
+  for (double& part : move.turn_xyzw)
+    part /= length;
+  return move;
+}
+
+} // namespace
+
+std::optional<flow::Command> parse_command(std::string_view text) noexcept {
+  if (const auto request = flow::request_named(text)) return *request;
+  if (text == "reset") return flow::ResetModel{};
+  if (text == "record") return flow::SetRecording{true};
+  if (text == "end recording") return flow::SetRecording{false};
+  if (text == "save") return flow::SaveShape{};
+  if (text == "keep") return flow::SaveRecording{};
+  Words words(text);
+  const auto first = words.next();
+  if (first == "settings") return settings_in(words);
+  if (first == "wrist") return wrist_in(words);
+  return std::nullopt;
+}
+
+} // namespace nendo::web

@@ -1,0 +1,47 @@
+#pragma once
+// Decides what one client is sent: which steps it still needs, and when it needs the whole shape.
+// Nothing here knows of sockets.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "web/frame_stream.hpp"
+
+namespace nendo::web {
+
+/// The numbers that the server adds to an update message.
+struct FeedCounters {
+  std::uint64_t lost = 0;                     ///< frames that found no room in the ring
+  std::array<std::uint32_t, 2> bad_records{}; ///< by flow::Placement::index_of(side)
+};
+
+class Feed {
+public:
+  /// Returns whether the client needs a shape: at first, when it has missed steps, and when its
+  /// rounding errors may have become too large.
+  bool wants_shape() const noexcept { return lacks_shape_ || drift_ >= 1.0; }
+  /// Must be called when the client has been sent the shape after that frame.
+  void shape_sent(std::uint64_t number) noexcept;
+
+  /// Makes an update message of the records since the last call. Returns nothing if there are none.
+  /// The message has no steps while the client lacks the shape that they continue.
+  std::optional<std::vector<std::byte>> update(std::span<const Record> records,
+                                               const FeedCounters& counters);
+  /// Must be called instead of update() when nothing can be sent to the client.
+  void skip(std::span<const Record> records) noexcept;
+
+private:
+  std::span<const Record> unseen(std::span<const Record> records) noexcept;
+  bool can_follow(std::span<const Record> records) const noexcept;
+
+  bool lacks_shape_ = true;
+  std::uint64_t base_ = 0;  ///< the last frame that the client knows
+  std::uint64_t shape_ = 0; ///< the frame whose shape was sent last
+  double drift_ = 0.0;
+  std::uint64_t skipped_ = 0;
+};
+
+} // namespace nendo::web

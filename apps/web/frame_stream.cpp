@@ -1,0 +1,169 @@
+#include "web/frame_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+
+#include "web/wire.hpp"
+
+namespace nendo::web {
+
+/// Stands before each record in the ring. The update's head and hands follow, then its step.
+struct FrameStream::RecordHead {
+  std::uint32_t bytes = 0; ///< with this head
+  std::uint32_t head_bytes = 0;
+  std::uint64_t number = 0;
+  double drift = 0.0;
+  std::uint8_t undone = 0;
+  std::uint8_t bakes = 0;
+  std::uint8_t spare[6]{};
+};
+
+namespace {
+
+/// Of a field's largest coefficient: the error of float sums, as BlockField estimates it; and the
+/// rounding of two coordinates.
+constexpr double float_error = 3e-7;
+constexpr double rounding_error = 1.2e-7;
+/// Of the model's diagonal. A client is to stay within 1e-5 of it.
+constexpr double max_drift = 2e-6;
+/// The ring holds a second of a 1 kHz loop's ordinary frames, and at least min_records of the
+/// largest ones.
+constexpr std::size_t min_chunks = 16384;
+constexpr std::size_t min_records = 16;
+
+} // namespace
+
+FrameStream::FrameStream(const deform::BlockLayout& layout, flow::Mode mode, std::size_t max_fields,
+                         std::size_t max_functions)
+    : origin_(layout.origin()), unit_(layout.unit()), vertices_(layout.vertex_count()),
+      type1_(mode == flow::Mode::type1),
+      max_drift_(std::pow(max_drift * layout.diagonal() / layout.unit(), 2)), rest_(layout.pack()),
+      record_((sizeof(RecordHead) + sizeof(UpdateHead) + 2 * hand_bytes + step_head_bytes +
+               max_fields * field_bytes(max_functions) + sizeof(Chunk) - 1) /
+                  sizeof(Chunk) * sizeof(Chunk),
+              std::byte{1}),
+      ring_(std::max(min_chunks, min_records * (record_.size() / sizeof(Chunk)))),
+      shape_copy_(rest_) {
+  // Touches all pages of the ring, so that no tick waits for one.
+  for (std::size_t at = ring_.claim(ring_.capacity()); at > 0; --at)
+    ring_.claimed(at - 1) = Chunk{};
+}
+
+void FrameStream::show(const flow::Frame& frame) noexcept {
+  ++number_;
+  const bool undone = frame.undos != undos_;
+  const bool committed = frame.commits != commits_;
+  undos_ = frame.undos;
+  commits_ = frame.commits;
+  // In both cases this frame's shape is the rest shape from now on: a commit makes it so, and after
+  // an undo the hands have not moved it yet.
+  if (type1_ && (undone || committed)) rest_.follow(frame.shape);
+  copy_shape(frame); // before the record is pushed: see take_shape()
+  if (active_.load(std::memory_order_relaxed)) push(frame, undone, committed);
+}
+
+void FrameStream::copy_shape(const flow::Frame& frame) noexcept {
+  if (request_.load(std::memory_order_acquire) != ShapeRequest::pending) return;
+  shape_copy_.follow(type1_ ? rest_ : frame.shape);
+  shape_copy_number_ = number_;
+  request_.store(ShapeRequest::ready, std::memory_order_release);
+}
+
+// Errors of many steps have either sign, so their squares add up.
+double FrameStream::drift_of(const flow::Frame& frame) const noexcept {
+  double drift = 0.0;
+  for (const deform::CsrbfField& field : frame.fields.fields()) {
+    const double largest = field.coefficients.cwiseAbs().maxCoeff() / unit_;
+    const double overlap = std::sqrt(static_cast<double>(field.centres.cols()));
+    const double error = float_error * largest * overlap + rounding_error;
+    drift += error * error / max_drift_;
+  }
+  return drift;
+}
+
+void FrameStream::push(const flow::Frame& frame, bool undone, bool committed) noexcept {
+  const bool bakes = !type1_ || committed;
+  RecordHead head;
+  UpdateHead update = head_of(frame);
+  update.number = head.number = number_;
+  WireWriter out(record_);
+  out.put(head);
+  out.put(update);
+  for (const flow::HandFrame& hand : frame.hands)
+    if (hand.present) write_hand(hand, out);
+  head.head_bytes = static_cast<std::uint32_t>(out.used() - sizeof head);
+  write_step(bakes ? StepKind::bake : StepKind::draw, frame.fields, origin_, unit_, out);
+  head.bytes = static_cast<std::uint32_t>(out.used());
+  head.undone = undone ? 1 : 0;
+  head.drift = bakes ? drift_of(frame) : 0.0;
+  head.bakes = bakes ? 1 : 0;
+  std::memcpy(record_.data(), &head, sizeof head);
+  const std::size_t chunks = (out.used() + sizeof(Chunk) - 1) / sizeof(Chunk);
+  if (ring_.claim(chunks) < chunks) {
+    ring_.refuse(1); // a part of a record would be of no use
+    return;
+  }
+  for (std::size_t at = 0; at < chunks; ++at)
+    std::memcpy(ring_.claimed(at).bytes.data(), record_.data() + at * sizeof(Chunk), sizeof(Chunk));
+  ring_.commit(chunks);
+}
+
+void FrameStream::take(std::vector<Record>& records) {
+  incoming_.clear();
+  std::size_t wanted = 0; // of incoming_, for the record that is being put together
+  RecordHead head;
+  ring_.drain([&](const Chunk& chunk) noexcept {
+    incoming_.insert(incoming_.end(), chunk.bytes.begin(), chunk.bytes.end());
+    if (wanted == 0) {
+      std::memcpy(&head, incoming_.data(), sizeof head);
+      wanted = head.bytes;
+    }
+    if (incoming_.size() < wanted) return;
+    Record record;
+    record.number = head.number;
+    record.discontinuous = head.undone != 0 || head.number != taken_ + 1;
+    record.drift = head.drift;
+    record.bakes = head.bakes != 0;
+    const auto body = std::span(incoming_).subspan(sizeof head, wanted - sizeof head);
+    const auto record_head = body.first(head.head_bytes);
+    const auto step = body.subspan(head.head_bytes);
+    record.head.assign(record_head.begin(), record_head.end());
+    record.step.assign(step.begin(), step.end());
+    records.push_back(std::move(record));
+    taken_ = head.number;
+    incoming_.clear();
+    wanted = 0;
+  });
+}
+
+void FrameStream::request_shape() noexcept {
+  ShapeRequest none = ShapeRequest::none;
+  request_.compare_exchange_strong(none, ShapeRequest::pending, std::memory_order_release,
+                                   std::memory_order_relaxed);
+}
+
+// The tick copies a frame's shape before it pushes that frame's record. So a shape that becomes
+// ready after take() is of a later frame than all records that take() returned, and no record
+// after it is missed.
+std::optional<FrameStream::Shape> FrameStream::take_shape() {
+  if (request_.load(std::memory_order_acquire) != ShapeRequest::ready) return std::nullopt;
+  Shape shape{shape_copy_number_, std::vector<std::byte>(sizeof(ShapeHead) + 12 * vertices_)};
+  ShapeHead head;
+  head.vertices = static_cast<std::uint32_t>(vertices_);
+  head.number = shape_copy_number_;
+  WireWriter out(shape.message);
+  out.put(head);
+  for (std::size_t at = 0; at < vertices_; ++at) {
+    const deform::VertexBlock& block = shape_copy_[at / deform::block_size];
+    const std::size_t lane = at % deform::block_size;
+    out.put(block.x[lane]);
+    out.put(block.y[lane]);
+    out.put(block.z[lane]);
+  }
+  request_.store(ShapeRequest::none, std::memory_order_release);
+  return shape;
+}
+
+} // namespace nendo::web

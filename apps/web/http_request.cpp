@@ -1,0 +1,140 @@
+#include "web/http_request.hpp"
+
+#include <algorithm>
+
+namespace nendo::web {
+namespace {
+
+char lower(char c) noexcept {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+// RFC 9110, section 5.6.2.
+bool is_token(std::string_view text) noexcept {
+  constexpr std::string_view marks = "!#$%&'*+-.^_`|~";
+  return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
+    const char l = lower(c);
+    return (l >= 'a' && l <= 'z') || (c >= '0' && c <= '9') ||
+           marks.find(c) != std::string_view::npos;
+  });
+}
+
+bool is_visible(char c) noexcept {
+  return c > ' ' && c < '\x7F';
+}
+
+// No control characters except the tab. Bytes above ASCII are passed on as they are.
+bool is_value(std::string_view text) noexcept {
+  return std::none_of(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7F';
+  });
+}
+
+std::string_view trimmed(std::string_view text) noexcept {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// The line before the next CR LF, taken off `rest`.
+std::string_view take_line(std::string_view& rest) noexcept {
+  const auto end = rest.find("\r\n");
+  const auto line = rest.substr(0, end);
+  rest.remove_prefix(end + 2);
+  return line;
+}
+
+int parse_first_line(std::string_view line, HttpRequest& request) {
+  const auto first = line.find(' ');
+  const auto last = line.rfind(' ');
+  if (first == std::string_view::npos || first == last) return 400;
+  request.method = line.substr(0, first);
+  const auto target = line.substr(first + 1, last - first - 1);
+  const auto version = line.substr(last + 1);
+  if (!is_token(request.method) || !std::all_of(target.begin(), target.end(), is_visible) ||
+      !target.starts_with('/'))
+    return 400;
+  if (version != "HTTP/1.1") return version.starts_with("HTTP/") ? 505 : 400;
+  const auto mark = target.find('?');
+  request.path = target.substr(0, mark);
+  if (mark != std::string_view::npos) request.query = target.substr(mark + 1);
+  return 200;
+}
+
+int parse_headers(std::string_view rest, HttpRequest& request) {
+  while (!rest.empty()) {
+    const auto line = take_line(rest);
+    const auto colon = line.find(':');
+    if (colon == std::string_view::npos) return 400;
+    const auto name = line.substr(0, colon);
+    const auto value = trimmed(line.substr(colon + 1));
+    // Lines that begin with a space (the obsolete folding of headers) have no valid name, either.
+    if (!is_token(name) || !is_value(value)) return 400;
+    if (request.headers.size() == max_headers) return 431;
+    request.headers.emplace_back(name, value);
+  }
+  return 200;
+}
+
+// A request with a body is refused, so that no body is ever taken for a second request.
+bool has_body(const HttpRequest& request) noexcept {
+  if (request.count("Transfer-Encoding") > 0) return true;
+  return request.count("Content-Length") > 0 && request.header("Content-Length") != "0";
+}
+
+} // namespace
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::size_t HttpRequest::count(std::string_view name) const noexcept {
+  return static_cast<std::size_t>(std::count_if(headers.begin(), headers.end(), [&](const auto& h) {
+    return equal_ignoring_case(h.first, name);
+  }));
+}
+
+std::optional<std::string_view> HttpRequest::header(std::string_view name) const noexcept {
+  if (count(name) != 1) return std::nullopt;
+  return std::find_if(headers.begin(), headers.end(),
+                      [&](const auto& h) { return equal_ignoring_case(h.first, name); })
+      ->second;
+}
+
+bool HttpRequest::lists(std::string_view name, std::string_view word) const noexcept {
+  for (const auto& [key, value] : headers) {
+    if (!equal_ignoring_case(key, name)) continue;
+    for (std::string_view rest = value;;) {
+      const auto comma = rest.find(',');
+      if (equal_ignoring_case(trimmed(rest.substr(0, comma)), word)) return true;
+      if (comma == std::string_view::npos) break;
+      rest.remove_prefix(comma + 1);
+    }
+  }
+  return false;
+}
+
+std::optional<std::string_view> HttpRequest::parameter(std::string_view name) const noexcept {
+  for (std::string_view rest = query;;) {
+    const auto end = rest.find('&');
+    const auto part = rest.substr(0, end);
+    if (part.starts_with(name) && part.substr(name.size()).starts_with('='))
+      return part.substr(name.size() + 1);
+    if (end == std::string_view::npos) return std::nullopt;
+    rest.remove_prefix(end + 1);
+  }
+}
+
+HttpHead parse_head(std::string_view bytes) {
+  const auto end = bytes.substr(0, max_head_bytes).find("\r\n\r\n");
+  if (end == std::string_view::npos) return {bytes.size() >= max_head_bytes ? 431 : 0, 0, {}};
+  HttpHead head{200, end + 4, {}};
+  std::string_view rest = bytes.substr(0, end + 2);
+  head.status = parse_first_line(take_line(rest), head.request);
+  if (head.status == 200) head.status = parse_headers(rest, head.request);
+  if (head.status == 200 && has_body(head.request)) head.status = 413;
+  return head;
+}
+
+} // namespace nendo::web

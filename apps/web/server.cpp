@@ -1,0 +1,65 @@
+#include "web/server.hpp"
+
+#include <utility>
+
+#include <sys/eventfd.h>
+
+#include "web/answers.hpp"
+#include "web/listener.hpp"
+#include "web/server_work.hpp"
+
+namespace nendo::web {
+
+Result<std::unique_ptr<Server>> Server::open(const Endpoint& endpoint, ServerLimits limits) {
+  Endpoint where = endpoint;
+  auto listener = listen_at(where);
+  if (!listener) return listener.error();
+  std::string token = random_hex(16);
+  Descriptor waker(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
+  if (token.empty() || !waker.is_open())
+    return Error{Errc::failed, "--web: the system gives no randomness or no descriptor; close "
+                               "some programs and try again"};
+  return std::unique_ptr<Server>(new Server(std::make_unique<Work>(
+      std::move(where), std::move(token), *std::move(listener), std::move(waker), limits)));
+}
+
+Server::Server(std::unique_ptr<Work> work) noexcept : work_(std::move(work)) {}
+Server::~Server() = default;
+
+const Endpoint& Server::endpoint() const noexcept {
+  return work_->endpoint;
+}
+
+const std::string& Server::token() const noexcept {
+  return work_->token;
+}
+
+std::string Server::url() const {
+  return "http://" + work_->endpoint.authority() + "/#" + work_->token;
+}
+
+void Server::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model) {
+  work_->present(std::move(stream), std::move(model));
+}
+
+std::optional<flow::Command> Server::next_command() noexcept {
+  flow::Command command;
+  if (work_->commands.size() == 0 || !work_->commands.try_pop(command)) return std::nullopt;
+  return command;
+}
+
+void Server::report(std::string message) {
+  work_->report(std::move(message));
+}
+
+void Server::set_bad_records(std::array<std::uint32_t, 2> counts) noexcept {
+  work_->bad_records = counts[0] | std::uint64_t{counts[1]} << 32U;
+}
+
+ServerCounters Server::counters() const noexcept {
+  const auto& counts = work_->counts;
+  return {counts.clients,      counts.accepted, counts.refused,     counts.dropped, counts.updates,
+          counts.update_bytes, counts.shapes,   counts.shape_bytes, counts.skipped};
+}
+
+} // namespace nendo::web

@@ -1,0 +1,85 @@
+#pragma once
+// The server's thread and everything that it owns.
+
+#include <atomic>
+#include <list>
+#include <mutex>
+#include <thread>
+
+#include "web/connection.hpp"
+#include "web/http_request.hpp"
+#include "web/server.hpp"
+
+struct pollfd;
+
+namespace nendo::web {
+
+class Server::Work {
+public:
+  Work(Endpoint endpoint, std::string token, Descriptor listener, Descriptor waker,
+       ServerLimits limits);
+  ~Work();
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+
+  void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model);
+  void report(std::string message);
+
+  const Endpoint endpoint;
+  const std::string token;
+  // The following members are written by this thread, or shared with it.
+  /// Has room for what 16 clients may send in half a second. Commands that find no room are
+  /// dropped.
+  flow::CommandRing commands{1024};
+  std::atomic<std::uint64_t> bad_records{0}; ///< two counts of 32 bits, the first in the low half
+  struct Counts {
+    std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
+        update_bytes{0}, shapes{0}, shape_bytes{0}, skipped{0};
+  } counts;
+
+private:
+  /// A loop that is served. Its model is shared with the connections to which it is sent.
+  struct Presented {
+    std::shared_ptr<FrameStream> stream;
+    SharedBytes model;
+    std::uint16_t loop = 0; ///< its number within the run, which stands in the model and in shapes
+  };
+
+  void run();
+  void wait();
+  void wake() noexcept;
+  void take_presented();
+  void send_report(HostTime now);
+  void end();
+  void accept_all(HostTime now);
+  void make_room();
+  void serve(Connection& connection, short events, HostTime now);
+  void read_head(Connection& connection, HostTime now);
+  void open_socket(Connection& connection, const HttpRequest& request, HostTime now);
+  void read_socket(Connection& connection, HostTime now);
+  void handle(Connection& connection, const std::string& text, HostTime now);
+  void refuse(Connection& connection, int status, std::string_view why, HostTime now);
+  void send_frames(HostTime now);
+  void send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,
+                   const SharedBytes& bytes, HostTime now);
+  void drop_expired(HostTime now);
+  std::size_t clients() const noexcept;
+
+  const ServerLimits limits_;
+  Descriptor listener_, waker_;
+  std::mutex mutex_;              ///< guards the next three
+  std::optional<Presented> next_; ///< set by present() and not taken yet
+  std::uint16_t loops_ = 0;
+  std::string report_; ///< the newest one; empty if it has been sent
+  Presented presented_;
+  std::list<Connection> connections_; ///< the oldest first
+  std::vector<pollfd> polled_;
+  std::vector<Record> records_;
+  FeedCounters feed_counters_;
+  HostTime next_frames_{};
+  HostTime next_accept_{};
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+} // namespace nendo::web

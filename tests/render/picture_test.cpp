@@ -1,0 +1,202 @@
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "render/picture.hpp"
+#include "support/test_meshes.hpp"
+
+namespace picture_test {
+
+using namespace nendo;
+using namespace nendo::render;
+
+namespace {
+
+SceneFrame moment_of(const deform::Mesh& mesh) {
+  SceneFrame scene_frame;
+  scene_frame.vertices = mesh.vertices;
+  return scene_frame;
+}
+
+Scene scene_of(const deform::Mesh& mesh, const SceneFrame& scene_frame) {
+  Scene scene;
+  SceneBuilder(mesh).build(scene_frame, {}, scene);
+  return scene;
+}
+
+bool is_white(const Pixel& pixel) {
+  return pixel[0] > 127;
+}
+
+double grey(const Pixel& pixel) {
+  return (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+}
+
+double mean_grey(const Image& image, int x0, int y0, int x1, int y1) {
+  double sum = 0.0;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x)
+      sum += grey(image.at(x, y));
+  return sum / ((x1 - x0) * (y1 - y0));
+}
+
+SceneHand hand_at(Side side, const Eigen::Vector3d& place) {
+  Eigen::Isometry3d T_world_wrist = Eigen::Isometry3d::Identity();
+  T_world_wrist.translation() = place;
+  const auto pose = hand::HandSkeleton(side).pose({}, T_world_wrist);
+  return {pose, pose.fingertip_positions() - 0.1 * TipPlaces::Ones(), false};
+}
+
+} // namespace
+
+TEST_SUITE("picture") {
+  TEST_CASE("a sphere is seen as the disc that geometry says") {
+    const auto mesh = test::sphere(95, 192, 3.0);
+    const Scene scene = scene_of(mesh, moment_of(mesh));
+    const double radius = 0.4; // on the stage, standing on the ground
+    Camera camera;
+    camera.target = {0.0, radius, 0.0};
+    camera.distance_m = 2.0;
+    camera.view = {25.0, 40.0};
+    const Size size{300, 200};
+    const Image image = silhouette(scene, camera, size);
+    // The cone about it: its edge is asin(r / d) off the middle.
+    const double edge =
+        std::tan(std::asin(radius / camera.distance_m)) / camera.tangent() * size.height / 2;
+    int wrong = 0;
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const double away = std::hypot(x + 0.5 - size.width / 2.0, y + 0.5 - size.height / 2.0);
+        if (std::abs(away - edge) > 0.5) wrong += is_white(image.at(x, y)) != (away < edge) ? 1 : 0;
+      }
+    CHECK(wrong == 0);
+  }
+
+  TEST_CASE("the same scene gives the same bytes, with any number of threads") {
+    const auto mesh = test::sphere(20, 40, 1.0);
+    SceneFrame scene_frame = moment_of(mesh);
+    scene_frame.held = true;
+    scene_frame.radius_m.fill(0.1);
+    scene_frame.hands[0] = hand_at(Side::left, {-0.5, 0.4, 0.0});
+    const Scene scene = scene_of(mesh, scene_frame);
+    const Camera camera = framing(scene.outline(), {20, 15}, 1.2);
+    const Image once = draw(Lighting(scene), camera, {120, 100}, 1);
+    for (const unsigned threads : {1U, 2U, 5U})
+      CHECK(draw(Lighting(scene), camera, {120, 100}, threads) == once);
+    scene_frame.vertices *= 1.1;
+    const Scene larger = scene_of(mesh, scene_frame);
+    CHECK_FALSE(draw(Lighting(larger), camera, {120, 100}) == once);
+  }
+
+  TEST_CASE("light comes from the upper left, and what stands on the ground shades it") {
+    const auto mesh = test::sphere(48, 96, 1.0);
+    const Scene scene = scene_of(mesh, moment_of(mesh));
+    for (const double azimuth : {0.0, 130.0}) { // the lights go round with the camera
+      Camera camera;
+      camera.target = {0.0, 0.4, 0.0};
+      camera.distance_m = 4.0;
+      camera.view = {azimuth, 8.0};
+      const Image image = draw(Lighting(scene, azimuth), camera, {200, 200});
+      const auto at = [&](double dx, double dy) { // of the picture's half, from its middle
+        const int x = static_cast<int>(100 + 100 * dx);
+        const int y = static_cast<int>(100 - 100 * dy);
+        return mean_grey(image, x - 2, y - 2, x + 3, y + 3);
+      };
+      CHECK(at(-0.25, 0.25) > at(0.25, -0.25) + 20.0);
+      // Under the ball, to the right: its shadow. As far to the left: none.
+      CHECK(at(0.55, -0.42) + 15.0 < at(-0.75, -0.42));
+    }
+  }
+
+  TEST_CASE("what is nearer hides what is farther, and a veil lets it through") {
+    const auto wall = test::grid(4, 1.0);
+    SceneFrame scene_frame = moment_of(wall);
+    Scene scene = scene_of(wall, scene_frame);
+    scene.grounds.clear();
+    Surface ball;
+    ball.material.colour = {0.0F, 0.0F, 1.0F};
+    add_sphere(ball, {0.0F, 0.4F, 0.3F}, 0.1F);
+    Camera camera;
+    camera.target = {0.0, 0.4, 0.0};
+    const auto blueness = [&] {
+      const Pixel pixel = draw(Lighting(scene), camera, {64, 64}).at(32, 32);
+      return int{pixel[2]} - int{pixel[0]};
+    };
+    const int without = blueness();
+    scene.solids.push_back(ball);
+    const int before = blueness();
+    for (auto& place : scene.solids.back().places)
+      place.z() -= 0.6F;
+    CHECK(blueness() == without); // behind the wall
+    CHECK(before > without + 60);
+    scene.solids.clear();
+    ball.material.opacity = ball.material.rim_opacity = 0.4F;
+    scene.veils.push_back(ball);
+    const int through = blueness();
+    CHECK(through > without + 10);
+    CHECK(through < before - 10);
+  }
+
+  TEST_CASE("hostile shapes are drawn as far as they can be, and nothing crashes") {
+    const double inf = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double bad : {nan, inf, -inf, 1e308, -1e30, 1e-320}) {
+      auto mesh = test::sphere(6, 12, 1.0);
+      SceneFrame scene_frame = moment_of(mesh);
+      scene_frame.vertices(1, 3) = bad;
+      scene_frame.radius_m.fill(bad);
+      scene_frame.held = true;
+      scene_frame.hands[1] = hand_at(Side::right, {0.3, bad, 0.0});
+      for (const bool in_rest : {false, true}) {
+        if (in_rest) mesh.vertices = scene_frame.vertices;
+        const Scene scene = scene_of(mesh, scene_frame);
+        const Camera camera = framing(scene.outline(), {}, 1.0);
+        CHECK(camera.eye().allFinite());
+        CHECK(draw(Lighting(scene), camera, {32, 32}).size() == Size{32, 32});
+      }
+    }
+    for (const auto& places : {deform::Points(3, 0), deform::Points(deform::Points::Zero(3, 5))}) {
+      deform::Mesh mesh;
+      mesh.vertices = places;
+      const Scene scene = scene_of(mesh, moment_of(mesh));
+      const Camera camera = framing(scene.outline(), {}, 1.0);
+      CHECK(draw(Lighting(scene), camera, {32, 32}).size() == Size{32, 32});
+    }
+  }
+
+  TEST_CASE("a model of any size and place gives the same picture") {
+    const auto mesh = test::sphere(12, 24, 1.0);
+    const Scene scene = scene_of(mesh, moment_of(mesh));
+    const Camera camera = framing(scene.outline(), {30, 10}, 1.0);
+    const Image image = draw(Lighting(scene), camera, {60, 60});
+    for (const double scale : {0x1p-40, 0x1p40}) {
+      auto other = mesh;
+      other.vertices = (mesh.vertices * scale).colwise() + Eigen::Vector3d(4, -8, 2) * scale;
+      const Scene moved = scene_of(other, moment_of(other));
+      const Image drawn = draw(Lighting(moved), camera, {60, 60});
+      double difference = 0.0;
+      for (std::size_t at = 0; at < drawn.pixels().size(); ++at)
+        difference =
+            std::max(difference, std::abs(grey(drawn.pixels()[at]) - grey(image.pixels()[at])));
+      CHECK(difference < 12.0); // roundings move an edge by a sample of four at most
+    }
+  }
+
+  TEST_CASE("a sheet has every panel as it was, and its words under it") {
+    std::vector<Panel> panels;
+    for (std::uint8_t at = 0; at < 5; ++at)
+      panels.push_back({Image({80, 60}, {at, 200, 100}), at == 2 ? "third" : ""});
+    const Image sheet = contact_sheet(panels, 3);
+    for (std::uint8_t at = 0; at < 5; ++at) {
+      int seen = 0;
+      for (const Pixel& pixel : sheet.pixels())
+        seen += pixel == Pixel{at, 200, 100} ? 1 : 0;
+      CHECK(seen == 80 * 60);
+    }
+    CHECK(sheet.size().width > sheet.size().height);
+    CHECK(contact_sheet({}).size().width > 0);
+  }
+}
+
+} // namespace picture_test
