@@ -24,7 +24,7 @@ public:
   /// beginning.
   PlainRing(std::size_t capacity, std::size_t offset_bytes)
       : slots_(capacity + 1), memory_(slots_ * sizeof(T) / cache_line_bytes + 2),
-        elements_(new (memory_.front().bytes + offset_bytes) T[slots_]) {}
+        elements_(new(memory_.front().bytes + offset_bytes) T[slots_]) {}
 
   bool try_push(const T& element) noexcept {
     const std::size_t write = write_.load(std::memory_order_relaxed);

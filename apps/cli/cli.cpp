@@ -31,12 +31,12 @@ const std::atomic<bool>& stop_requested() noexcept {
 }
 
 void install_stop_signals() noexcept {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = on_stop_signal;
   action.sa_flags = static_cast<int>(SA_RESETHAND); // the second signal finds the default action
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction inherited {};
+    struct sigaction inherited{};
     sigaction(signal, nullptr, &inherited);
     if (signal == SIGHUP && inherited.sa_handler == SIG_IGN) continue; // nohup
     sigaction(signal, &action, nullptr);

@@ -73,9 +73,8 @@ Result<Played> play(ChosenFrames& frames, bool hands, const See& see) {
 /// One file, with the part of its document that animates.
 struct Document {
   explicit Document(const GltfOptions& options)
-      : file(options.generator), animation{{"name", "take"},
-                                           {"samplers", Json::array()},
-                                           {"channels", Json::array()}} {}
+      : file(options.generator),
+        animation{{"name", "take"}, {"samplers", Json::array()}, {"channels", Json::array()}} {}
 
   void animate(GlbFile::Index node, GlbFile::Index times, GlbFile::Index weights) {
     animation["samplers"].push_back(

@@ -26,7 +26,7 @@ Error system_error(const std::string& path, const std::string& what, const std::
 }
 
 struct flock whole_file(short type) noexcept {
-  struct flock lock {};
+  struct flock lock{};
   lock.l_type = type;
   lock.l_whence = SEEK_SET;
   return lock;
@@ -51,8 +51,8 @@ Descriptor look_at(const std::string& path) noexcept {
 }
 
 bool is_same(int one, int other) noexcept {
-  struct stat first {};
-  struct stat second {};
+  struct stat first{};
+  struct stat second{};
   return ::fstat(one, &first) == 0 && ::fstat(other, &second) == 0 &&
          first.st_ino == second.st_ino && first.st_dev == second.st_dev;
 }
@@ -102,7 +102,7 @@ Result<void> remove_stale(const std::string& path) {
     if (errno == ENOENT) return {};
     return system_error(path, "cannot be looked at", another_name);
   }
-  struct stat status {};
+  struct stat status{};
   if (::fstat(old.get(), &status) != 0 || status.st_uid != ::geteuid())
     return Error{Errc::no_permission, path + ": belongs to another user; " + another_name};
   if (has_writer(old.get())) return taken(path);

@@ -132,10 +132,8 @@ SensorAngles FreeMotion::angles_rad(double time_s) const {
 }
 
 Wearer::Wearer(std::uint64_t seed)
-    : random_(seed * 7919 + 17),
-      side_(seed % 2 == 1 ? Side::left : Side::right), size_{uniform(least_length_m, most_length_m),
-                                                             0.0},
-      skeleton_(side_) {
+    : random_(seed * 7919 + 17), side_(seed % 2 == 1 ? Side::left : Side::right),
+      size_{uniform(least_length_m, most_length_m), 0.0}, skeleton_(side_) {
   size_.breadth_m = size_.length_m * uniform(0.41, 0.48);
   skeleton_ = hand::HandSkeleton(side_, size_);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {

@@ -13,11 +13,10 @@ namespace nendo::deform {
 
 InjectiveChain::InjectiveChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
                                InjectiveOptions options)
-    : supports_(std::move(supports)), csrbf_(csrbf),
-      options_(options), solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)},
-      starts_(Points::Zero(3, points)), radii_(least_radii(supports_, points)), places_(starts_),
-      wanted_(starts_), allowed_(starts_), step_(starts_), tips_(starts_),
-      gaps_(std::make_unique<LeastGap>(options.least_gap)),
+    : supports_(std::move(supports)), csrbf_(csrbf), options_(options),
+      solvers_{CsrbfSolver(csrbf), CsrbfSolver(csrbf)}, starts_(Points::Zero(3, points)),
+      radii_(least_radii(supports_, points)), places_(starts_), wanted_(starts_), allowed_(starts_),
+      step_(starts_), tips_(starts_), gaps_(std::make_unique<LeastGap>(options.least_gap)),
       field_(room_for_field(supports_, points, csrbf.kernel)), piece_(field_) {
   assert(options.most_bound > 0.0 && options.most_bound < 1.0);
   for (CsrbfSolver& solver : solvers_)

@@ -110,9 +110,7 @@ TEST_SUITE("cyberglove_commands") {
         {"y 1\r"sv, "y\0"sv, [](Commands& c) { return c.set_text_sync(true); }},
         {"y 0\r"sv, "y\0"sv, [](Commands& c) { return c.set_text_sync(false); }},
         {"A\xFF\x01\x02\x03\x04\x05\xFF"sv, "A\0"sv,
-         [](Commands& c) {
-           return c.set_vibration({1, 2, 3, 4, 5, 255});
-         }},
+         [](Commands& c) { return c.set_vibration({1, 2, 3, 4, 5, 255}); }},
         {"A\x02\0\x40\x05\x80"sv, "A\0"sv,
          [](Commands& c) {
            return c.set_vibrators(std::array{Vibrator{0, 0x40}, Vibrator{5, 0x80}});
@@ -120,9 +118,7 @@ TEST_SUITE("cyberglove_commands") {
         {"CO\x03\x64"sv, "CO\0"sv, [](Commands& c) { return c.set_offset(3, 100); }},
         {"CG\x03\x0A"sv, "CG\0"sv, [](Commands& c) { return c.set_gain(3, 10); }},
         {"CA\x01\x02\x03\x04"sv, "CA\0"sv,
-         [](Commands& c) {
-           return c.set_hardware_calibration({2, {1, 2}, {3, 4}});
-         }},
+         [](Commands& c) { return c.set_hardware_calibration({2, {1, 2}, {3, 4}}); }},
         {"\x09"sv, "\x09\0"sv, [](Commands& c) { return c.reread_glove(); }},
         {"\x03"sv, "\x03\0"sv, [](Commands& c) { return c.stop(); }},
         {"\x12"sv, "\x12\r\n\0"sv, [](Commands& c) { return c.restart(); }},

@@ -72,7 +72,9 @@ TEST_SUITE("pty_emulator") {
 
   TEST_CASE("without a host it neither spins nor ends") {
     const ServedEmulator emulator;
-    { PtyHost(emulator->tty_path()).send("S"); }
+    {
+      PtyHost(emulator->tty_path()).send("S");
+    }
     const std::clock_t before = std::clock();
     std::this_thread::sleep_for(500ms);
     CHECK(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC < 0.25);

@@ -158,7 +158,9 @@ TEST_SUITE("bvh file") {
   TEST_CASE("a recording without a frame leaves no file behind, unless it was finished") {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "take.bvh";
-    { REQUIRE(BvhFile::create(path, HandSkeleton(Side::left), 90.0)); }
+    {
+      REQUIRE(BvhFile::create(path, HandSkeleton(Side::left), 90.0));
+    }
     CHECK(fs::is_empty(folder.path()));
     auto file = BvhFile::create(path, HandSkeleton(Side::left), 90.0);
     REQUIRE(file);

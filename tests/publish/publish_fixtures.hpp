@@ -45,7 +45,7 @@ class MappedSegment {
 public:
   explicit MappedSegment(const std::string& name) {
     const int file = ::open(("/dev/shm/nendo-" + name).c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat status {};
+    struct stat status{};
     REQUIRE(::fstat(file, &status) == 0);
     bytes_ = static_cast<std::size_t>(status.st_size);
     base_ = ::mmap(nullptr, bytes_, PROT_READ, MAP_SHARED, file, 0);

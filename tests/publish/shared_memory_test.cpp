@@ -82,7 +82,7 @@ TEST_SUITE("shared_memory") {
     {
       const auto memory = announced(name);
       REQUIRE(memory);
-      struct stat status {};
+      struct stat status{};
       REQUIRE(::stat(path_of(name).c_str(), &status) == 0);
       CHECK((status.st_mode & 07777) == 0400);
       CHECK(status.st_uid == ::geteuid());
@@ -100,7 +100,7 @@ TEST_SUITE("shared_memory") {
     const std::string name = name_for("group");
     const auto memory = announced(name, ::getegid());
     REQUIRE(memory);
-    struct stat status {};
+    struct stat status{};
     REQUIRE(::stat(path_of(name).c_str(), &status) == 0);
     CHECK((status.st_mode & 07777) == 0440);
     CHECK(status.st_gid == ::getegid());
@@ -135,7 +135,7 @@ TEST_SUITE("shared_memory") {
       write_file(path_of(name), NENDO_PUBLISH_MAGIC + std::string(bytes, 'x'));
       // Who reads the old one, and locks it as a reader can, changes nothing.
       const Descriptor reader(::open(path_of(name).c_str(), O_RDONLY | O_CLOEXEC));
-      struct flock lock {};
+      struct flock lock{};
       lock.l_type = F_RDLCK;
       CHECK(::fcntl(reader.get(), F_OFD_SETLK, &lock) == 0);
       const auto memory = announced(name);

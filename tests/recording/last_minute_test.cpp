@@ -26,7 +26,7 @@ namespace {
 /// To do to a ring what a crash may have done to it. An explicit instantiation may name what is
 /// private.
 std::vector<std::byte>& memory_of(LastMinute& ring);
-template <std::vector<std::byte> LastMinute::*memory>
+template <std::vector<std::byte> LastMinute::* memory>
 struct Reach {
   friend std::vector<std::byte>& memory_of(LastMinute& ring) { return ring.*memory; }
 };

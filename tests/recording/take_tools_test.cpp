@@ -89,9 +89,8 @@ std::vector<std::byte> with_late_gloves(std::uint8_t gloves) {
   };
   append(driver::log_chunk, [&](ByteWriter writer) { put_sample_of(writer, 0); });
   for (std::uint8_t glove = 1; glove < gloves; ++glove)
-    append(driver::glove_chunk, [&](ByteWriter writer) {
-      driver::put_glove(writer, {glove, driver::GloveInfo{}});
-    });
+    append(driver::glove_chunk,
+           [&](ByteWriter writer) { driver::put_glove(writer, {glove, driver::GloveInfo{}}); });
   append(driver::log_chunk, [&](ByteWriter writer) {
     for (std::uint8_t glove = 0; glove < gloves; ++glove)
       put_sample_of(writer, glove);

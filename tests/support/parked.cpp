@@ -40,7 +40,7 @@ void wait_until(const Condition& holds) {
 } // namespace
 
 ParkedPeer::ParkedPeer(std::function<void()> work) {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = stand_still;
   [[maybe_unused]] const int failed = sigaction(park_signal, &action, nullptr);
   assert(failed == 0);

@@ -38,7 +38,7 @@ constexpr sock_filter allow_if(unsigned number, unsigned char to_allow) {
 } // namespace
 
 bool allow_sleep_only() noexcept {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_sigaction = on_stopped_call;
   action.sa_flags = SA_SIGINFO;
   if (::sigaction(SIGSYS, &action, nullptr) != 0) return false;

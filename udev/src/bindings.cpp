@@ -112,7 +112,7 @@ Result<std::string> rule_of(const Binding& binding) {
   std::string rule = numbers.data();
   rule += (binding.by_place ? "KERNELS==\"" : "ATTRS{serial}==\"") + key + '"';
   if (binding.by_interface) {
-    std::array<char, 48> interface {};
+    std::array<char, 48> interface{};
     std::snprintf(interface.data(), interface.size(), R"(, ENV{.NENDO_INTERFACE}=="%02x")",
                   static_cast<unsigned>(usb.interface_number) & 0xFFU);
     rule += interface.data();

@@ -90,8 +90,8 @@ class Planner {
 public:
   Planner(const deform::Mesh& model, const hand::HandSkeleton& skeleton,
           const TouchOptions& options)
-      : model_(model), skeleton_(skeleton),
-        options_(options), plan_{TouchScore(skeleton.side(), options.seed)} {
+      : model_(model), skeleton_(skeleton), options_(options),
+        plan_{TouchScore(skeleton.side(), options.seed)} {
     inverse_.limits = comfortable_limits();
     inverse_.solve_wrist = true; // the middle finger does not turn aside by itself
   }

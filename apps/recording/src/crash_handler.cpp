@@ -77,7 +77,7 @@ CrashHandler::CrashHandler(LastMinute& ring, const std::filesystem::path& path) 
   std::memcpy(kept_path.data(), name.c_str(), name.size() + 1);
   kept.store(&ring);
   armed_ = true;
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = on_crash;
   // Not SA_RESETHAND: a second thread that crashes in the same way would end the process at once.
   sigemptyset(&action.sa_mask);

@@ -68,7 +68,7 @@ Result<void> TakeFile::write(std::span<const std::byte> bytes) {
   if (!write_all(file_.fd(), bytes) || (kind_ == Kind::live && ::fdatasync(file_.fd()) != 0))
     return give_up(last_error(), "make room");
   bytes_ += bytes.size();
-  struct stat info {};
+  struct stat info{};
   if (::fstat(file_.fd(), &info) == 0 && info.st_nlink == 0)
     return give_up("the file or its folder was removed", "leave them alone");
   return {};

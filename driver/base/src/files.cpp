@@ -78,7 +78,7 @@ Result<OpenFile> open_file(const fs::path& path, std::string_view kind) {
   // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.is_open()) return bad("cannot be opened: " + why(errno));
-  struct stat info {};
+  struct stat info{};
   if (::fstat(file.get(), &info) != 0) return bad("cannot be read: " + why(errno));
   if (!S_ISREG(info.st_mode))
     return bad("is not a regular file; name a " + std::string(kind) + " file");

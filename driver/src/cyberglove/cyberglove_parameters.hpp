@@ -28,7 +28,7 @@ struct Parameters {
 };
 
 struct ParameterBit {
-  bool Parameters::*flag;
+  bool Parameters::* flag;
   unsigned bit;
 };
 inline constexpr std::array parameter_bits{

@@ -97,8 +97,7 @@ public:
   /// Does the same without a check.
   template <class Sink>
   void push(std::span<const std::byte> chunk, Sink&& sink) {
-    push(
-        chunk, [](Record&) { return Verdict{}; }, sink);
+    push(chunk, [](Record&) { return Verdict{}; }, sink);
   }
 
   /// Gives up the unfinished record and goes on with records of another shape.

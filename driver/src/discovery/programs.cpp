@@ -23,8 +23,8 @@ using namespace std::chrono_literals;
 
 bool is_number(std::string_view text) {
   return !text.empty() && text.size() < 10 &&
-         std::all_of(text.begin(), text.end(),
-                     [](unsigned char c) { return std::isdigit(c) != 0; });
+         std::all_of(
+             text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 std::vector<int> running_programs() {
@@ -64,7 +64,7 @@ void look_into(int pid, const std::set<std::string>& devices, Holders& found) {
 void add_lockers(const std::set<std::string>& devices, Holders& found) {
   const std::vector<FileLock> locks = parse_locks(read_text("/proc/locks"));
   for (const std::string& device : devices) {
-    struct stat node {};
+    struct stat node{};
     if (::stat(device.c_str(), &node) != 0) continue;
     for (const FileLock& lock : locks) {
       if (lock.major == major(node.st_dev) && lock.minor == minor(node.st_dev) &&

@@ -32,8 +32,8 @@ constexpr double rate_tolerance = 0.05;
 /// What the protocol counts, and where it stands in GloveStats. `bytes` is the first to be written
 /// and the last to be read: it is never seen to be less than its parts.
 struct Count {
-  std::uint64_t StreamCounters::*counter;
-  std::uint64_t GloveStats::*stat;
+  std::uint64_t StreamCounters::* counter;
+  std::uint64_t GloveStats::* stat;
 };
 constexpr std::array counts{Count{&StreamCounters::bytes, &GloveStats::bytes},
                             Count{&StreamCounters::record_bytes, &GloveStats::record_bytes},

@@ -58,7 +58,7 @@ std::string resolve_port(const std::string& path) {
 
 Result<std::unique_ptr<Transport>> open_transport(const std::string& path, int baud) {
   const std::string port = resolve_port(path);
-  struct stat status {};
+  struct stat status{};
   if (::stat(port.c_str(), &status) != 0) return open_error(path, errno);
   // Anything but a character device must not even be opened: a fifo would block, a file be locked.
   if (!S_ISCHR(status.st_mode)) return open_error(path, ENOTTY);

@@ -62,7 +62,7 @@ PortAccess port_access(const std::string& path) {
 }
 
 PortAccess refused_access(const std::string& path) {
-  struct stat status {};
+  struct stat status{};
   if (::stat(path.c_str(), &status) != 0) return {false, "", "plug it in again"};
   constexpr mode_t group_both = S_IRGRP | S_IWGRP;
   constexpr mode_t owner_both = S_IRUSR | S_IWUSR;

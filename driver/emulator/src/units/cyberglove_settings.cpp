@@ -12,7 +12,7 @@ namespace {
 struct Flag {
   Byte letter;
   unsigned parameter_bit;
-  bool Settings::*value;
+  bool Settings::* value;
 };
 constexpr std::array<Flag, 9> flags{{{'W', 1, &Settings::switch_on},
                                      {'L', 2, &Settings::light},
