@@ -79,7 +79,7 @@ TEST_SUITE("pty_emulator") {
     std::this_thread::sleep_for(500ms);
     CHECK(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC < 0.25);
     PtyHost host(emulator->tty_path());
-    CHECK(host.receive(24).size() == 24);
+    CHECK(host.receive(24).size() >= 24);
   }
 
   TEST_CASE("a host that does not read costs records, and gets whole ones afterwards") {
