@@ -24,6 +24,13 @@ double diagonal_of(const Points& points) noexcept {
   return (high - low).stableNorm();
 }
 
+std::string_view remark_on(const Mesh& mesh) noexcept {
+  if (mesh.face_count() == 0) return "has no faces, only vertices, so there is no surface to see";
+  const Box box = finite_box_of(mesh.vertices);
+  if (box.lowest == box.highest) return "has all its vertices in one place, so it has no size";
+  return {};
+}
+
 Points vertex_normals(const Mesh& mesh) {
   Points normals = Points::Zero(3, mesh.vertices.cols());
   const double diagonal = diagonal_of(mesh.vertices);

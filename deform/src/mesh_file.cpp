@@ -4,6 +4,7 @@
 #include <string>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
 
 #include "mesh_formats.hpp"
 #include "text_scanner.hpp"
@@ -18,12 +19,13 @@ Error bad_file(std::string_view name, const std::string& what) {
 }
 
 bool is_ply(std::string_view text) noexcept {
-  return text.starts_with("ply\n") || text.starts_with("ply\r\n");
+  return text.starts_with("ply\n") || text.starts_with("ply\r");
 }
 
 Result<Mesh> parse_text(std::string_view text, std::string_view name) {
   if (text.empty()) return bad_file(name, "is empty");
   if (text.size() > most_file_bytes) return bad_file(name, "is larger than 4 GiB");
+  text = without_mark(text);
   auto mesh = is_ply(text) ? parse_ply(text, name) : parse_obj(text, name);
   if (mesh && mesh->vertices.cols() == 0)
     return bad_file(name, "has no vertices, so it is no OBJ or PLY mesh");

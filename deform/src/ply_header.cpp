@@ -33,7 +33,7 @@ std::optional<PlyType> type_named(std::string_view name) noexcept {
 class HeaderParser {
 public:
   HeaderParser(std::string_view text, std::string_view name)
-      : scanner_(text, TextScanner::Dialect::plain), name_(name) {}
+      : text_(text), scanner_(text, TextScanner::Dialect::plain), name_(name) {}
 
   Result<PlyHeader> parse();
 
@@ -43,8 +43,11 @@ private:
   Result<void> element();
   Result<void> property();
 
+  std::size_t bytes_of_body_taken() const noexcept;
+
   Error bad(const std::string& what) const { return bad_line(name_, scanner_.line(), what); }
 
+  std::string_view text_;
   TextScanner scanner_;
   std::string_view name_;
   bool has_format_ = false;
@@ -57,13 +60,21 @@ Result<PlyHeader> HeaderParser::parse() {
     if (keyword == "end_header") {
       if (!has_format_) return bad("the header ends without a format");
       if (!scanner_.next_line()) return bad("the file ends with its header");
-      header_.body_offset = scanner_.offset();
+      header_.body_offset = scanner_.offset() - bytes_of_body_taken();
       header_.body_line = scanner_.line();
       return std::move(header_);
     }
     if (const auto done = statement(keyword); !done) return done.error();
   }
   return bad("the file ends within its header");
+}
+
+/// Where a header's lines end with \r, a body that begins with \n seems to be a part of the last
+/// line end.
+std::size_t HeaderParser::bytes_of_body_taken() const noexcept {
+  const bool ends_lines_with_cr = text_.starts_with("ply\r") && !text_.starts_with("ply\r\n");
+  const bool took_more = text_.substr(0, scanner_.offset()).ends_with("\r\n");
+  return ends_lines_with_cr && took_more ? 1 : 0;
 }
 
 Result<void> HeaderParser::statement(std::string_view keyword) {

@@ -48,6 +48,24 @@ bool Supports::are_usable() const noexcept {
                      [](const OwnSupport& one) { return is_valid(one.support); });
 }
 
+bool reach_all_of(const Box& box, const Points& starts, const Supports& supports) {
+  const bool has_size = (box.lowest.array() < box.highest.array()).any();
+  if (starts.cols() == 0 || !has_size) return false;
+  double shared = 0.0;
+  for (const Support& support : supports.shared)
+    shared = std::max(shared, support.radius);
+  Eigen::VectorXd reach = Eigen::VectorXd::Constant(starts.cols(), shared);
+  for (const OwnSupport& own : supports.own)
+    reach[own.point] = std::max(reach[own.point], own.support.radius);
+  for (Eigen::Index at = 0; at < starts.cols(); ++at) {
+    const Eigen::Vector3d start = starts.col(at);
+    const auto farthest =
+        (start - box.lowest).cwiseAbs().cwiseMax((start - box.highest).cwiseAbs());
+    if (farthest.stableNorm() > reach[at]) return false;
+  }
+  return true;
+}
+
 Supports with_common(std::vector<OwnSupport> own, std::optional<Support> common) {
   Supports supports;
   supports.own = std::move(own);

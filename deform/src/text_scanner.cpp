@@ -5,17 +5,24 @@ namespace nendo::deform {
 namespace {
 
 constexpr bool is_blank(char c) noexcept {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
 } // namespace
 
+/// The length of the line end at this place; 0 if there is none.
+std::size_t TextScanner::line_end_length(std::size_t at) const noexcept {
+  if (at >= text_.size()) return 0;
+  if (text_[at] == '\n') return 1;
+  if (text_[at] != '\r') return 0;
+  return at + 1 < text_.size() && text_[at + 1] == '\n' ? 2 : 1;
+}
+
 /// The length of a backslash and the line end after it; 0 if there is none at this place.
 std::size_t TextScanner::continuation_length() const noexcept {
   if (dialect_ != Dialect::obj || text_[at_] != '\\') return 0;
-  const std::string_view after = text_.substr(at_ + 1, 2);
-  if (after.starts_with('\n')) return 2;
-  return after == "\r\n" ? 3 : 0;
+  const std::size_t ending = line_end_length(at_ + 1);
+  return ending > 0 ? 1 + ending : 0;
 }
 
 std::string_view TextScanner::field() noexcept {
@@ -29,10 +36,10 @@ std::string_view TextScanner::field() noexcept {
       break;
     }
   }
-  if (at_ == text_.size() || text_[at_] == '\n') return {};
+  if (at_ == text_.size() || line_end_length(at_) > 0) return {};
   if (dialect_ == Dialect::obj && text_[at_] == '#') return {};
   const std::size_t begin = at_;
-  while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_]) &&
+  while (at_ < text_.size() && line_end_length(at_) == 0 && !is_blank(text_[at_]) &&
          continuation_length() == 0)
     ++at_;
   return text_.substr(begin, at_ - begin);
@@ -48,14 +55,14 @@ std::string_view TextScanner::field_on_any_line() noexcept {
 bool TextScanner::next_line() noexcept {
   // A continued line ends where its last part ends; a comment is never continued.
   bool comment = false;
-  while (at_ < text_.size() && text_[at_] != '\n') {
+  while (at_ < text_.size() && line_end_length(at_) == 0) {
     comment = comment || text_[at_] == '#';
     const std::size_t continued = comment ? 0 : continuation_length();
     line_ += continued > 0 ? 1 : 0;
     at_ += continued > 0 ? continued : 1;
   }
   if (at_ == text_.size()) return false;
-  ++at_;
+  at_ += line_end_length(at_);
   ++line_;
   return true;
 }

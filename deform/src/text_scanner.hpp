@@ -10,7 +10,8 @@ namespace nendo::deform {
 /// The largest size in bytes of a file of a mesh or of control vectors.
 inline constexpr std::uint64_t most_file_bytes = std::uint64_t{4} << 30;
 
-/// Walks over a text field by field. Fields are separated by blanks, and are views into the text.
+/// Walks over a text field by field. Fields are separated by blanks, and are views into the text. A
+/// line ends with \n, with \r\n, or, as on old Macintoshes, with \r.
 class TextScanner {
 public:
   enum class Dialect {
@@ -32,6 +33,7 @@ public:
   std::size_t offset() const noexcept { return at_; }
 
 private:
+  std::size_t line_end_length(std::size_t at) const noexcept;
   std::size_t continuation_length() const noexcept;
 
   std::string_view text_;

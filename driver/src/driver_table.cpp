@@ -49,9 +49,17 @@ constexpr std::array drivers{
            alone<open_auto>},
     Driver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",
            "a simulated glove", open_simulated},
-    Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes]",
+    Driver{"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold]",
            "a glove as `nendo record` or `nendo run --record` recorded it", alone<open_replay>},
 };
+
+/// Names the glove as it was typed: its port alone does not tell which of two it was, nor what
+/// `auto` has chosen.
+Error of_glove(const GloveSpec& spec, const Error& error) {
+  const bool is_of_port = error.code == Errc::no_device || error.code == Errc::no_permission;
+  if (!is_of_port || error.message.find(spec.text) != std::string::npos) return error;
+  return {error.code, spec.text + ": " + error.message};
+}
 
 } // namespace
 
@@ -61,7 +69,11 @@ Result<std::unique_ptr<Glove>> open_glove(std::string_view text, std::optional<S
   if (!spec) return spec.error();
   std::string known;
   for (const Driver& driver : drivers) {
-    if (driver.kind == spec->kind) return driver.open(*spec, side, context);
+    if (driver.kind == spec->kind) {
+      auto glove = driver.open(*spec, side, context);
+      if (!glove) return of_glove(*spec, glove.error());
+      return glove;
+    }
     known += (known.empty() ? "" : ", ") + std::string(driver.kind);
   }
   return Error{Errc::usage,

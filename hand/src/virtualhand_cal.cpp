@@ -156,17 +156,33 @@ Result<Row> row_of(std::size_t slot, const SensorCalibration& line) {
   const auto bad = [&](const std::string& what) {
     return Error{Errc::bad_input, sensor_of(slot) + ": " + what};
   };
-  const double offset = std::round(line.offset_counts);
-  if (!(offset >= 0.0 && offset <= 255.0))
-    return bad("offset " + decimal_text(line.offset_counts) +
-               " does not fit into a .cal file (0 to 255); export as toml or csv");
   const double gain = line.gain_rad_per_count;
   if (gain == 0.0 && sensors_18.has(static_cast<Sensor>(slot)))
     return bad("not calibrated, which a .cal file cannot say; export as toml or csv");
   if (gain != 0.0 && std::abs(gain) < 0.5e-5)
     return bad("gain " + decimal_text(gain) +
                " is too small for the five decimals of a .cal file; export as toml or csv");
-  return Row{static_cast<long>(offset), gain};
+  return Row{std::lround(line.offset_counts), gain};
+}
+
+/// Refuses offsets that are no counts: a joint may well have its angle of 0 beyond what its sensor
+/// shows, as a thumb that never lies beside the index finger has, but the readers of .cal files,
+/// VTI's and ours, take an offset for a count.
+Result<void> check_offsets(const std::array<SensorCalibration, sensor_slots>& lines) {
+  std::string outside;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const double offset = std::round(lines[slot].offset_counts);
+    if (offset >= 0.0 && offset <= 255.0) continue;
+    std::array<char, 40> counts{};
+    std::snprintf(counts.data(), counts.size(), "%.1f", lines[slot].offset_counts);
+    outside.append(outside.empty() ? "" : ", ").append(sensor_of(slot)).append(" (");
+    outside.append(counts.data()).append(")");
+  }
+  if (outside.empty()) return {};
+  return Error{Errc::bad_input,
+               "these sensors' angles are 0 at counts that no sensor shows: " + outside +
+                   "; a .cal file keeps that count, 0 to 255; export as toml or "
+                   "csv"};
 }
 
 std::vector<std::string> losses(const Calibration& calibration, double scale) {
@@ -196,14 +212,18 @@ Result<ExportedCalibration> virtualhand_text(const Calibration& calibration, Cou
     return Error{Errc::bad_input, "a .cal file is for a CyberGlove's bare counts, and this glove "
                                   "calibrates itself; export as toml or csv"};
   const double scale = 255.0 / counts.most;
+  std::array<SensorCalibration, sensor_slots> lines{};
+  for (std::size_t slot = 0; slot + 1 < sensor_slots; ++slot) { // slot 23 is nothing's
+    const SensorCalibration& line = calibration.sensors[slot];
+    if (slot != gain_slot)
+      lines[slot] = {line.gain_rad_per_count / scale, line.offset_counts * scale};
+  }
+  if (auto fine = check_offsets(lines); !fine) return fine.error();
   std::string text = "VHv2.0\n! written by nendo\nGLOVE CALIBRATION follows:\n"
                      "! joint, offset, gain, gesture\n";
   std::array<char, 80> row{};
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    SensorCalibration line = calibration.sensors[slot];
-    line = {line.gain_rad_per_count / scale, line.offset_counts * scale};
-    if (slot == gain_slot || slot + 1 == sensor_slots) line = {};
-    auto cells = row_of(slot, line);
+    auto cells = row_of(slot, lines[slot]);
     if (!cells) return cells.error();
     if (slot == gain_slot) cells->gain = calibration.sensors[bias_slot].gain_rad_per_count / scale;
     if (slot == bias_slot) cells->gain = calibration.middle_bias;

@@ -83,6 +83,14 @@ TEST_SUITE("files") {
       CHECK_FALSE(read_file(path, 100, "test"));
     }
     CHECK(entries(folder.path()) == 2);
+    fs::remove(file);
+    fs::create_symlink("link", folder.path() / "again"); // a chain, and nothing at its end
+    REQUIRE(replace_file(folder.path() / "again", "made"));
+    CHECK(fs::is_symlink(fs::symlink_status(folder.path() / "again")));
+    CHECK(fs::is_symlink(fs::symlink_status(link)));
+    CHECK(*read_file(file, 100, "test") == "made");
+    fs::create_symlink("round", folder.path() / "round");
+    CHECK(target_of(folder.path() / "round") == folder.path() / "round");
   }
 
   TEST_CASE("a file written piece by piece has its name when it is whole, and not before") {

@@ -19,6 +19,25 @@ TEST_SUITE("base/text") {
     CHECK_FALSE(LineReader("").next());
   }
 
+  TEST_CASE("lines are the same whichever way they end, and with a mark of their bytes' order") {
+    for (const std::string_view text :
+         {"one\n\ntwo\nthree", "one\r\n\r\ntwo\r\nthree\r\n", "one\r\rtwo\rthree\r",
+          "one\r\n\rtwo\nthree\r\n", "\xEF\xBB\xBFone\n\ntwo\nthree\n"}) {
+      CAPTURE(text);
+      LineReader lines(text);
+      CHECK(lines.next() == "one");
+      CHECK(lines.line() == 1);
+      CHECK(lines.next() == "two");
+      CHECK(lines.line() == 3);
+      CHECK(lines.next() == "three");
+      CHECK(lines.line() == 4);
+      CHECK_FALSE(lines.next());
+    }
+    CHECK(without_mark("\xEF\xBB\xBF").empty());
+    CHECK(without_mark("\xEF\xBB") == "\xEF\xBB");
+    CHECK(without_mark("x\xEF\xBB\xBF").size() == 4); // it marks only the beginning
+  }
+
   TEST_CASE("a part is cut off once, fields as often as asked") {
     std::string_view rest = "a,b,,c";
     CHECK(cut(rest, ',') == "a");

@@ -33,6 +33,18 @@ TEST_SUITE("control_vectors") {
           std::vector<OwnSupport>{{0, {7.0, 1.0}}, {0, {20.0, 0.5}}, {1, {9.0, 2.0}}});
   }
 
+  TEST_CASE("spreadsheets' byte-order marks and any line ends are taken") {
+    for (const std::string line_end : {"\n", "\r\n", "\r"}) {
+      for (const std::string mark : {"", "\xEF\xBB\xBF"}) {
+        const auto vectors = parse_control_vectors(
+            mark + "x,y,z,dx,dy,dz" + line_end + "1,2,3,4,5,6" + line_end + "7,8,9,0,0,1", "t.csv");
+        REQUIRE_MESSAGE(vectors, vectors.error().message);
+        REQUIRE(vectors->starts.cols() == 2);
+        CHECK(vectors->starts.col(1) == Eigen::Vector3d(7, 8, 9));
+      }
+    }
+  }
+
   TEST_CASE("without a radius column there are no radii") {
     const auto vectors = parse_control_vectors(header + "1,2,3,4,5,6\n", "t.csv");
     REQUIRE(vectors);

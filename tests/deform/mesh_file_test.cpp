@@ -93,6 +93,58 @@ TEST_SUITE("mesh_file") {
     CHECK(mesh->corner_texcoords == Indices{2, 2, 2, 2, 2, 2, 2, 0, 1, 1, 2, 2, 2, 2, 2, 2});
   }
 
+  /// The text with other line ends in place of \n.
+  static std::string with_line_ends(const std::string& text, const std::string& line_end) {
+    std::string changed;
+    for (const char c : text)
+      changed += c == '\n' ? line_end : std::string(1, c);
+    return changed;
+  }
+
+  TEST_CASE("whatever ends the lines, and with a byte-order mark, it is the same mesh") {
+    const std::string obj = "# a\nv 0 0 0\nv 1 0 0\n\nv 0 1 \\\n0\nvt 0 1\n"
+                            "f 1/1 2/1 3/1\nf 3 2 1 # b\nf 1 3 2";
+    for (const std::string& text : {obj, ascii_ply}) {
+      const auto expected = parse(text);
+      REQUIRE_MESSAGE(expected, expected.error().message);
+      CHECK(expected->vertices.cols() == 3);
+      for (const std::string line_end : {"\n", "\r\n", "\r"}) {
+        for (const std::string mark : {"", "\xEF\xBB\xBF"}) {
+          const auto mesh = parse(mark + with_line_ends(text, line_end));
+          REQUIRE_MESSAGE(mesh, mesh.error().message);
+          check_same(*mesh, *expected);
+          CHECK(mesh->texcoords == expected->texcoords);
+        }
+      }
+    }
+    const auto wrong = parse("v 0 0 0\rv 1 0 0\r\rf 1 2 x\r");
+    REQUIRE_FALSE(wrong);
+    CHECK(wrong.error().message.starts_with("t:4: ")); // lines are counted all the same
+  }
+
+  TEST_CASE("a binary PLY whose lines end with CR may begin its body with any byte") {
+    for (const std::uint8_t first : {std::uint8_t{'\n'}, std::uint8_t{'\r'}, std::uint8_t{7}}) {
+      std::string text = "ply\rformat binary_little_endian 1.0\relement vertex 1\r"
+                         "property uchar x\rproperty uchar y\rproperty uchar z\rend_header\r";
+      text += static_cast<char>(first);
+      text += "\x01\x02";
+      const auto mesh = parse(text);
+      REQUIRE_MESSAGE(mesh, mesh.error().message);
+      CHECK(mesh->vertices.col(0) == Eigen::Vector3d(first, 1, 2));
+    }
+  }
+
+  TEST_CASE("a mesh that has no surface or no size is remarked on") {
+    const auto remark = [](std::string_view text) {
+      const auto mesh = parse(text);
+      REQUIRE_MESSAGE(mesh, mesh.error().message);
+      return std::string(remark_on(*mesh));
+    };
+    CHECK(remark("v 0 0 0\nv 1 0 0\nv 0 1 0\n").find("no faces") != std::string::npos);
+    CHECK(remark("v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n").find("one place") != std::string::npos);
+    CHECK(remark("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").empty()); // thin, but not nothing
+  }
+
   TEST_CASE("texture coordinates that no face uses are dropped") {
     const auto mesh = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1 2 3\n");
     REQUIRE(mesh);

@@ -1,5 +1,6 @@
 #include <nendo/deform/supports.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -40,6 +41,31 @@ TEST_SUITE("supports") {
       CHECK_MESSAGE(!parse_supports_by_point(bad, 10), bad);
     CHECK_FALSE(parse_supports_by_point("1,2,3,4,5,6,7,8,9,10", 5));
     CHECK_FALSE(parse_supports_by_point("1,2", 0));
+  }
+
+  TEST_CASE("supports reach all of a box if each start point's reaches its eight corners") {
+    const Box box{Eigen::Vector3d(-1, 0, 2), Eigen::Vector3d(3, 1, 4)};
+    Points starts(3, 2);
+    starts << 0, 5, 0, 1, 3, 2;
+    Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
+    for (Eigen::Index at = 0; at < 2; ++at)
+      for (const double x : {-1.0, 3.0})
+        for (const double y : {0.0, 1.0})
+          for (const double z : {2.0, 4.0})
+            farthest[at] =
+                std::max(farthest[at], (starts.col(at) - Eigen::Vector3d(x, y, z)).norm());
+    const double all = farthest.maxCoeff();
+    CHECK(reach_all_of(box, starts, one_radius(1.001 * all)));
+    CHECK_FALSE(reach_all_of(box, starts, one_radius(0.999 * all)));
+    CHECK(reach_all_of(box, starts, Supports{{{0.1, 1.0}, {1.001 * all, 0.5}}, {}}));
+    CHECK(
+        reach_all_of(box, starts,
+                     Supports{{{0.1, 1.0}},
+                              {{0, {1.001 * farthest[0], 1.0}}, {1, {1.001 * farthest[1], 1.0}}}}));
+    CHECK_FALSE(reach_all_of(box, starts, Supports{{{0.1, 1.0}}, {{0, {100.0, 1.0}}}}));
+    CHECK_FALSE(reach_all_of(box, Points(3, 0), one_radius(100.0)));
+    CHECK_FALSE(reach_all_of({box.lowest, box.lowest}, starts, one_radius(100.0)));
+    CHECK_FALSE(reach_all_of(finite_box_of(Points(3, 0)), starts, one_radius(100.0)));
   }
 
   TEST_CASE("the common radius is the least one, or the one given") {

@@ -121,6 +121,10 @@ TEST_SUITE("cyberglove_dialogue") {
     CHECK(pause("S\x11\x03\0\x03\0rest"sv) == std::pair(Answer::good, std::uint64_t{6}));
     CHECK(pause("S\x11\x03\0"sv) == std::pair(Answer::good, std::uint64_t{4})); // broken off
     CHECK(pause("S\x11\x22\0"sv).first == Answer::silent);
+    // A CyberGlove III ends a stream of 12-bit records so.
+    CHECK(pause("10:20\r\n\0\x03"sv) == std::pair(Answer::good, std::uint64_t{9}));
+    CHECK(pause("\x03"sv) == std::pair(Answer::good, std::uint64_t{1}));
+    CHECK(pause("\x03\x11\0\x03\0rest"sv) == std::pair(Answer::good, std::uint64_t{5}));
     CHECK(pause("").first == Answer::silent);
   }
 

@@ -240,6 +240,48 @@ TEST_SUITE("cyberglove_driver") {
     }
   }
 
+  TEST_CASE("12-bit streams are read, paused and ended, whether their answers end in NUL or not") {
+    for (const bool terminated : {false, true}) {
+      CAPTURE(terminated);
+      EmulatorOptions options;
+      options.cyberglove.model = 3;
+      options.cyberglove.hires_terminated = terminated;
+      const ServedEmulator emulator(options);
+      SampleRing ring(4096);
+      auto glove = required(open_glove("serial:" + emulator->tty_path() + "?hires=on"));
+      CHECK(glove->info().counts.most == 4095);
+      REQUIRE(glove->start(ring));
+      CHECK(eventually([&] { return ring.size() >= 20; }));
+      glove->set_feedback({true, {}, {}});
+      const std::uint64_t before = glove->stats().records;
+      CHECK(eventually([&] { return glove->stats().records > before + 20; }));
+      glove->stop();
+      CHECK(glove->stats().silences == 0);
+      REQUIRE(glove->start(ring));
+      CHECK(eventually([&] { return glove->stats().records > 20; }));
+      glove->stop();
+      test::check_conservation(glove->stats(), 61);
+    }
+  }
+
+  TEST_CASE("a unit is read whose own period is too short for it, and whose restart is quick") {
+    EmulatorOptions options;
+    options.cyberglove.overrun = true;
+    options.cyberglove.restart_s = 0.25;
+    options.faults = {"restart@3s"};
+    const ServedEmulator emulator(options);
+    SampleRing ring(4096);
+    auto glove = required(open_glove("serial:" + emulator->tty_path()));
+    REQUIRE(glove->start(ring));
+    CHECK(eventually([&] { return glove->stats().too_fast > 20; }));
+    CHECK(eventually([&] { return glove->stats().silences == 1; }));
+    const std::uint64_t before = glove->stats().records;
+    CHECK(eventually([&] { return glove->stats().records > before + 20; }));
+    glove->stop();
+    CHECK(glove->stats().too_fast == glove->stats().records);
+    check_conservation(glove->stats());
+  }
+
   TEST_CASE("options are set again after a silence and after the port went away") {
     const TemporaryFolder folder;
     const auto link = folder.path() / "glove";

@@ -1,5 +1,8 @@
 #include <nendo/driver/open_glove.hpp>
 
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -47,6 +50,36 @@ Kind wireless() {
           },
           [](const std::string& path) { return "5dt:" + path + "?baud=9600"; }, 9};
 }
+
+/// A port with one sample for ever, whose counts tell their place in it, and the glove's answer to
+/// G.
+class OneSample final : public EmulatedUnit {
+public:
+  explicit OneSample(Side side) : side_(side) {}
+  void receive(std::span<const std::byte> bytes, Time /*now*/) override {
+    for (const std::byte byte : bytes) {
+      const char command = std::to_integer<char>(byte);
+      if (command == 'A') streams_ = false;
+      if (command == 'A') say("\x55");
+      if (command == 'D') streams_ = true;
+      if (command != 'G') continue;
+      std::string answer(32, '\0');
+      answer.replace(0, 2, "BR");
+      answer[4] = side_ == Side::right ? 1 : 0;
+      say(answer);
+    }
+  }
+  void advance(Time /*now*/) override {
+    if (streams_) say("\x80\x0A\x0B\x0C\x0D\x0E\x11\x12\x0D");
+  }
+  std::optional<Time> next_due() const noexcept override { return std::nullopt; }
+
+private:
+  void say(const std::string& text) { send(std::as_bytes(std::span(text))); }
+
+  const Side side_;
+  bool streams_ = false;
+};
 
 constexpr std::uint32_t five_knuckles =
     (1U << 1U) | (1U << 4U) | (1U << 8U) | (1U << 12U) | (1U << 16U);
@@ -100,9 +133,57 @@ TEST_SUITE("fivedt_driver") {
     CHECK(eventually([&] { return ring.size() > 3; }));
   }
 
+  TEST_CASE("thumb first, unless a left glove is said to be the other way round") {
+    struct Case {
+      Side side;
+      std::string options;
+      bool reversed;
+      std::string said;
+    };
+    for (const Case& c :
+         {Case{Side::right, "", false, "thumb first"},
+          Case{Side::right, "?left_first=pinky", false, "thumb first"},
+          Case{Side::left, "", false, "thumb first; if that is the wrong way round"},
+          Case{Side::left, "?left_first=thumb", false, "thumb first; if that is the wrong way"},
+          Case{Side::left, "?left_first=pinky", true, "pinky first"}}) {
+      CAPTURE(c.options);
+      const PtyUnit port(std::make_unique<OneSample>(c.side));
+      SampleRing ring(1U << 14U);
+      auto glove = required(open_glove("5dt:" + port.path() + c.options));
+      CHECK(glove->info().side == c.side);
+      CHECK(fact(glove->info(), "finger_order").find(c.said) == 0);
+      REQUIRE(glove->start(ring));
+      GloveSample sample;
+      REQUIRE(eventually([&] { return ring.try_pop(sample); }));
+      glove->stop();
+      int place = c.reversed ? 14 : 10;
+      for (const Sensor sensor : {Sensor::thumb_mcp, Sensor::index_mcp, Sensor::middle_mcp,
+                                  Sensor::ring_mcp, Sensor::pinky_mcp}) {
+        CAPTURE(name_of(sensor));
+        CHECK(sample[sensor].value == (c.reversed ? place-- : place++));
+      }
+    }
+  }
+
+  TEST_CASE("an emulated left glove that begins with the pinky rests as any other") {
+    FiveDtUnitOptions options;
+    options.side = Side::left;
+    options.motion = Motion::rest;
+    options.left_pinky_first = true;
+    const PtyUnit port(make_fivedt_unit(options));
+    SampleRing ring(1U << 14U);
+    auto glove = required(open_glove("5dt:" + port.path() + "?left_first=pinky"));
+    REQUIRE(glove->start(ring));
+    GloveSample sample;
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
+    check_at_rest(sample, resting_knuckles, 255.0, 2.0); // tremor
+  }
+
   TEST_CASE("a 5DT glove's options that are none are usage errors that name what there is") {
-    wrong_options_are_usage_errors(
-        "5dt", {{"?rate=9", "baud"}, {"?baud=115200", "19200, 9600"}, {"?hand=up", "left"}});
+    wrong_options_are_usage_errors("5dt", {{"?rate=9", "baud"},
+                                           {"?baud=115200", "19200, 9600"},
+                                           {"?hand=up", "left"},
+                                           {"?left_first=ring", "thumb, pinky"}});
   }
 
   TEST_CASE("a hand at rest arrives in the slots of its knuckles") {
@@ -118,6 +199,10 @@ TEST_SUITE("fivedt_driver") {
   TEST_CASE("what does not send like a wireless 5DT glove is an error that says so") {
     no_glove_is_an_error_that_says_so(wireless(), "x7 noise \x55 BR");
   }
+  TEST_CASE("the rate of a wireless glove does not count what had waited for its start") {
+    what_had_waited_is_no_rate(wireless());
+  }
+
   TEST_CASE("a 5DT glove's samples are in order and add up") {
     for (const Kind& kind : {wired(), ten_bytes(), wireless()})
       samples_are_in_order_and_add_up(kind);

@@ -2,9 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <memory>
 #include <mutex>
+#include <span>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -40,44 +47,80 @@ private:
   std::size_t received_ = 0;
 };
 
-struct Written {
+/// What happens at a scripted port, and how it behaves.
+struct Wire {
   std::mutex mutex;
-  std::vector<std::string> commands;
+  std::vector<std::string> chunks{"A1B2C3D4E5\n"}; ///< one a read, again and again; empty: silence
+  std::size_t reads = 0;
+  std::vector<std::string> written;
+  std::chrono::milliseconds longest_write{0}; ///< that a writer was ready to wait
+  bool takes_nothing = false;
+  bool takes_all_brakes = true; ///< false: of the next brake command only a part
 
-  std::string last() {
+  void begin_anew() {
     const std::lock_guard lock(mutex);
-    return commands.empty() ? std::string() : commands.back();
+    reads = 0;
+    written.clear();
+    longest_write = {};
+  }
+  std::size_t count_of(std::string_view text) {
+    const std::lock_guard lock(mutex);
+    return static_cast<std::size_t>(std::count(written.begin(), written.end(), text));
+  }
+  std::size_t reads_so_far() {
+    const std::lock_guard lock(mutex);
+    return reads;
   }
 };
 
-/// A port that sends one line for ever, and takes only the first bytes of the first brake command.
-class HalfDeafPort final : public Transport {
+class ScriptedPort final : public Transport {
 public:
-  explicit HalfDeafPort(Written& written) : written_(written) {}
+  explicit ScriptedPort(Wire& wire) : wire_(wire) {}
   ReadResult read_some(std::span<std::byte> buffer,
                        std::chrono::milliseconds time) noexcept override {
-    constexpr std::string_view line = "A1B2C3D4E5\n";
-    std::this_thread::sleep_for(std::min(time, 2ms));
     if (time == 0ms) return {};
-    std::memcpy(buffer.data(), line.data(), line.size());
-    return {IoStatus::done, line.size()};
+    std::this_thread::sleep_for(std::min(time, 2ms));
+    const std::lock_guard lock(wire_.mutex);
+    const std::string& chunk = wire_.chunks[wire_.reads++ % wire_.chunks.size()];
+    std::memcpy(buffer.data(), chunk.data(), chunk.size());
+    return {chunk.empty() ? IoStatus::timeout : IoStatus::done, chunk.size()};
   }
   IoStatus write_all(std::span<const std::byte> bytes,
-                     std::chrono::milliseconds) noexcept override {
+                     std::chrono::milliseconds time) noexcept override {
     std::string text;
     for (const std::byte byte : bytes)
       text.push_back(std::to_integer<char>(byte));
-    const std::lock_guard lock(written_.mutex);
-    written_.commands.push_back(text);
-    const bool cut = text.find('B') != std::string::npos && !std::exchange(hears_, true);
-    return cut ? IoStatus::timeout : IoStatus::done;
+    const std::lock_guard lock(wire_.mutex);
+    wire_.written.push_back(text);
+    wire_.longest_write = std::max(wire_.longest_write, time);
+    const bool brakes = text.find('B') != std::string::npos;
+    const bool cut = brakes && !std::exchange(wire_.takes_all_brakes, true);
+    return cut || wire_.takes_nothing ? IoStatus::timeout : IoStatus::done;
   }
   void discard_input() noexcept override {}
 
 private:
-  Written& written_;
-  bool hears_ = false;
+  Wire& wire_;
 };
+
+std::unique_ptr<Glove> glove_at(Wire& wire) {
+  const auto open_port = [&]() -> Result<std::unique_ptr<Transport>> {
+    return std::unique_ptr<Transport>(std::make_unique<ScriptedPort>(wire));
+  };
+  return required(lucidgloves::open_lucidgloves_by("a scripted glove", open_port, 4095, {}));
+}
+
+std::unique_ptr<EmulatedUnit> unit_with(LucidGlovesFirmware firmware) {
+  LucidGlovesUnitOptions options;
+  options.firmware = firmware;
+  return make_lucidgloves_unit(options);
+}
+
+Feedback resistance(std::array<std::uint16_t, 5> fingers) {
+  Feedback feedback;
+  feedback.resistance = fingers;
+  return feedback;
+}
 
 Kind lucidgloves() {
   return {[](Side side) {
@@ -128,9 +171,7 @@ TEST_SUITE("lucidgloves_driver") {
   }
 
   TEST_CASE("a firmware that answers nothing is known by its stream") {
-    LucidGlovesUnitOptions options;
-    options.answers = false;
-    const PtyUnit port(make_lucidgloves_unit(options));
+    const PtyUnit port(unit_with(LucidGlovesFirmware::streaming));
     const auto glove = required(open_glove("lucidgloves:" + port.path(), Side::left));
     CHECK(glove->info().side == Side::left);
     CHECK(fact(glove->info(), "hand_source") == "caller");
@@ -181,12 +222,22 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(joints->info().counts == CountScale{1023, true});
   }
 
-  TEST_CASE("numbers beyond the range that was named are an error that names it") {
-    const auto glove = open_one_line("A4095B2C3D4E5\n", "?range=1023");
-    REQUIRE_FALSE(glove);
-    CHECK(glove.error().code == Errc::no_device);
-    CHECK(glove.error().message.find("1023") != std::string::npos);
-    CHECK(glove.error().message.find("range") != std::string::npos);
+  TEST_CASE("numbers beyond the range count as the range, and the glove's facts tell of it") {
+    const PtyUnit port(std::make_unique<Listener>("A4095B2C1023D1024E5\n"));
+    SampleRing ring(1U << 14U);
+    auto glove = required(open_glove("lucidgloves:" + port.path() + "?range=1023"));
+    CHECK(fact(glove->info(), "above_range").find("1023") != std::string::npos);
+    REQUIRE(glove->start(ring));
+    GloveSample sample;
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
+    glove->stop();
+    CHECK(sample[Sensor::thumb_mcp].value == 1023);
+    CHECK(sample[Sensor::index_mcp].value == 2);
+    CHECK(sample[Sensor::middle_mcp].value == 1023);
+    CHECK(sample[Sensor::ring_mcp].value == 1023);
+    CHECK(glove->stats().bad_records == 0);
+    const auto within = required(open_one_line("A1023B2C3D4E5\n", "?range=1023"));
+    CHECK(fact(within->info(), "above_range").empty());
   }
 
   TEST_CASE("a LucidGlove's options that are none are usage errors that name what there is") {
@@ -212,24 +263,161 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(glove->stats().bad_records == 0);
   }
 
-  TEST_CASE("what was cut off is ended before the next command, lest they run into one") {
-    Written written;
-    const auto open_port = [&]() -> Result<std::unique_ptr<Transport>> {
-      return std::unique_ptr<Transport>(std::make_unique<HalfDeafPort>(written));
-    };
-    auto glove =
-        required(lucidgloves::open_lucidgloves_by("a half-deaf glove", open_port, 4095, {}));
-    SampleRing ring(8);
+  TEST_CASE("a firmware that waits for an answer to each line gets one at once") {
+    PtyUnit port(unit_with(LucidGlovesFirmware::waiting));
+    SampleRing ring(1U << 14U);
+    auto glove = required(open_glove("lucidgloves:" + port.path()));
+    CHECK(fact(glove->info(), "encoding") == "alpha");
     REQUIRE(glove->start(ring));
-    Feedback feedback;
-    feedback.resistance = {1, 2, 3, 4, 5};
-    glove->set_feedback(feedback);
-    CHECK(eventually([&] { return written.last() == "A1B2C3D4E5\n"; })); // of which it takes a part
-    feedback.resistance[0] = 9;
-    glove->set_feedback(feedback);
-    CHECK(eventually([&] { return written.last() == "\nA9B2C3D4E5\n"; }));
+    const auto start = HostClock::now();
+    REQUIRE(eventually([&] { return glove->stats().records >= 300; }));
+    CHECK(HostClock::now() - start < 3s); // a host that says nothing needs five minutes
+    CHECK(brakes_of(port) == std::array{0, 0, 0, 0, 0});
+    glove->set_feedback(resistance({0, 1, 500, 1000, 65535}));
+    CHECK(eventually([&] { return brakes_of(port) == std::array{0, 1, 500, 1000, 1000}; }));
+    const std::uint64_t before = glove->stats().records;
+    REQUIRE(eventually([&] { return glove->stats().records >= before + 100; }));
+    CHECK(brakes_of(port) == std::array{0, 1, 500, 1000, 1000});
     glove->stop();
-    CHECK(written.last() == "A0B0C0D0E0\n");
+    CHECK(eventually([&] { return brakes_of(port) == std::array{0, 0, 0, 0, 0}; }));
+    CHECK(glove->stats().silences == 0);
+    CHECK(glove->stats().bad_records == 0);
+  }
+
+  TEST_CASE("feedback that changes with each tick makes no line more than there are answers") {
+    Wire wire;
+    const auto glove = glove_at(wire);
+    SampleRing ring(1U << 14U);
+    wire.begin_anew();
+    REQUIRE(glove->start(ring));
+    for (std::uint16_t k = 1; wire.reads_so_far() < 50; ++k) {
+      glove->set_feedback(resistance({k, k, k, k, k}));
+      std::this_thread::sleep_for(100us);
+    }
+    glove->stop();
+    CHECK(wire.written.size() == wire.reads + 1); // and the last one frees them
+    CHECK(wire.written.back() == "A0B0C0D0E0\n");
+  }
+
+  TEST_CASE("brakes are repeated with each answer, since a lost line must not leave them set") {
+    Wire wire;
+    const auto glove = glove_at(wire);
+    SampleRing ring(1U << 14U);
+    wire.begin_anew();
+    REQUIRE(glove->start(ring));
+    REQUIRE(eventually([&] { return wire.count_of("\n") > 5; }));
+    glove->set_feedback(resistance({1, 2, 3, 4, 5}));
+    REQUIRE(eventually([&] { return wire.count_of("A1B2C3D4E5\n") > 5; }));
+    glove->set_feedback({});
+    REQUIRE(eventually([&] { return wire.count_of("A0B0C0D0E0\n") > 5; }));
+    glove->stop();
+    std::vector<std::string> in_order = wire.written;
+    in_order.erase(std::unique(in_order.begin(), in_order.end()), in_order.end());
+    CHECK(in_order == std::vector<std::string>{"\n", "A1B2C3D4E5\n", "A0B0C0D0E0\n"});
+  }
+
+  TEST_CASE("lines that come together get one answer, and half of a line gets none") {
+    const std::string line = "A1B2C3D4E5\n";
+    const std::string damaged = "A1B2C%D4E5\n";
+    struct Case {
+      std::vector<std::string> chunks;
+      std::size_t answers; ///< to as many reads
+    };
+    for (const Case& c :
+         {Case{{line}, 1}, Case{{line + line + line}, 1}, Case{{"A1B2", "C3D4E5\n"}, 1},
+          Case{{line, "A1B2C3", "D4E5\nA1", "B2C3D4E5\n"}, 3}, Case{{line, damaged}, 2}}) {
+      Wire wire;
+      const auto glove = glove_at(wire);
+      SampleRing ring(1U << 14U);
+      wire.begin_anew();
+      wire.chunks = c.chunks;
+      REQUIRE(glove->start(ring));
+      CHECK(eventually([&] { return wire.reads_so_far() > 80; }));
+      glove->stop();
+      const std::size_t expected = wire.reads * c.answers / c.chunks.size();
+      CHECK(wire.written.size() <= expected + 1);
+      CHECK(wire.written.size() + 1 >= expected);
+    }
+  }
+
+  TEST_CASE("a glove that says nothing is answered once more, as the last answer may be lost") {
+    Wire wire;
+    const auto glove = glove_at(wire);
+    SampleRing ring(1U << 14U);
+    wire.begin_anew();
+    wire.chunks = {""};
+    REQUIRE(glove->start(ring));
+    CHECK(eventually([&] { return wire.count_of("\n") > 3; }));
+    glove->stop();
+    CHECK(wire.written.size() == wire.count_of("\n"));
+  }
+
+  TEST_CASE("a glove that takes nothing holds no reader up") {
+    Wire wire;
+    const auto glove = glove_at(wire);
+    SampleRing ring(1U << 14U);
+    wire.begin_anew();
+    wire.takes_nothing = true;
+    REQUIRE(glove->start(ring));
+    glove->set_feedback(resistance({1, 2, 3, 4, 5}));
+    CHECK(eventually([&] { return wire.count_of("\nA1B2C3D4E5\n") > 20; }));
+    CHECK(eventually([&] { return ring.size() > 20; }));
+    {
+      const std::lock_guard lock(wire.mutex);
+      CHECK(wire.longest_write == 0ms);
+    }
+    glove->stop();
+  }
+
+  TEST_CASE("what was cut off is ended before the next command, lest they run into one") {
+    Wire wire;
+    const auto glove = glove_at(wire);
+    SampleRing ring(1U << 14U);
+    wire.begin_anew();
+    wire.takes_all_brakes = false;
+    REQUIRE(glove->start(ring));
+    glove->set_feedback(resistance({1, 2, 3, 4, 5}));
+    CHECK(eventually([&] { return wire.count_of("A1B2C3D4E5\n") > 3; }));
+    glove->stop();
+    const auto first = std::find(wire.written.begin(), wire.written.end(), "A1B2C3D4E5\n");
+    REQUIRE(wire.written.end() - first > 2);
+    CHECK(first[1] == "\nA1B2C3D4E5\n"); // of the first one the glove took a part
+    CHECK(first[2] == "A1B2C3D4E5\n");
+    CHECK(wire.written.back() == "A0B0C0D0E0\n");
+  }
+
+  TEST_CASE("a legacy glove that comes to the port of another is told nothing") {
+    const TemporaryFolder folder;
+    const auto link = folder.path() / "glove";
+    auto first = std::make_unique<PtyUnit>(unit_with(LucidGlovesFirmware::waiting));
+    std::filesystem::create_symlink(first->path(), link);
+    SampleRing ring(1U << 14U);
+    auto glove = required(open_glove("lucidgloves:" + link.string()));
+    REQUIRE(glove->start(ring));
+    glove->set_feedback(resistance({900, 900, 900, 900, 900}));
+    REQUIRE(eventually([&] { return brakes_of(*first)[0] == 900; }));
+    first.reset();
+    std::filesystem::remove(link);
+    PtyUnit second(std::make_unique<Listener>("1&2&3&4&5&6&7&0&0&0&0&0&0\n"));
+    std::filesystem::create_symlink(second.path(), link);
+    REQUIRE(eventually([&] { return glove->stats().reopened == 1; }));
+    ring.drain([](const GloveSample&) {});
+    CHECK(eventually([&] { return ring.size() > 100; }));
+    glove->stop();
+    CHECK(second.look<Listener>([](const Listener& unit) { return unit.received(); }) == 0);
+  }
+
+  TEST_CASE("an emulated legacy firmware's brakes stay as they are") {
+    PtyUnit port(unit_with(LucidGlovesFirmware::legacy));
+    SampleRing ring(1U << 14U);
+    auto glove = required(open_glove("lucidgloves:" + port.path()));
+    CHECK(fact(glove->info(), "encoding") == "legacy");
+    REQUIRE(glove->start(ring));
+    glove->set_feedback(resistance({1, 2, 3, 4, 5}));
+    CHECK(eventually([&] { return ring.size() > 30; }));
+    glove->stop();
+    CHECK(brakes_of(port) == std::array{0, 0, 0, 0, 0});
+    CHECK(glove->stats().silences == 0);
   }
 
   TEST_CASE("feedback is shown again after a silence") {

@@ -146,17 +146,39 @@ TEST_SUITE("lucidgloves_parser") {
     CHECK(parse("A1B2C3D4E5\rA1B2C3D4E5\r\n").lines.empty());
   }
 
-  TEST_CASE("numbers end where the range ends") {
-    CHECK(decode_line("A4095", 4095));
+  TEST_CASE("values above the range become the range") {
+    for (const std::uint16_t range : {avr_range, esp32_range}) {
+      for (const unsigned number : {0U, 1U, range - 1U, unsigned{range}}) {
+        const auto line = decode_line("A" + std::to_string(number) + "(AB)7", range);
+        REQUIRE(line);
+        CHECK(line->curl[0] == number);
+        CHECK_FALSE(line->clamped);
+      }
+      for (const unsigned number : {range + 1U, 2U * range, 65'535U}) {
+        const std::string text = std::to_string(number);
+        const auto line = decode_line("A" + text + "B5(CB)" + text + "(DAB)" + text, range);
+        REQUIRE(line);
+        CHECK(line->curl[0] == range);
+        CHECK(line->curl[1] == 5);
+        CHECK(line->splay[2] == range);
+        CHECK(line->joint[3][1] == range);
+        CHECK(line->clamped);
+      }
+    }
+    const auto legacy = decode_line("1&5000&3&4&5&6&7&8&9&10&11&12&13", 4095);
+    REQUIRE(legacy);
+    CHECK(legacy->curl[1] == 4095);
+    CHECK(legacy->clamped);
+  }
+
+  TEST_CASE("numbers that no firmware sends are refused") {
     CHECK(decode_line("A00004095", 4095));
-    CHECK(decode_line("A1023(AB)1023(BAB)1023", 1023));
     for (const char* text :
-         {"A4096", "A65536", "A65537", "A4294967296", "A4294967297", "A99999999999999999999",
-          "(AB)4096", "(BAB)4096", "A-1", "A1.5", "A", "(AB)", "(BAB)", "A1B"}) {
+         {"A65536", "A65537", "A40954095", "A4294967296", "A4294967297", "A99999999999999999999",
+          "(AB)65536", "(BAB)65536", "A-1", "A1.5", "A", "(AB)", "(BAB)", "A1B"}) {
       CAPTURE(text);
       CHECK_FALSE(decode_line(text, 4095));
     }
-    CHECK_FALSE(decode_line("A1024", 1023));
     CHECK(decode_line("A1P4294967295", 4095));       // nothing that is measured
     CHECK_FALSE(decode_line("A1P4294967296", 4095)); // no number of any firmware
   }
@@ -210,7 +232,7 @@ TEST_SUITE("lucidgloves_parser") {
     for (const char* text :
          {"1&2&3&4&5", "1&2&3&4&5&6&7&8&9&10&11&12", "1&2&3&4&5&6&7&8&9&10&11&12&13&14",
           "1&2&3&4&5&6&7&8&9&10&11&12&", "1&2&3&4&5&6&7&8&9&10&11&12&13&",
-          "1&&3&4&5&6&7&8&9&0&1&2&3", "1&2&3&4&4096&6&7&8&9&10&11&12&13",
+          "1&&3&4&5&6&7&8&9&0&1&2&3", "1&2&3&4&65536&6&7&8&9&10&11&12&13",
           "1&2&3&4&5&6&7&8&9&10&11&12&13A1"}) {
       CAPTURE(text);
       CHECK_FALSE(decode_line(text, 4095));

@@ -1,6 +1,7 @@
 #include <nendo/driver/open_glove.hpp>
 
 #include <fstream>
+#include <thread>
 
 #include <doctest/doctest.h>
 
@@ -99,6 +100,9 @@ TEST_SUITE("replay_driver") {
       CHECK(samples[at].device_time == take.right[at].device_time);
       CHECK(samples[at].sequence == take.right[at].sequence - 1000);
       CHECK(samples[at].side == Side::right);
+      CHECK(samples[at].is_replayed);
+      CHECK(samples[at].recorded_arrival == take.right[at].arrival);
+      CHECK(samples[at].recorded_measured == take.right[at].measured);
       // Never early: half of 10 ms each. How late is the machine's affair.
       CHECK(samples[at].arrival - begin >= at * 5ms);
       CHECK(samples[at].measured <= samples[at].arrival);
@@ -139,12 +143,61 @@ TEST_SUITE("replay_driver") {
     }
   }
 
+  TEST_CASE("a replay has ended when its last sample is in the ring, and not before") {
+    const Take take(6);
+    const auto glove = open_glove(take.spec("?hand=right"));
+    REQUIRE(glove);
+    CHECK_FALSE((*glove)->has_ended());
+    SampleRing ring(64);
+    for (int turn = 0; turn < 2; ++turn) { // when it is started again, it has not ended yet
+      const HostTime begin = HostClock::now();
+      REQUIRE((*glove)->start(ring));
+      std::size_t there = 0; // in the ring when it was seen to have ended
+      CHECK(test::eventually([&] {
+        if (!(*glove)->has_ended()) return false;
+        there = ring.size();
+        return true;
+      }));
+      CHECK(there == 6);
+      CHECK(HostClock::now() - begin >= 50ms);
+      ring.drain([](const GloveSample&) noexcept {});
+      (*glove)->stop();
+      CHECK((*glove)->has_ended());
+    }
+  }
+
+  TEST_CASE("with end=hold, with loop=yes or when it was stopped before, a replay has not ended") {
+    const Take take(6);
+    for (const std::string options : {"&end=hold", "&loop=yes", "&end=hold&loop=no"}) {
+      CAPTURE(options);
+      const auto glove = open_glove(take.spec("?hand=right&speed=10" + options));
+      REQUIRE(glove);
+      SampleRing ring(1024);
+      REQUIRE((*glove)->start(ring));
+      CHECK(test::eventually([&] { return ring.size() >= 6; }));
+      std::this_thread::sleep_for(200ms);
+      CHECK_FALSE((*glove)->has_ended());
+      (*glove)->stop();
+      CHECK_FALSE((*glove)->has_ended());
+    }
+    const auto slow = open_glove(take.spec("?hand=right&speed=0.01"));
+    REQUIRE(slow);
+    CHECK(samples_of(**slow, 1).size() < 6);
+    CHECK_FALSE((*slow)->has_ended());
+    const auto never = open_glove("sim:wave?rate=1000");
+    REQUIRE(never);
+    samples_of(**never, 3);
+    CHECK_FALSE((*never)->has_ended());
+  }
+
   TEST_CASE("what cannot be replayed is told in a line with the right code") {
     const Take take(2);
     CHECK(code_of(take.spec("")) == Errc::usage); // which of the two?
     CHECK(code_of(take.spec("?speed=0")) == Errc::usage);
     CHECK(code_of(take.spec("?speed=nan")) == Errc::usage);
     CHECK(code_of(take.spec("?loop=maybe")) == Errc::usage);
+    CHECK(code_of(take.spec("?end=maybe")) == Errc::usage);
+    CHECK(code_of(take.spec("?loop=yes&end=hold")) == Errc::usage); // which of the two?
     CHECK(code_of(take.spec("?hand=middle")) == Errc::usage);
     CHECK(code_of(take.spec("?rate=3")) == Errc::usage);
     CHECK(code_of("replay:") == Errc::usage);

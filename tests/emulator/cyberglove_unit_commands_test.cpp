@@ -39,7 +39,7 @@ TEST_SUITE("cyberglove_unit_commands") {
     CHECK(bench.ask(Bytes{'A', 2, 0, 10, 5, 60}) == Bytes{'A', 0});
     CHECK(bench.ask("?A") == Bytes{'?', 'A', 10, 0, 0, 0, 0, 60, 0});
     CHECK(bench.ask(Bytes{'A', 0xFF, 1, 2, 3, 4, 5, 6}) == Bytes{'A', 0});
-    CHECK(bench.ask("a 1 3 255\r") == Bytes{'a', 0});
+    CHECK(bench.ask("a 1 3 255\r") == Bytes{'a', '\r', '\n', 0});
     CHECK(bench.ask("?A") == Bytes{'?', 'A', 1, 2, 3, 255, 5, 6, 0});
     CHECK(bench.ask(Bytes{'A', 1, 6, 9}) == Bytes{'e', 'n', 0}); // there is no seventh
     CHECK(bench.ask(Bytes{'A', 7}) == Bytes{'e', 'n', 0});
@@ -64,8 +64,8 @@ TEST_SUITE("cyberglove_unit_commands") {
     CHECK(set[2 + 21] == 7);
     CHECK(set[2 + 22] == 9);
     CHECK(set[2 + 43] == 64);
-    CHECK(bench.ask("co 0 0\r") == Bytes{'c', 'O', 0});
-    CHECK(bench.ask("cg 0 64\r") == Bytes{'c', 'G', 0});
+    CHECK(bench.ask("co 0 0\r") == Bytes{'c', 'o', '\r', '\n', 0});
+    CHECK(bench.ask("cg 0 64\r") == Bytes{'c', 'g', '\r', '\n', 0});
     const std::string lines = text_of(bench.ask("?c"));
     CHECK(std::count(lines.begin(), lines.end(), '\n') == 4); // the first is empty
 
@@ -101,13 +101,13 @@ TEST_SUITE("cyberglove_unit_commands") {
     for (const bool text : {false, true}) {
       Bench bench;
       CHECK(bench.ask(text ? Bytes{'y', ' ', '1', '\r'} : Bytes{'Y', 1}) ==
-            Bytes{static_cast<std::uint8_t>(text ? 'y' : 'Y'), 0});
+            (text ? Bytes{'y', '\r', '\n', 0} : Bytes{'Y', 0}));
       const auto records = split(bench.after(100ms));
       CHECK(records.size() == 9);
       for (const Bytes& record : records)
         CHECK(record[0] == (text ? 'y' : 'Y'));
       CHECK((bench.ask("?P")[3] & 0x03) == (text ? 2 : 1));
-      CHECK(bench.ask(text ? Bytes{'y', ' ', '0', '\r'} : Bytes{'Y', 0}).size() == 2);
+      CHECK(bench.ask(text ? Bytes{'y', ' ', '0', '\r'} : Bytes{'Y', 0}).size() == (text ? 4 : 2));
       CHECK(bench.after(1s).empty());
       bench.ask(Bytes{'Y', 1});
       CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03, 0});
@@ -178,7 +178,8 @@ TEST_SUITE("cyberglove_unit_commands") {
     options.period_order = nendo::emulator::unit::WordOrder::low_first;
     options.stamp_bit7 = false;
     Bench bench(options);
-    CHECK(bench.ask("f 0\r").size() == 3);
+    CHECK(bench.ask(Bytes{'F', 0}).size() == 3);
+    CHECK(text_of(bench.ask("f 0\r")) == std::string("f\r\n\0", 4)); // a text is a line anyway
     CHECK(bench.ask("?T") == Bytes{'?', 'T', 0x00, 0x05, 0x01, 0x00, 0});
     bench.ask(Bytes{'T', 0x80, 0x04, 0x01, 0x00});
     bench.ask("S");
@@ -194,7 +195,7 @@ TEST_SUITE("cyberglove_unit_commands") {
     CHECK(early.ask("G")[23] == 0x09);
     early.now = 200s; // 0x015F9000 has one zero byte
     CHECK(early.ask("G")[23] == 0x01);
-    early.now += 1ms; // 0x015F9073 has none: NUL must not get into a record
+    early.now += 21ms; // 0x015F9973 has none: NUL must not get into a record
     CHECK(early.ask("G")[23] == 0x80);
   }
 
@@ -266,15 +267,15 @@ TEST_SUITE("cyberglove_unit_commands") {
     Bench bench(model(3));
     bench.now = 3661s; // 01:01:01
     bench.ask(Bytes{'1', 'm', 4});
-    CHECK(text_of(bench.ask("1S")) == std::string("1S\0", 3));
+    CHECK(text_of(bench.ask("1S")) == "1S"); // no NUL before the records
     Bytes second;
     for (int part = 0; part < 10; ++part) {
       const Bytes more = bench.after(100ms);
       second.insert(second.end(), more.begin(), more.end());
     }
     REQUIRE(second.size() == 120 * 61);
-    CHECK(text_of(Bytes(second.begin(), second.begin() + 14)) == "01:01:01:01:2S");
-    CHECK(text_of(Bytes(second.end() - 61, second.end() - 47)) == "01:01:02:01:1S");
+    CHECK(text_of(Bytes(second.begin(), second.begin() + 14)) == "01:01:01:01:1S");
+    CHECK(text_of(Bytes(second.end() - 61, second.end() - 47)) == "01:01:02:01:0S");
     Bench plain(model(3));
     const Bytes coarse = plain.ask("G");
     for (std::size_t n = 0; n < 120; ++n) {
@@ -288,10 +289,36 @@ TEST_SUITE("cyberglove_unit_commands") {
       }
     }
     CHECK(bench.ask("?S").empty());
-    CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03, 0});
+    CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03});
+    CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03, 0}); // there is no such stream any more
     bench.ask("1du");
     bench.ask("1S");
     CHECK(bench.after(1s).empty()); // its USB side is off
+  }
+
+  TEST_CASE(
+      "12-bit streams count sub-frames from 0, and as a variant from 1 and end answers in NUL") {
+    for (const bool hardware : {true, false}) {
+      CAPTURE(hardware);
+      UnitOptions options = model(3);
+      if (!hardware) options.hires_form = unit::HiResForm::terminated;
+      Bench bench(options);
+      bench.ask(Bytes{'1', 'm', 3});
+      CHECK(bench.ask("1S") == (hardware ? Bytes{'1', 'S'} : Bytes{'1', 'S', 0}));
+      std::string seen;
+      const Bytes stream = bench.after(500ms);
+      REQUIRE(stream.size() == 45 * 61);
+      for (std::size_t n = 0; n < 45; ++n) {
+        const char sub_frame = static_cast<char>(stream[61 * n + 12]);
+        if (seen.find(sub_frame) == std::string::npos) seen += sub_frame;
+      }
+      std::sort(seen.begin(), seen.end());
+      CHECK(seen == (hardware ? "012" : "123"));
+      CHECK(bench.ask(Bytes{0x03}) == (hardware ? Bytes{0x03} : Bytes{0x03, 0}));
+      // Streams of 8 bits, which all models have, are not concerned.
+      bench.ask("S");
+      CHECK(bench.ask(Bytes{0x03}) == Bytes{0x03, 0});
+    }
   }
 }
 

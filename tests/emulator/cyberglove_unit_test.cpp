@@ -82,15 +82,15 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.ask("?F")[2] == 0);
     CHECK(bench.ask(Bytes{0x55, 0x01}) == Bytes{0x55, 0x00});
     CHECK(bench.ask("?U")[2] == 1);
-    CHECK(bench.ask("u 0\r") == Bytes{'u', 0x00});
+    CHECK(bench.ask("u 0\r") == Bytes{'u', '\r', '\n', 0x00});
     CHECK(bench.ask("?U")[2] == 0);
-    CHECK(bench.ask("d 1\r") == Bytes{'d', 0x00});
+    CHECK(bench.ask("d 1\r") == Bytes{'d', '\r', '\n', 0x00});
     CHECK(bench.ask("?D")[2] == 1);
     CHECK(bench.ask(Bytes{'M', 0x03, 0x00, 0x40}) == Bytes{'M', 0x00}); // 0x03 is data here
     CHECK(bench.ask("?M") == Bytes{0x3F, 0x4D, 0x03, 0x00, 0x40, 0x00});
     CHECK(bench.ask(Bytes{'T', 0x04, 0x80, 0x00, 0x01}) == Bytes{'T', 0x00});
     CHECK(bench.ask("?T") == Bytes{0x3F, 0x54, 0x04, 0x80, 0x00, 0x01, 0x00});
-    CHECK(bench.ask("t 1536 2\r") == Bytes{'t', 0x00});
+    CHECK(bench.ask("t 1536 2\r") == Bytes{'t', '\r', '\n', 0x00});
     CHECK(bench.ask("?T") == Bytes{0x3F, 0x54, 0x06, 0x00, 0x00, 0x02, 0x00});
     CHECK(bench.ask(Bytes{'F', '0'}) == Bytes{'F', 0x00}); // a digit in the binary form means on
     CHECK(bench.ask("?F")[2] == 1);
@@ -105,6 +105,49 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.ask("?L")[2] == 1);
     bench.ask("l 0\r");
     CHECK(bench.ask("?L")[2] == 0);
+  }
+
+  TEST_CASE("small letters ask for the same numbers in text, one line each") {
+    UnitOptions options = with_sensors(18);
+    options.side = Side::left;
+    options.touch = true;
+    Bench bench(options);
+    bench.ask("m 3 0 64\r");
+    bench.ask("t 1536 2\r");
+    bench.ask("a 1 3 255\r");
+    bench.ask("b 32\r");
+    // As many numbers as the driver names that asks a real unit so, masks lowest byte first.
+    struct Case {
+      char letter;
+      std::string numbers;
+    };
+    for (const Case& c :
+         {Case{'r', "0"}, Case{'s', "18"}, Case{'g', "3"}, Case{'k', "63 187 123"},
+          Case{'m', "3 0 64"}, Case{'n', "18"}, Case{'p', "129 152 2"}, Case{'t', "1536 2"},
+          Case{'b', "32"}, Case{'u', "0"}, Case{'v', "2 1"}, Case{'d', "0"}, Case{'f', "1"},
+          Case{'j', "1"}, Case{'l', "0"}, Case{'q', "0"}, Case{'w', "0"}, Case{'y', "0"},
+          Case{'a', "0 0 0 255 0 0"}}) {
+      CAPTURE(c.letter);
+      const std::string question = std::string("?") + c.letter;
+      CHECK(text_of(bench.ask(question)) == question + " " + c.numbers + std::string("\r\n\0", 3));
+    }
+    CHECK(bench.ask("?x") == Bytes{'e', '?', 0});
+    // One program takes what follows the third byte for the number of sensors.
+    CHECK(std::stoi(text_of(bench.ask("?n")).substr(3)) == 18);
+  }
+
+  TEST_CASE("a program that asks in text until it is answered gets through") {
+    Bench bench;
+    for (const char letter : std::string_view("irbgmn")) {
+      const Bytes reply = bench.ask(std::string("?") + letter);
+      REQUIRE(reply.size() > 3);
+      CHECK(reply[1] == letter);
+    }
+    const Bytes done = bench.ask("u 1\r");
+    CHECK(std::find(done.begin(), done.end(), 0) - done.begin() >
+          1); // else it asks again, for ever
+    CHECK(text_of(bench.ask("?u")) == std::string("?u 1\r\n\0", 7));
+    CHECK(text_of(bench.ask("g")).starts_with("g "));
   }
 
   TEST_CASE("parameter flags set all switches at once and cannot change what is read-only") {
@@ -197,8 +240,10 @@ TEST_SUITE("cyberglove_unit") {
     const Bytes all = whole.ask("G");
     const Bytes some = masked.ask("G");
     CHECK(some == Bytes{'G', all[1], all[5], all[6], all[7], all[8], 0});
+    masked.now += 20ms;
     masked.ask(Bytes{'N', 255});
     CHECK(masked.ask("G").size() == 19 + 2);
+    masked.now += 20ms;
     masked.ask(Bytes{'M', 0x80, 0, 0}); // a sensor that the glove does not have
     CHECK(masked.ask("G") == Bytes{'G', 0});
   }
@@ -250,6 +295,86 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.unit.counters().records == 22);
   }
 
+  TEST_CASE("nobody is told that a rate is too fast who has not set one") {
+    for (const unsigned model : {1U, 2U, 3U}) {
+      for (const double rate_hz : {1.0, 90.0, 100.0, 480.0}) {
+        UnitOptions options;
+        options.model = model;
+        options.rate_hz = rate_hz;
+        Bench bench(options);
+        bench.ask("f 1\r");
+        bench.ask("S");
+        for (const Bytes& record : split(bench.after(3s)))
+          REQUIRE(record.size() == 24);
+        bench.ask(Bytes{0x03});
+        bench.now += 1s;
+        CHECK(bench.ask("G").size() == 24);
+      }
+    }
+  }
+
+  TEST_CASE("a unit whose own period is too short for it says so until another is set") {
+    UnitOptions options;
+    options.overrun = true;
+    Bench bench(options);
+    bench.ask("S");
+    const auto records = split(bench.after(1s));
+    CHECK(records.size() == 90);
+    for (const Bytes& record : records)
+      CHECK(Bytes(record.end() - 3, record.end()) == Bytes{'e', 's', 0});
+    bench.ask(Bytes{0x03});
+    bench.ask("t 1280 1\r");
+    bench.ask("S");
+    for (const Bytes& record : split(bench.after(1s)))
+      CHECK(record.size() == 24);
+  }
+
+  TEST_CASE("records that are asked for one by one come at most some 90 times a second") {
+    for (const char letter : {'G', 'g'}) {
+      Bench bench;
+      std::size_t records = 0;
+      bench.send({static_cast<std::uint8_t>(letter)});
+      for (int n = 0; n < 10'000; ++n) { // a second of a host that asks as soon as it is answered
+        const auto received = split(bench.after(100us));
+        records += received.size();
+        if (!received.empty()) bench.send({static_cast<std::uint8_t>(letter)});
+      }
+      CHECK(records >= 88);
+      CHECK(records <= 91);
+    }
+    UnitOptions options;
+    options.rate_hz = 400; // it was asked to be a faster one
+    Bench fast(options);
+    fast.ask("GG");
+    CHECK(*fast.unit.next_due() - fast.now == 2500us);
+  }
+
+  TEST_CASE("what is said while a record is taken is answered after it, in order") {
+    Bench bench;
+    bench.now = 1s;
+    bench.ask("d 1\r");
+    CHECK(bench.ask("G").size() == 29);
+    CHECK(bench.ask("G?S").empty());
+    CHECK(bench.ask("G?R").empty());
+    CHECK(bench.after(11ms).empty());
+    const Bytes second = bench.after(1ms);
+    REQUIRE(second.size() == 29 + 4);
+    // It was taken when it was due: 1/90 s after the first one, whose stamp is 115200 ticks.
+    CHECK(Bytes(second.begin() + 23, second.begin() + 28) == Bytes{0x89, 0x01, 0xC7, 0x01, 0x01});
+    CHECK(Bytes(second.begin() + 29, second.end()) == Bytes{'?', 'S', 22, 0});
+    const Bytes third = bench.after(11ms);
+    REQUIRE(third.size() == 29 + 4);
+    CHECK(third[30] == 'R');
+    // It hears only so much.
+    bench.ask(std::string(10'000, 'G'));
+    CHECK(split(bench.after(1h)).size() < 100);
+    // A restart forgets all of it.
+    bench.ask("GG");
+    bench.unit.inject({Incident::Kind::power_cycle}, bench.now);
+    bench.receive();
+    CHECK(bench.after(10s).empty());
+  }
+
   TEST_CASE("a streaming unit obeys nothing but 0x03") {
     Bench bench;
     bench.ask("S");
@@ -277,6 +402,19 @@ TEST_SUITE("cyberglove_unit") {
     CHECK(bench.ask("?U")[2] == 0);
     CHECK(bench.ask("?T")[3] == 0);
     CHECK(bench.ask(Bytes{0x09}) == Bytes{0x09, 0x00});
+  }
+
+  TEST_CASE("a restart takes as long as it is told to") {
+    for (const auto time : {0ms, 250ms, 5000ms}) {
+      UnitOptions options;
+      options.restart_time = time;
+      Bench bench(options);
+      bench.ask(Bytes{'U', 1});
+      bench.ask(Bytes{0x12});
+      if (time > 0ms) CHECK(bench.after(time - 1ms).empty());
+      CHECK(bench.after(1ms) == Bytes{0x12, 0x0D, 0x0A, 0x00});
+      CHECK(bench.ask("?U")[2] == 0);
+    }
   }
 
   TEST_CASE("the motion begins with the first record, whenever that is") {
@@ -319,10 +457,10 @@ TEST_SUITE("cyberglove_unit") {
         REQUIRE(bench.unit.output().size() <= CyberGloveUnit::output_capacity);
         if (random() % 4 == 0) bench.unit.take(random() % 2000);
       }
-      // Whatever it was told, the usual way back works: stop, wait out a half command or a restart,
-      // ask.
+      // Whatever it was told, the usual way back works: stop, wait out records that were asked for,
+      // a half command and a restart, ask.
       bench.send({0x03});
-      bench.after(2s);
+      bench.after(4s);
       bench.ask(Bytes{0x03});
       CHECK(bench.ask("?S") == Bytes{0x3F, 0x53, 0x16, 0x00});
     }

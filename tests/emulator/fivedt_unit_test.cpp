@@ -1,6 +1,7 @@
 #include "units/fivedt_unit.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -78,6 +79,25 @@ TEST_SUITE("fivedt_unit") {
       check_sample(sample);
       CHECK(sample.size() == 10);
       CHECK(sample.back() == (side == Side::right ? 0x01 : 0x40));
+    }
+  }
+
+  TEST_CASE("a left glove's fingers are reversed if it is of that kind, a right one's never") {
+    for (const Side side : {Side::left, Side::right}) {
+      FiveDtUnitOptions options;
+      options.side = side;
+      Bench usual(options);
+      options.left_pinky_first = true;
+      Bench reversed(options);
+      Bytes sample = usual.ask("C");
+      const Bytes other = reversed.ask("C");
+      check_sample(other);
+      if (side == Side::left) {
+        CHECK(sample != other);
+        std::swap(sample[1], sample[5]);
+        std::swap(sample[2], sample[4]);
+      }
+      CHECK(sample == other);
     }
   }
 

@@ -1,6 +1,9 @@
 #include "units/lucidgloves_unit.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <sstream>
 #include <string>
 
@@ -15,6 +18,20 @@ using namespace nendo;
 using namespace nendo::emulator;
 using nendo::test::text_of;
 using Bench = nendo::test::AdvancedBench<LucidGlovesUnit, LucidGlovesUnitOptions>;
+
+namespace {
+
+LucidGlovesUnitOptions with(LucidGlovesFirmware firmware) {
+  LucidGlovesUnitOptions options;
+  options.firmware = firmware;
+  return options;
+}
+
+std::size_t lines_in(const nendo::test::Bytes& bytes) {
+  return static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n'));
+}
+
+} // namespace
 
 TEST_SUITE("lucidgloves_unit") {
   TEST_CASE("it sends so many lines a second by itself, with every key that the firmware sends") {
@@ -53,17 +70,92 @@ TEST_SUITE("lucidgloves_unit") {
     CHECK_FALSE(bench.after(20ms).empty());
   }
 
-  TEST_CASE("a firmware that knows no questions streams on and frees the thumb at most") {
-    LucidGlovesUnitOptions options;
-    options.answers = false;
-    Bench bench(options);
+  TEST_CASE("a firmware without force feedback streams on, whatever it is told") {
+    Bench bench(with(LucidGlovesFirmware::streaming));
+    for (const char* command : {"A900B900C900D900E900\n", "Z\n", "(ZZ)\n"})
+      CHECK(bench.ask(command).empty());
+    CHECK(bench.unit.brakes() == std::array{0, 0, 0, 0, 0});
+    CHECK(lines_in(bench.after(20ms)) == 2);
+  }
+
+  TEST_CASE("a waiting firmware sends a line a second to a host that says nothing") {
+    Bench bench(with(LucidGlovesFirmware::waiting));
+    std::size_t lines = 0;
+    for (int k = 0; k < 1000; ++k)
+      lines += lines_in(bench.after(10ms));
+    CHECK(lines == 10);
+    CHECK(bench.unit.counters().records == lines);
+  }
+
+  TEST_CASE("a waiting firmware sends its next line soon after it heard one, and no earlier") {
+    Bench bench(with(LucidGlovesFirmware::waiting));
+    CHECK(lines_in(bench.after(1ms)) == 1);
+    for (const char* command : {"\n", "Z\n", "A1B2C3D4E5\n", "whatever\n"}) {
+      CHECK(bench.after(5ms).empty());
+      CHECK(bench.ask(command).empty());
+      CHECK(lines_in(bench.after(1ms)) == 1);
+    }
+    CHECK(bench.unit.brakes() == std::array{1, 2, 3, 4, 5});
+    std::size_t lines = 0;
+    for (int k = 0; k < 1000; ++k) {
+      bench.send({'\n'});
+      lines += lines_in(bench.after(1ms));
+    }
+    CHECK(lines == 1000);
+    CHECK(bench.unit.brakes() == std::array{1, 2, 3, 4, 5}); // an empty line sets none
+  }
+
+  TEST_CASE("lines that a waiting firmware has not read yet are read one a loop") {
+    Bench bench(with(LucidGlovesFirmware::waiting));
+    bench.after(1ms);
+    CHECK(bench.ask("\nA9B9C9D9E9\n\n").empty());
+    CHECK(bench.unit.brakes() == std::array{0, 0, 0, 0, 0});
+    CHECK(lines_in(bench.after(1ms)) == 1);
+    CHECK(bench.unit.brakes() == std::array{9, 9, 9, 9, 9});
+    CHECK(lines_in(bench.after(10ms)) == 2);
+    CHECK(bench.after(900ms).empty());
+  }
+
+  TEST_CASE("a waiting firmware takes half a line for a whole one after a second") {
+    Bench bench(with(LucidGlovesFirmware::waiting));
+    bench.after(1ms);
+    bench.after(700ms);
+    CHECK(bench.ask("A1B2C").empty());
+    CHECK(bench.after(999ms).empty()); // the time limit begins anew with each byte
+    CHECK(bench.unit.brakes() == std::array{0, 0, 0, 0, 0});
+    CHECK(lines_in(bench.after(2ms)) == 1);
+    CHECK(bench.unit.brakes() == std::array{1, 2, 0, 0, 0});
+  }
+
+  TEST_CASE("a waiting firmware ignores lines of less than five characters") {
+    Bench bench(with(LucidGlovesFirmware::waiting));
+    bench.after(1ms);
     bench.ask("A900B900C900D900E900\n");
-    CHECK(bench.ask("Z\n").empty());
-    CHECK(bench.unit.brakes() == std::array{900, 900, 900, 900, 900});
-    CHECK(bench.ask("(ZZ)\n").empty());
-    CHECK_FALSE(bench.after(20ms).empty());
-    bench.ask("(ZA)\n");
-    CHECK(bench.unit.brakes() == std::array{0, 900, 900, 900, 900});
+    for (const char* command : {"(ZA)\n", "Z\n", "\n", "A1\n"}) {
+      bench.after(1ms);
+      bench.ask(command);
+      CHECK(bench.unit.brakes() == std::array{900, 900, 900, 900, 900});
+    }
+  }
+
+  TEST_CASE("a legacy firmware sends 13 numbers, and takes whatever it hears for brakes") {
+    Bench bench(with(LucidGlovesFirmware::legacy));
+    std::istringstream line(text_of(bench.after(10ms)));
+    for (int k = 0; k < 13; ++k) {
+      CAPTURE(k);
+      int value = -1;
+      CHECK((line >> value));
+      CHECK(value >= 0);
+      CHECK(value <= 4095);
+      CHECK(line.get() == (k < 12 ? '&' : '\n'));
+    }
+    CHECK(bench.unit.brakes() == std::array{0, 0, 0, 0, 0});
+    bench.ask("1&2&3&4&5\n");
+    CHECK(bench.unit.brakes() == std::array{1, 2, 3, 4, 5});
+    bench.ask("\n");
+    CHECK(bench.unit.brakes() == std::array{1, 2, 3, 4, 5});
+    bench.ask("Z\n");
+    CHECK(bench.unit.brakes() == std::array{0, 1000, 1000, 1000, 1000});
   }
 
   TEST_CASE("brakes handle whole lines, cut anywhere, and never go past locked") {

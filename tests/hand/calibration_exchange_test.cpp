@@ -290,6 +290,35 @@ TEST_SUITE("calibration exchange") {
     CHECK(fine->text == virtualhand_text(default_calibration(), {})->text);
   }
 
+  TEST_CASE("KIT's gloves have angles of 0 beyond the counts, and an export as .cal says which") {
+    // Where the lines through the two points of thumb_abduction, the files' third, cross 0: left
+    // -0.5:164 and -0.2:48, so at 48 - 0.2 * 116 / 0.3; right -0.5:216 and -0.2:79.
+    for (const auto& [name, at] :
+         {std::pair{"kit_left.cal", "(-29.3)"}, {"kit_right.cal", "(-12.3)"}}) {
+      const auto read = parse_two_point(stored(name), name);
+      REQUIRE(read);
+      const auto written = virtualhand_text(read->calibration, {});
+      REQUIRE_FALSE(written);
+      const std::string& why = written.error().message;
+      CAPTURE(why);
+      CHECK(why.find(std::string("thumb_abduction ") + at) != std::string::npos);
+      CHECK(why.find("0 to 255") != std::string::npos);
+      CHECK(why.find("toml or csv") != std::string::npos);
+      CHECK(why.find("index_mcp") == std::string::npos); // 71 and 117 fit
+      CHECK(calibration_csv_text(read->calibration));
+    }
+    // All of them are named, not the first alone.
+    Calibration calibration = default_calibration();
+    calibration[Sensor::index_mcp].offset_counts = 300.25;
+    calibration[Sensor::wrist_yaw].offset_counts = -0.6;
+    const auto two = virtualhand_text(calibration, {});
+    REQUIRE_FALSE(two);
+    CHECK(two.error().message.find("index_mcp (300.2), wrist_yaw (-0.6)") != std::string::npos);
+    calibration[Sensor::index_mcp].offset_counts = 255.4; // as a whole count it fits
+    calibration[Sensor::wrist_yaw].offset_counts = -0.4;
+    CHECK(virtualhand_text(calibration, {}));
+  }
+
   TEST_CASE("each line of a two-point file goes through both of its points") {
     // The order and signs of its hand model, from the names that its header gives the places.
     const std::vector<std::pair<std::string, double>> places{

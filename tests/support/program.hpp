@@ -27,7 +27,8 @@ struct Finished {
 /// A running program. The destructor kills it if it still runs.
 class Program {
 public:
-  explicit Program(std::vector<std::string> arguments)
+  /// `out_fd` becomes its standard output; with -1 that is a file, which wait() returns.
+  explicit Program(std::vector<std::string> arguments, int out_fd = -1)
       : started_(std::chrono::steady_clock::now()) {
     arguments.insert(arguments.begin(), NENDO_PROGRAM);
     std::vector<char*> argv;
@@ -40,7 +41,8 @@ public:
     if (pid_ != 0) return;
     // Between fork and exec, only calls are made that are safe in a child of a threaded program.
     ::dup2(::open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
-    ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), STDOUT_FILENO);
+    if (out_fd < 0) out_fd = ::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    ::dup2(out_fd, STDOUT_FILENO);
     ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), STDERR_FILENO);
     ::execv(argv[0], argv.data());
     ::_exit(127);

@@ -93,6 +93,21 @@ inline void samples_are_in_order_and_add_up(const Kind& kind) {
   check_conservation(stats, kind.longest_record);
 }
 
+/// For gloves that stream by themselves.
+inline void what_had_waited_is_no_rate(const Kind& kind) {
+  const PtyUnit port(kind.make(Side::right));
+  auto glove = required(driver::open_glove(kind.spec(port.path())));
+  std::this_thread::sleep_for(2s); // nobody reads
+  SampleRing ring(4096);
+  REQUIRE(glove->start(ring));
+  CHECK(eventually([&] { return glove->stats().rate_hz > 0.0; }));
+  const double first_hz = glove->stats().rate_hz;
+  CHECK(eventually([&] { return glove->stats().rate_hz != first_hz; }));
+  const double second_hz = glove->stats().rate_hz; // of a second in which nothing waited
+  glove->stop();
+  CHECK(first_hz < 1.5 * second_hz);
+}
+
 template <class AnyKind>
 void a_full_ring_refuses_and_counts(const AnyKind& kind) {
   const auto port = kind.plug(Side::right);

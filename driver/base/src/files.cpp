@@ -177,7 +177,16 @@ Result<void> replace_file(const fs::path& path, std::string_view contents) {
 fs::path target_of(const fs::path& path) {
   std::error_code missing;
   fs::path target = fs::canonical(path, missing);
-  return missing ? path : target;
+  if (!missing) return target;
+  constexpr int most_links = 40; // as many as the kernel follows
+  target = path;
+  for (int links = 0; links < most_links; ++links) { // what the last link names is not there yet
+    std::error_code no_link;
+    const fs::path next = fs::read_symlink(target, no_link);
+    if (no_link) return target;
+    target = target.parent_path() / next;
+  }
+  return path;
 }
 
 } // namespace nendo

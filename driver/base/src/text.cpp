@@ -39,10 +39,19 @@ std::optional<Utf8Length> utf8_length(unsigned char first) noexcept {
 
 } // namespace
 
+std::string_view without_mark(std::string_view text) noexcept {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (text.starts_with(mark)) text.remove_prefix(mark.size());
+  return text;
+}
+
 std::optional<std::string_view> LineReader::next() noexcept {
   while (!rest_.empty()) {
     ++line_;
-    const std::string_view line = trimmed(cut(rest_, '\n'));
+    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    const std::string_view line = trimmed(rest_.substr(0, end));
+    const std::size_t ending = rest_.substr(end).starts_with("\r\n") ? 2 : 1;
+    rest_.remove_prefix(std::min(end + ending, rest_.size()));
     if (!line.empty()) return line;
   }
   return std::nullopt;

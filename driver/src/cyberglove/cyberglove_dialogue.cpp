@@ -9,7 +9,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto quiet_line = 50ms;
-constexpr auto quiet_end = 30ms; ///< after what may be the end of a reply, or not quite
+constexpr auto quiet_end = 30ms;       ///< after what may be the end of a reply, or not quite
+constexpr auto rest_of_answer = 100ms; ///< after a beginning that came late; 90 bytes at 9600 baud
 constexpr auto write_timeout = 200ms;
 constexpr auto longest_wait = 100ms; ///< between two looks at the stop token
 constexpr std::size_t most_junk_bytes = 4096;
@@ -60,9 +61,14 @@ HostTime Dialogue::at_most(std::chrono::milliseconds timeout) const noexcept {
   return std::min(deadline_, HostClock::now() + timeout);
 }
 
+HostTime Dialogue::answered_by(std::chrono::milliseconds timeout) const noexcept {
+  return at_most(std::max(timeout, slowest_answer_ * 3 / 2));
+}
+
 Answer Dialogue::send(std::span<const std::byte> command) noexcept {
   unread_ = {};
   if (cancelled_.stop_requested()) return Answer::silent;
+  sent_at_ = HostClock::now();
   switch (transport_.write_all(command, write_timeout)) {
   case IoStatus::done:
     return Answer::good;
@@ -91,19 +97,26 @@ Answer Dialogue::next(std::byte& byte, HostTime until) noexcept {
 }
 
 template <class Judge>
-Answer Dialogue::read_until(HostTime until, Judge&& judge) noexcept {
+Answer Dialogue::read_until(HostTime& until, Judge&& judge) noexcept {
+  const HostTime quiet_until = std::max(until, std::min(deadline_, sent_at_ + quiet_wait_));
   for (std::size_t skipped = 0; skipped < most_junk_bytes; ++skipped) {
     std::byte byte{};
-    const Answer answer = next(byte, until);
+    const Answer answer = next(byte, skipped == 0 ? quiet_until : until);
     if (answer == Answer::silent && skipped > 0) return Answer::nonsense;
     if (answer != Answer::good) return answer;
-    if (const std::optional<Answer> judged = judge(byte)) return *judged;
+    if (skipped == 0) until = std::max(until, at_most(rest_of_answer));
+    const std::optional<Answer> judged = judge(byte);
+    if (judged == Answer::good) {
+      expect_late_answers(
+          std::chrono::ceil<std::chrono::milliseconds>(HostClock::now() - sent_at_));
+    }
+    if (judged) return *judged;
   }
   return Answer::nonsense;
 }
 
 /// Reads up to and including the head of a reply.
-Answer Dialogue::find_reply(std::string_view head, HostTime until) noexcept {
+Answer Dialogue::find_reply(std::string_view head, HostTime& until) noexcept {
   Tail tail;
   return read_until(until, [&](std::byte byte) -> std::optional<Answer> {
     if (byte == terminator) {
@@ -138,7 +151,8 @@ Answer Dialogue::pause_stream(std::chrono::milliseconds timeout) noexcept {
   HostTime until = at_most(timeout);
   if (const Answer sent = send(std::span(&interrupt, 1)); sent != Answer::good) return sent;
   // 03 00 on its own is the answer. At the end of something longer it is the answer behind a record
-  // that was broken off, or a record whose last value is 3: then more follows, or it gets quiet.
+  // that was broken off, or a record whose last value is 3: then more follows, or it gets quiet. A
+  // 03 of its own, behind a record of 12 bits, is the answer if nothing follows.
   bool perhaps = false;
   std::byte last{};
   for (std::size_t length = 1;; ++length) {
@@ -153,6 +167,9 @@ Answer Dialogue::pause_stream(std::chrono::milliseconds timeout) noexcept {
         until = std::min(until, HostClock::now() + quiet_end);
       }
       length = 0;
+    } else if (byte == interrupt && length == 1) {
+      perhaps = true;
+      until = std::min(until, HostClock::now() + quiet_end);
     }
     last = byte;
   }
@@ -160,7 +177,7 @@ Answer Dialogue::pause_stream(std::chrono::milliseconds timeout) noexcept {
 
 Answer Dialogue::ask(const Query& query, std::span<std::byte> data,
                      std::chrono::milliseconds timeout) noexcept {
-  const HostTime until = at_most(timeout);
+  HostTime until = answered_by(timeout);
   const std::array head{'?', query.letter};
   if (const Answer sent = send(std::as_bytes(std::span(head))); sent != Answer::good) return sent;
   Answer answer = find_reply({head.data(), head.size()}, until);
@@ -176,7 +193,7 @@ Answer Dialogue::ask(const Query& query, std::span<std::byte> data,
 }
 
 Answer Dialogue::ask_text(char letter, std::string& text, std::chrono::milliseconds timeout) {
-  const HostTime until = at_most(timeout);
+  HostTime until = answered_by(timeout);
   const std::array head{'?', letter};
   if (const Answer sent = send(std::as_bytes(std::span(head))); sent != Answer::good) return sent;
   Answer answer = find_reply({head.data(), head.size()}, until);
@@ -192,7 +209,7 @@ Answer Dialogue::ask_text(char letter, std::string& text, std::chrono::milliseco
 
 Answer Dialogue::command(std::span<const std::byte> bytes, std::string_view echo,
                          std::chrono::milliseconds timeout) noexcept {
-  const HostTime until = at_most(timeout);
+  HostTime until = answered_by(timeout);
   if (const Answer sent = send(bytes); sent != Answer::good) return sent;
   Tail tail;
   return read_until(until, [&](std::byte byte) -> std::optional<Answer> {
@@ -206,7 +223,7 @@ Answer Dialogue::command(std::span<const std::byte> bytes, std::string_view echo
 
 Answer Dialogue::ask_record(std::size_t least, std::span<std::byte> record, std::size_t& size,
                             std::chrono::milliseconds timeout) noexcept {
-  const HostTime until = at_most(timeout);
+  HostTime until = answered_by(timeout);
   const std::array command{record_command};
   if (const Answer sent = send(std::as_bytes(std::span(command))); sent != Answer::good) {
     return sent;
@@ -229,7 +246,8 @@ Answer Dialogue::ask_record(std::size_t least, std::span<std::byte> record, std:
 }
 
 Answer Dialogue::restart(std::chrono::milliseconds timeout) noexcept {
-  const HostTime until = at_most(timeout);
+  HostTime until = at_most(timeout);
+  const auto slowest = slowest_answer_; // a restart takes its time, and is no answer
   if (const Answer sent = send(std::span(&restart_firmware, 1)); sent != Answer::good) return sent;
   Tail tail;
   const Answer answer = read_until(until, [&](std::byte byte) -> std::optional<Answer> {
@@ -241,6 +259,7 @@ Answer Dialogue::restart(std::chrono::milliseconds timeout) noexcept {
     if (tail.ends_with("\x12\r\n") || tail.ends_with("^R\r\n")) return Answer::good;
     return std::nullopt;
   });
+  slowest_answer_ = slowest;
   if (answer != Answer::good) return answer;
   // A left glove's answer may lack its NUL.
   std::byte end{};

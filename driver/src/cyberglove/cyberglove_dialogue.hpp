@@ -3,6 +3,7 @@
 // contain NUL and are therefore read by length. Bytes before a reply are skipped, since the unit
 // may still be answering another program.
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -50,10 +51,24 @@ private:
 
 class Dialogue {
 public:
-  /// No call lasts beyond `deadline`, or more than 0.3 s after `cancelled` is requested.
-  /// `transport` must outlive the dialogue.
+  /// No call lasts beyond `deadline`, or more than 0.3 s after `cancelled` is requested. Each call
+  /// may last longer than its timeout: as long as answers of this unit took so far, and half as
+  /// long again. `transport` must outlive the dialogue.
   Dialogue(Transport& transport, HostTime deadline, std::stop_token cancelled = {}) noexcept
       : transport_(transport), deadline_(deadline), cancelled_(std::move(cancelled)) {}
+
+  /// From now on waits so long for an answer to begin, if that is longer, while nothing at all
+  /// comes: a unit that is slow now and then is quiet before it answers, and what is no unit may
+  /// babble.
+  void wait_on_quiet_line(std::chrono::milliseconds time) noexcept { quiet_wait_ = time; }
+  /// Lets calls last until `deadline`, if that is later.
+  void prolong(HostTime deadline) noexcept { deadline_ = std::max(deadline_, deadline); }
+  /// Expects answers to take so long, e.g. as in an earlier dialogue with the same unit.
+  void expect_late_answers(std::chrono::milliseconds time) noexcept {
+    slowest_answer_ = std::max(slowest_answer_, time);
+  }
+  /// Returns how long the slowest good answer took to arrive.
+  std::chrono::milliseconds slowest_answer() const noexcept { return slowest_answer_; }
 
   /// Ends a stream and reads until the line has been quiet for 50 ms. Gives up with `nonsense` if
   /// bytes still come after `longest`.
@@ -89,16 +104,20 @@ private:
   Answer drain(std::chrono::milliseconds longest) noexcept;
   Answer next(std::byte& byte, HostTime until) noexcept;
   template <class Judge>
-  Answer read_until(HostTime until, Judge&& judge) noexcept; ///< `judge(byte)` ends it
-  Answer find_reply(std::string_view head, HostTime until) noexcept;
+  Answer read_until(HostTime& until, Judge&& judge) noexcept; ///< `judge(byte)` ends it
+  Answer find_reply(std::string_view head, HostTime& until) noexcept;
   HostTime at_most(std::chrono::milliseconds timeout) const noexcept;
+  HostTime answered_by(std::chrono::milliseconds timeout) const noexcept;
 
   Transport& transport_;
-  const HostTime deadline_;
+  HostTime deadline_;
   const std::stop_token cancelled_;
   std::array<std::byte, 256> buffer_{};
   std::span<const std::byte> unread_;
   std::uint64_t bytes_received_ = 0;
+  HostTime sent_at_{}; ///< the last command or question
+  std::chrono::milliseconds quiet_wait_{0};
+  std::chrono::milliseconds slowest_answer_{0};
 };
 
 } // namespace nendo::driver::cyberglove

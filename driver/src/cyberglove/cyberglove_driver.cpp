@@ -1,5 +1,6 @@
 #include "cyberglove/cyberglove_driver.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -24,6 +25,7 @@ using namespace std::chrono_literals;
 
 constexpr auto state_answer = 300ms; ///< of a unit that has just answered all else
 constexpr std::uint16_t most_hires_count = 4095;
+constexpr int answers_at_start = 4; ///< two tries, each as long as one and a half of the slowest
 constexpr auto pause_answer = 150ms;
 constexpr auto control_answer = 100ms; ///< while the stream waits
 
@@ -42,6 +44,7 @@ public:
       return identity.error();
     }
     identity_ = *std::move(identity);
+    slowest_answer_ = dialogue.slowest_answer();
     begin_records();
     if (occasion == IdentifyReason::opening) {
       for (const std::string& note : identity_.notes)
@@ -61,6 +64,8 @@ public:
   Result<void> start_stream(Transport& transport, const std::string& source,
                             const ReplyDeadline& patience) override {
     Dialogue dialogue(transport, patience.deadline, patience.cancelled);
+    dialogue.expect_late_answers(slowest_answer_);
+    dialogue.prolong(HostClock::now() + answers_at_start * slowest_answer_);
     dialogue.stop_stream();
     Commands commands(dialogue, state_answer);
     Reply<GloveState> state = commands.state();
@@ -182,7 +187,8 @@ private:
   }
 
   const Options options_;
-  int baud_;               ///< at which the unit answered last
+  int baud_; ///< at which the unit answered last
+  std::chrono::milliseconds slowest_answer_{0};
   bool unplugged_ = false; ///< the unit answers, but has lost its glove
   Identity identity_;
   Parser parser_{RecordShape{}};

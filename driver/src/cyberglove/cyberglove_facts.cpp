@@ -14,6 +14,8 @@ using namespace std::chrono_literals;
 
 /// Longer than a Bluetooth link or an adapter's latency timer delays a reply.
 constexpr auto optional_answer = 250ms;
+/// Of a unit that is late with each answer, not all can be asked.
+constexpr auto longest_interview = 2s;
 constexpr std::size_t most_fact_characters = 200;
 
 /// Printable characters only; the end of a line becomes a slash, blanks become one.
@@ -36,19 +38,20 @@ std::string on_off(bool on) {
   return on ? "on" : "off";
 }
 
-/// Asks, until two questions were met with silence or nonsense.
+/// Asks, until two questions were met with silence or nonsense, or it has taken too long.
 class Inquiry {
 public:
   template <class Ask>
   auto operator()(Ask&& ask) -> decltype(ask()) {
     constexpr int patience = 2;
-    if (unanswered_ >= patience) return {};
+    if (unanswered_ >= patience || HostClock::now() >= until_) return {};
     auto reply = ask();
     if (!reply && reply.answer != Answer::unknown) ++unanswered_;
     return reply;
   }
 
 private:
+  const HostTime until_ = HostClock::now() + longest_interview;
   int unanswered_ = 0;
 };
 

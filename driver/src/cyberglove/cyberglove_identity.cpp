@@ -12,7 +12,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Where something else comes instead. On a quiet line, what the drivers with the manual at hand
+/// allow for a command: a Bluetooth link that was asleep takes more than half of it.
 constexpr auto needed_answer = 400ms;
+constexpr auto needed_answer_quiet = 1000ms;
+/// The caller's deadline is for units that answer at once. One that has shown that it is there may
+/// take so many of its slowest answers more; there are some twenty questions.
+constexpr int most_answers = 30;
 constexpr int tries = 2; ///< for anything that noise on the line explains
 
 bool is_final(Answer answer) noexcept {
@@ -71,10 +77,13 @@ public:
         options_(request.options) {}
 
   Result<Identity> run() {
+    dialogue_.prolong(HostClock::now() + most_answers * dialogue_.slowest_answer());
+    dialogue_.wait_on_quiet_line(needed_answer_quiet);
     for (const auto step :
          {&SetUp::ask_channels, &SetUp::ask_hand, &SetUp::set_switches, &SetUp::set_records}) {
       if (auto done = (this->*step)(); !done) return done.error();
     }
+    dialogue_.wait_on_quiet_line(0ms);
     ask_facts(dialogue_, request_, identity_);
     return std::move(identity_);
   }

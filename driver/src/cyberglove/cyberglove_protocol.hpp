@@ -74,8 +74,8 @@ inline constexpr char ask_information = 'i';      ///< text of several lines; NU
 inline constexpr char ask_firmware_text = 'v';    ///< text [V]
 inline constexpr char ask_help = '?';             ///< text: the commands and errors [D]
 
-// Commands of the CyberGlove III only. They are answered by the same and NUL [D]. Sinks are u, w,
-// s.
+// Commands of the CyberGlove III only. They are answered by the same and NUL [D]; but 1S without
+// NUL, and the `interrupt` that ends its stream by one byte [two drivers]. Sinks are u, w, s.
 inline constexpr std::string_view third_enable = "1e";     ///< and a sink
 inline constexpr std::string_view third_disable = "1d";    ///< and a sink
 inline constexpr std::string_view third_frame_rate = "1m"; ///< a byte: so many times 30 Hz

@@ -7,10 +7,10 @@
 namespace nendo::driver::cyberglove {
 namespace {
 
-/// Stamp and period come from one clock, so that a stamp errs by what keeps the firmware from
-/// taking it at once: interrupts, and the conversion of a few channels. A sixteenth is 0.6 ms at
-/// 100 Hz; a wrong stamp fits by chance in one of eight cases.
-constexpr std::uint32_t tolerance_part = 16;
+/// Each of the two gaps of a new clock may err by two sixteenths, as those of the known one.
+constexpr std::uint32_t equal_part = 4;
+/// Two records that are sampled late cannot be closer.
+constexpr std::uint32_t least_late_part = 16;
 /// Longer jumps are believed only when later records bear them out: a stamp with a wrong upper bit
 /// looks the same.
 constexpr std::uint32_t most_periods = 16;
@@ -28,19 +28,10 @@ std::uint32_t distance(std::uint32_t a, std::uint32_t b) noexcept {
   return a > b ? a - b : b - a;
 }
 
-/// `gap` in periods, rounded, at least 1. 64 bits, as both may be large.
-std::uint32_t rounded(std::uint64_t gap, std::uint64_t period) noexcept {
-  return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (gap + period / 2) / period));
-}
-
-/// The same where periods vary: a record is rather late than early, so one and three quarters of a
-/// period still hide no other record.
+/// `gap` in periods where these vary: a record is rather late than early, so one and three quarters
+/// of a period still hide no other record.
 std::uint32_t loosely_rounded(std::uint32_t gap, std::uint32_t period) noexcept {
-  return std::uint64_t{4} * gap < std::uint64_t{7} * period ? 1 : rounded(gap, period);
-}
-
-bool on_grid(std::uint32_t gap, std::uint32_t period) noexcept {
-  return distance(gap, rounded(gap, period) * period) <= period / tolerance_part;
+  return std::uint64_t{4} * gap < std::uint64_t{7} * period ? 1 : whole_periods(gap, period);
 }
 
 } // namespace
@@ -78,6 +69,7 @@ Verdict RecordCheck::check_stamp(Record& record) noexcept {
     return accept(record, 0);
   }
   const Step step{record.ticks - last_ticks_, last_late_, record.sampled_too_fast};
+  learn_jitter(step);
   if (const std::uint32_t count = trusted_ ? periods(step) : 0; count != 0) {
     doubt_ = std::max(0, doubt_ - 1);
     return accept(record, follow(step, count));
@@ -115,10 +107,10 @@ std::uint32_t RecordCheck::agreed_period(const Record& record) noexcept {
   suspects_ = {before.count > 0 && advances ? 2 : 1, record.ticks, record.sampled_too_fast, step};
   if (before.count < agreeing_records - 1 || !advances) return 0;
   const std::uint32_t longer = std::max(before.step.gap, step.gap);
-  const bool equal = distance(before.step.gap, step.gap) <= longer / (steady_ ? tolerance_part : 2);
+  const bool equal = distance(before.step.gap, step.gap) <= longer / (steady_ ? equal_part : 2);
   // The same number of records lost twice is less likely than another period.
-  const bool same_period =
-      keeps_period(before.step) && keeps_period(step) && !(equal && rounded(step.gap, period_) > 1);
+  const bool same_period = keeps_period(before.step) && keeps_period(step) &&
+                           !(equal && whole_periods(step.gap, period_) > 1);
   if (same_period) return period_;
   return equal ? std::min(step.gap, longest_period) : 0;
 }
@@ -128,15 +120,16 @@ Verdict RecordCheck::begin_again(Record& record, std::uint32_t agreed) noexcept 
   const std::uint32_t gap = record.ticks - last_ticks_;
   const bool late = last_late_ || record.sampled_too_fast;
   if (trusted_ && agreed == period_ && gap <= longest_gap() &&
-      (!steady_ || late || on_grid(gap, period_))) {
+      (!steady_ || late || jitter_.allows(gap, period_))) {
     doubt_ = std::max(0, doubt_ - doubt_by_refusal * (agreeing_records - 1));
-    return accept(record, rounded(gap, period_) - 1);
+    return accept(record, whole_periods(gap, period_) - 1);
   }
   if (agreed != period_ && !steady_) {
     gaps_[0] = agreed;
     gap_count_ = 1;
     learnt_missed_ = 0;
   }
+  if (agreed != period_) jitter_.forget();
   period_ = agreed;
   late_pace_ = 0;
   doubt_ = 0;
@@ -181,9 +174,9 @@ bool RecordCheck::keeps_period(const Step& step) const noexcept {
 /// out.
 std::uint32_t RecordCheck::steady_periods(const Step& step) const noexcept {
   if (!step.was_late && !step.is_late) {
-    return on_grid(step.gap, period_) ? rounded(step.gap, period_) : 0;
+    return jitter_.allows(step.gap, period_) ? whole_periods(step.gap, period_) : 0;
   }
-  if (step.gap < period_ / tolerance_part) return 0;
+  if (step.gap < period_ / least_late_part) return 0;
   if (step.was_late && step.is_late) {
     // The glove's own pace, which is the slower one if it cannot keep its period at all.
     return late_pace_ == 0 ? 1 : loosely_rounded(step.gap, std::max(period_, late_pace_));
@@ -192,6 +185,15 @@ std::uint32_t RecordCheck::steady_periods(const Step& step) const noexcept {
   const std::uint32_t count =
       step.is_late ? (step.gap + slack) / period_ : (step.gap + period_ - 1 - slack) / period_;
   return std::max(1U, count);
+}
+
+/// Before the record is judged. Wrong stamps count as well.
+void RecordCheck::learn_jitter(const Step& step) noexcept {
+  const bool tells = steady_ && trusted_ && !step.was_late && !step.is_late && step.gap != 0 &&
+                     step.gap <= most_periods * period_;
+  if (!tells) return;
+  jitter_.learn(step.gap, period_);
+  if (jitter_.hides(period_)) steady_ = false;
 }
 
 /// Learns from an accepted step. Returns the records that were missed.

@@ -5,19 +5,21 @@
 // thread.
 //
 // The effect of a flipped bit in a record of 22 sensors, time stamp and status (30 bytes, 240 bits)
-// at 100 records a second (1152 ticks), if none of its bytes is a power of two:
-//   caught    51: header 8, flags of the time stamp 4, ticks 25, status 6, NUL 8
+// at 100 records a second (1152 ticks), if none of its bytes is a power of two and the stamps are
+// punctual:
+//   caught    50: header 8, flags of the time stamp 4, ticks 24, status 6, NUL 8
 //   harmless   4: the flags' upper half means nothing; what is delivered is right
-//   delivered 185: sensors 176, the 7 ticks' bits below the tolerance, wrist switch and light 2
-// So 77 % of the flips are not found. Nothing can check a sensor's bit, unless it was the only bit
+//   delivered 186: sensors 176, the 8 ticks' bits below the tolerance, wrist switch and light 2
+// So 78 % of the flips are not found. Nothing can check a sensor's bit, unless it was the only bit
 // set in its byte, so that the flip makes a NUL. While no period is known, a stamp may be wrong by
-// half a period.
+// half a period. FAULTS.md has a table of what jitter of the stamps costs.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "cyberglove/cyberglove_parser.hpp"
+#include "cyberglove/stamp_jitter.hpp"
 
 namespace nendo::driver::cyberglove {
 
@@ -31,7 +33,9 @@ public:
   /// + missed at every plausible record. A gap of more than 16 periods, a restarted clock or
   /// another period is accepted at the third record that agrees with the two before it. If stamps
   /// contradict each other repeatedly, first the period need not be kept closely, and then the
-  /// stamps are ignored and the records pass with Stamp::none. Stamp::begins marks ticks that do
+  /// stamps are ignored and the records pass with Stamp::none. A stamp may err by a sixteenth of a
+  /// period at any time, and by more as soon as the device has shown that its stamps do, so that
+  /// the jitter of a good device costs no record. Stamp::begins marks ticks that do
   /// not continue those before them.
   Verdict operator()(Record& record) noexcept;
 
@@ -62,6 +66,7 @@ private:
   Verdict lose_trust(Record& record) noexcept;
   std::uint32_t periods(const Step& step) const noexcept;
   bool keeps_period(const Step& step) const noexcept;
+  void learn_jitter(const Step& step) noexcept;
   std::uint32_t steady_periods(const Step& step) const noexcept;
   std::uint64_t follow(const Step& step, std::uint32_t count) noexcept;
   std::uint64_t learn(std::uint32_t gap) noexcept;
@@ -74,6 +79,7 @@ private:
   bool begun_ = false;
   std::uint32_t last_ticks_ = 0;
   bool last_late_ = false;
+  StampJitter jitter_;
   std::uint32_t late_pace_ = 0;         ///< between late records, 0 while unknown
   std::array<std::uint32_t, 8> gaps_{}; ///< the first ones, while a period is learnt
   std::size_t gap_count_ = 0;

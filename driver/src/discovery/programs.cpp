@@ -110,6 +110,16 @@ Holders find_holders(const std::set<std::string>& devices) {
   return found;
 }
 
+std::string holder_of(const std::string& device) {
+  const Holders found = find_holders({device});
+  const auto holders = found.of.find(device);
+  if (holders == found.of.end()) return {};
+  for (const DeviceHolder& holder : holders->second)
+    if (holder.pid > 0 && holder.pid != ::getpid())
+      return ", " + holder.name + " (pid " + std::to_string(holder.pid) + ")";
+  return {};
+}
+
 std::vector<std::string> running_port_grabbers() {
   constexpr std::array<std::string_view, 2> known{"ModemManager", "brltty"};
   std::set<std::string> running;

@@ -22,6 +22,10 @@ struct Holders {
 /// other users' programs.
 Holders find_holders(const std::set<std::string>& devices);
 
+/// Returns the first other program that holds this node, for the middle of a message: ", picocom
+/// (pid 4711)". Empty if none can be seen.
+std::string holder_of(const std::string& device);
+
 /// A line of /proc/locks: which program locked which file.
 struct FileLock {
   int pid = 0; ///< 0 or below: a program in another container

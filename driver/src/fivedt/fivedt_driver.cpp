@@ -28,10 +28,18 @@ constexpr std::array<Sensor, fingers> slots{
 
 constexpr SensorMask sensors = mask_of(slots);
 
+/// What the user says of the glove.
+struct Wishes {
+  bool wireless = false;
+  bool left_pinky_first = false;
+  SideOptions hands;
+};
+
 class FiveDtProtocol final : public GloveProtocol {
 public:
-  FiveDtProtocol(bool wireless, const SideOptions& hands) noexcept
-      : wireless_(wireless), hands_(hands) {}
+  explicit FiveDtProtocol(const Wishes& wishes) noexcept
+      : wireless_(wishes.wireless), left_pinky_first_(wishes.left_pinky_first),
+        hands_(wishes.hands) {}
 
   Result<GloveInfo> identify(Transport& transport, const std::string& source,
                              IdentifyReason /*occasion*/, const ReplyDeadline& patience) override {
@@ -55,7 +63,7 @@ public:
     const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < fingers; ++k)
-        sample.set(slots[k], RawCount{record.flexion[k]});
+        sample.set(slots[pinky_first() ? fingers - 1 - k : k], RawCount{record.flexion[k]});
       sample.side = side_;
       sink.deliver(sample);
     };
@@ -161,6 +169,14 @@ private:
     return describe(choose_hand(std::nullopt, hands_));
   }
 
+  bool pinky_first() const noexcept { return left_pinky_first_ && side_ == Side::left; }
+  /// For people: which finger comes first, and what to do if it is another one.
+  std::string finger_order() const {
+    if (side_ == Side::right) return "thumb first";
+    return pinky_first() ? "pinky first, as left_first=pinky says"
+                         : "thumb first; if that is the wrong way round, use left_first=pinky";
+  }
+
   GloveInfo describe(const ChosenHand& hand) {
     side_ = hand.side;
     GloveInfo info;
@@ -169,11 +185,13 @@ private:
     info.sensors = sensors;
     info.counts = {255, true};
     info.facts = {{"link", wireless_ ? "wireless" : "wired"},
-                  {"hand_source", std::string(hand.source)}};
+                  {"hand_source", std::string(hand.source)},
+                  {"finger_order", finger_order()}};
     return info;
   }
 
   const bool wireless_;
+  const bool left_pinky_first_;
   const SideOptions hands_;
   Side side_ = Side::right;
   Parser parser_;
@@ -182,14 +200,17 @@ private:
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<Side> side) {
-  if (auto allowed = allow_options(spec, {"baud", "hand"}); !allowed) return allowed.error();
+  if (auto allowed = allow_options(spec, {"baud", "hand", "left_first"}); !allowed)
+    return allowed.error();
   const auto baud = number_option(spec, "baud", {wired_baud, wireless_baud});
   if (!baud) return baud.error();
   const auto hand = hand_option(spec);
   if (!hand) return hand.error();
+  const auto left_first = word_option(spec, "left_first", {"thumb", "pinky"});
+  if (!left_first) return left_first.error();
   if (auto named = require_port(spec, "5dt:/dev/ttyUSB0"); !named) return named.error();
-  auto protocol =
-      std::make_unique<FiveDtProtocol>(*baud == wireless_baud, SideOptions{*hand, side});
+  auto protocol = std::make_unique<FiveDtProtocol>(
+      Wishes{*baud == wireless_baud, *left_first == "pinky", SideOptions{*hand, side}});
   return open_stream_glove(spec.text, follow_port(spec.target, *baud), std::move(protocol),
                            HostClock::now() + open_budget);
 }

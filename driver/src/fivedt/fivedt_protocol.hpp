@@ -1,10 +1,16 @@
 #pragma once
 // The serial protocol of the 5DT Data Glove 5. Each fact names who states it:
 //   [V]  VRPN's driver, whose authors had the maker's manual    [J]  VR Juggler's driver
+//   [M]  the maker's manual
 //
 // A sample [V, J]: 0x80, thumb, index, middle, ring, pinky, pitch, roll, checksum. Pitch and roll
 // come from a tilt sensor on the back of the hand: they say how the hand is held in space, not how
 // the wrist is bent, so they have no slot.
+//
+// Is that the order of a left glove, too? [V] and [J] take it for both hands. [M] reverses the
+// fingers of left gloves, but only where it describes thresholds and gesture bits, which are not
+// used here. One other driver reverses the sample as well. So thumb first is the default for both
+// hands, and an option turns it for those left gloves that are otherwise.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +32,7 @@ inline constexpr std::byte reset_answer{0x55};   ///< [V]
 inline constexpr std::byte header{0x80};           ///< [V, J]
 inline constexpr std::size_t data_bytes = 7;       ///< five fingers, pitch, roll [V, J]
 inline constexpr std::size_t sample_bytes = 9;     ///< with header and checksum [V, J]
-inline constexpr std::size_t fingers = 5;          ///< thumb to pinky; 0 straight, 255 bent [V, J]
+inline constexpr std::size_t fingers = 5;          ///< 0 straight, 255 bent [V, J]
 inline constexpr std::size_t most_extra_bytes = 1; ///< between two samples [V]
 // The checksum is the exclusive or of the data [J]; VRPN does not look at it.
 

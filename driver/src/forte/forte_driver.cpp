@@ -104,14 +104,6 @@ private:
   Parser parser_;
 };
 
-/// True: Bluetooth.
-Result<bool> link_option(const GloveSpec& spec) {
-  const auto option = spec.options.find("link");
-  if (option == spec.options.end() || option->second == "usb") return false;
-  if (option->second == "bluetooth") return true;
-  return Error{Errc::usage, spec.text + ": link=" + option->second + " is none of usb, bluetooth"};
-}
-
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<Side> side) {
@@ -121,12 +113,13 @@ Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<S
   if (!rate) return rate.error();
   const auto hand = hand_option(spec);
   if (!hand) return hand.error();
-  const auto bluetooth = link_option(spec);
-  if (!bluetooth) return bluetooth.error();
+  const auto link = word_option(spec, "link", {"usb", "bluetooth"});
+  if (!link) return link.error();
   if (auto named = require_port(spec, "forte:/dev/ttyACM0"); !named) return named.error();
-  return open_stream_glove(spec.text, follow_port(spec.target, *rate),
-                           std::make_unique<ForteProtocol>(*bluetooth, SideOptions{*hand, side}),
-                           HostClock::now() + open_budget);
+  return open_stream_glove(
+      spec.text, follow_port(spec.target, *rate),
+      std::make_unique<ForteProtocol>(*link == "bluetooth", SideOptions{*hand, side}),
+      HostClock::now() + open_budget);
 }
 
 } // namespace nendo::driver::forte

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "lucidgloves/lucidgloves_parser.hpp"
 #include "lucidgloves/lucidgloves_slots.hpp"
 #include "spec/glove_options.hpp"
@@ -22,6 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto write_timeout = 100ms;
+constexpr auto at_once = 0ms;          ///< for the reader, which must not wait
 constexpr auto starting_time = 2500ms; ///< a board that restarts at opening, boot loader included
 constexpr auto learning_time = 300ms;  ///< for an answer, and for lines with all slots
 
@@ -32,12 +35,14 @@ struct Acquaintance {
   std::optional<std::uint32_t> firmware;
   std::optional<std::uint32_t> device;
   bool legacy = false;
+  bool clamped = false;
 
   void add(const Line& line, std::uint16_t range) noexcept {
     GloveSample sample;
     fill_slots(line, range, sample);
     sensors.bits |= sample.present.bits;
     legacy = legacy || line.legacy;
+    clamped = clamped || line.clamped;
     if (line.firmware) firmware = line.firmware;
     if (line.device) device = line.device;
     if (line.hand == hand_left) hand = Side::left;
@@ -76,6 +81,10 @@ public:
     const ChosenHand hand = choose_hand(glove.hand, hands_);
     side_ = hand.side;
     legacy_ = glove.legacy;
+    if (glove.clamped && !std::exchange(told_of_clamping_, true)) {
+      spdlog::warn("device: {} sends numbers above {}, which count as {}{}", source, range_, range_,
+                   range_ < esp32_range ? "; the boards with larger ones have range=4095" : "");
+    }
     return describe(glove, hand);
   }
 
@@ -89,53 +98,68 @@ public:
 
   /// The stream goes on, since a glove that somebody stopped looks dead to programs that know no
   /// (ZA). But nobody's fingers are to stay locked.
-  void end_stream(Transport& transport, const ReplyDeadline& patience) noexcept override {
-    if (braking_) set_feedback(transport, {}, patience);
+  void end_stream(Transport& transport, const ReplyDeadline& /*patience*/) noexcept override {
+    brakes_ = {};
+    if (std::exchange(has_braked_, false) && !legacy_) show_brakes(transport, write_timeout);
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
     const auto take = [&](const Line& line) {
       if (!line.measures()) return;
+      legacy_ = line.legacy; // another glove may have come to the same port
       GloveSample sample;
       fill_slots(line, range_, sample);
       sample.side = side_;
       sink.deliver(sample);
     };
     parser_.push(chunk, FindingSink{take, [&](BadRecord) { sink.reject(); }});
+    its_turn_ = chunk.empty() || std::find(chunk.begin(), chunk.end(), line_end) != chunk.end();
   }
 
-  void set_feedback(Transport& transport, const Feedback& feedback,
+  /// One answer to whatever lines came together, however many: so those that wait in the glove
+  /// become fewer where the host was late, and brakes take effect soon. Damaged lines count, too,
+  /// and a glove that says nothing for 0.1 s is waiting for an answer that was lost.
+  void answer(Transport& transport) noexcept override {
+    if (legacy_ || !std::exchange(its_turn_, false)) return;
+    if (has_braked_) {
+      show_brakes(transport, at_once);
+    } else {
+      send(transport, empty_line, at_once);
+    }
+  }
+
+  /// The next answer tells them, and all later ones do: a lost line must not leave a finger locked.
+  void set_feedback(Transport& /*transport*/, const Feedback& feedback,
                     const ReplyDeadline& /*patience*/) noexcept override {
     if (legacy_) return;
-    std::array<unsigned, fingers> brake{};
     for (std::size_t k = 0; k < fingers; ++k)
-      brake[k] = std::min(feedback.resistance[k], most_resistance);
-    std::array<char, 40> text{};
-    const int length = std::snprintf(text.data(), text.size(), "\nA%uB%uC%uD%uE%u\n", brake[0],
-                                     brake[1], brake[2], brake[3], brake[4]);
-    std::string_view command(text.data(), static_cast<std::size_t>(length));
-    if (!cut_off_) command.remove_prefix(1); // the LF that ends what was cut off
-    cut_off_ = send(transport, command) == IoStatus::timeout;
-    braking_ = brake != std::array<unsigned, fingers>{};
+      brakes_[k] = std::min(feedback.resistance[k], most_resistance);
+    has_braked_ = has_braked_ || brakes_ != std::array<unsigned, fingers>{};
   }
 
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
 private:
-  static IoStatus send(Transport& transport, std::string_view command) noexcept {
-    return transport.write_all(std::as_bytes(std::span(command)), write_timeout);
+  static IoStatus send(Transport& transport, std::string_view command,
+                       std::chrono::milliseconds timeout = write_timeout) noexcept {
+    return transport.write_all(std::as_bytes(std::span(command)), timeout);
   }
-  Error stranger(const std::string& source, const StreamCounters& heard) const {
+  void show_brakes(Transport& transport, std::chrono::milliseconds timeout) noexcept {
+    std::array<char, 40> text{};
+    const int length = std::snprintf(text.data(), text.size(), "\nA%uB%uC%uD%uE%u\n", brakes_[0],
+                                     brakes_[1], brakes_[2], brakes_[3], brakes_[4]);
+    std::string_view command(text.data(), static_cast<std::size_t>(length));
+    if (!cut_off_) command.remove_prefix(1); // the LF that ends what was cut off
+    cut_off_ = send(transport, command, timeout) == IoStatus::timeout;
+  }
+  static Error stranger(const std::string& source, const StreamCounters& heard) {
     if (heard.bytes == 0) {
       return {Errc::no_device,
               source + ": nothing comes from it; is the glove switched on, and is this its port?"};
     }
-    return {Errc::no_device, source +
-                                 ": what comes from it are no lines of a LucidGlove with "
-                                 "numbers up to " +
-                                 std::to_string(range_) +
-                                 "; is this its port, and are baud and range right?"};
+    return {Errc::no_device, source + ": what comes from it are no lines of a LucidGlove; is this "
+                                      "its port, and is baud right?"};
   }
   GloveInfo describe(const Acquaintance& glove, const ChosenHand& hand) const {
     GloveInfo info;
@@ -148,6 +172,8 @@ private:
                   {"hand_source", std::string(hand.source)}};
     if (glove.firmware) info.facts.push_back({"firmware", std::to_string(*glove.firmware)});
     if (glove.device) info.facts.push_back({"device_type", std::to_string(*glove.device)});
+    if (glove.clamped)
+      info.facts.push_back({"above_range", "some values; they count as " + std::to_string(range_)});
     return info;
   }
 
@@ -155,8 +181,11 @@ private:
   const SideOptions hands_;
   Side side_ = Side::right;
   bool legacy_ = false;
-  bool braking_ = false; ///< a finger is held
+  bool its_turn_ = false;   ///< the glove may be waiting for an answer
+  bool has_braked_ = false; ///< since it was started
+  bool told_of_clamping_ = false;
   bool cut_off_ = false; ///< the glove took the last command only in part
+  std::array<unsigned, fingers> brakes_{};
   Parser parser_;
 };
 

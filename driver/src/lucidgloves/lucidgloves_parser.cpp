@@ -114,9 +114,10 @@ private:
     return set(line_.joint[finger][index_of(key[2])], number);
   }
 
-  bool set(Line::Value& value, const Number& number) const noexcept {
-    if (value || !number || *number > range_) return false;
-    value = static_cast<std::uint16_t>(*number);
+  bool set(Line::Value& value, const Number& number) noexcept {
+    if (value || !number || *number > most_above_range) return false;
+    line_.clamped = line_.clamped || *number > range_;
+    value = static_cast<std::uint16_t>(std::min<std::uint32_t>(*number, range_));
     return true;
   }
   static bool set_once(Number& value, const Number& number) noexcept {

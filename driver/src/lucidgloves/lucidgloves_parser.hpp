@@ -26,14 +26,15 @@ struct Line {
   std::optional<std::uint32_t> device;
   std::optional<std::uint32_t> hand;
   bool legacy = false;
+  bool clamped = false; ///< a value was above the range
 
   bool measures() const noexcept; ///< has a value of a finger
   bool informs() const noexcept;  ///< has a value of the glove itself
 };
 
-/// Decodes one line without its end. Returns nothing if it violates the encoding, holds a number
-/// above `range`, tells a value twice (as two lines that were joined do), or tells nothing of a
-/// hand.
+/// Decodes one line without its end. Values above `range` become `range`. Returns nothing if the
+/// line violates the encoding, holds a value above most_above_range, tells a value twice (as two
+/// lines that were joined do), or tells nothing of a hand.
 std::optional<Line> decode_line(std::string_view text, std::uint16_t range) noexcept;
 
 class Parser {

@@ -1,8 +1,10 @@
 #pragma once
 // The serial protocol of LucidGloves and everything else that speaks to OpenGloves: text lines.
 // Each fact names who states it:
-//   [F]  the LucidGloves firmware        [O]  the OpenGloves driver, the host's side
+//   [F]  the LucidGloves firmware, up to commit 76472c7
+//   [O]  the OpenGloves driver, the host's side
 //   [S]  SenseShift's OpenGloves library, the only one with information replies
+//   [?]  stated by nobody, chosen here
 //
 // From the glove, one line a sample, ended by LF [F, O]:
 //   A..E          curl of thumb, index, middle, ring, pinky: 0 straight .. `range` bent [F, O]
@@ -25,19 +27,38 @@ inline constexpr int baud = 115'200; ///< 8N1 [F, O]
 
 inline constexpr std::size_t fingers = 5;
 inline constexpr std::size_t joints = 4;
-inline constexpr std::size_t legacy_values = 13;    ///< [F]
-inline constexpr std::uint16_t esp32_range = 4095;  ///< the largest number; 12 bits [F, O]
-inline constexpr std::uint16_t avr_range = 1023;    ///< 10 bits [F]
+inline constexpr std::size_t legacy_values = 13;   ///< [F]
+inline constexpr std::uint16_t esp32_range = 4095; ///< the largest number; 12 bits [F, O]
+inline constexpr std::uint16_t avr_range = 1023;   ///< 10 bits [F]
+/// A firmware that was built with CLAMP_ANALOG_MAP false sends what its calibration makes of a
+/// finger that goes further than it did before, also above the range [F]. [O] takes such a line,
+/// and leaves that finger as it was. Here the finger is at the end of its range, where it really
+/// is, up to this number. Beyond that it is no finger: two numbers that ran into one, or damage
+/// [?]. The same firmware sends numbers below 0, too. [O] refuses lines with a sign, and so do we.
+inline constexpr std::uint32_t most_above_range = 65'535;
 inline constexpr std::size_t most_line_bytes = 256; ///< with LF; firmwares have 75 [F] to 256 [S]
 inline constexpr std::uint32_t hand_left = 0;       ///< (ZH) [S]
 inline constexpr std::uint32_t hand_right = 1;      ///< (ZH) [S]
 
 // To the glove. Firmwares that do not know a command look in it for the letters A to E and a
-// number: the first command has none, the second frees the thumb [F]. Legacy firmwares take any
-// line for five brakes joined by &, and missing ones get undefined values [F]. So once such a
-// firmware is recognised, nothing is sent to it.
+// number: the first command has none, the second frees the thumb, unless they ignore lines of less
+// than five characters, as today's do [F]. Legacy firmwares take any line for five brakes joined by
+// &, and missing ones get undefined values [F]. So once such a firmware is recognised, nothing is
+// sent to it.
+//
+// With force feedback (USING_FORCE_FEEDBACK true, the default today) the firmware's loop sends a
+// line and then waits for one, for Arduino's 1 s [F]. [O] writes a line for each one that it reads.
+// A host that writes nothing gets one line a second. So each line is answered: by the brakes, if
+// anything has set them, or else by an empty line, which all firmwares ignore [F, S].
+//
+// Nobody knows beforehand which firmware is there, so the glove has the first word, and its first
+// whole line tells: a legacy one begins with a digit, any other with a letter or a bracket. Legacy
+// firmwares with force feedback wait, too. They stay slow: an empty line would do them no harm
+// today, but that is the word of one version.
 inline constexpr std::string_view ask_information = "\nZ\n"; ///< answered by (ZV) (ZG) (ZH) [S]; LF
                                                              ///< ends what another host left
+inline constexpr std::byte line_end{'\n'};
+inline constexpr std::string_view empty_line = "\n";
 inline constexpr std::string_view start_streaming = "(ZA)\n"; ///< where it was stopped by (ZZ) [S]
 // Brakes: A%dB%dC%dD%dE%d\n, 0 free to `most_resistance` locked [F, O].
 inline constexpr std::uint16_t most_resistance = 1000;

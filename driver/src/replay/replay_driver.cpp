@@ -19,6 +19,7 @@ namespace {
 struct Settings {
   double speed = 1.0;
   bool loops = false;
+  bool holds = false; ///< after its last sample it is silent, and never says that it has ended
 };
 
 Error error_of(const GloveSpec& spec, Errc code, const std::string& what) {
@@ -40,6 +41,13 @@ Result<Settings> settings_of(const GloveSpec& spec) {
     if (option->second != "yes" && option->second != "no")
       return error_of(spec, Errc::usage, "loop is yes or no");
     settings.loops = option->second == "yes";
+  }
+  if (const auto option = spec.options.find("end"); option != spec.options.end()) {
+    if (option->second != "stop" && option->second != "hold")
+      return error_of(spec, Errc::usage, "end is stop or hold");
+    if (settings.loops)
+      return error_of(spec, Errc::usage, "with loop=yes there is no end; leave end= out");
+    settings.holds = option->second == "hold";
   }
   return settings;
 }
@@ -85,6 +93,7 @@ public:
   const GloveInfo& info() const noexcept override { return info_; }
 
   Result<void> start(SampleRing& ring) override {
+    ended_.store(false, std::memory_order_relaxed);
     return reader_.start(info_.source,
                          [this, &ring](const std::stop_token& stop) { replay(stop, ring); });
   }
@@ -98,6 +107,8 @@ public:
     return stats;
   }
 
+  bool has_ended() const noexcept override { return ended_.load(std::memory_order_acquire); }
+
   void set_feedback(const Feedback& /*feedback*/) noexcept override {} // nobody wears it
 
 private:
@@ -105,9 +116,11 @@ private:
     HostTime begin = HostClock::now();
     do {
       const auto end = replay_once(stop, ring, begin);
-      if (!end) return;
+      if (!end) break; // it is to stop, or its file has been taken away
       begin = *end;
     } while (settings_.loops);
+    if (settings_.holds || stop.stop_requested()) return;
+    ended_.store(true, std::memory_order_release); // whoever sees it sees all samples, too
   }
 
   /// When the next pass begins; nothing if there is none.
@@ -136,6 +149,9 @@ private:
   }
 
   void deliver(GloveSample sample, std::uint64_t sequence, HostTime measured, SampleRing& ring) {
+    sample.is_replayed = true;
+    sample.recorded_arrival = sample.arrival;
+    sample.recorded_measured = sample.measured;
     sample.sequence = sequence;
     sample.arrival = HostClock::now();
     sample.measured = sample.has_device_time ? std::min(measured, sample.arrival) : sample.arrival;
@@ -163,6 +179,7 @@ private:
   std::atomic<std::uint64_t> records_{0};
   std::atomic<std::uint64_t> missed_{0};
   std::atomic<std::uint64_t> ring_refused_{0};
+  std::atomic<bool> ended_{false};
   ReaderThread reader_; // last: joined before what it uses is gone
 };
 
@@ -198,7 +215,8 @@ Result<RecordedGlove> choose(const GloveSpec& spec, std::vector<RecordedGlove> g
 } // namespace
 
 Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<Side> side) {
-  if (const auto fine = allow_options(spec, {"hand", "speed", "loop"}); !fine) return fine.error();
+  if (const auto fine = allow_options(spec, {"hand", "speed", "loop", "end"}); !fine)
+    return fine.error();
   if (spec.target.empty())
     return error_of(spec, Errc::usage, "name the recording, e.g. replay:take1.nendo");
   const auto settings = settings_of(spec);

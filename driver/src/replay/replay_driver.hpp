@@ -10,11 +10,13 @@
 
 namespace nendo::driver {
 
-/// Opens `replay:FILE?hand=left|right&speed=X&loop=yes|no`. If the file has several gloves, `hand`
-/// or else `side` chooses one. Samples keep counts, sequence and device time. Their host times are
-/// new; the times between them are divided by `speed` (0.01 to 100). After the last sample the
-/// glove is silent, or begins again with `loop`, and its sequence goes on. Errors: usage (options),
-/// bad_input (no recording, no samples), no_device (not of that hand).
+/// Opens `replay:FILE?hand=left|right&speed=X&loop=yes|no&end=stop|hold`. If the file has several
+/// gloves, `hand` or else `side` chooses one. Samples keep counts, sequence and device time. Their
+/// host times are new, and recorded_arrival and recorded_measured are the old ones; the times
+/// between them are divided by `speed` (0.01 to 100). After the last sample the glove has ended;
+/// with `loop` it begins again, and its sequence goes on; with `end=hold` it is silent, like a
+/// glove that lies on the table. Errors: usage (options), bad_input (no recording, no samples),
+/// no_device (not of that hand).
 Result<std::unique_ptr<Glove>> open_replay(const GloveSpec& spec, std::optional<Side> side);
 
 } // namespace nendo::driver

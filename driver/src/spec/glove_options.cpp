@@ -1,8 +1,18 @@
 #include "spec/glove_options.hpp"
 
 #include <string>
+#include <utility>
 
 namespace nendo::driver {
+namespace {
+
+Error none_of(const GloveSpec& spec, const std::pair<const std::string, std::string>& option,
+              const std::string& list) {
+  return {Errc::usage,
+          spec.text + ": " + option.first + "=" + option.second + " is none of " + list};
+}
+
+} // namespace
 
 Result<int> number_option(const GloveSpec& spec, std::string_view key,
                           std::initializer_list<int> known) {
@@ -13,17 +23,26 @@ Result<int> number_option(const GloveSpec& spec, std::string_view key,
     if (option->second == std::to_string(number)) return number;
     list += (list.empty() ? "" : ", ") + std::to_string(number);
   }
-  return Error{Errc::usage,
-               spec.text + ": " + option->first + "=" + option->second + " is none of " + list};
+  return none_of(spec, *option, list);
+}
+
+Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key,
+                                     std::initializer_list<std::string_view> known) {
+  const auto option = spec.options.find(std::string(key));
+  if (option == spec.options.end()) return *known.begin();
+  std::string list;
+  for (const std::string_view word : known) {
+    if (option->second == word) return word;
+    list.append(list.empty() ? "" : ", ").append(word);
+  }
+  return none_of(spec, *option, list);
 }
 
 Result<std::optional<Side>> hand_option(const GloveSpec& spec) {
-  const auto option = spec.options.find("hand");
-  if (option == spec.options.end()) return std::optional<Side>{};
-  for (const Side side : {Side::left, Side::right}) {
-    if (option->second == name_of(side)) return std::optional(side);
-  }
-  return Error{Errc::usage, spec.text + ": hand=" + option->second + " is none of left, right"};
+  if (spec.options.find("hand") == spec.options.end()) return std::optional<Side>{};
+  const auto hand = word_option(spec, "hand", {"left", "right"});
+  if (!hand) return hand.error();
+  return std::optional(*hand == "left" ? Side::left : Side::right);
 }
 
 ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept {

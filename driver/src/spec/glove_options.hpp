@@ -1,6 +1,6 @@
 #pragma once
-// Options by which a user tells what a glove itself may not tell: its hand, and numbers out of a
-// short list.
+// Options by which a user tells what a glove itself may not tell: its hand, and numbers and words
+// out of a short list.
 
 #include <initializer_list>
 #include <optional>
@@ -15,6 +15,11 @@ namespace nendo::driver {
 /// naming all of `known`.
 Result<int> number_option(const GloveSpec& spec, std::string_view key,
                           std::initializer_list<int> known);
+
+/// Returns the option's word, or the first of `known` if the option is missing. Error: usage,
+/// naming all of `known`. `known` must be of literals.
+Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key,
+                                     std::initializer_list<std::string_view> known);
 
 /// Returns the side of `hand=left|right`, or nothing if the option is missing. Error: usage.
 Result<std::optional<Side>> hand_option(const GloveSpec& spec);

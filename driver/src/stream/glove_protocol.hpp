@@ -68,6 +68,10 @@ public:
   /// Takes the next bytes of the stream, cut anywhere. The last of them arrived at `arrival`.
   virtual void push(std::span<const std::byte> chunk, HostTime arrival,
                     SampleSink& sink) noexcept = 0;
+  /// Writes what the device waits for before it sends more, if it is of that kind. Called after
+  /// each push(), also when nothing had come for 0.1 s. Must not wait for the device, or the reader
+  /// falls behind. If the device went away, the next read reports it.
+  virtual void answer(Transport& transport) noexcept { (void)transport; }
   /// Returns true once the device may have been exchanged. identify() must then be called before
   /// further records can be trusted.
   virtual bool is_doubtful() const noexcept { return false; }

@@ -90,6 +90,7 @@ private:
   void deliver(GloveSample& sample) noexcept override;
   void reject() noexcept override { ++bad_since_record_; }
   void show_feedback(const std::stop_token& token) noexcept;
+  void skip_backlog(HostClock::duration waited) noexcept;
   void measure_rate(HostTime now);
   void revive(const std::stop_token& token);
   void reopen(const std::stop_token& token);
@@ -118,6 +119,7 @@ private:
   std::uint64_t sequence_ = 0;
   std::uint64_t bad_since_record_ = 0; ///< bad ones since the last good one
   double rate_reported_hz_ = 0.0;
+  bool caught_up_ = false;  ///< what had waited for start() has been read
   bool outage_ = false;     ///< no record since the stream broke off
   bool unanswered_ = false; ///< the last question who is there had no good answer
 
@@ -136,7 +138,7 @@ Result<void> StreamGlove::start(SampleRing& ring) {
   ring_ = &ring;
   sequence_ = 0;
   bad_since_record_ = 0;
-  outage_ = unanswered_ = false;
+  outage_ = unanswered_ = caught_up_ = false;
   window_begin_ = HostClock::now();
   window_begins_with_ = 0;
   reader_ = std::jthread([this](const std::stop_token& token) { run(token); });
@@ -189,11 +191,14 @@ StreamGlove::StreamEnd StreamGlove::stream(const std::stop_token& token) {
   last_record_ = HostClock::now();
   while (!token.stop_requested()) {
     if (!transport_) return StreamEnd::gone;
+    const HostTime asked = HostClock::now();
     const auto [status, count] = transport_->read_some(buffer, read_timeout);
     arrival_ = HostClock::now();
     if (status == IoStatus::gone) return StreamEnd::gone;
     protocol_->push(std::span(buffer).first(count), arrival_, *this);
+    protocol_->answer(*transport_);
     stats_.store(protocol_->counters(), at_start_);
+    if (!caught_up_) skip_backlog(arrival_ - asked);
     measure_rate(arrival_);
     if (protocol_->is_doubtful() || bad_since_record_ >= bad_in_a_row) return StreamEnd::doubtful;
     if (arrival_ - last_record_ > longest_silence) return StreamEnd::silent;
@@ -220,6 +225,15 @@ void StreamGlove::show_feedback(const std::stop_token& token) noexcept {
     feedback = feedback_;
   }
   protocol_->set_feedback(*transport_, feedback, {HostClock::now() + feedback_budget, token});
+}
+
+/// What had waited for start() comes at once, and says nothing of the glove's rate. So the first
+/// window begins where a read had to wait.
+void StreamGlove::skip_backlog(HostClock::duration waited) noexcept {
+  constexpr auto shortest_wait = 500us;
+  caught_up_ = waited >= shortest_wait;
+  window_begin_ = arrival_;
+  window_begins_with_ = sequence_;
 }
 
 /// What the glove really delivers; a rate that is not the one it was set to is told once.

@@ -6,6 +6,7 @@
 
 #include <sys/stat.h>
 
+#include "discovery/programs.hpp"
 #include "transport/port_access.hpp"
 
 namespace nendo::driver {
@@ -21,7 +22,8 @@ Error open_error(const std::string& path, int error_number) {
   }
   case EBUSY:
   case EWOULDBLOCK:
-    return {Errc::no_device, path + " is in use by another program; close that one first"};
+    return {Errc::no_device, path + " is in use by another program" +
+                                 holder_of(resolve_port(path)) + "; close that one first"};
   case ENOENT:
   case ENOTDIR:
     return {Errc::no_device,

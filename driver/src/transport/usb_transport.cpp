@@ -13,6 +13,8 @@
 
 #include <nendo/base/units.hpp>
 
+#include "discovery/programs.hpp"
+
 namespace nendo::driver {
 namespace {
 
@@ -295,7 +297,8 @@ Error open_failure(const UsbIdentity& identity, int result) {
   case LIBUSB_ERROR_ACCESS:
     return usb_permission_error(identity);
   case LIBUSB_ERROR_BUSY:
-    return {Errc::no_device, who + " is in use by another program; close that one first"};
+    return {Errc::no_device, who + " is in use by another program" + holder_of(node_of(identity)) +
+                                 "; close that one first"};
   case LIBUSB_ERROR_NO_DEVICE:
     return {Errc::no_device, who + " went away; is the cable loose?"};
   case LIBUSB_ERROR_NOT_FOUND:

@@ -50,6 +50,10 @@ struct Supports {
   bool are_usable() const noexcept;
 };
 
+/// Tells whether all of the box is within the largest radius of each of these start points, so that
+/// nothing in it stays where it is. False if the box or the list is empty, or the box is one point.
+bool reach_all_of(const Box& box, const Points& starts, const Supports& supports);
+
 /// Returns one shared function with this radius in model units, > 0.
 inline Supports one_radius(double radius) {
   return {{Support{radius}}, {}};

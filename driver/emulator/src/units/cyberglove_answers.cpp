@@ -2,9 +2,12 @@
 
 #include "units/cyberglove_unit.hpp"
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace nendo::emulator {
 
@@ -27,7 +30,8 @@ std::string information(unsigned model, const PluggedGlove& glove) {
 constexpr std::string_view help =
     " \r\n"
     "G one record, S stream, ^C stop, ^I read the glove again, ^R restart\r\n"
-    "set: A B C D F J L M N P Q T U W Y; ask: ? and the letter, also ?G ?K ?R ?S ?V ?i\r\n"
+    "set: A B C D F J L M N P Q T U W Y; ask: ? and the letter, also G K R S V i\r\n"
+    "small letters: numbers in text, and so are the answers\r\n"
     "errors: e? unknown, en number, ey sync rate, eg no glove, es sampling rate\r\n";
 
 Message calibration(const Settings& settings, std::uint32_t mask) {
@@ -69,68 +73,81 @@ std::uint32_t CyberGloveUnit::parameters() const noexcept {
 }
 
 void CyberGloveUnit::answer(Byte letter) {
-  const auto data = lookup(letter);
-  if (!data) {
-    reply({'e', '?', 0});
-    return;
-  }
   Message message{'?', letter};
-  message.insert(message.end(), data->begin(), data->end());
+  if (const auto words = text(letter)) {
+    append(message, *words);
+  } else if (const auto values = numbers(letter)) {
+    // The order of T's bytes is disputed, that of the others is not.
+    const bool high_first = letter == 'T' && options_.period_order == WordOrder::high_first;
+    for (const unsigned value : *values) {
+      Message bytes = low_first(value, static_cast<unsigned>(number_width(letter)));
+      if (high_first) std::reverse(bytes.begin(), bytes.end());
+      message.insert(message.end(), bytes.begin(), bytes.end());
+    }
+  } else {
+    message = {'e', '?'};
+  }
   message.push_back(0);
   reply(message);
 }
 
-std::optional<Message> CyberGloveUnit::lookup(Byte letter) const {
-  const auto text = [](std::string_view words) { return Message(words.begin(), words.end()); };
+// A small letter asks for the same numbers in text, as decimals. That there are so many of them for
+// each letter, a driver for the hardware tells, and that bytes of masks come lowest first. Another
+// one reads the number from the fourth byte of the answer on. The blank before each number, and the
+// end of the line, are those of records in text.
+std::optional<std::string> CyberGloveUnit::text(Byte letter) const {
   switch (letter) {
-  case 'A':
-    if (!options_.touch) return std::nullopt;
-    return Message(settings_.vibration.begin(), settings_.vibration.end());
-  case 'B':
-    return Message{settings_.baud};
-  case 'C':
-    return calibration(settings_, known_.mask);
-  case 'c':
-    return text(" \r\n" + calibration_text(settings_, known_.mask));
-  case 'G':
-    return Message{static_cast<Byte>(plugged_ ? 3 : 1)}; // initialised, and connected
-  case 'K':
-    return low_first(known_.mask, 3);
-  case 'M':
-    return low_first(settings_.mask, 3);
-  case 'N':
-    return Message{settings_.values};
-  case 'P':
-    return low_first(parameters(), 3);
-  case 'R':
-    return Message{static_cast<Byte>(known_.side == Side::right ? 1 : 0)};
-  case 'S':
-    return Message{static_cast<Byte>(known_.sensors())};
-  case 'T': {
-    Message words;
-    for (const std::uint16_t word : {settings_.period_ticks, settings_.period_repeats}) {
-      const auto high = static_cast<Byte>(word >> 8U);
-      const auto low = static_cast<Byte>(word);
-      const bool high_first = options_.period_order == WordOrder::high_first;
-      words.push_back(high_first ? high : low);
-      words.push_back(high_first ? low : high);
-    }
-    return words;
-  }
-  case 'V':
-    return Message{2, 0, 1, 0}; // zeros on purpose: hosts must count bytes, not look for NUL
-  case 'v':
-    return text(" 2.1\r\n");
   case 'i':
-    return text(information(options_.model, known_));
+    return information(options_.model, known_);
   case '?':
-    return text(help);
+    return std::string(help);
+  case 'c':
+    return " \r\n" + calibration_text(settings_, known_.mask);
   default:
     break;
   }
-  if (const auto state = switch_state(settings_, letter)) {
-    return Message{static_cast<Byte>(*state ? 1 : 0)};
+  const auto values =
+      is_lower(letter) ? numbers(letter == 'y' ? letter : to_upper(letter)) : std::nullopt;
+  if (!values) return std::nullopt;
+  std::string line;
+  for (const unsigned value : *values)
+    line += " " + std::to_string(value);
+  return line + "\r\n";
+}
+
+std::optional<std::vector<unsigned>> CyberGloveUnit::numbers(Byte letter) const {
+  using Numbers = std::vector<unsigned>;
+  const auto all = [](const auto& bytes) { return Numbers(bytes.begin(), bytes.end()); };
+  switch (letter) {
+  case 'A':
+    if (!options_.touch) return std::nullopt;
+    return all(settings_.vibration);
+  case 'B':
+    return Numbers{settings_.baud};
+  case 'C':
+    return all(calibration(settings_, known_.mask));
+  case 'G':
+    return Numbers{plugged_ ? 3U : 1U}; // initialised, and connected
+  case 'K':
+    return all(low_first(known_.mask, 3));
+  case 'M':
+    return all(low_first(settings_.mask, 3));
+  case 'N':
+    return Numbers{settings_.values};
+  case 'P':
+    return all(low_first(parameters(), 3));
+  case 'R':
+    return Numbers{known_.side == Side::right ? 1U : 0U};
+  case 'S':
+    return Numbers{static_cast<unsigned>(known_.sensors())};
+  case 'T':
+    return Numbers{settings_.period_ticks, settings_.period_repeats};
+  case 'V':
+    return Numbers{2, 1}; // of unit and glove; as bytes with zeros, so that hosts must count them
+  default:
+    break;
   }
+  if (const auto state = switch_state(settings_, letter)) return Numbers{*state ? 1U : 0U};
   return std::nullopt;
 }
 

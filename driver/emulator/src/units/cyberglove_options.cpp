@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include <nendo/base/units.hpp>
+
 #include "units/capture.hpp"
 #include "units/cyberglove_unit.hpp"
 
@@ -33,6 +35,9 @@ Result<void> check(const EmulatorOptions& options) {
   }
   if (special.reply_bytes != 2 && special.reply_bytes != 3) {
     return usage("reply-bytes " + std::to_string(special.reply_bytes) + ": use 2 or 3");
+  }
+  if (!(special.restart_s >= 0.0 && special.restart_s <= 60.0)) {
+    return usage("restart-time: use 0s to 60s");
   }
   if (!(options.rate_hz >= 1.0 && options.rate_hz <= CyberGloveUnit::most_rate_hz)) {
     return usage("rate: use 1 to 480 records a second (what 115200 baud can carry)");
@@ -65,6 +70,10 @@ Result<std::unique_ptr<EmulatedUnit>> make_cyberglove_unit(const EmulatorOptions
   unit.period_order =
       special.period_low_first ? unit::WordOrder::low_first : unit::WordOrder::high_first;
   unit.stamp_bit7 = special.stamp_bit7;
+  unit.hires_form =
+      special.hires_terminated ? unit::HiResForm::terminated : unit::HiResForm::hardware;
+  unit.restart_time = from_seconds(special.restart_s);
+  unit.overrun = special.overrun;
   unit.streaming = special.streaming;
   unit.pattern = special.pattern;
   return std::unique_ptr<EmulatedUnit>(std::make_unique<CyberGloveUnit>(unit));

@@ -112,7 +112,7 @@ Message RecordMaker::fine_record(const RecordFrame& frame,
                 static_cast<unsigned>(seconds / 3600 % 24),
                 static_cast<unsigned>(seconds / 60 % 60), static_cast<unsigned>(seconds % 60),
                 static_cast<unsigned>(parts / frame.subframes + 1),
-                static_cast<unsigned>(parts % frame.subframes + 1));
+                static_cast<unsigned>(parts % frame.subframes + frame.first_subframe));
   Message record;
   append(record, text.data());
   const driver::JointAngles pose = angles(frame.now);

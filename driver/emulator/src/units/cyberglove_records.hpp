@@ -21,8 +21,9 @@ struct RecordFrame {
   EmulatedUnit::Time now{};
   std::uint64_t ticks = 0; ///< of the unit's clock
   Byte status = 0;
-  bool too_fast = false;  ///< the period is too short: `es`
-  unsigned subframes = 1; ///< 12-bit records: how many there are in a frame of 1/30 s
+  bool too_fast = false;       ///< the period is too short: `es`
+  unsigned subframes = 1;      ///< 12-bit records: how many there are in a frame of 1/30 s
+  unsigned first_subframe = 0; ///< the number of the first of them
 };
 
 class RecordMaker {

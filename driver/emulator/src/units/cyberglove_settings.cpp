@@ -137,7 +137,7 @@ std::optional<std::size_t> argument_bytes(Byte letter, const Message& argument,
 }
 
 std::size_t number_width(Byte letter) noexcept {
-  return letter == 'T' ? 2 : 1;
+  return letter == 'T' || letter == 'V' ? 2 : 1;
 }
 
 bool apply(Settings& settings, Byte letter, const Message& argument, WordOrder order,

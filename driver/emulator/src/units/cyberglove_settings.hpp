@@ -15,6 +15,11 @@ namespace nendo::emulator::unit {
 
 inline constexpr std::uint64_t tick_hz = 115200; // of the period T and of the time stamp
 
+// Control commands, a single byte each.
+inline constexpr Byte stop_byte = 0x03;    ///< ends a stream, or a command that is incomplete
+inline constexpr Byte reread_byte = 0x09;  ///< reads the glove, after a swap
+inline constexpr Byte restart_byte = 0x12; ///< restarts the firmware
+
 /// The glove itself, which the unit reads when it starts and at 0x09.
 struct PluggedGlove {
   Side side = Side::right;
@@ -58,7 +63,7 @@ enum class WordOrder : std::uint8_t { high_first, low_first };
 /// capital letter.
 std::optional<std::size_t> argument_bytes(Byte letter, const Message& argument,
                                           std::size_t sensors);
-/// Returns how many bytes each number of the command's text form stands for.
+/// Returns how many bytes each number of a command or a query stands for.
 std::size_t number_width(Byte letter) noexcept;
 
 /// Handles a set command whose argument is complete. Returns false, and sets nothing, if a number

@@ -11,6 +11,14 @@
 
 namespace nendo::emulator::unit {
 
+inline constexpr Byte three_prefix = '1'; ///< and the header of a stream of 12-bit records
+
+/// How 12-bit streams begin, end, and count.
+enum class HiResForm : std::uint8_t {
+  hardware,  ///< 1S is echoed without NUL, 0x03 is answered by itself, sub-frames count from 0
+  terminated ///< both answers end in NUL as all others, and sub-frames count from 1
+};
+
 struct ThreeSettings {
   unsigned frames = 3;  ///< the base rate in units of 30 Hz
   unsigned divider = 1; ///< of the base rate, for the USB sink

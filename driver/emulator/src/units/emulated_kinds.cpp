@@ -1,6 +1,7 @@
 #include "units/emulated_kinds.hpp"
 
 #include <array>
+#include <cstddef>
 #include <string>
 
 #include "units/cyberglove_unit.hpp"
@@ -11,17 +12,85 @@
 namespace nendo::emulator {
 namespace {
 
+// The first variant of each glove and option is the default. Their order is that of the units'
+// enums.
+constexpr std::array variants{
+    EmulatedVariant{"lucidgloves", "firmware", "senseshift",
+                    "answers questions, stops when it is told to, takes brakes"},
+    EmulatedVariant{"lucidgloves", "firmware", "streaming",
+                    "LucidGloves without force feedback: hears nothing"},
+    EmulatedVariant{"lucidgloves", "firmware", "waiting",
+                    "LucidGloves: waits up to 1 s for a line after each of its own"},
+    EmulatedVariant{"lucidgloves", "firmware", "legacy",
+                    "13 numbers a line, and any line that it hears sets its brakes"},
+    EmulatedVariant{"5dt", "firmware", "thumb-first", "a sample begins with the thumb"},
+    EmulatedVariant{"5dt", "firmware", "pinky-first",
+                    "a left glove's sample begins with the pinky"},
+    EmulatedVariant{"5dt", "connection", "wired", "answers, and streams when it is told to"},
+    EmulatedVariant{"5dt", "connection", "wireless", "streams by itself, and hears nothing"},
+    EmulatedVariant{"forte", "connection", "usb", "sends once it is told to use USB"},
+    EmulatedVariant{"forte", "connection", "bluetooth", "sends once it is told to use Bluetooth"},
+};
+
+/// Returns the place of `chosen` among the variants of this option. An empty one is the first.
+Result<std::size_t> find_variant(const std::string& glove, std::string_view option,
+                                 const std::string& chosen) {
+  std::string names;
+  std::size_t place = 0;
+  for (const EmulatedVariant& variant : variants) {
+    if (variant.glove != glove || variant.option != option) continue;
+    if (chosen.empty() || variant.name == chosen) return place;
+    names.append(names.empty() ? "" : ", ").append(variant.name);
+    ++place;
+  }
+  if (chosen.empty()) return place;
+  return Error{Errc::usage, std::string(option) + " " + chosen + ": an emulated " + glove +
+                                (names.empty() ? " has no choice of it" : " has one of " + names)};
+}
+
+/// The places of the chosen variants.
+struct Chosen {
+  std::size_t firmware = 0;
+  std::size_t connection = 0;
+};
+Result<Chosen> find_variants(const EmulatorOptions& options) {
+  const auto firmware = find_variant(options.glove, "firmware", options.firmware);
+  if (!firmware) return firmware.error();
+  const auto connection = find_variant(options.glove, "connection", options.connection);
+  if (!connection) return connection.error();
+  return Chosen{*firmware, *connection};
+}
+
+// Each sets up a unit as the chosen variants want it, and returns how many records a second it can
+// send.
+double choose(const Chosen& chosen, LucidGlovesUnitOptions& unit) {
+  unit.firmware = static_cast<LucidGlovesFirmware>(chosen.firmware);
+  return LucidGlovesUnit::most_rate_hz;
+}
+double choose(const Chosen& chosen, FiveDtUnitOptions& unit) {
+  unit.left_pinky_first = chosen.firmware == 1;
+  unit.wireless = chosen.connection == 1;
+  return unit.wireless ? FiveDtUnit::most_wireless_rate_hz : FiveDtUnit::most_rate_hz;
+}
+double choose(const Chosen& chosen, ForteUnitOptions& unit) {
+  unit.bluetooth = chosen.connection == 1;
+  return ForteUnit::most_rate_hz;
+}
+
 /// Makes a unit of the options that every kind has.
 template <class Unit, class UnitOptions>
 Result<std::unique_ptr<EmulatedUnit>> make_unit(const EmulatorOptions& options) {
   const auto motion = driver::find_motion(options.motion);
   if (!motion) return motion.error();
-  if (!(options.rate_hz >= 1.0 && options.rate_hz <= Unit::most_rate_hz)) {
+  const auto chosen = find_variants(options);
+  if (!chosen) return chosen.error();
+  UnitOptions unit;
+  const double most_rate_hz = choose(*chosen, unit);
+  if (!(options.rate_hz >= 1.0 && options.rate_hz <= most_rate_hz)) {
     return Error{Errc::usage, "rate: a " + options.glove + " glove sends 1 to " +
-                                  std::to_string(static_cast<int>(Unit::most_rate_hz)) +
+                                  std::to_string(static_cast<int>(most_rate_hz)) +
                                   " records a second"};
   }
-  UnitOptions unit;
   unit.side = options.side;
   unit.motion = *motion;
   unit.rate_hz = options.rate_hz;
@@ -29,8 +98,14 @@ Result<std::unique_ptr<EmulatedUnit>> make_unit(const EmulatorOptions& options) 
   return std::unique_ptr<EmulatedUnit>(std::make_unique<Unit>(unit));
 }
 
+/// A CyberGlove's variants are options of its own.
+Result<std::unique_ptr<EmulatedUnit>> make_cyberglove(const EmulatorOptions& options) {
+  if (const auto chosen = find_variants(options); !chosen) return chosen.error();
+  return make_cyberglove_unit(options);
+}
+
 constexpr std::array kinds{
-    EmulatedKind{"cyberglove", make_cyberglove_unit, true},
+    EmulatedKind{"cyberglove", make_cyberglove, true},
     EmulatedKind{"lucidgloves", make_unit<LucidGlovesUnit, LucidGlovesUnitOptions>, false},
     EmulatedKind{"5dt", make_unit<FiveDtUnit, FiveDtUnitOptions>, false},
     EmulatedKind{"forte", make_unit<ForteUnit, ForteUnitOptions>, false},
@@ -43,6 +118,10 @@ std::vector<std::string_view> emulated_glove_names() {
   for (const EmulatedKind& kind : kinds)
     names.push_back(kind.name);
   return names;
+}
+
+std::vector<EmulatedVariant> emulated_variants() {
+  return {variants.begin(), variants.end()};
 }
 
 Result<EmulatedKind> find_emulated_kind(std::string_view name) {

@@ -91,6 +91,8 @@ std::vector<FiveDtUnit::Byte> FiveDtUnit::sample(Time now) const {
   std::vector<Byte> bytes{0x80};
   for (const Sensor sensor : flexions)
     bytes.push_back(flexion_count(angles, sensor));
+  if (options_.left_pinky_first && options_.side == Side::left)
+    std::reverse(bytes.begin() + 1, bytes.end());
   bytes.insert(bytes.end(), {level, level});
   Byte sum = 0;
   for (std::size_t k = 1; k < bytes.size(); ++k)

@@ -1,6 +1,7 @@
 #pragma once
 // A 5DT Data Glove 5 from the device's side. It shares no code with the driver's parser, so that
-// each can test the other. The facts are those of VRPN's and VR Juggler's drivers.
+// each can test the other. The facts are those of VRPN's and VR Juggler's drivers. The reversed
+// order of a left glove's fingers is what another driver expects.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,8 +22,9 @@ struct FiveDtUnitOptions {
   driver::Motion motion = driver::Motion::sculpt;
   double rate_hz = 100.0; ///< 1..most_rate_hz
   std::uint32_t seed = 1;
-  bool wireless = false;  ///< streams by itself and hears nothing; ten bytes a sample
-  bool ten_bytes = false; ///< a wired unit of those that send 0x55 after each sample
+  bool wireless = false;         ///< streams by itself and hears nothing; ten bytes a sample
+  bool ten_bytes = false;        ///< a wired unit of those that send 0x55 after each sample
+  bool left_pinky_first = false; ///< a left glove's samples begin with the pinky
 };
 
 class FiveDtUnit final : public EmulatedUnit {

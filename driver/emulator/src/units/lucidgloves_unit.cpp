@@ -8,8 +8,11 @@
 namespace nendo::emulator {
 namespace {
 
-constexpr int analog_most = 4095;                    // an ESP32's converter, 12 bits
-constexpr std::size_t command_room = 100;            // the firmware's buffer
+constexpr int analog_most = 4095;         // an ESP32's converter, 12 bits
+constexpr std::size_t command_room = 100; // the firmware's buffer
+constexpr std::size_t least_command = 5;  // shorter lines are ignored
+constexpr std::size_t line_room = 256;    // an ESP32's buffer of what it has received
+constexpr int most_brake = 1000;
 constexpr double splay_end_rad = from_degrees(20.0); // as OpenGloves shows it
 
 int clamped(double part) {
@@ -40,45 +43,101 @@ LucidGlovesUnit::LucidGlovesUnit(const LucidGlovesUnitOptions& options)
 
 void LucidGlovesUnit::receive(std::span<const std::byte> bytes, Time now) {
   advance(now);
+  if (options_.firmware == LucidGlovesFirmware::streaming) return;
+  if (!bytes.empty()) last_heard_ = now;
   for (const std::byte byte : bytes) {
     const char c = std::to_integer<char>(byte);
-    if (c == '\n') {
-      handle(command_);
-      command_.clear();
-    } else if (command_.size() < command_room) {
-      command_.push_back(c);
+    if (waits()) {
+      if (heard_.size() < line_room) heard_.push_back(c);
+    } else if (c == '\n') {
+      handle(heard_);
+      heard_.clear();
+    } else if (heard_.size() < command_room) {
+      heard_.push_back(c);
     }
   }
+  if (waits()) advance_loop(now);
 }
 
 void LucidGlovesUnit::handle(std::string_view command) {
-  if (options_.answers && command == "Z") {
+  const bool answers = options_.firmware == LucidGlovesFirmware::senseshift;
+  if (options_.firmware == LucidGlovesFirmware::legacy) return set_legacy_brakes(command);
+  if (answers && command == "Z") {
     const std::string answer =
         "(ZV)5(ZG)0(ZH)" + std::to_string(options_.side == Side::right ? 1 : 0) + "\n";
     send(std::as_bytes(std::span(answer)));
     return;
   }
-  if (options_.answers && (command == "(ZA)" || command == "(ZZ)")) {
+  if (answers && (command == "(ZA)" || command == "(ZZ)")) {
     streaming_ = command == "(ZA)";
     return;
   }
+  if (waits() && command.size() < least_command) return;
   for (std::size_t finger = 0; finger < brakes_.size(); ++finger) {
     const auto value = argument(command, static_cast<char>('A' + finger));
-    if (value && *value >= 0) brakes_[finger] = std::min(*value, 1000);
+    if (value && *value >= 0) brakes_[finger] = std::min(*value, most_brake);
+  }
+}
+
+// Old versions have no least length, and leave the brakes that a line does not name undefined: here
+// these lock, which is the worst.
+void LucidGlovesUnit::set_legacy_brakes(std::string_view command) {
+  if (command.empty()) return;
+  brakes_.fill(most_brake);
+  for (int& brake : brakes_) {
+    const std::size_t end = std::min(command.find('&'), command.size());
+    int value = 0; // what atoi makes of text
+    std::from_chars(command.data(), command.data() + end, value);
+    brake = std::clamp(value, 0, most_brake);
+    if (end == command.size()) return;
+    command.remove_prefix(end + 1);
   }
 }
 
 void LucidGlovesUnit::advance(Time now) {
   if (!motion_origin_) {
     motion_origin_ = now;
-    next_line_ = now + period_;
+    next_line_ = now + (waits() ? loop_time : period_);
   }
+  if (waits()) return advance_loop(now);
   if (streaming_) send_due(next_line_, period_, now, [this](Time due) { return line(due); });
   while (next_line_ <= now) // while it is stopped the grid goes on
     next_line_ += period_;
 }
 
+// The firmware's loop: it sends a line, and then reads one, for which it waits.
+void LucidGlovesUnit::advance_loop(Time now) {
+  for (;;) {
+    if (!waits_since_) {
+      if (next_line_ > now) return;
+      const std::string text = line(next_line_);
+      send_record(std::as_bytes(std::span(text)));
+      waits_since_ = next_line_;
+    }
+    const auto heard = take_line(now);
+    if (!heard) return;
+    handle(heard->line);
+    next_line_ = heard->at + loop_time;
+    waits_since_.reset();
+  }
+}
+
+// Returns the line that ends the wait, without its LF: a whole one, as much of one as the buffer
+// takes, or what there is when the time is up. Nothing: the wait goes on.
+std::optional<LucidGlovesUnit::Heard> LucidGlovesUnit::take_line(Time now) {
+  const std::size_t end = heard_.find('\n');
+  const bool whole = end < command_room || heard_.size() >= command_room;
+  // A line that came while the last one was handled was there when the wait began.
+  const Time since = std::max(*waits_since_, last_heard_);
+  if (!whole && now - since < longest_wait) return std::nullopt;
+  const std::size_t length = std::min({end, heard_.size(), command_room});
+  Heard heard{heard_.substr(0, length), whole ? since : since + longest_wait};
+  heard_.erase(0, length + (end == length && end < command_room ? 1 : 0));
+  return heard;
+}
+
 std::optional<EmulatedUnit::Time> LucidGlovesUnit::next_due() const noexcept {
+  if (waits_since_) return std::max(*waits_since_, last_heard_) + longest_wait;
   if (!streaming_) return std::nullopt;
   return next_line_;
 }
@@ -89,6 +148,7 @@ std::string LucidGlovesUnit::line(Time now) const {
   const std::array curls{curl_of(angles, Sensor::thumb_mcp), curl_of(angles, Sensor::index_mcp),
                          curl_of(angles, Sensor::middle_mcp), curl_of(angles, Sensor::ring_mcp),
                          curl_of(angles, Sensor::pinky_mcp)};
+  if (options_.firmware == LucidGlovesFirmware::legacy) return legacy_line(curls);
   // The middle finger points straight ahead; its neighbours are as far from it as the motion says.
   const double ring_rad = -angle_rad(Sensor::middle_ring_abduction);
   const std::array splays_rad{angle_rad(Sensor::thumb_abduction) - splay_end_rad,
@@ -106,6 +166,14 @@ std::string LucidGlovesUnit::line(Time now) const {
     text += std::to_string(clamped(0.5 + 0.5 * splays_rad[finger] / splay_end_rad));
   }
   return text + "\n";
+}
+
+// The curls, the joystick in the middle, and six buttons that nobody presses.
+std::string LucidGlovesUnit::legacy_line(const std::array<int, 5>& curls) const {
+  std::string text;
+  for (const int curl : curls)
+    text += std::to_string(curl) + "&";
+  return text + "2048&2048&0&0&0&0&0&0\n";
 }
 
 std::unique_ptr<EmulatedUnit> make_lucidgloves_unit(const LucidGlovesUnitOptions& options) {

@@ -1,9 +1,10 @@
 #pragma once
 // A LucidGlove from the device's side. It shares no code with the driver's parser, so that each can
-// test the other. The facts are those of the LucidGloves firmware, and, for what only that has
-// (information replies, starting and stopping), of SenseShift's library.
+// test the other. The facts are those of the LucidGloves firmware (commit 76472c7), and, for what
+// only that has (information replies, starting and stopping), of SenseShift's library.
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -19,17 +20,28 @@
 
 namespace nendo::emulator {
 
+enum class LucidGlovesFirmware : std::uint8_t {
+  senseshift, ///< knows Z, (ZA) and (ZZ), and takes brakes
+  streaming,  ///< LucidGloves without force feedback: hears nothing
+  waiting,    ///< LucidGloves with force feedback: after each of its lines it waits for one
+  legacy,     ///< 13 numbers joined by &; whatever line it hears sets its brakes
+};
+
 struct LucidGlovesUnitOptions {
   Side side = Side::right;
   driver::Motion motion = driver::Motion::sculpt;
-  double rate_hz = 100.0; ///< 1..most_rate_hz
+  double rate_hz = 100.0; ///< 1..most_rate_hz; a waiting one is as fast as it is answered
   std::uint32_t seed = 1;
-  bool answers = true; ///< knows Z, (ZA) and (ZZ); the LucidGloves firmware itself does not
+  LucidGlovesFirmware firmware = LucidGlovesFirmware::senseshift;
 };
 
 class LucidGlovesUnit final : public EmulatedUnit {
 public:
   static constexpr double most_rate_hz = 140.0; ///< lines of up to 82 bytes, at 115200 baud
+  /// What a waiting firmware does between hearing a line and sending its next one.
+  static constexpr Time loop_time = std::chrono::milliseconds(1);
+  /// Arduino's time limit for a line, from its beginning and from each of its bytes on.
+  static constexpr Time longest_wait = std::chrono::seconds(1);
 
   explicit LucidGlovesUnit(const LucidGlovesUnitOptions& options);
 
@@ -41,8 +53,18 @@ public:
   const std::array<int, 5>& brakes() const noexcept { return brakes_; }
 
 private:
+  struct Heard {
+    std::string line;
+    Time at; ///< when the wait for it ended
+  };
+
+  bool waits() const noexcept { return options_.firmware == LucidGlovesFirmware::waiting; }
+  void advance_loop(Time now);
+  std::optional<Heard> take_line(Time now);
   void handle(std::string_view command);
+  void set_legacy_brakes(std::string_view command);
   std::string line(Time now) const;
+  std::string legacy_line(const std::array<int, 5>& curls) const;
 
   const LucidGlovesUnitOptions options_;
   const Time period_;
@@ -50,7 +72,9 @@ private:
   bool streaming_ = true;
   std::optional<Time> motion_origin_; ///< empty until time was seen to pass
   Time next_line_{};
-  std::string command_; ///< so far
+  std::optional<Time> waits_since_; ///< for a line, since its own went out; empty: its own is due
+  Time last_heard_{};               ///< when the last byte arrived
+  std::string heard_;               ///< and not handled
   std::array<int, 5> brakes_{};
 };
 

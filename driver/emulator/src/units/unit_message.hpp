@@ -20,6 +20,9 @@ constexpr bool is_lower(Byte letter) noexcept {
 constexpr Byte to_upper(Byte letter) noexcept {
   return is_lower(letter) ? static_cast<Byte>(letter - 'a' + 'A') : letter;
 }
+constexpr Byte to_lower(Byte letter) noexcept {
+  return letter >= 'A' && letter <= 'Z' ? static_cast<Byte>(letter - 'A' + 'a') : letter;
+}
 
 inline void append(Message& message, std::string_view text) {
   for (const char c : text)

@@ -93,6 +93,10 @@ public:
   virtual void stop() noexcept = 0;
   /// Any thread, wait-free.
   virtual GloveStats stats() const noexcept = 0;
+  /// Returns whether the glove has sent all that it ever will since start(), as a recording has at
+  /// its end; all of it that found room is in the ring then. A device may always come back, and so
+  /// never ends. Any thread, wait-free.
+  virtual bool has_ended() const noexcept { return false; }
   /// What the glove is to show from now on; the latest counts, and it is shown again after a
   /// reconnect. The reader thread sends it: within 0.2 s, without losing a record of gloves that
   /// take commands while they stream; a CyberGlove's stream pauses for it. Any thread, does not

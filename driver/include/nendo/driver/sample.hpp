@@ -110,6 +110,10 @@ struct GloveSample {
   bool sampled_too_fast = false; ///< the glove says that it cannot keep its period (`es`)
   WristSwitch wrist_switch = WristSwitch::unknown;
   Side side = Side::right;
+  bool is_replayed = false; ///< `arrival` and `measured` are of the replay
+  /// What they were when the sample was recorded; if is_replayed.
+  HostTime recorded_arrival{};
+  HostTime recorded_measured{};
 
   constexpr RawCount operator[](Sensor sensor) const noexcept {
     return raw[static_cast<std::size_t>(sensor)];

@@ -21,6 +21,7 @@ struct SensorCalibration {
   constexpr double angle_rad(RawCount raw) const noexcept {
     return gain_rad_per_count * (static_cast<double>(raw.value) - offset_counts);
   }
+  friend constexpr bool operator==(const SensorCalibration&, const SensorCalibration&) = default;
 };
 
 /// Says that the angle of sensor `of` also depends on what sensor `by` reads.
@@ -59,6 +60,7 @@ struct Calibration {
   /// Returns the joint angle of every sensor that is present, and 0 for the others, which also add
   /// nothing by couplings. Wait-free.
   SensorAngles angles_rad(const GloveSample& sample) const noexcept;
+  friend constexpr bool operator==(const Calibration&, const Calibration&) = default;
 };
 
 /// Returns a calibration that is usable for an average hand without any file; a wearer's own

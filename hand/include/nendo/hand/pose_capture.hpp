@@ -53,6 +53,8 @@ public:
   void begin_next() noexcept;
   /// Also accepts the pose held last, if it is held again.
   void forget_last() noexcept { last_ = {}; }
+  /// Takes `pose`, of an earlier capture, for the one held last.
+  void set_last(const HeldPose& pose) noexcept { last_ = pose; }
 
 private:
   struct Watched {

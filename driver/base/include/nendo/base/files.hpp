@@ -41,7 +41,7 @@ bool write_all(int fd, std::span<const std::byte> bytes) noexcept;
 /// are ignored, since some file systems cannot sync a folder.
 void sync_folder_of(const std::filesystem::path& file);
 
-/// Returns where a link leads, or the path itself if nothing is there.
+/// Returns where a link leads, also if nothing is there yet; otherwise the path itself.
 std::filesystem::path target_of(const std::filesystem::path& path);
 
 } // namespace nendo

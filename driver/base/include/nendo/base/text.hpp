@@ -15,10 +15,15 @@
 
 namespace nendo {
 
-/// Hands out the lines of a text one by one, without blanks at their ends.
+/// Returns the text without the byte-order mark of UTF-8 that some programs put before it.
+std::string_view without_mark(std::string_view text) noexcept;
+
+/// Hands out the lines of a text one by one, without blanks at their ends. A line ends with \n,
+/// with
+/// \r\n, or, as on old Macintoshes, with \r. A byte-order mark is skipped.
 class LineReader {
 public:
-  explicit LineReader(std::string_view text) noexcept : rest_(text) {}
+  explicit LineReader(std::string_view text) noexcept : rest_(without_mark(text)) {}
   /// Returns the next line that is not empty, or nullopt at the end of the text.
   std::optional<std::string_view> next() noexcept;
   /// Returns the number of the line that next() returned last; the first line has number 1.

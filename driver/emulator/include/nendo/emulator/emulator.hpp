@@ -18,6 +18,16 @@ namespace nendo::emulator {
 /// Returns the names that EmulatorOptions::glove may have.
 std::vector<std::string_view> emulated_glove_names();
 
+/// A value that EmulatorOptions::firmware or ::connection may have, for which glove, and what a
+/// glove like that does. The first one of each glove and option is the default.
+struct EmulatedVariant {
+  std::string_view glove;
+  std::string_view option; ///< firmware or connection
+  std::string_view name;
+  std::string_view effect;
+};
+std::vector<EmulatedVariant> emulated_variants();
+
 /// How a fault is written, e.g. drop=RATE%, and what it does.
 struct FaultForm {
   std::string_view form;
@@ -39,6 +49,14 @@ struct EmulatedCyberGlove {
   bool period_low_first = false;   ///< the order of the bytes in the words of T and ?T
   bool stamp_bit7 =
       true; ///< bit 7 of a time stamp's first byte is always set; false: only if it must
+  /// 12-bit streams of a CyberGlove III: 1S is echoed with a NUL, so is the 0x03 that ends them,
+  /// and sub-frames count from 1. False: without NUL and from 0, as programs for the hardware read
+  /// them.
+  bool hires_terminated = false;
+  double restart_s = 1.75; ///< until it answers 0x12, or hears again after a power cut: 0 to 60
+  /// When it is switched on its period is half of what it manages, so that the records of a stream
+  /// end in es until the host sets another.
+  bool overrun = false;
   bool streaming = false; ///< it streams from the start, as after a host that died
   /// If set, there is no motion: in record n the sensor of slot k has the count 1 + (n + 29 k) mod
   /// 255, or 16 times that with 12 bits. So every record can be judged by itself.
@@ -48,7 +66,9 @@ struct EmulatedCyberGlove {
 
 struct EmulatorOptions {
   std::string glove = "cyberglove";
-  std::string link = {}; ///< path of the symbolic link to make to the terminal; empty: none
+  std::string firmware = {};   ///< one of emulated_variants(); empty: the default
+  std::string connection = {}; ///< one of emulated_variants(); empty: the default
+  std::string link = {};       ///< path of the symbolic link to make to the terminal; empty: none
   Side side = Side::right;
   unsigned sensors = 0;          ///< 0: as many as this kind of glove usually has
   std::string motion = "sculpt"; ///< one of driver::motion_names()
