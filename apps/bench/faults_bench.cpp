@@ -107,7 +107,7 @@ void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "faults", "Every fault against every CyberGlove, through the real driver: what it costs");
-  command.add_option("--seconds", options->seconds, "For each case");
+  command.add_duration("--seconds", options->seconds, "For each case");
   command.add_option("--at-once", options->at_once, "Cases that run at the same time");
   command.add_flag("--json", options->json, "One JSON object for each case");
   command.add_flag("--markdown", options->markdown, "The table of the documents");

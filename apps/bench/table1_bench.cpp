@@ -129,8 +129,8 @@ void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "table1", "The paper's Table 1 on this machine, beside the paper's figures and a plain loop");
-  command.add_option("--seconds-per-cell", options->seconds_per_cell,
-                     "Seconds for each mesh, radius and layout, of which there are forty");
+  command.add_duration("--seconds-per-cell", options->seconds_per_cell,
+                       "Seconds for each mesh, radius and layout, of which there are forty");
   command.add_option("--picture", options->picture,
                      "Also draw the layout 'near' beside the paper's figures, as FILE.svg");
   command.add_option("--simd", options->simd,

@@ -10,6 +10,16 @@ using hand::AssumedAngle;
 using hand::HeldPose;
 using hand::PoseId;
 
+/// Returns how far fist has a joint bent from flat, or 0 if wearers do not do the two so surely
+/// that they tell it well apart.
+double bend_rad(std::size_t slot) {
+  const AssumedAngle& flat = hand::pose_of(PoseId::flat).assumed[slot];
+  const AssumedAngle& fist = hand::pose_of(PoseId::fist).assumed[slot];
+  if (!flat.known() || !fist.known()) return 0.0;
+  const double turn_rad = fist.angle_rad - flat.angle_rad;
+  return turn_rad < 2.0 * (flat.deviation_rad + fist.deviation_rad) ? 0.0 : turn_rad;
+}
+
 // How far a joint may be from where the pose has it before it is taken for another pose: wearers
 // differ, and so do the two poses by which their sensors are judged.
 constexpr double most_doubt_rad = from_degrees(40.0);
@@ -18,7 +28,8 @@ constexpr double deviations_allowed = 3.0;
 } // namespace
 
 CalibrationGuide::CalibrationGuide(std::span<const PoseId> poses, CountScale scale)
-    : poses_(poses.begin(), poses.end()), kept_(poses.size()), capture_(scale) {}
+    : scale_(scale), planned_(poses.begin(), poses.end()), poses_(planned_), kept_(poses.size()),
+      capture_(scale) {}
 
 CalibrationGuide::Event CalibrationGuide::push(const GloveSample& sample) {
   if (is_done()) return Event::none;
@@ -31,7 +42,8 @@ CalibrationGuide::Event CalibrationGuide::push(const GloveSample& sample) {
   if (state != hand::CaptureState::held) return Event::none;
   const HeldPose held = capture_.held();
   capture_.begin_next();
-  implausible_ = find_implausible(held);
+  implausible_ = find_unbent(held);
+  if (!implausible_) implausible_ = find_implausible(held);
   if (implausible_) return Event::implausible;
   kept_[at_] = held;
   same_may_come_ = false;
@@ -99,6 +111,14 @@ void CalibrationGuide::skip() {
   }
 }
 
+void CalibrationGuide::begin_anew() {
+  poses_ = planned_;
+  kept_.assign(poses_.size(), std::nullopt);
+  free_motion_ = hand::RangeCapture();
+  at_ = 0;
+  ask_again();
+}
+
 void CalibrationGuide::restore(std::span<const hand::PoseReading> readings,
                                const hand::CountRanges& free_motion) {
   free_motion_ = hand::RangeCapture(free_motion);
@@ -121,6 +141,9 @@ void CalibrationGuide::restore(std::span<const hand::PoseReading> readings,
   }
   at_ = 0;
   advance();
+  // The hand that goes on is often still in the pose before.
+  if (const std::ptrdiff_t last = last_kept(); last >= 0)
+    capture_.set_last(*kept_[static_cast<std::size_t>(last)]);
 }
 
 std::vector<hand::PoseReading> CalibrationGuide::readings() const {
@@ -140,6 +163,38 @@ const HeldPose* CalibrationGuide::kept(PoseId pose) const {
   return nullptr;
 }
 
+/// Where flat and fist are held one after the other, returns the sensor that changed least between
+/// them, if most of those that should rise did not: a fist cannot be what the flat hand was. One or
+/// two such sensors may be broken, which the fit says.
+std::optional<Sensor> CalibrationGuide::find_unbent(const HeldPose& held) const {
+  const PoseId now = asked();
+  if (now != PoseId::flat && now != PoseId::fist) return std::nullopt;
+  const HeldPose* other = kept(now == PoseId::flat ? PoseId::fist : PoseId::flat);
+  if (other == nullptr) return std::nullopt;
+  const hand::Calibration usual = hand::default_calibration(scale_);
+  const double least_counts = hand::PoseCapture::least_change_counts * scale_.most / 255.0;
+  std::optional<Sensor> worst;
+  double worst_counts = least_counts;
+  int judged = 0, unbent = 0;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    const double gain = usual.sensors[slot].gain_rad_per_count;
+    if (!held.present.has(sensor) || !other->present.has(sensor) || bend_rad(slot) == 0.0 ||
+        gain == 0.0)
+      continue;
+    ++judged;
+    const double rise = (now == PoseId::fist ? 1.0 : -1.0) * (gain > 0.0 ? 1.0 : -1.0) *
+                        (held.mean_counts[slot] - other->mean_counts[slot]);
+    if (rise >= least_counts) continue;
+    ++unbent;
+    if (!worst || rise < worst_counts) {
+      worst = sensor;
+      worst_counts = rise;
+    }
+  }
+  return 2 * unbent > judged ? worst : std::nullopt;
+}
+
 /// Returns a sensor whose angle the pose asked for cannot have. The angles are those of the lines
 /// through flat and fist, so nothing is implausible before both are kept.
 std::optional<Sensor> CalibrationGuide::find_implausible(const HeldPose& held) const {
@@ -148,13 +203,11 @@ std::optional<Sensor> CalibrationGuide::find_implausible(const HeldPose& held) c
   if (flat == nullptr || fist == nullptr) return std::nullopt;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const AssumedAngle& at_flat = hand::pose_of(PoseId::flat).assumed[slot];
-    const AssumedAngle& at_fist = hand::pose_of(PoseId::fist).assumed[slot];
     const AssumedAngle& expected = hand::pose_of(asked()).assumed[slot];
     const double counts = fist->mean_counts[slot] - flat->mean_counts[slot];
-    const double turn_rad = at_fist.angle_rad - at_flat.angle_rad;
+    const double turn_rad = bend_rad(slot);
     // Only joints that the two poses tell well apart can judge a third.
-    if (!held.present.has(static_cast<Sensor>(slot)) || !at_flat.known() || !at_fist.known() ||
-        !expected.known() || turn_rad < 2.0 * (at_flat.deviation_rad + at_fist.deviation_rad) ||
+    if (!held.present.has(static_cast<Sensor>(slot)) || turn_rad == 0.0 || !expected.known() ||
         std::abs(counts) < hand::PoseCapture::least_change_counts)
       continue;
     const double angle_rad =

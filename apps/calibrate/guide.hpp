@@ -48,8 +48,9 @@ public:
   void go_back();    ///< forgets the pose before this one and asks for it again
   void take_again(); ///< asks for the pose before this one once more; both takes count
   void skip();       ///< goes on without this pose; flat and fist are asked for again at the end
+  void begin_anew(); ///< forgets all poses and the free motion, and asks for the first pose
   /// Restores what an earlier session kept. Poses that are not asked for here are left out, and so
-  /// are takes of a pose beyond `most_takes`.
+  /// are takes of a pose beyond `most_takes`. The last pose restored counts as held last.
   void restore(std::span<const hand::PoseReading> readings, const hand::CountRanges& free_motion);
   static constexpr std::size_t most_takes = 8;
 
@@ -63,9 +64,12 @@ private:
   void ask_again() noexcept;
   std::ptrdiff_t last_kept() const noexcept;
   std::optional<Sensor> find_implausible(const hand::HeldPose& held) const;
+  std::optional<Sensor> find_unbent(const hand::HeldPose& held) const;
   const hand::HeldPose* kept(hand::PoseId pose) const;
 
-  std::vector<hand::PoseId> poses_;
+  CountScale scale_;
+  std::vector<hand::PoseId> planned_;               ///< as they were given
+  std::vector<hand::PoseId> poses_;                 ///< those, and what is taken once more
   std::vector<std::optional<hand::HeldPose>> kept_; ///< by number
   std::size_t at_ = 0;
   hand::PoseCapture capture_;

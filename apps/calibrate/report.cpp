@@ -1,22 +1,28 @@
 #include "calibrate/report.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <spdlog/fmt/fmt.h>
 
 #include <nendo/base/files.hpp>
 
+#include "cli/svg_drawing.hpp"
+
 namespace nendo::calibrate {
 namespace {
 
 // The measures of the picture, in pixels.
-constexpr int top = 40;
-constexpr int row_height = 20;
-constexpr int range_left = 190;
-constexpr int range_width = 360;
-constexpr int residual_left = 640;
+constexpr double picture_width = 840.0;
+constexpr double top = 66.0; ///< of the first row
+constexpr double row_height = 20.0;
+constexpr double range_left = 190.0;
+constexpr double range_width = 360.0;
+constexpr double residual_left = 640.0;
 constexpr double pixels_a_degree = 12.0;
 constexpr double most_degrees = 12.0;
 
@@ -47,28 +53,35 @@ void print_readings(std::ostream& out, const hand::CalibrationFit& fit,
   }
 }
 
-/// Returns the row of a sensor in the picture, with its top at `y`.
-std::string row(Sensor sensor, const hand::SensorFit& quality, const hand::SensorCalibration& line,
-                double counts_most, int y) {
-  const auto angle_deg = [&](double counts) {
-    return to_degrees(line.gain_rad_per_count * (counts - line.offset_counts));
+/// Returns a number as people write it: without decimals that are not there, and 0 without a sign.
+std::string number_text(double value, int decimals) {
+  const double unit = std::pow(10.0, decimals);
+  // -0.0 + 0.0 is 0.0
+  return fmt::format("{:.{}f}", std::round(value * unit) / unit + 0.0, decimals);
+}
+
+/// Draws the row of a sensor, with its top at `y`.
+void draw_row(cli::SvgDrawing& drawing, Sensor sensor, const hand::SensorFit& quality,
+              const hand::SensorCalibration& line, double counts_most, double y) {
+  constexpr double bar_height = 12.0;
+  const cli::SvgText name{12.0};
+  const cli::SvgText number{10.0, "#444444"};
+  const auto angle_text = [&](double counts) {
+    return number_text(to_degrees(line.gain_rad_per_count * (counts - line.offset_counts)), 0);
   };
   const double low = range_left + quality.low_counts / counts_most * range_width;
   const double high = range_left + quality.high_counts / counts_most * range_width;
   const double residual_deg = to_degrees(quality.residual_rad);
   const double bar = pixels_a_degree * std::min(residual_deg, most_degrees);
-  return fmt::format(
-      R"(<text x="10" y="{}">{}</text>
-<rect x="{}" y="{}" width="{}" height="12" fill="#eeeeee"/>
-<rect x="{:.1f}" y="{}" width="{:.1f}" height="12" fill="{}"/>
-<text x="{:.1f}" y="{}" class="s">{:.0f} to {:.0f} deg</text>
-<rect x="{}" y="{}" width="{:.1f}" height="12" fill="#c1121f"/>
-<text x="{:.1f}" y="{}" class="s">{:.1f} deg</text>
-)",
-      y + 11, name_of(sensor), range_left, y, range_width, low, y, std::max(high - low, 1.0),
-      kept_text(quality).empty() ? "#2a6f97" : "#b0b0b0", high + 4.0, y + 10,
-      angle_deg(quality.low_counts), angle_deg(quality.high_counts), residual_left, y, bar,
-      residual_left + 4.0 + bar, y + 10, residual_deg);
+  const char* colour = kept_text(quality).empty() ? "#2a6f97" : "#b0b0b0";
+  drawing.words(10.0, y + 11.0, std::string(name_of(sensor)), name);
+  drawing.box(range_left, y, range_width, bar_height, "#eeeeee", 1.0);
+  drawing.box(low, y, std::max(high - low, 1.0), bar_height, colour, 1.0);
+  drawing.words(high + 4.0, y + 10.0,
+                angle_text(quality.low_counts) + " to " + angle_text(quality.high_counts) + " deg",
+                number);
+  drawing.box(residual_left, y, bar, bar_height, "#c1121f", 1.0);
+  drawing.words(residual_left + 4.0 + bar, y + 10.0, number_text(residual_deg, 1) + " deg", number);
 }
 
 } // namespace
@@ -93,25 +106,26 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
 }
 
 Result<void> write_report_picture(const std::filesystem::path& path,
-                                  const hand::CalibrationFit& fit, SensorMask sensors,
-                                  CountScale counts) {
-  std::string rows;
-  int y = top;
+                                  const hand::CalibrationFit& fit,
+                                  const hand::WearerCalibration& wearer, SensorMask sensors) {
+  const auto rows = static_cast<double>(std::popcount(sensors.bits));
+  cli::SvgDrawing drawing(picture_width, top + row_height * rows + 20.0);
+  drawing.words(10.0, 24.0,
+                "Calibration of " + wearer.user + ", " + std::string(name_of(wearer.side)) +
+                    " hand, " + hand::rfc3339(wearer.made),
+                {15.0, "#000000", "start", true});
+  const cli::SvgText heading{12.0};
+  drawing.words(
+      range_left, 50.0,
+      fmt::format("counts that were covered, of {}, and angles; grey: kept", wearer.counts.most),
+      heading);
+  drawing.words(residual_left, 50.0, "residual of the poses", heading);
+  double y = top;
   for_each_sensor(sensors, [&](Sensor sensor, std::size_t slot) {
-    rows += row(sensor, fit.sensors[slot], fit.calibration[sensor], counts.most, y);
+    draw_row(drawing, sensor, fit.sensors[slot], fit.calibration[sensor], wearer.counts.most, y);
     y += row_height;
   });
-  return replace_file(
-      path,
-      fmt::format(
-          R"(<svg xmlns="http://www.w3.org/2000/svg" width="840" height="{}" font-family="sans-serif" font-size="12">
-<style>.s{{font-size:10px;fill:#444444}}</style>
-<rect width="100%" height="100%" fill="white"/>
-<text x="{}" y="24">counts that were covered, of {}, and angles; grey: kept</text>
-<text x="{}" y="24">residual of the poses</text>
-{}</svg>
-)",
-          y + top / 2, range_left, counts.most, residual_left, rows));
+  return replace_file(path, std::move(drawing).finished());
 }
 
 } // namespace nendo::calibrate

@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include <nendo/base/result.hpp>
+#include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_fit.hpp>
 
 namespace nendo::calibrate {
@@ -15,10 +16,10 @@ namespace nendo::calibrate {
 void print_report(std::ostream& out, const hand::CalibrationFit& fit,
                   std::span<const hand::PoseReading> readings, SensorMask sensors);
 
-/// Writes an SVG picture that shows for each sensor the ranges of counts and of angles, and the
-/// residual. Blocks. Error: failed.
+/// Writes an SVG picture that shows whose calibration it is and when it was made, and for each
+/// sensor the ranges of counts and of angles, and the residual. Blocks. Error: failed.
 Result<void> write_report_picture(const std::filesystem::path& path,
-                                  const hand::CalibrationFit& fit, SensorMask sensors,
-                                  CountScale counts);
+                                  const hand::CalibrationFit& fit,
+                                  const hand::WearerCalibration& wearer, SensorMask sensors);
 
 } // namespace nendo::calibrate

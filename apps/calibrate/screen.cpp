@@ -81,6 +81,21 @@ std::string fitted(std::string text, int width) {
   return text;
 }
 
+/// Appends a text in lines of at most `width` characters, broken at blanks where it has some.
+void add_wrapped(std::vector<std::string>& lines, const std::string& text, int width) {
+  const auto most = static_cast<std::size_t>(std::max(width, 1));
+  for (std::size_t at = text.find_first_not_of(' '); at < text.size();) {
+    std::size_t end = text.size();
+    if (end - at > most) {
+      const std::size_t blank = text.rfind(' ', at + most);
+      end = blank == std::string::npos || blank <= at ? at + most : blank;
+    }
+    const std::size_t last = text.find_last_not_of(' ', end - 1);
+    lines.push_back(text.substr(at, last + 1 - at));
+    at = text.find_first_not_of(' ', end);
+  }
+}
+
 std::string state_text(const CalibrationPicture& picture) {
   const hand::PoseCapture& capture = picture.guide->capture();
   const auto troubled = [&] {
@@ -104,7 +119,8 @@ std::string state_text(const CalibrationPicture& picture) {
   case CaptureState::unchanged:
     if (picture.guide->implausible_sensor())
       return "That is not it: look at " +
-             std::string(name_of(*picture.guide->implausible_sensor())) + ".";
+             std::string(name_of(*picture.guide->implausible_sensor())) +
+             ". If the pose before was not right, b takes it anew.";
     return picture.guide->number() == 0 ? "Take this pose." : "Taken. Now take this one.";
   case CaptureState::settling:
   case CaptureState::held:
@@ -187,10 +203,15 @@ std::vector<std::string> calibration_lines(const CalibrationPicture& picture,
       "Pose " + std::to_string(guide.number() + 1) + " of " + std::to_string(guide.pose_count()) +
       ": " + std::string(pose.name) + (guide.is_again() ? ", once more" : "") + "   (" +
       std::string(name_of(picture.info->side)) + " hand of " + printable(*picture.user) + ")";
-  std::vector<std::string> lines{title, std::string(pose.instruction), state_text(picture)};
-  const std::vector<std::string> below{
-      undetermined_text(picture.undetermined),
-      "SPACE begin  b redo the last pose  t take it once more  s skip  w write  q quit"};
+  std::vector<std::string> lines{title};
+  add_wrapped(lines, std::string(pose.instruction), size.columns);
+  add_wrapped(lines, printable(picture.notice), size.columns);
+  add_wrapped(lines, state_text(picture), size.columns);
+  std::vector<std::string> below;
+  add_wrapped(below, undetermined_text(picture.undetermined), size.columns);
+  if (below.empty()) below.emplace_back(); // what is below stays where it is
+  add_wrapped(below, "SPACE begin  b redo  t take once more  s skip  n anew  w write  q quit",
+              size.columns);
   const int room = size.rows - static_cast<int>(lines.size() + below.size());
   const auto between = middle(picture, size.columns, room);
   lines.insert(lines.end(), between.begin(), between.end());

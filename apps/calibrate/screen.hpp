@@ -25,10 +25,12 @@ struct CalibrationPicture {
   const hand::HandPose* demonstration = nullptr; ///< of the pose that the guide asks for
   bool begun = false;                            ///< false: the guide sees no samples yet
   SensorMask undetermined;                       ///< by the poses so far
+  std::string notice{};                          ///< what the wearer must know; empty: nothing
 };
 
-/// Returns lines of printable ASCII, at most as many and as long as the screen. On a small screen
-/// first the drawing is left out and then the bars; the instruction and the keys stay.
+/// Returns lines of printable ASCII, at most as many and as long as the screen. What is longer than
+/// the screen is broad goes on in the next line, but for the title. On a small screen first the
+/// drawing is left out and then the bars; the instruction and the keys stay.
 std::vector<std::string> calibration_lines(const CalibrationPicture& picture, cli::ScreenSize size);
 
 /// Returns the pose as a wearer would take it. Inverse kinematics brings touching tips together,

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "calibrate/screen.hpp"
@@ -26,6 +27,8 @@ struct Session {
   std::optional<GloveSample> latest{};
   SensorMask undetermined{};
   bool begun = false;
+  std::string notice{};   ///< why there is no calibration yet; stays until something is done
+  bool asks_anew = false; ///< the key that begins anew was pressed once
   struct Demonstration {
     hand::PoseId of;
     hand::HandPose pose;
@@ -38,16 +41,42 @@ struct Session {
       seen.add(sample);
       latest = sample;
       if (!begun) guide.push_free_motion(sample);
-      if (begun && guide.push(sample) == CalibrationGuide::Event::captured) update_undetermined();
+      if (!begun || guide.push(sample) != CalibrationGuide::Event::captured) continue;
+      notice.clear();
+      update_undetermined();
     }
   }
-  void update_undetermined() {
+  Result<hand::CalibrationFit> fitted() const {
     const auto readings = guide.readings();
-    const auto sensors = glove.info().sensors;
     hand::FitOptions options = fit;
     options.free_motion = guide.free_motion();
-    const auto fitted = hand::fit_calibration(readings, glove.info().side, sensors, options);
-    undetermined = fitted ? fitted->undetermined : sensors;
+    return hand::fit_calibration(readings, glove.info().side, glove.info().sensors, options);
+  }
+  void update_undetermined() {
+    const auto found = fitted();
+    undetermined = found ? found->undetermined : glove.info().sensors;
+  }
+  /// Ends the session if a calibration fits the poses. Otherwise asks for a pose: without one,
+  /// neither this session nor one that goes on from its poses would have a way on.
+  std::optional<SessionEnd> finish(SessionEnd end) {
+    const auto found = fitted();
+    if (found) return end;
+    notice = "No calibration yet: " + found.error().message +
+             ". b goes back a pose; n begins anew, and so does --fresh.";
+    if (guide.is_done()) guide.go_back();
+    update_undetermined();
+    return std::nullopt;
+  }
+  /// Forgets what was taken, if asked to twice in a row.
+  void begin_anew(bool asked_before) {
+    if (!asked_before) {
+      asks_anew = true;
+      notice = "n once more forgets every pose and begins anew.";
+      return;
+    }
+    guide.begin_anew();
+    seen.clear();
+    begun = false;
   }
   const hand::HandPose& demonstration() {
     const hand::PoseId asked = guide.asked();
@@ -64,17 +93,21 @@ struct Session {
                                      latest ? to_seconds(now - latest->arrival) : 0.0,
                                      &demonstration(),
                                      begun,
-                                     begun ? undetermined : SensorMask{}};
+                                     begun ? undetermined : SensorMask{},
+                                     notice};
     terminal.draw(calibration_lines(picture, terminal.size()));
   }
   std::optional<SessionEnd> handle(char key) {
+    const bool asked_anew = std::exchange(asks_anew, false);
+    notice.clear();
     if (key == 'q') return SessionEnd::quit;
-    if (key == 'w') return SessionEnd::written;
+    if (key == 'w') return finish(SessionEnd::written);
+    if (key == 'n') begin_anew(asked_anew);
     if (key == ' ') begun = true;
     if (key == 'b') guide.go_back();
     if (key == 't') guide.take_again();
     if (key == 's') guide.skip();
-    if (key == 'b' || key == 's') update_undetermined();
+    if (key == 'b' || key == 's' || key == 'n') update_undetermined();
     return std::nullopt;
   }
 };
@@ -86,21 +119,18 @@ Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::stri
   Session session{glove, user, fit, guide};
   if (const auto started = glove.start(session.ring); !started) return started.error();
   session.update_undetermined();
-  SessionEnd end = SessionEnd::complete;
-  while (!guide.is_done()) {
+  std::optional<SessionEnd> ended;
+  while (!ended) {
     session.take_samples();
-    if (guide.is_done()) break;
+    if (guide.is_done()) ended = session.finish(SessionEnd::complete);
+    if (ended) break;
     session.show();
-    std::optional<SessionEnd> ended;
     if (const auto key = session.terminal.key(frame_time)) ended = session.handle(*key);
     if (cli::stop_requested() || session.terminal.is_gone()) ended = SessionEnd::quit;
-    if (!ended) continue;
-    end = *ended;
-    break;
   }
   session.terminal.leave();
   glove.stop();
-  return end;
+  return *ended;
 }
 
 } // namespace nendo::calibrate

@@ -10,13 +10,14 @@
 namespace nendo::calibrate {
 
 enum class SessionEnd : std::uint8_t {
-  complete, ///< every pose was taken or skipped
-  written,  ///< the wearer asked to write the poses taken so far
+  complete, ///< every pose was taken or skipped, and a calibration fits them
+  written,  ///< the wearer asked to write the poses taken so far, and a calibration fits them
   quit,     ///< by a key, a signal, or because the terminal is gone
 };
 
-/// Runs the calibration until one of these ends; `guide` then holds what was taken. Starts the
-/// glove and stops it. Blocks.
+/// Runs the calibration until one of these ends; `guide` then holds what was taken. If no
+/// calibration fits the poses, the picture says why, and the session goes on: with the last pose
+/// once more if all were taken. Starts the glove and stops it. Blocks.
 Result<SessionEnd> run_calibration_session(driver::Glove& glove, const std::string& user,
                                            const hand::FitOptions& fit, CalibrationGuide& guide);
 

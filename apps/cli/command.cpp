@@ -4,12 +4,20 @@
 #include <iostream>
 #include <optional>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include <nendo/base/result.hpp>
+
+#include "cli/quantities.hpp"
+
+#include "cli/cli.hpp"
+#include "cli/standard_output.hpp"
 
 namespace nendo::cli {
 namespace {
@@ -29,6 +37,25 @@ bool is_blank(const T& value) {
 // CLI11 reads a whole number as strtoull does, to which -3 is 18446744073709551613.
 std::string not_negative(const std::string& text) {
   return text.find('-') == std::string::npos ? "" : text + ": use a whole number, 0 or above";
+}
+
+std::string short_text(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
+std::string is_duration(const std::string& text) {
+  return seconds_of(text) ? "" : text + ": use " + std::string(duration_words);
+}
+
+std::optional<double> millimetres_of(const std::string& text) {
+  if (const auto length_m = metres_of(text)) return 1e3 * *length_m;
+  return number_of(text);
+}
+
+std::string is_in_millimetres(const std::string& text) {
+  return millimetres_of(text) ? "" : text + ": use millimetres, or " + std::string(length_words);
 }
 
 bool is_shown(const CLI::App* command) {
@@ -85,6 +112,31 @@ CommandModel model_of(const CLI::App& app) {
   return model;
 }
 
+std::string names_of_commands(const CLI::App& app) {
+  std::string known;
+  for (const auto* command : app.get_subcommands(is_shown))
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  return known;
+}
+
+/// Tells a word in place of a command, which --help behind it would hide: help ends the parsing.
+std::optional<std::string> unknown_command(CLI::App& program, int argc, char** argv) {
+  const CLI::App* at = &program;
+  std::string path = "nendo";
+  for (int word = 1; word < argc; ++word) {
+    const std::string name = argv[word];
+    if (name.empty() || name.starts_with('-') || at->get_subcommands(is_shown).empty()) break;
+    const auto named =
+        at->get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
+    if (named.empty())
+      return "no command " + name + "; there are " + names_of_commands(*at) + " (see " + path +
+             " --help)";
+    at = named.front();
+    path += ' ' + name;
+  }
+  return std::nullopt;
+}
+
 int report_usage(const CLI::App& app, const std::string& first_word, const std::string& what) {
   const auto chosen = app.get_subcommands();
   if (!chosen.empty()) {
@@ -92,13 +144,8 @@ int report_usage(const CLI::App& app, const std::string& first_word, const std::
   } else if (first_word.starts_with('-')) {
     std::cerr << "nendo: " << what << " (see nendo --help)\n";
   } else {
-    std::string known;
-    for (const auto* command : app.get_subcommands(is_shown)) {
-      known += (known.empty() ? "" : ", ") + command->get_name();
-    }
-    std::cerr << "nendo: "
-              << (first_word.empty() ? "say what to do;" : "no command " + first_word + ";")
-              << " there are " << known << " (see nendo --help)\n";
+    std::cerr << "nendo: say what to do; there are " << names_of_commands(app)
+              << " (see nendo --help)\n";
   }
   return static_cast<int>(Errc::usage);
 }
@@ -147,6 +194,39 @@ template Option Command::add_option(const std::string&, std::optional<double>&, 
 template Option Command::add_option(const std::string&, std::vector<std::string>&,
                                     const std::string&);
 
+template <class T>
+Option Command::add_duration(const std::string& names, T& seconds, const std::string& summary) {
+  const auto take = [&seconds](const std::string& text) {
+    seconds = *seconds_of(text); // the check has passed
+  };
+  CLI::Option* option = app_->add_option_function<std::string>(names, take, summary);
+  option->check(is_duration)->type_name("TIME");
+  if constexpr (std::is_same_v<T, double>) {
+    if (!is_blank(seconds)) option->default_str(short_text(seconds) + "s");
+  }
+  return Option(*option);
+}
+
+template Option Command::add_duration(const std::string&, double&, const std::string&);
+template Option Command::add_duration(const std::string&, std::optional<double>&,
+                                      const std::string&);
+
+template <class T>
+Option Command::add_millimetres(const std::string& names, T& length_mm,
+                                const std::string& summary) {
+  const auto take = [&length_mm](const std::string& text) { length_mm = *millimetres_of(text); };
+  CLI::Option* option = app_->add_option_function<std::string>(names, take, summary);
+  option->check(is_in_millimetres)->type_name("LENGTH");
+  if constexpr (std::is_same_v<T, double>) {
+    if (!is_blank(length_mm)) option->default_str(short_text(length_mm) + "mm");
+  }
+  return Option(*option);
+}
+
+template Option Command::add_millimetres(const std::string&, double&, const std::string&);
+template Option Command::add_millimetres(const std::string&, std::optional<double>&,
+                                         const std::string&);
+
 Option Command::add_flag(const std::string& names, bool& value, const std::string& summary) {
   return Option(*app_->add_flag(names, value, summary));
 }
@@ -177,6 +257,7 @@ void Command::require_command() {
 
 int run_program(int argc, char** argv, const std::string& summary,
                 const std::function<void(Command&)>& add_commands) {
+  StandardOutput output;
   CLI::App app{summary};
   app.set_version_flag("--version", NENDO_VERSION);
   app.get_formatter()->column_width(34);
@@ -184,14 +265,15 @@ int run_program(int argc, char** argv, const std::string& summary,
   Command program(app, chosen);
   program.require_command();
   add_commands(program);
+  if (const auto unknown = unknown_command(app, argc, argv)) return report({Errc::usage, *unknown});
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    return output.finish(app.exit(help));
   } catch (const CLI::ParseError& error) {
     return report_usage(app, argc > 1 ? argv[1] : "", error.what());
   }
-  return chosen();
+  return output.finish(chosen());
 }
 
 } // namespace nendo::cli

@@ -44,6 +44,14 @@ public:
   /// double, a whole number, an optional, or a list of strings, as command.cpp instantiates.
   template <class T>
   Option add_option(const std::string& names, T& value, const std::string& summary);
+  /// Adds an option whose value is a duration, such as 90s (quantities.hpp), in seconds. T is
+  /// double or an optional of it.
+  template <class T>
+  Option add_duration(const std::string& names, T& seconds, const std::string& summary);
+  /// Adds an option whose value is a length, such as 18.5cm, in millimetres. A bare number is
+  /// millimetres, too. T is as for add_duration().
+  template <class T>
+  Option add_millimetres(const std::string& names, T& length_mm, const std::string& summary);
   Option add_flag(const std::string& names, bool& value, const std::string& summary);
   /// Lets another option have -h. --help stays.
   void free_short_help();

@@ -51,6 +51,15 @@ check_distinct(std::initializer_list<std::pair<std::string_view, std::string_vie
   return {};
 }
 
+Result<void> check_spares(const std::string& model, std::string_view option, const std::string& out,
+                          bool force) {
+  std::error_code not_there;
+  if (force || out.empty() || !std::filesystem::equivalent(model, out, not_there)) return {};
+  return Error{Errc::usage, std::string(option) + " " + out +
+                                ": is the model itself, whose normals, materials and groups would "
+                                "be lost; name another file, or add --force"};
+}
+
 std::string numbered(const std::string& path, int number) {
   const std::filesystem::path whole(path);
   const std::string name =

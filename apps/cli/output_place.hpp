@@ -21,6 +21,15 @@ Result<void> check_place(std::string_view option, const std::string& path,
 Result<void>
 check_distinct(std::initializer_list<std::pair<std::string_view, std::string_view>> outputs);
 
+/// Checks that `out`, given with `option`, is not the model that was read, unless `force` is given:
+/// what a reader of models drops (normals, materials, groups) would be lost. An empty path is no
+/// file. Error: usage.
+Result<void> check_spares(const std::string& model, std::string_view option, const std::string& out,
+                          bool force);
+/// What --help says of --force.
+inline constexpr const char* force_summary =
+    "Let --out be the model itself, whose normals, materials and groups are then lost";
+
 /// Returns "a/shape-2.obj" for "a/shape.obj" and 2.
 std::string numbered(const std::string& path, int number);
 /// Sets `number` to the next number whose name no file has, and returns that name.

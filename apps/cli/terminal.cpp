@@ -81,9 +81,13 @@ void Terminal::leave() noexcept {
 }
 
 ScreenSize Terminal::size() const noexcept {
+  return screen_size(STDOUT_FILENO);
+}
+
+ScreenSize screen_size(int descriptor) noexcept {
   constexpr int most = 500; // nobody's screen, and a bound for what a line may take
   winsize window{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) != 0 || window.ws_col == 0 || window.ws_row == 0)
+  if (ioctl(descriptor, TIOCGWINSZ, &window) != 0 || window.ws_col == 0 || window.ws_row == 0)
     return {};
   return {std::min<int>(window.ws_col, most), std::min<int>(window.ws_row, most)};
 }

@@ -40,6 +40,10 @@ struct ScreenSize {
   int rows = 24;
 };
 
+/// Returns the present size of the terminal that the file descriptor is, or 80 by 24 if that is
+/// unknown.
+ScreenSize screen_size(int descriptor) noexcept;
+
 class Terminal {
 public:
   /// Takes standard output, which must be a terminal, with its alternate screen and a hidden

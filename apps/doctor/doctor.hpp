@@ -29,6 +29,12 @@ struct Finding {
   std::string remedy;     ///< the command or deed that mends it
 };
 
+/// What a subject's checks found, and what they looked at, for whoever wonders what was left out.
+struct Examination {
+  std::vector<Finding> findings;
+  std::vector<std::string> looked_at; ///< e.g. "/dev/ttyUSB0", "CPU frequency governors"
+};
+
 /// The facts that the checks of ports use.
 struct PortFacts {
   std::vector<driver::GloveCandidate> candidates;
@@ -37,8 +43,8 @@ struct PortFacts {
 
 /// Returns all findings about ports and USB devices. Pure.
 std::vector<Finding> diagnose_ports(const PortFacts& facts);
-/// Returns the findings about this machine's ports now. Blocks for less than a second.
-std::vector<Finding> check_ports();
+/// Examines this machine's ports now. Blocks for less than a second.
+Examination check_ports();
 
 /// The facts that the checks of the machine use. A fact that is unknown gives no finding.
 struct MachineFacts {
@@ -57,7 +63,7 @@ struct MachineFacts {
 MachineFacts read_machine(const std::filesystem::path& root);
 /// Returns all findings about the machine: limits, clocks, rules. Pure.
 std::vector<Finding> diagnose_machine(const MachineFacts& facts);
-/// Returns the findings about this machine now.
-std::vector<Finding> check_machine();
+/// Examines this machine now.
+Examination check_machine();
 
 } // namespace nendo::doctor

@@ -95,8 +95,10 @@ std::vector<Finding> diagnose_machine(const MachineFacts& facts) {
   return found;
 }
 
-std::vector<Finding> check_machine() {
-  return diagnose_machine(read_machine("/"));
+Examination check_machine() {
+  return {diagnose_machine(read_machine("/")),
+          {"limits of real-time priority and locked memory", "CPU frequency governors",
+           "the kernel's timers", "udev rules"}};
 }
 
 } // namespace nendo::doctor

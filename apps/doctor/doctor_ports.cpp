@@ -120,8 +120,15 @@ std::vector<Finding> diagnose_ports(const PortFacts& facts) {
   return found;
 }
 
-std::vector<Finding> check_ports() {
-  return diagnose_ports({driver::find_gloves(), driver::running_port_grabbers()});
+Examination check_ports() {
+  const PortFacts facts{driver::find_gloves(), driver::running_port_grabbers()};
+  Examination examination{diagnose_ports(facts), {}};
+  for (const GloveCandidate& candidate : facts.candidates)
+    examination.looked_at.push_back(candidate.device);
+  if (facts.candidates.empty())
+    examination.looked_at.emplace_back("serial ports and USB gloves (none)");
+  examination.looked_at.emplace_back("programs that take ports");
+  return examination;
 }
 
 } // namespace nendo::doctor

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/output_place.hpp"
+#include "cli/quantities.hpp"
 #include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
@@ -67,9 +68,10 @@ Result<timeline::Tolerance> parse_tolerance(const std::string& text) {
   std::string_view rest = text;
   double value = 0.0;
   timeline::Tolerance tolerance;
+  const auto length_m = cli::metres_of(text);
   const bool fine = cut_number(rest, value) && value >= 0.0;
-  if (fine && rest == "mm") {
-    tolerance.tip_m = value / 1000.0;
+  if (fine && length_m) {
+    tolerance.tip_m = *length_m;
   } else if (fine && rest == "rad") {
     tolerance.angle_rad = value;
   } else if (fine && rest == "deg") {

@@ -13,9 +13,10 @@ GlbExport::GlbExport(const timeline::Timeline& timeline, const deform::Mesh& mod
           if (!frames) return frames.error();
           return std::unique_ptr<takes::FrameSource>(*std::move(frames));
         };
+        const exporting::Choice choice{.rate_hz = exporting::animators_rate_hz, .stop = &stop_};
         exporting::GltfOptions options;
         options.generator = "Nendo " NENDO_VERSION;
-        result_ = exporting::export_gltf(open, exporting::Choice{.stop = &stop_}, options, path);
+        result_ = exporting::export_gltf(open, choice, options, path);
         done_ = true;
       }) {}
 

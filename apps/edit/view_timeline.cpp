@@ -128,7 +128,7 @@ void add_timeline_view(cli::Command& edit) {
   command.add_option("--mesh", options->mesh, "Another model than the timeline's");
   command.add_option("--out", options->out,
                      "Where it is saved, .timeline.toml; without it, into FILE");
-  command.add_option("--at", options->at_s, "Seconds where the play head stands at first");
+  command.add_duration("--at", options->at_s, "Seconds where the play head stands at first");
   command.add_option("--hand", options->hand, "left or right, for --key");
   command.add_option("--key", options->key, "Number of the key that is selected at first");
   command.add_option("--screenshot", options->screenshot,

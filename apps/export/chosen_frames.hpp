@@ -21,6 +21,8 @@ struct Choice {
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// The rate where nothing else is asked for: a film's, and that of a new scene in Blender.
+inline constexpr double animators_rate_hz = 24.0;
 inline constexpr double most_export_rate_hz = 10'000.0;
 inline constexpr std::uint64_t most_export_frames = 1'000'000;
 
@@ -44,7 +46,8 @@ public:
   /// Returns the number of frames if they are at an even rate.
   std::optional<std::uint64_t> count() const noexcept { return count_; }
   double period_s() const noexcept { return 1.0 / *choice_.rate_hz; } ///< only at an even rate
-  std::uint64_t made() const noexcept { return made_; }               ///< by next()
+  const std::optional<double>& rate_hz() const noexcept { return choice_.rate_hz; }
+  std::uint64_t made() const noexcept { return made_; } ///< by next()
 
   const takes::FrameSource& source() const noexcept { return *source_; }
   /// Writes the latest frame's shape to `out`, 3 by #vertices, in the mesh's order and in model

@@ -18,7 +18,9 @@ namespace nendo::exporting {
 struct MorphReport {
   bool by_control_vectors = false; ///< otherwise by key shapes
   std::size_t targets = 0;
-  std::size_t keys = 0; ///< moments between which weights are interpolated
+  std::size_t keys = 0;    ///< moments between which weights are interpolated
+  double tolerance = 0.0;  ///< of key shapes, as a fraction of the model's diagonal; otherwise 0
+  double diagonal_m = 0.0; ///< of the model, on the stage
   /// The greatest distance of a vertex from nendo's own shape, over all exported frames, as a
   /// fraction of the model's diagonal.
   double greatest_error = 0.0;
@@ -29,9 +31,10 @@ struct Exported {
   std::uint64_t frames = 0;
   double first_s = 0.0; ///< since the take began
   double last_s = 0.0;
-  std::uint64_t bytes = 0; ///< of all files
-  std::optional<MorphReport> morphs{};
-  bool exact = true; ///< nothing was missing in the take up to the last frame
+  std::uint64_t bytes = 0;             ///< of all files
+  std::optional<MorphReport> morphs{}; ///< glTF with a model
+  std::optional<double> rate_hz{};     ///< nothing means that each frame is at its own time
+  bool exact = true;                   ///< nothing was missing in the take up to the last frame
 };
 
 /// Opens the same frames again from the beginning. An export may have to read them twice.

@@ -87,12 +87,11 @@ struct Document {
   Json animation;
 };
 
-Result<Exported> finish(Document& document, const GltfModel& model, const Played& played,
-                        const MorphReport& report, const ChosenFrames& frames,
+/// `roots` are those that the document has already. The hands' are added.
+Result<Exported> finish(Document& document, Json roots, const Played& played,
+                        const ChosenFrames& frames, const std::optional<double>& rate_hz,
                         const std::filesystem::path& path) {
   GlbFile& file = document.file;
-  Json roots = Json::array({GltfModel::node});
-  model.add_to(file, played.units_per_metre, report);
   GlbFile::Index times = 0;
   const bool has_hands = played.hands[0] || played.hands[1];
   if (has_hands) times = file.add_scalars(played.times_s, true);
@@ -104,9 +103,36 @@ Result<Exported> finish(Document& document, const GltfModel& model, const Played
     file.add("animations", std::move(document.animation));
   const auto bytes = file.write(path);
   if (!bytes) return bytes.error();
-  return Exported{
-      {path.string()}, played.times_s.size(),     frames.first_s(), played.last_s, *bytes,
-      report,          frames.source().is_exact()};
+  Exported done{{path.string()}, played.times_s.size(), frames.first_s(), played.last_s, *bytes};
+  done.rate_hz = rate_hz;
+  done.exact = frames.source().is_exact();
+  return done;
+}
+
+/// Finishes a document that has the model.
+Result<Exported> finish(Document& document, const GltfModel& model, const Played& played,
+                        MorphReport report, const ChosenFrames& frames,
+                        const std::optional<double>& rate_hz, const std::filesystem::path& path) {
+  report.diagonal_m = frames.source().layout().diagonal() / played.units_per_metre;
+  model.add_to(document.file, played.units_per_metre, report);
+  auto done = finish(document, Json::array({GltfModel::node}), played, frames, rate_hz, path);
+  if (done) done->morphs = report;
+  return done;
+}
+
+/// A take without a model.
+Result<Exported> hands_alone(takes::FrameSource& source, const Choice& choice,
+                             const GltfOptions& options, const std::filesystem::path& path) {
+  auto frames = ChosenFrames::make(source, choice);
+  if (!frames) return frames.error();
+  const auto played = play(*frames, options.hands,
+                           [](const flow::Frame&, float, const deform::Points&) { return true; });
+  if (!played) return played.error();
+  if (!played->hands[0] && !played->hands[1])
+    return Error{Errc::bad_input, path.string() + ": there would be neither a model nor a hand in "
+                                                  "it"};
+  Document document(options);
+  return finish(document, Json::array(), *played, *frames, choice.rate_hz, path);
 }
 
 /// Nothing, if the take is not linear in control vectors.
@@ -129,9 +155,12 @@ Result<std::optional<Exported>> by_control_vectors(takes::FrameSource& source, c
     const auto times = document.file.add_scalars(played->times_s, true);
     document.animate(GltfModel::node, times, document.file.add_scalars(weights, false));
   }
-  const MorphReport report{true, model.target_count(), weights.empty() ? 0 : played->times_s.size(),
-                           morphs.greatest_error() / source.layout().diagonal()};
-  auto done = finish(document, model, *played, report, *frames, path);
+  MorphReport report;
+  report.by_control_vectors = true;
+  report.targets = model.target_count();
+  report.keys = weights.empty() ? 0 : played->times_s.size();
+  report.greatest_error = morphs.greatest_error() / source.layout().diagonal();
+  auto done = finish(document, model, *played, report, *frames, choice.rate_hz, path);
   if (!done) return done.error();
   return std::optional<Exported>(*std::move(done));
 }
@@ -145,7 +174,11 @@ Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
   Document document(options);
   GltfModel model(source.model(), document.file);
   std::vector<float> key_times_s;
-  KeyShapes keys(options.tolerance * diagonal, [&](float time_s, const KeyShapes::Shape& way) {
+  // The source is at the first frame, which tells the scale.
+  const double tolerance = options.tolerance_m
+                               ? *options.tolerance_m * source.frame().units_per_metre
+                               : options.tolerance * diagonal;
+  KeyShapes keys(tolerance, [&](float time_s, const KeyShapes::Shape& way) {
     key_times_s.push_back(time_s);
     model.add_key_target(way, document.file);
   });
@@ -163,9 +196,12 @@ Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
   }
   // A reader adds targets to a rest shape that is rounded to floats, too.
   const double rounding = (rest.cast<float>().cast<double>() - rest).colwise().norm().maxCoeff();
-  const MorphReport report{false, model.target_count(), key_times_s.size(),
-                           (keys.greatest_error() + rounding) / diagonal};
-  return finish(document, model, *played, report, *frames, path);
+  MorphReport report;
+  report.targets = model.target_count();
+  report.keys = key_times_s.size();
+  report.tolerance = tolerance / diagonal;
+  report.greatest_error = (keys.greatest_error() + rounding) / diagonal;
+  return finish(document, model, *played, report, *frames, choice.rate_hz, path);
 }
 
 } // namespace
@@ -174,6 +210,7 @@ Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path) {
   auto source = open();
   if (!source) return source.error();
+  if ((*source)->model().vertices.cols() == 0) return hands_alone(**source, choice, options, path);
   auto exact = by_control_vectors(**source, choice, options, path);
   if (!exact) return exact.error();
   if (*exact) return *std::move(*exact);

@@ -10,10 +10,12 @@
 // - Any other take (with commits, motion in several links, or Type-2) has key shapes
 //   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed.
 // - Normals are those of the rest shape only. Blender computes its own from the faces.
+// - A take of gloves alone has no model, and the file then has the hands alone.
 // - Time 0 is that of the first frame. Weights and joints are interpolated linearly, as players do.
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "export/chosen_frames.hpp"
@@ -22,7 +24,8 @@
 namespace nendo::exporting {
 
 struct GltfOptions {
-  double tolerance = 1e-4; ///< of key shapes, as a fraction of the model's diagonal
+  double tolerance = 0.01;             ///< of key shapes, as a fraction of the model's diagonal
+  std::optional<double> tolerance_m{}; ///< in place of it, as a length on the stage
   bool hands = true;
   std::string generator = "Nendo";
   /// Limits the weights of key shapes. Each key has one weight for each target, and a reader of the
@@ -33,7 +36,7 @@ struct GltfOptions {
 /// Exports the frames to `path`. It reads them once, or twice if they turn out not to be linear in
 /// control vectors. The file is kept in memory until it is written. Blocks. Errors: those of
 /// `open`, ChosenFrames::make(), ChosenFrames::next() and GlbFile::write(); bad_input (numbers that
-/// 32-bit floats cannot hold), failed (too many weights).
+/// 32-bit floats cannot hold, or there is neither a model nor a hand), failed (too many weights).
 Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path);
 

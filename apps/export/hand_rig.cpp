@@ -165,10 +165,13 @@ void add_hand(const HandTrack& track, GlbFile::Index times, GlbFile& file, Json&
   const GlbFile::Index base = add_joints(track, times, file, animation);
   const GlbFile::Index skin = add_skin(track, bind, base, file);
   const GlbFile::Index mesh = add_mesh(track, bind, file);
-  roots.push_back(base + hand::index_of(Joint::wrist));
-  roots.push_back(file.add(
-      "nodes",
-      {{"name", std::string(name_of(track.side())) + " hand"}, {"mesh", mesh}, {"skin", skin}}));
+  const std::string name = std::string(name_of(track.side())) + " hand";
+  // Blender makes the joints' nearest common ancestor that is no joint an armature. Without one of
+  // the hand's own that is the whole scene, with the model and both hands in one armature.
+  roots.push_back(
+      file.add("nodes", {{"name", name}, {"children", {base + hand::index_of(Joint::wrist)}}}));
+  // A skinned mesh stays a root, because a parent's transform must not move it.
+  roots.push_back(file.add("nodes", {{"name", name + " skin"}, {"mesh", mesh}, {"skin", skin}}));
 }
 
 } // namespace nendo::exporting

@@ -1,6 +1,7 @@
 #pragma once
 // Puts a hand into a glTF document: a tree of 26 nodes, one for each joint of OpenXR, that turn
-// over time, and a skin that follows them.
+// over time, under a node of the hand's own ("left hand"), and a skin that follows them ("left hand
+// skin").
 
 #include <array>
 #include <vector>

@@ -76,6 +76,7 @@ Result<Exported> export_hands_bvh(ChosenFrames& frames, const Skeletons& skeleto
     done.bytes += hand.file.size();
   }
   done.frames = frames.made();
+  done.rate_hz = frames.rate_hz();
   done.exact = frames.source().is_exact();
   return done;
 }

@@ -72,6 +72,7 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
     done.frames = frames.made();
     done.last_s = frames.time_s();
   }
+  done.rate_hz = frames.rate_hz();
   done.exact = frames.source().is_exact();
   return done;
 }

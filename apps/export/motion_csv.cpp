@@ -1,9 +1,11 @@
 #include "export/motion_csv.hpp"
 
 #include <array>
-#include <charconv>
-#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
 
+#include "export/csv_row.hpp"
 #include "export/one_file.hpp"
 
 namespace nendo::exporting {
@@ -27,21 +29,6 @@ std::string_view word_for(deform::FieldStatus status) {
   return "";
 }
 
-// Not printf, whose decimal point is a matter of the locale.
-void put_number(double value, int decimals, std::string& row) {
-  row += ',';
-  char digits[400]; // the largest double has 309 before the point
-  if (!std::isfinite(value)) return;
-  row.append(
-      digits,
-      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals).ptr);
-}
-
-void put_count(std::uint64_t count, std::string& row) {
-  row += ',';
-  row += std::to_string(count);
-}
-
 const flow::HandFrame& hand_of(const flow::Frame& frame, Side side) {
   return frame.hands[flow::Placement::index_of(side)];
 }
@@ -61,27 +48,26 @@ std::string head_for(const flow::Frame& frame) {
   return head + "\n";
 }
 
-void put_hand(const flow::HandFrame& hand, std::string& row) {
-  put_count(hand.samples, row);
-  put_count(hand.silent ? 1 : 0, row);
+void put_hand(const flow::HandFrame& hand, CsvRow& row) {
+  row.put(hand.samples);
+  row.put(std::uint64_t{hand.silent});
   for (std::size_t at = 0; at < hand::angle_count; ++at)
-    put_number(to_degrees(hand.angles[hand::angle_at(at)]), 4, row);
+    row.put(to_degrees(hand.angles[hand::angle_at(at)]), 4);
   const auto tips_m = hand.pose.fingertip_positions();
   for (const double metres : tips_m.reshaped())
-    put_number(metres, 7, row);
+    row.put(metres, 7);
 }
 
-// Begins with a comma.
 std::string row_for(const flow::Frame& frame, double time_s, const std::array<bool, 2>& present) {
-  std::string row;
-  put_number(time_s, 6, row);
+  CsvRow row;
+  row.put(time_s, 6);
   for (const std::uint64_t count :
        {frame.tick, std::uint64_t{frame.held}, frame.commits, frame.undos})
-    put_count(count, row);
-  row.append(",").append(word_for(frame.status));
+    row.put(count);
+  row.put(word_for(frame.status));
   for (std::size_t slot = 0; slot < present.size(); ++slot)
     if (present[slot]) put_hand(frame.hands[slot], row);
-  return row;
+  return row.take();
 }
 
 } // namespace
@@ -96,8 +82,7 @@ Result<Exported> export_motion_csv(ChosenFrames& frames, const std::filesystem::
       for (std::size_t slot = 0; slot < present.size(); ++slot)
         present[slot] = frame.hands[slot].present;
     }
-    text.append(row_for(frame, frames.time_s(), present), 1); // without the first comma
-    return file.write(text.append("\n"));
+    return file.write(text + row_for(frame, frames.time_s(), present));
   });
 }
 

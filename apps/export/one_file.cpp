@@ -17,6 +17,7 @@ Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem:
   if (const auto finished = file->finish(); !finished) return finished.error();
   done.frames = frames.made();
   done.bytes = file->size();
+  done.rate_hz = frames.rate_hz();
   done.exact = frames.source().is_exact();
   return done;
 }

@@ -18,6 +18,24 @@ void report_choice(const driver::GloveInfo& glove, const hand::StoredCalibration
             printable(file.path.string()) + ")" + doubt);
 }
 
+void report_none(const driver::GloveInfo& glove, Side side) {
+  const std::string source = printable(glove.source);
+  cli::note(source + ": not calibrated for this " + std::string(name_of(side)) +
+            " hand, so angles are an average hand's; `nendo calibrate " + source +
+            " --user NAME` makes them the wearer's");
+}
+
+/// Returns what the wearer should know of a choice that another glove may have been meant by. A
+/// CyberGlove tells no serial number, so that its calibrations are for any glove.
+std::string doubt_about(const hand::CalibrationChoice& choice) {
+  if (choice.match == hand::GloveMatch::this_glove) return "";
+  if (choice.match == hand::GloveMatch::other_glove)
+    return "; made with another glove of this model";
+  return choice.file->wearer.glove_model.empty()
+             ? "; it does not tell with which glove it was made"
+             : "; made with a glove of this model, maybe another one";
+}
+
 hand::WearerHand hand_of(const hand::WearerCalibration& wearer, CountScale counts) {
   return {hand::calibration_for(wearer, counts), wearer.size};
 }
@@ -65,16 +83,15 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
   };
   const auto own = choose(side, serial_of(glove));
   if (own) {
-    report_choice(glove, *own->file,
-                  own->match == hand::GloveMatch::other_glove
-                      ? "; made with another glove of this model"
-                      : "");
+    report_choice(glove, *own->file, doubt_about(*own));
     wearer.of(side) = hand_of(own->file->wearer, glove.counts);
   } else if (!user.empty()) {
     return Error{Errc::bad_input, "--user " + printable(user) + ": no calibration of a " +
                                       std::string(name_of(side)) + " hand for " +
                                       printable(glove.source) +
                                       " is stored; `nendo calibration list` shows what is"};
+  } else if (is_uncalibrated(glove, wearer, side)) {
+    report_none(glove, side);
   }
   if (glove.kind == driver::GloveKind::simulated) return wearer; // its hand does not change
   // The serial number of a glove that may be plugged in later is not known.
@@ -120,9 +137,10 @@ hand::HandSize HandLength::size(const hand::HandSize& known) const noexcept {
 }
 
 void add_hand_length(cli::Command& command, HandLength& length) {
-  command.add_option("--hand-length", length.length_mm,
-                     "The wearer's hand in millimetres, from the wrist's crease to the tip of the "
-                     "middle finger, 100 to 250; without it, as the calibration says");
+  command.add_millimetres("--hand-length", length.length_mm,
+                          "The wearer's hand in millimetres or as 18.5cm, from the wrist's crease "
+                          "to the tip of the middle finger, 100 to 250; without it, as the "
+                          "calibration says");
 }
 
 Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
@@ -145,6 +163,11 @@ Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
     if (const auto recorded = recorded_wearer(glove, side)) return *recorded;
   }
   return stored_wearer(glove, side, std::move(wearer), options.user);
+}
+
+bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side) {
+  return glove.kind == driver::GloveKind::device && !wearer.adapt &&
+         wearer.of(side).calibration == hand::default_calibration(glove.counts);
 }
 
 } // namespace nendo::gloves

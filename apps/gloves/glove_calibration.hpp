@@ -42,10 +42,15 @@ void add_hand_length(cli::Command& command, HandLength& length);
 
 /// Finds the wearer of a glove that is sewn for `side`. For that side the wearer gets the hand that
 /// is asked for, stored, or recorded (if the glove replays); one line on standard error says which
-/// file it is. A simulated glove gets a stored hand only if it is asked for. For the other side the
-/// wearer gets the stored hand or an average one, and nothing is printed. Blocks. Errors: bad_input
-/// (no such file, another hand's, not readable), usage.
+/// file it is, and whether it may be that of another glove, or that there is none. A simulated
+/// glove gets a stored hand only if it is asked for. For the other side the wearer gets the stored
+/// hand or an average one, and nothing is printed. Blocks. Errors: bad_input (no such file, another
+/// hand's, not readable), usage.
 Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
                                  const CalibrationOptions& options);
+
+/// Tells whether angles of that side are an average hand's, though a person wears the glove: it is
+/// neither simulated nor recorded, has the default calibration, and learns none.
+bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side);
 
 } // namespace nendo::gloves

@@ -28,6 +28,11 @@ ordered_json angle_sources_json(SensorMask sensors) {
   return by_angle;
 }
 
+void add_counts(ordered_json& object, const driver::RecordCounts& counts) {
+  for (const auto& [name, count] : driver::by_name(counts))
+    object[std::string(name)] = count;
+}
+
 std::string sample_json(const GloveSample& sample, const hand::Calibration* calibration,
                         bool with_sources) {
   ordered_json raw = ordered_json::object();
@@ -42,12 +47,15 @@ std::string sample_json(const GloveSample& sample, const hand::Calibration* cali
     if (calibration != nullptr && (*calibration)[sensor].gain_rad_per_count != 0.0)
       angles[name] = angles_rad[slot];
   }
-  ordered_json line{{"time_s", to_seconds(sample.arrival.time_since_epoch())},
-                    {"measured_s", to_seconds(sample.measured.time_since_epoch())},
+  const HostTime came = sample.is_replayed ? sample.recorded_arrival : sample.arrival;
+  const HostTime taken = sample.is_replayed ? sample.recorded_measured : sample.measured;
+  ordered_json line{{"time_s", to_seconds(came.time_since_epoch())},
+                    {"measured_s", to_seconds(taken.time_since_epoch())},
                     {"sequence", sample.sequence},
                     {"hand", name_of(sample.side)},
                     {"switch", switch_json(sample.wrist_switch)},
                     {"raw", std::move(raw)}};
+  if (sample.is_replayed) line["replayed_s"] = to_seconds(sample.arrival.time_since_epoch());
   if (sample.has_device_time) line["device_time_s"] = to_seconds(sample.device_time);
   if (calibration != nullptr) line["angle_rad"] = std::move(angles);
   if (calibration != nullptr && with_sources) line["angles"] = angle_sources_json(sample.present);

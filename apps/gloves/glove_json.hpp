@@ -1,11 +1,12 @@
 #pragma once
-// Gloves and their samples as JSON, for `nendo info` and `nendo monitor`.
+// Gloves and their samples as JSON, for `nendo info`, `nendo monitor` and the summaries.
 
 #include <optional>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
 
@@ -14,6 +15,9 @@ namespace nendo::gloves {
 /// Returns an object with the name of each angle's hand::AngleSource: "measured", the rule that
 /// estimates it, or "zero".
 nlohmann::ordered_json angle_sources_json(SensorMask sensors);
+
+/// Adds the counts to an object, under the names of driver::by_name().
+void add_counts(nlohmann::ordered_json& object, const driver::RecordCounts& counts);
 
 /// Distinguishes the first sample of each glove from the others, by its hand and sensors.
 class GloveChanges {
@@ -30,7 +34,8 @@ private:
   std::optional<SensorMask> sensors_; ///< nullopt: no sample came yet
 };
 
-/// Returns one object without a line end. Its keys are time_s and measured_s (host clock),
+/// Returns one object without a line end. Its keys are time_s and measured_s (host clock; of a
+/// replayed sample those with which it was recorded, and replayed_s is the moment of replay),
 /// sequence, hand, switch ("on", "off", or null if the glove does not tell), raw (counts by
 /// sensor), device_time_s if the glove has a clock, and angle_rad (by sensor) unless `calibration`
 /// is null. It contains only sensors that the sample has, and only angles that the calibration

@@ -1,10 +1,12 @@
 #include "gloves/monitor_screen.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
 
 #include <nendo/base/text.hpp>
+#include <nendo/driver/record_counts.hpp>
 
 namespace nendo::gloves {
 namespace {
@@ -61,24 +63,34 @@ std::string glove_line(const MonitorPicture& picture, int width) {
   const auto position =
       picture.sample != nullptr ? picture.sample->wrist_switch : WristSwitch::unknown;
   std::string right = std::string(name_of(side)) + " hand";
+  if (picture.uncalibrated) right += ", uncalibrated";
   if (position != WristSwitch::unknown)
     right += ", switch " + on_or_off(position == WristSwitch::on);
   if (info.abilities.light) right += ", light " + on_or_off(picture.light);
   return both_ends(printable(info.source + ": " + info.model), right, width);
 }
 
+// Losses on the line and losses in the program have names of their own, as everywhere.
 std::string losses(const driver::GloveStats& stats) {
+  const driver::RecordCounts counts = driver::counts_of(stats);
   std::string text;
   const auto add = [&](std::uint64_t count, std::string_view what) {
-    if (count > 0)
-      text.append(text.empty() ? "" : ", ").append(short_number(count)).append(" ").append(what);
+    text.append(text.empty() ? "" : ", ").append(short_number(count)).append(" ").append(what);
   };
-  add(stats.bad_records, "bad");
-  add(stats.missed, "missed");
-  add(stats.ring_refused, "refused");
-  add(stats.silences, "silences");
-  add(stats.reopened, "reopened");
-  return text.empty() ? "nothing lost" : text;
+  const auto add_any = [&](std::uint64_t count, std::string_view what) {
+    if (count > 0) add(count, what);
+  };
+  const bool any_lost = counts.missed > 0 || counts.refused > 0 || counts.bad > 0;
+  if (any_lost) add(counts.sent(), "sent");
+  add(counts.delivered, any_lost ? "delivered" : "delivered, nothing lost");
+  if (any_lost) {
+    add(counts.missed, "missed");
+    add(counts.refused, "refused");
+    add_any(counts.bad, "bad");
+  }
+  add_any(stats.silences, "silences");
+  add_any(stats.reopened, "reopened");
+  return text;
 }
 
 std::string stream_line(const MonitorPicture& picture, const std::string& keys, int width) {
@@ -92,7 +104,10 @@ std::string stream_line(const MonitorPicture& picture, const std::string& keys, 
   } else {
     text += fixed(1000.0 * std::max(picture.age_s, 0.0), 0) + " ms old";
   }
-  return both_ends(text + ", " + losses(picture.stats), keys, width);
+  text += ", " + losses(picture.stats);
+  // --help tells the keys, too, but nothing else tells what was lost.
+  const bool keys_fit = text.size() + 2 + keys.size() <= static_cast<std::size_t>(width);
+  return both_ends(text, keys_fit ? keys : "", width);
 }
 
 std::string angle_text(const MonitorPicture& picture, Sensor sensor) {
@@ -100,8 +115,10 @@ std::string angle_text(const MonitorPicture& picture, Sensor sensor) {
   if (calibration[sensor].gain_rad_per_count == 0.0) return std::string(angle_width, ' ');
   const double angle_rad =
       calibration.angles_rad(*picture.sample)[static_cast<std::size_t>(sensor)];
-  const double angle_deg = to_degrees(angle_rad);
-  return right_aligned(fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg", angle_width);
+  const double angle_deg = std::round(to_degrees(angle_rad)) + 0.0; // 0 without a sign
+  return right_aligned((picture.uncalibrated ? "~" : "") +
+                           fixed(std::clamp(angle_deg, -999.0, 999.0), 0) + " deg",
+                       angle_width);
 }
 
 std::string sensor_text(const MonitorPicture& picture, Sensor sensor, int width) {

@@ -44,6 +44,8 @@ struct MonitorPicture {
   double age_s = 0.0;                             ///< of `sample`
   bool light = false;
   bool keys = false; ///< the user can press keys
+  /// The angles are an average hand's: the first line says so, and each has a '~' before it.
+  bool uncalibrated = false;
 };
 
 /// Returns `width` characters, of which the one at the place of `count` is '#'. '[' and ']' are at

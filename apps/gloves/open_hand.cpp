@@ -1,5 +1,6 @@
 #include "gloves/open_hand.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -38,9 +39,18 @@ Result<void> wait_for_first_sample(OpenHand& hand) {
 
 } // namespace
 
+Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec, std::optional<Side> side,
+                                                  const driver::GloveContext& context) {
+  cli::install_stop_signals();
+  auto glove = driver::open_glove(spec, side, context);
+  if (cli::stop_requested())
+    return Error{Errc::failed, spec + ": interrupted while its glove was being identified"};
+  return glove;
+}
+
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side,
                            EventCount* event_count, const driver::GloveContext& context) {
-  auto glove = driver::open_glove(spec, side, context);
+  auto glove = open_glove(spec, side, context);
   if (!glove) return glove.error();
   return hand_of(*std::move(glove), side, event_count);
 }
@@ -67,6 +77,11 @@ Result<void> start(std::span<OpenHand> hands) {
   return {};
 }
 
+bool have_ended(std::span<const OpenHand> hands) noexcept {
+  return std::all_of(hands.begin(), hands.end(),
+                     [](const OpenHand& hand) { return hand.glove->has_ended(); });
+}
+
 Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
                        const HandLength& length) {
   for (OpenHand& hand : hands) {
@@ -75,6 +90,7 @@ Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& opti
     auto wearer = find_wearer(hand.glove->info(), hand.first.side, options);
     if (!wearer) return wearer.error();
     hand.wearer = *std::move(wearer);
+    hand.uncalibrated = is_uncalibrated(hand.glove->info(), hand.wearer, hand.first.side);
     for (hand::HandSize* size : {&hand.wearer.left.size, &hand.wearer.right.size})
       *size = length.size(*size);
   }

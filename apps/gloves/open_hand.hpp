@@ -18,11 +18,19 @@ struct OpenHand {
   Side side = Side::right;          ///< the hand as which it shapes
   std::unique_ptr<SampleRing> ring; ///< outlives the glove, whose thread writes to it
   std::unique_ptr<driver::Glove> glove;
-  GloveSample first;   ///< the first sample; set by calibrate()
-  hand::Wearer wearer; ///< set by calibrate()
+  GloveSample first;         ///< the first sample; set by calibrate()
+  hand::Wearer wearer;       ///< set by calibrate()
+  bool uncalibrated = false; ///< is_uncalibrated() of `wearer` and `first`; set by calibrate()
   /// The pose of the end of the forearm, if something other than the glove knows it.
   std::optional<Eigen::Isometry3d> T_stage_wrist{};
 };
+
+/// Opens a glove as driver::open_glove() does, for a command that a stop signal ends. From then on
+/// these signals set a flag (cli::stop_requested()). If one comes while ports are probed, that is
+/// the error: failed, "interrupted".
+Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec,
+                                                  std::optional<Side> side = std::nullopt,
+                                                  const driver::GloveContext& context = {});
 
 /// Opens the glove for that hand, and says on standard error if it calls itself the other one.
 /// Without `side`, opens it for the hand that it is. Each sample notifies `event_count`. Blocks and
@@ -37,6 +45,10 @@ OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
 
 /// Starts the gloves. Blocks and fails as Glove::start() does.
 Result<void> start(std::span<OpenHand> hands);
+
+/// Returns whether all gloves have sent all that they ever will (Glove::has_ended()), so that who
+/// waits for more waits for ever. What they sent is in their rings then, or has been taken out.
+bool have_ended(std::span<const OpenHand> hands) noexcept;
 
 /// Takes the first sample of each started glove out of its ring, and finds the wearer. Both hands
 /// of the wearer get `length` if it is given. Waits for a sample for 2 s at most. Errors: no_device

@@ -1,22 +1,15 @@
 #include "gloves/pose_output.hpp"
 
-#include <cerrno>
-#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
 #include <optional>
-#include <string_view>
-#include <system_error>
 #include <utility>
-
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
 #include <nendo/hand/bvh_file.hpp>
 
-#include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "gloves/glove_json.hpp"
 
@@ -59,18 +52,7 @@ public:
     return lines_.size() < most_pending_bytes ? Result<void>() : flush();
   }
   Result<void> flush() override {
-    // Not std::cout: a stop signal while the reader is slow would end a line in the middle.
-    std::string_view rest = lines_;
-    while (!rest.empty()) {
-      const ssize_t written = ::write(STDOUT_FILENO, rest.data(), rest.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0 && errno == EPIPE && cli::stop_requested()) break; // Ctrl-C ended both
-      if (written < 0) {
-        return Error{Errc::failed, "standard output cannot be written: " +
-                                       std::generic_category().message(errno)};
-      }
-      rest.remove_prefix(static_cast<std::size_t>(written));
-    }
+    std::cout << lines_ << std::flush; // what cannot be written ends the program by itself
     lines_.clear();
     return {};
   }
@@ -109,7 +91,6 @@ private:
 } // namespace
 
 std::unique_ptr<PoseOutput> json_pose_output() {
-  std::signal(SIGPIPE, SIG_IGN);
   return std::make_unique<JsonLines>();
 }
 

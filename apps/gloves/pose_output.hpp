@@ -33,8 +33,7 @@ public:
 /// Writes a JSON object in a line for each pose to standard output. Its keys are time_s (host
 /// clock), hand ("left" or "right") and joints. joints has OpenXR's names in OpenXR's order, each
 /// with position_m [x, y, z] and orientation_xyzw, a unit quaternion whose w is not negative. The
-/// first pose of each glove has also the key angles, with what angle_sources_json() returns. From
-/// now on, a reader that has gone causes an error and not the signal SIGPIPE, in the whole process.
+/// first pose of each glove has also the key angles, with what angle_sources_json() returns.
 std::unique_ptr<PoseOutput> json_pose_output();
 /// Writes a BVH file. Fails as BvhFile::create() does.
 Result<std::unique_ptr<PoseOutput>>

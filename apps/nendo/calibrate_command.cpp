@@ -20,6 +20,7 @@
 #include "calibrate/session.hpp"
 #include "cli/cli.hpp"
 #include "gloves/glove_calibration.hpp"
+#include "gloves/open_hand.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::calibrate_command {
@@ -129,7 +130,7 @@ int fit_and_write(const Options& options, Wearer& wearer,
     std::cout << "the one before is kept as " << printable(earlier->string()) << '\n';
   if (options.picture.empty()) return 0;
   const auto drawn =
-      calibrate::write_report_picture(options.picture, *fit, wearer.sensors, wearer.about.counts);
+      calibrate::write_report_picture(options.picture, *fit, wearer.about, wearer.sensors);
   return drawn ? 0 : cli::report(drawn.error());
 }
 
@@ -159,24 +160,27 @@ int calibrate_from_capture(const Options& options) {
   return fit_and_write(options, wearer, guide);
 }
 
-/// Keeps what was taken, so that the same command goes on from there.
-int keep_for_later(const Wearer& wearer, const calibrate::CalibrationGuide& guide) {
+/// Keeps what was taken, so that the same command goes on from there. If the session `went_on` from
+/// kept poses and has none any more, they are removed, or they would come back.
+int keep_for_later(const Wearer& wearer, const calibrate::CalibrationGuide& guide, bool went_on) {
   const auto readings = guide.readings();
-  if (readings.empty()) return 0;
   std::error_code ignored;
+  if (readings.empty()) {
+    if (went_on) fs::remove(unfinished_path(wearer), ignored);
+    return 0;
+  }
   fs::create_directories(wearer.path.parent_path(), ignored);
   const auto kept =
       calibrate::write_readings(unfinished_path(wearer), readings, guide.free_motion(),
                                 wearer.about.side, wearer.about.counts);
   if (!kept) return cli::report(kept.error());
-  cli::note(
-      std::to_string(readings.size()) +
-      " poses are kept; the same command goes on from there, with --fresh from the beginning");
+  cli::note((readings.size() == 1 ? "1 pose is" : std::to_string(readings.size()) + " poses are") +
+            " kept; the same command goes on from there, with --fresh from the beginning");
   return 0;
 }
 
 int calibrate_glove(const Options& options) {
-  const auto glove = driver::open_glove(options.glove);
+  const auto glove = gloves::open_glove(options.glove);
   if (!glove) return cli::report(glove.error());
   const driver::GloveInfo& info = (*glove)->info();
   Wearer wearer = describe(options, info.side, info.counts, info.sensors);
@@ -185,22 +189,23 @@ int calibrate_glove(const Options& options) {
   set_path(wearer, options);
   calibrate::CalibrationGuide guide(poses_for(options), info.counts);
   std::error_code error;
+  bool went_on = false;
   if (!options.fresh && fs::exists(unfinished_path(wearer), error)) {
     const auto before = calibrate::read_capture(unfinished_path(wearer));
     if (!before)
       return cli::report(
           {before.error().code,
            before.error().message + "; with --fresh it is not read, and written anew"});
-    if (before->counts == info.counts && before->side == info.side)
-      guide.restore(before->readings, before->free_motion);
+    went_on = before->counts == info.counts && before->side == info.side;
+    if (went_on) guide.restore(before->readings, before->free_motion);
   }
   cli::install_stop_signals();
   const auto end = calibrate::run_calibration_session(**glove, options.user,
                                                       fit_options(options, info.counts), guide);
   if (!end) return cli::report(end.error());
-  if (*end == calibrate::SessionEnd::quit) return keep_for_later(wearer, guide);
+  if (*end == calibrate::SessionEnd::quit) return keep_for_later(wearer, guide, went_on);
   const int code = fit_and_write(options, wearer, guide);
-  return code == 0 ? 0 : (keep_for_later(wearer, guide), code);
+  return code == 0 ? 0 : (keep_for_later(wearer, guide, went_on), code);
 }
 
 int calibrate(const Options& options) {
@@ -220,9 +225,9 @@ void add(cli::Command& program) {
   command.add_option("--from", options->from,
                      "A capture instead of a glove: what nendo monitor --json has printed while "
                      "the poses were held one after another, three seconds each");
-  command.add_option("--hand-length", options->length_mm,
-                     "Millimetres from the wrist's crease to the tip of the middle finger");
-  command.add_option("--hand-breadth", options->breadth_mm, "Millimetres across the knuckles");
+  command.add_millimetres("--hand-length", options->length_mm,
+                          "Millimetres from the wrist's crease to the tip of the middle finger");
+  command.add_millimetres("--hand-breadth", options->breadth_mm, "Millimetres across the knuckles");
   command.add_option("--out", options->out,
                      "Where to write it; without it, where the other commands find it");
   command.add_option("--picture", options->picture, "Also draw ranges and residuals, as FILE.svg");

@@ -99,8 +99,8 @@ int list(bool json) {
   if (rows.size() > 1) {
     print_table(rows);
   } else {
-    cli::note(
-        "no calibration is stored; `nendo calibration import` takes one from another program");
+    cli::note("no calibration is stored; `nendo calibrate GLOVE --user NAME` makes one, and `nendo "
+              "calibration import` takes one from another program");
   }
   return 0;
 }

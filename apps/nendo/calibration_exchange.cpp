@@ -1,6 +1,7 @@
 // nendo calibration import and export, which convert from and to the formats of other programs.
 
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -33,12 +34,42 @@ struct ExportOptions {
   std::string out;
 };
 
+/// Returns the hand that a file's name has as a word of its own, as in GloveCalibrationLeft.cal or
+/// kit_right.cal, but not in copyright.cal. Returns nothing if it has both or none.
+std::optional<Side> likely_side(const std::string& path) {
+  bool left = false, right = false;
+  std::string word;
+  const auto end_word = [&] {
+    left = left || word == "left";
+    right = right || word == "right";
+    word.clear();
+  };
+  const auto is_small = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_large = [](char c) { return c >= 'A' && c <= 'Z'; };
+  char before = '.';
+  for (const char c : std::filesystem::path(path).stem().string()) {
+    if (!is_small(c) && !is_large(c)) end_word();
+    if (is_large(c) && is_small(before)) end_word();
+    if (is_small(c) || is_large(c)) word += is_large(c) ? static_cast<char>(c - 'A' + 'a') : c;
+    before = c;
+  }
+  end_word();
+  if (left == right) return std::nullopt;
+  return left ? Side::left : Side::right;
+}
+
 // The user's word and the file's must not disagree: a left hand's gains on a right hand shape
 // nonsense, and nobody would look for the reason there.
 Result<Side> side_of(const ImportOptions& options, std::optional<Side> told) {
   if (options.hand.empty()) {
     if (told) return *told;
-    return Error{Errc::usage, options.file + ": does not tell its hand; add --hand left or right"};
+    // A name is no proof, so it is offered and not taken.
+    const auto likely = likely_side(options.file);
+    const std::string word(likely ? name_of(*likely) : "");
+    return Error{Errc::usage,
+                 options.file + ": does not tell its hand; " +
+                     (likely ? "its name says " + word + ": if that is so, add --hand " + word
+                             : "add --hand left or right")};
   }
   const Side wanted = options.hand == "left" ? Side::left : Side::right;
   if (told && *told != wanted) {

@@ -28,6 +28,7 @@ struct Options {
   std::string radius;
   std::string common_radius;
   bool injective = false;
+  bool force = false;
   session::KernelArguments kernel;
 };
 
@@ -127,18 +128,41 @@ Result<FieldStatus> deform_in_links(Points& vertices, const ControlVectors& vect
   return status;
 }
 
+/// Tells what is hardly meant: a model that has no surface or size, or radii in another unit than
+/// the model's.
+void note_oddities(const Mesh& mesh, const ControlVectors& vectors, const Supports& supports,
+                   const Options& options) {
+  if (const auto remark = remark_on(mesh); !remark.empty())
+    cli::note(options.mesh + ": " + std::string(remark));
+  const Box box = finite_box_of(mesh.vertices);
+  if (!reach_all_of(box, vectors.starts, supports)) return;
+  std::ostringstream size;
+  size.precision(3);
+  size << (box.highest - box.lowest).maxCoeff();
+  const bool has_own = !vectors.own.empty();
+  cli::note((has_own ? options.vectors : "--radius " + options.radius) +
+            ": reaches all of the model, whose longest side is " + size.str() +
+            ", so no part of it stays as it is; use a smaller radius to shape a part");
+}
+
+Result<void> check_out(const Options& options) {
+  if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine) return fine;
+  return cli::check_spares(options.mesh, "--out", options.out, options.force);
+}
+
 Result<void> deform_file(const Options& options) {
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
-  if (const auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine)
-    return fine.error();
+  if (const auto fine = check_out(options); !fine) return fine.error();
   auto mesh = read_mesh(options.mesh);
   if (!mesh) return mesh.error();
   const auto vectors = read_control_vectors(options.vectors);
   if (!vectors) return vectors.error();
   const auto supports = supports_for(*vectors, options);
   if (!supports) return supports.error();
+  note_oddities(*mesh, *vectors, *supports, options);
 
+  const Points before = mesh->vertices;
   const auto status = options.injective
                           ? deform_in_links(mesh->vertices, *vectors, *supports, *csrbf, options)
                           : deform_at_once(mesh->vertices, *vectors, *supports, *csrbf, options);
@@ -151,6 +175,9 @@ Result<void> deform_file(const Options& options) {
     return Error{Errc::bad_input,
                  options.vectors + ": " + std::string(describe(FieldStatus::not_finite))};
   }
+  if (mesh->vertices == before)
+    cli::note(options.vectors + ": moves no vertex; all displacements are 0, or no start point is "
+                                "nearer to a vertex than its radius");
   return write_mesh(options.out, *mesh);
 }
 
@@ -177,6 +204,7 @@ void add(cli::Command& program) {
                    "Never fold: in links that each stay injective; vectors that cross are held "
                    "apart");
   command.add_option("--out", options->out, "Where to write the result, .obj or .ply").required();
+  command.add_flag("--force", options->force, cli::force_summary);
   command.on_chosen([options] {
     const auto done = deform_file(*options);
     return done ? 0 : cli::report(done.error());

@@ -63,6 +63,7 @@ Result<session::RunOptions> run_options(const Options& options) {
   run.out = options.out;
   run.picture = options.picture;
   run.duration_s = options.duration_s;
+  run.calibration.calibration = "none"; // what is stored is a real hand's
   run.loop.rate_hz = rate_hz;
   run.loop.sculptor.mode = *mode;
   run.loop.sculptor.deformer.injective.emplace();
@@ -88,8 +89,11 @@ int demonstrate(const Options& options) {
   EventCount event_count;
   auto opened = session::open_hands(*run, *model, event_count);
   if (!opened) return cli::report(opened.error());
+  // The emulated hands are those that the default calibration is for.
+  for (auto& hand : opened->hands)
+    hand.uncalibrated = false;
   session::RunParticipants participants;
-  participants.progress = session::progress_for(*run);
+  participants.progress = session::progress_for(*run, opened->hands);
   auto outcome =
       session::run_session(*run, opened->hands, *std::move(model), participants, opened->grants);
   if (!outcome) return cli::report(outcome.error());
@@ -107,7 +111,7 @@ void add(cli::Command& program) {
       "demo", "Two emulated CyberGloves shape a model through the real driver; leaves a picture");
   command.add_option("--mode", options->mode,
                      "type1: the rest shape follows the fingertips; type2: strokes");
-  command.add_option("--duration", options->duration_s, "Seconds to run, above 0, up to 3600");
+  command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
   command.add_option("--out", options->out, "Where the shape goes, .obj or .ply");
   command.add_option("--picture", options->picture, "Where the picture goes, .png");
   command.on_chosen([options] { return demonstrate(*options); });

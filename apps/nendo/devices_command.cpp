@@ -127,7 +127,7 @@ int watch_devices(bool json) {
     cli::note("USB is not to be watched here, only the serial ports in /dev; "
               "gloves without such a port go unnoticed");
   }
-  while (!cli::stop_requested() && std::cout) {
+  while (!cli::stop_requested()) {
     if (const auto event = (*watcher)->next(longest_wait)) {
       print_event(event->attached ? "attached" : "detached", event->candidate, json);
     }

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <iostream>
+#include <iterator>
 #include <memory>
+#include <string>
 
 #include <nlohmann/json.hpp>
+
+#include <nendo/base/text.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
@@ -39,9 +43,13 @@ void print_text(const doctor::Finding& finding) {
 
 int examine(bool json) {
   std::vector<doctor::Finding> findings;
+  std::string looked_at;
   for (const auto check : subjects) {
-    for (doctor::Finding& finding : check())
-      findings.push_back(std::move(finding));
+    doctor::Examination examination = check();
+    std::move(examination.findings.begin(), examination.findings.end(),
+              std::back_inserter(findings));
+    for (const std::string& thing : examination.looked_at)
+      looked_at += (looked_at.empty() ? "" : ", ") + printable(thing);
   }
   std::stable_sort(
       findings.begin(), findings.end(), [](const doctor::Finding& a, const doctor::Finding& b) {
@@ -50,6 +58,7 @@ int examine(bool json) {
   for (const doctor::Finding& finding : findings)
     json ? print_json(finding) : print_text(finding);
   if (findings.empty() && !json) std::cout << "Nothing here keeps gloves from working.\n";
+  if (!json) std::cout << "Looked at: " << looked_at << ".\n";
   const bool well = findings.empty() || findings.front().severity == doctor::Severity::warning;
   return well ? 0 : static_cast<int>(Errc::failed);
 }

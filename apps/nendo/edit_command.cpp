@@ -64,6 +64,17 @@ int edit_hand(const Options& options,
   return edit(options, [&](Timeline& timeline) { return change(timeline, *side); });
 }
 
+/// Returns where a key goes that is wanted at --to or --at, and tells it if it is elsewhere.
+double time_for_key(const Timeline& timeline, Side side, double wanted_s,
+                    std::optional<std::size_t> moved = {}) {
+  const double time_s = timeline::time_near_end(timeline, side, wanted_s, moved);
+  if (time_s != wanted_s)
+    cli::note(edit::fixed(wanted_s, 3) + " s is behind the end, which is at " +
+              edit::fixed(timeline.duration_s, 3) + " s; the key is at " + edit::fixed(time_s, 3) +
+              " s");
+  return time_s;
+}
+
 int blend(const Options& options) {
   if (options.with.empty() == !options.blended_key)
     return cli::report({Errc::usage,
@@ -149,7 +160,7 @@ void add_reading(cli::Command& edit, const std::shared_ptr<Options>& options) {
 
   cli::Command playing = edit.add_command("play", "Makes the shape of a timeline, without a clock");
   playing.add_option("FILE", options->play.file, "A timeline").required();
-  playing.add_option("--until", options->play.until_s, "Seconds at which it stops; else the end");
+  playing.add_duration("--until", options->play.until_s, "Seconds at which it stops; else the end");
   playing.add_option("--mesh", options->play.mesh, "Another model than the timeline's");
   playing.add_option("--out", options->play.out, "Where to write the shape, .obj or .ply");
   playing.add_flag("--json", options->play.json, "A summary as JSON");
@@ -160,17 +171,19 @@ void add_reading(cli::Command& edit, const std::shared_ptr<Options>& options) {
 
 void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) {
   cli::Command moving = add_edit_of_key(edit, "move", "Moves a key to another time", options);
-  moving.add_option("--to", options->time_s, "Seconds").required();
+  moving.add_duration("--to", options->time_s, "Seconds").required();
   moving.on_chosen([options] {
     return edit_hand(*options, [&](Timeline& timeline, Side side) {
-      return timeline::move_key(timeline, side, options->key, options->time_s);
+      return timeline::move_key(timeline, side, options->key,
+                                time_for_key(timeline, side, options->time_s, options->key));
     });
   });
   cli::Command copying = add_edit_of_key(edit, "copy", "Copies a key to another time", options);
-  copying.add_option("--to", options->time_s, "Seconds").required();
+  copying.add_duration("--to", options->time_s, "Seconds").required();
   copying.on_chosen([options] {
     return edit_hand(*options, [&](Timeline& timeline, Side side) {
-      return timeline::copy_key(timeline, side, options->key, options->time_s);
+      return timeline::copy_key(timeline, side, options->key,
+                                time_for_key(timeline, side, options->time_s));
     });
   });
   cli::Command deleting = add_edit_of_key(edit, "delete", "Deletes a key", options);
@@ -181,10 +194,10 @@ void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) 
   });
   cli::Command adding = add_edit_of(edit, "add", "Adds a key where the hand is then", options);
   adding.add_option("--hand", options->hand, "left or right").required();
-  adding.add_option("--at", options->time_s, "Seconds").required();
+  adding.add_duration("--at", options->time_s, "Seconds").required();
   adding.on_chosen([options] {
     return edit_hand(*options, [&](Timeline& timeline, Side side) {
-      return timeline::add_key(timeline, side, options->time_s);
+      return timeline::add_key(timeline, side, time_for_key(timeline, side, options->time_s));
     });
   });
   cli::Command setting = add_edit_of_key(
@@ -193,15 +206,15 @@ void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) 
   setting.add_option("--finger", options->finger, "thumb, index, middle, ring or little")
       .required();
   setting.add_option("--to", options->place, "X,Y,Z in the model's units").required();
-  setting.add_option("--within", options->within_mm, "Millimetres that it may miss it by");
+  setting.add_millimetres("--within", options->within_mm, "How far it may miss it, in millimetres");
   setting.on_chosen([options] { return set_tip(*options); });
 }
 
 void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
   cli::Command retiming = add_edit_of(edit_command, "retime", "Slower or faster", options);
   retiming.add_option("--scale", options->scale, "2: everything takes twice the time").required();
-  retiming.add_option("--from", options->from_s, "Seconds where that begins");
-  retiming.add_option("--to", options->to_s, "Seconds where it ends; what follows is moved");
+  retiming.add_duration("--from", options->from_s, "Seconds where that begins");
+  retiming.add_duration("--to", options->to_s, "Seconds where it ends; what follows is moved");
   retiming.on_chosen([options] {
     return edit(*options, [&](Timeline& timeline) {
       return timeline::retime(timeline, options->scale, options->from_s,

@@ -26,6 +26,7 @@ struct Options {
   std::string pace = "clock";
   std::string period_order = "msb";
   std::string stamp_bit7 = "on";
+  std::string hires_form = "hardware";
   double duration_s = 0.0;
 };
 
@@ -44,6 +45,17 @@ std::string faults_explained() {
     text += "  " + form + std::string(fault.effect) + "\n";
   }
   return text + "Example: nendo emulate --link /tmp/glove --fault flip=0.1% --fault unplug@5s+2s";
+}
+
+std::string variants_explained() {
+  std::string text = "Variants of gloves; the first of each is the default:\n";
+  for (const emulator::EmulatedVariant& variant : emulator::emulated_variants()) {
+    std::string form = std::string(variant.glove) + " --" + std::string(variant.option) + " " +
+                       std::string(variant.name);
+    form.resize(std::max<std::size_t>(form.size() + 1, 36), ' ');
+    text += "  " + form + std::string(variant.effect) + "\n";
+  }
+  return text + "\n";
 }
 
 // Returns the mask, or nothing if the text is no mask of 1 to 24 bits.
@@ -69,6 +81,7 @@ Result<void> complete(Options& options) {
       options.pace == "host" ? emulator::EmulatorPace::host : emulator::EmulatorPace::clock;
   emulator.cyberglove.period_low_first = options.period_order == "lsb";
   emulator.cyberglove.stamp_bit7 = options.stamp_bit7 == "on";
+  emulator.cyberglove.hires_terminated = options.hires_form == "terminated";
   if (options.mask.empty()) return {};
   const auto mask = parse_mask(options.mask);
   if (!mask) {
@@ -121,6 +134,10 @@ void add_glove_options(cli::Command& command, Options& options) {
       .add_option("--glove", emulator.glove,
                   "Its kind: " + list_of(emulator::emulated_glove_names()))
       .under(heading);
+  command.add_option("--firmware", emulator.firmware, "Which of its firmwares it has, see below")
+      .under(heading);
+  command.add_option("--connection", emulator.connection, "How it is connected, see below")
+      .under(heading);
   command.add_option("--hand", options.hand, "left or right").under(heading);
   command.add_option("--sensors", emulator.sensors, "How many; a CyberGlove has 22 (default) or 18")
       .under(heading);
@@ -145,7 +162,7 @@ void add_cyberglove_options(cli::Command& command, Options& options) {
   command.add_flag("--touch", glove.touch, "It has the vibrators of a CyberTouch").under(heading);
   command
       .add_option("--reply-bytes", glove.reply_bytes,
-                  "Of the reply to a setting: 2, or 3 as one library expects")
+                  "Of the reply to a setting in bytes: 2, or 3 as one library expects")
       .under(heading);
   command
       .add_option("--period-order", options.period_order,
@@ -156,6 +173,20 @@ void add_cyberglove_options(cli::Command& command, Options& options) {
       .add_option("--stamp-bit7", options.stamp_bit7,
                   "Bit 7 of a time stamp's first byte: on always, off if it may")
       .one_of({"on", "off"})
+      .under(heading);
+  command
+      .add_option(
+          "--hires-form", options.hires_form,
+          "1S of a III: as the hardware, which echoes it, and 0x03 after it, without NUL and "
+          "counts sub-frames from 0; terminated, with NUL and from 1")
+      .one_of({"hardware", "terminated"})
+      .under(heading);
+  command
+      .add_duration("--restart-time", glove.restart_s, "How long a restart of its firmware takes")
+      .under(heading);
+  command
+      .add_flag("--overrun", glove.overrun,
+                "It begins with a period too short for it: es in each record of a stream")
       .under(heading);
   command
       .add_flag("--streaming", glove.streaming, "It streams at the start, as a dead host left it")
@@ -180,14 +211,15 @@ void add(cli::Command& program) {
       .add_option("--link", options->emulator.link,
                   "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
       .required();
-  command.add_option("--duration", options->duration_s, "Seconds to run; without it, until Ctrl-C");
+  command.add_duration("--duration", options->duration_s,
+                       "How long, e.g. 30s or 10m; without it, until Ctrl-C");
   command.add_option("--fault", options->emulator.faults, "What goes wrong, see below")
       .once_each("FAULT");
   command.add_option("--log", options->emulator.log,
                      "Write all traffic to this file, a line a message");
   add_glove_options(command, *options);
   add_cyberglove_options(command, *options);
-  command.set_footer(faults_explained());
+  command.set_footer(variants_explained() + faults_explained());
   command.on_chosen([options] { return emulate(*options); });
 }
 

@@ -10,12 +10,16 @@
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "cli/output_place.hpp"
+#include "cli/quantities.hpp"
 #include "export/gltf_export.hpp"
 #include "export/hands_bvh.hpp"
 #include "export/mesh_sequence.hpp"
 #include "export/motion_csv.hpp"
 #include "export/point_cache.hpp"
+#include "export/samples_csv.hpp"
 #include "nendo/commands.hpp"
+#include "takes/glove_frames.hpp"
+#include "takes/glove_samples.hpp"
 #include "takes/recorded_frames.hpp"
 #include "takes/recorded_model.hpp"
 #include "takes/timeline_frames.hpp"
@@ -32,12 +36,12 @@ struct Options {
   std::optional<double> rate_hz;
   double from_s = 0.0;
   std::optional<double> to_s;
-  double tolerance = 1e-4;
+  std::string tolerance = "1%";
+  bool every_frame = false;
+  bool samples = false;
   bool no_hands = false;
   bool json = false;
 };
-
-constexpr double animators_rate_hz = 30.0; // where the file does not tell its rate
 
 bool is_sequence(const std::string& format) {
   return format == "obj" || format == "ply";
@@ -59,13 +63,41 @@ Result<std::string> format_of(const Options& options) {
   return options.format;
 }
 
+/// Reads --tolerance: a length on the stage, or a part of the model's diagonal.
+Result<exporting::GltfOptions> parse_tolerance(const std::string& text) {
+  constexpr double most = 0.1; // metres, or diagonals
+  exporting::GltfOptions gltf;
+  const bool percent = text.ends_with('%');
+  const auto number = cli::number_of(percent ? text.substr(0, text.size() - 1) : text);
+  gltf.tolerance_m = cli::metres_of(text);
+  gltf.tolerance = number.value_or(0.0) / (percent ? 100.0 : 1.0);
+  const double value = gltf.tolerance_m.value_or(gltf.tolerance);
+  if (value > 0.0 && value <= most) return gltf;
+  return Error{Errc::usage, "--tolerance " + text + ": use " + std::string(cli::length_words) +
+                                ", up to 0.1m, or a part of the model's diagonal like 0.01 or 1%, "
+                                "up to 10%"};
+}
+
+Result<void> check_rate(const Options& options, const std::string& format) {
+  if (options.every_frame && options.rate_hz)
+    return Error{Errc::usage, "--every-frame and --rate: give one of them"};
+  if (options.every_frame && format != "glb" && format != "csv")
+    return Error{Errc::usage, "--every-frame: only .glb and .csv tell each frame's own time; use "
+                              "--rate"};
+  return {};
+}
+
+/// Returns the format of the files.
 Result<std::string> check(const Options& options, const exporting::Choice& choice) {
   if (const auto fine = check(choice); !fine) return fine.error();
-  if (!(options.tolerance > 0.0 && options.tolerance <= 0.1))
-    return Error{Errc::usage, "--tolerance: use a part of the model's diagonal, above 0 and up to "
-                              "0.1"};
+  if (const auto tolerance = parse_tolerance(options.tolerance); !tolerance)
+    return tolerance.error();
   const auto format = format_of(options);
-  if (!format || !is_sequence(*format)) return format;
+  if (!format) return format;
+  if (const auto fine = check_rate(options, *format); !fine) return fine.error();
+  if (options.samples && *format != "csv")
+    return Error{Errc::usage, "--samples: is for a .csv of what the gloves sent"};
+  if (!is_sequence(*format)) return format;
   if (const auto name = exporting::NumberedName::parse(options.out); !name) return name.error();
   return format;
 }
@@ -74,17 +106,58 @@ Result<std::string> check(const Options& options, const exporting::Choice& choic
 struct Take {
   exporting::Skeletons skeletons;
   exporting::OpenFrames open;
+  bool has_samples = false;       ///< of gloves, for a table of them
+  std::vector<std::string> notes; ///< to be said once the file is written
 };
 
-Result<Take> read_recorded(const Options& options) {
+/// Says of which hands the angles are no more than guessed, a line for each.
+std::vector<std::string> uncalibrated_notes(const Options& options, const recording::Setup& setup,
+                                            const std::string& remedy) {
+  std::vector<std::string> notes;
+  for (std::size_t glove = 0; glove < setup.hands.size(); ++glove)
+    if (!takes::is_calibrated(setup, glove))
+      notes.push_back(options.file + ": the " + std::string(name_of(setup.hands[glove].side)) +
+                      " hand was recorded without a calibration; " + remedy);
+  return notes;
+}
+
+bool wants_samples(const Options& options, const std::string& format, bool has_loop) {
+  return format == "csv" && (options.samples || !has_loop);
+}
+
+/// Gloves without a loop: their hands can be shown, and no model.
+Result<Take> read_gloves(const Options& options, const std::string& format, Take take) {
+  if (!options.mesh.empty() || options.no_hands || !(format == "glb" || format == "bvh")) {
+    return Error{Errc::bad_input,
+                 options.file + ": only gloves were recorded, and .csv, .bvh and .glb have their "
+                                "hands; shape a model with `nendo run --right replay:FILE`"};
+  }
+  take.open = [path = options.file]() -> Result<std::unique_ptr<takes::FrameSource>> {
+    auto frames = takes::GloveFrames::open(path);
+    if (!frames) return frames.error();
+    return std::unique_ptr<takes::FrameSource>(*std::move(frames));
+  };
+  return take;
+}
+
+Result<Take> read_recorded(const Options& options, const std::string& format) {
   const auto reader = recording::TakeReader::open(options.file);
   if (!reader) return reader.error();
   const recording::Setup& setup = reader->setup();
-  auto model = takes::recorded_model(options.file, setup, options.mesh);
-  if (!model) return model.error();
   Take take;
+  take.has_samples = wants_samples(options, format, setup.loop.has_value());
+  if (take.has_samples) {
+    take.notes = uncalibrated_notes(options, setup, "its angles are left out");
+    return take;
+  }
   for (const auto& hand : setup.hands)
     take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton(hand.first.side));
+  if (!setup.loop) {
+    take.notes = uncalibrated_notes(options, setup, "its angles are those of an average hand");
+    return read_gloves(options, format, std::move(take));
+  }
+  auto model = takes::recorded_model(options.file, setup, options.mesh);
+  if (!model) return model.error();
   take.open = [path = options.file,
                mesh = *std::move(model)]() -> Result<std::unique_ptr<takes::FrameSource>> {
     auto frames = takes::RecordedFrames::open(path, mesh);
@@ -95,6 +168,8 @@ Result<Take> read_recorded(const Options& options) {
 }
 
 Result<Take> read_edited(const Options& options) {
+  if (options.samples)
+    return Error{Errc::usage, "--samples: a timeline has none; name the recording"};
   const auto timeline = timeline::read_timeline(options.file);
   if (!timeline) return timeline.error();
   Take take;
@@ -109,23 +184,30 @@ Result<Take> read_edited(const Options& options) {
   return take;
 }
 
-// Sets the rate of formats whose frames have even times. In glTF and CSV each frame has its own
-// time.
-void settle_rate(const std::string& format, const takes::FrameSource& source,
-                 exporting::Choice& choice) {
-  if (choice.rate_hz || format == "glb" || format == "csv") return;
-  choice.rate_hz = format == "bvh" ? source.rate_hz() : animators_rate_hz;
+// Sets the rate unless it was asked for. A table is for plots, which want every frame.
+void settle_rate(const Options& options, const std::string& format,
+                 const takes::FrameSource& source, exporting::Choice& choice) {
+  if (choice.rate_hz || options.every_frame || format == "csv") return;
+  choice.rate_hz = format == "bvh" ? source.rate_hz() : exporting::animators_rate_hz;
 }
 
 Result<exporting::Exported> export_take(const Take& take, const std::string& format,
                                         const Options& options, exporting::Choice choice) {
-  if (format == "glb") {
-    const exporting::GltfOptions gltf{options.tolerance, !options.no_hands, "Nendo " NENDO_VERSION};
-    return exporting::export_gltf(take.open, choice, gltf, options.out);
+  if (take.has_samples) {
+    if (choice.rate_hz)
+      return Error{Errc::usage, "--rate: a table of samples has every one; leave it out"};
+    return exporting::export_samples_csv(options.file, choice, options.out);
   }
   const auto source = take.open();
   if (!source) return source.error();
-  settle_rate(format, **source, choice);
+  settle_rate(options, format, **source, choice);
+  if (format == "glb") {
+    auto gltf = parse_tolerance(options.tolerance);
+    if (!gltf) return gltf.error();
+    gltf->hands = !options.no_hands;
+    gltf->generator = "Nendo " NENDO_VERSION;
+    return exporting::export_gltf(take.open, choice, *gltf, options.out);
+  }
   auto frames = exporting::ChosenFrames::make(**source, choice);
   if (!frames) return frames.error();
   if (format == "pc2")
@@ -142,28 +224,41 @@ void print_json(const std::string& format, const exporting::Exported& done) {
                               {"frames", done.frames},      {"first_s", done.first_s},
                               {"last_s", done.last_s},      {"bytes", done.bytes},
                               {"files", done.files.size()}, {"exact", done.exact}};
+  if (done.rate_hz) line["rate_hz"] = *done.rate_hz;
   line["result"] = done.files.empty() ? std::string() : done.files.front();
   if (done.morphs) {
     line["morphs"] = {{"by", done.morphs->by_control_vectors ? "control vectors" : "key shapes"},
                       {"targets", done.morphs->targets},
                       {"keys", done.morphs->keys},
                       {"greatest_error", done.morphs->greatest_error}};
+    if (!done.morphs->by_control_vectors) line["morphs"]["tolerance"] = done.morphs->tolerance;
   }
   cli::print_line(line);
 }
 
-void print(const exporting::Exported& done) {
+void print_morphs(const exporting::MorphReport& morphs) {
+  if (morphs.by_control_vectors) {
+    std::cout << fmt::format("{} morph targets of the control vectors; no vertex of any frame is "
+                             "off by more than {:.1e} of the model's diagonal\n",
+                             morphs.targets, morphs.greatest_error);
+    return;
+  }
+  std::cout << fmt::format("{} morph targets of key shapes, for at most {:.3g} % of the model's "
+                           "diagonal, {:.2g} mm on the stage, off (--tolerance); no vertex of any "
+                           "frame is off by more than {:.2g} %\n",
+                           morphs.targets, 100.0 * morphs.tolerance,
+                           1e3 * morphs.tolerance * morphs.diagonal_m,
+                           100.0 * morphs.greatest_error);
+}
+
+void print(const exporting::Exported& done, bool samples) {
   const std::string more = done.files.size() > 1 ? " to " + done.files.back() : std::string();
-  std::cout << fmt::format("{}{}: {} frames, {:.2f} s, {:.1f} MB\n", done.files.front(), more,
-                           done.frames, done.last_s - done.first_s,
-                           static_cast<double>(done.bytes) / 1e6);
-  if (done.morphs)
-    std::cout << fmt::format(
-        "{} morph targets of {}; no vertex of any frame is off by more than {:.1e} of the "
-        "model's diagonal\n",
-        done.morphs->targets,
-        done.morphs->by_control_vectors ? "the control vectors" : "key shapes",
-        done.morphs->greatest_error);
+  const std::string rate =
+      done.rate_hz ? fmt::format(", {:.4g} a second (--rate)", *done.rate_hz) : "";
+  std::cout << fmt::format("{}{}: {} {}{}, {:.2f} s, {:.1f} MB\n", done.files.front(), more,
+                           done.frames, samples ? "samples" : "frames", rate,
+                           done.last_s - done.first_s, static_cast<double>(done.bytes) / 1e6);
+  if (done.morphs) print_morphs(*done.morphs);
   std::cout << std::flush;
 }
 
@@ -174,15 +269,17 @@ int export_command(const Options& options) {
   const auto format = check(options, choice);
   if (!format) return cli::report(format.error());
   const auto take =
-      timeline::is_timeline(options.file) ? read_edited(options) : read_recorded(options);
+      timeline::is_timeline(options.file) ? read_edited(options) : read_recorded(options, *format);
   if (!take) return cli::report(take.error());
   const auto done = export_take(*take, *format, options, choice);
   if (!done) return cli::report(done.error());
+  for (const std::string& note : take->notes)
+    cli::note(note);
   if (!done->exact) takes::note_missing(options.file);
   if (options.json)
     print_json(*format, *done);
   else
-    print(*done);
+    print(*done, take->has_samples);
   return 0;
 }
 
@@ -191,10 +288,14 @@ int export_command(const Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
-      "export", "Writes a recorded run as animation: glTF, point caches, meshes, BVH, CSV");
+      "export", "Writes a recording as animation or tables: glTF, point caches, meshes, BVH, CSV");
+  command.set_footer(
+      "A recording of gloves alone, by `nendo record`, has hands and no model: .csv (every sample: "
+      "\ncounts, angles, both clocks), .bvh and .glb.");
   command
-      .add_option("TAKE", options->file,
-                  "What `nendo run --record` recorded, or a timeline of `nendo edit`")
+      .add_option(
+          "TAKE", options->file,
+          "What `nendo run --record` or `nendo record` recorded, or a timeline of `nendo edit`")
       .required();
   command
       .add_option("--out", options->out,
@@ -205,14 +306,18 @@ void add(cli::Command& program) {
   command.add_option("--format", options->format, "In place of the name's ending")
       .one_of({"glb", "pc2", "mdd", "obj", "ply", "bvh", "csv"});
   command.add_option("--rate", options->rate_hz,
-                     "Frames a second, each the nearest that was made; without it .glb and .csv "
-                     "have every frame at its own time, .bvh has the take's rate, the others 30");
-  command.add_option("--from", options->from_s, "Seconds from the beginning");
-  command.add_option("--to", options->to_s, "Seconds from the beginning where it ends");
+                     "Frames a second, each the nearest that was made; without it .csv has every "
+                     "frame at its own time, .bvh the take's rate, and the others have 24");
+  command.add_flag("--every-frame", options->every_frame,
+                   ".glb: every frame of the take, at its own time");
+  command.add_flag("--samples", options->samples,
+                   ".csv: a row for each sample of the gloves in place of each frame");
+  command.add_duration("--from", options->from_s, "Seconds from the beginning");
+  command.add_duration("--to", options->to_s, "Seconds from the beginning where it ends");
   command.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
   command.add_option("--tolerance", options->tolerance,
-                     ".glb: how far vertices may be off where key shapes are needed, in parts of "
-                     "the model's diagonal");
+                     ".glb: how far vertices may be off where key shapes are needed: a length on "
+                     "the stage like 1mm, or a part of the model's diagonal like 0.01 or 1%");
   command.add_flag("--no-hands", options->no_hands, ".glb: the model alone");
   command.add_flag("--json", options->json, "A summary as JSON");
   command.on_chosen([options] { return export_command(*options); });

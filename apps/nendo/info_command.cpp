@@ -17,6 +17,7 @@
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
 #include "gloves/glove_json.hpp"
+#include "gloves/open_hand.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::info_command {
@@ -150,7 +151,7 @@ void print_text(const driver::GloveInfo& info) {
 }
 
 int info(const std::string& spec, bool json) {
-  const auto glove = driver::open_glove(spec);
+  const auto glove = gloves::open_glove(spec);
   if (!glove) return cli::report(glove.error());
   json ? print_json((*glove)->info()) : print_text((*glove)->info());
   return 0;

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/hand/active_calibration.hpp>
 
 #include "cli/cli.hpp"
@@ -17,6 +18,7 @@
 #include "gloves/glove_json.hpp"
 #include "gloves/glove_light.hpp"
 #include "gloves/monitor_screen.hpp"
+#include "gloves/open_hand.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::monitor_command {
@@ -34,7 +36,8 @@ struct Options {
 struct Monitored {
   driver::Glove& glove;
   SampleRing& ring;
-  hand::ActiveCalibration* calibrations;     ///< null: counts only
+  const hand::Wearer* wearer;                ///< null: counts only
+  hand::ActiveCalibration* calibrations;     ///< of `wearer`
   std::uint64_t most;                        ///< samples to show; 0: no end
   const hand::Calibration* active = nullptr; ///< for the latest sample; null: none
   std::uint64_t shown = 0;
@@ -46,20 +49,32 @@ struct Monitored {
     ++shown;
     return true;
   }
+  bool is_uncalibrated(Side side) const {
+    return wearer != nullptr && gloves::is_uncalibrated(glove.info(), *wearer, side);
+  }
 };
 
 void show_lines(Monitored& monitored) {
   GloveSample sample;
   gloves::GloveChanges gloves;
-  while (monitored.wanted() && std::cout) {
+  bool ended = false;
+  while (monitored.wanted() && !ended) {
+    ended = monitored.glove.has_ended(); // then all that it sent is in the ring
     bool any = false;
     for (; monitored.next(sample); any = true) {
       const bool first = gloves.is_first(sample.side, sample.present);
       std::cout << gloves::sample_json(sample, monitored.active, first) << '\n';
     }
     if (any) std::cout.flush();
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
+}
+
+/// The lines are samples and nothing else, so what never became one is told beside them.
+void note_losses(const driver::Glove& glove) {
+  const auto counts = driver::counts_of(glove.stats());
+  if (counts.missed + counts.refused + counts.bad > 0)
+    cli::note(glove.info().source + ": " + driver::in_words(counts));
 }
 
 /// Returns false if the user wants to end.
@@ -78,17 +93,24 @@ void show_screen(Monitored& monitored) {
   bool any = false;
   std::vector<std::string> lines;
   bool goes_on = true;
-  while (goes_on && monitored.wanted() && !terminal.is_gone()) {
+  bool ended = false;
+  while (goes_on && !ended && monitored.wanted() && !terminal.is_gone()) {
+    ended = monitored.glove.has_ended(); // then all that it sent is in the ring
     for (; monitored.next(sample); any = true)
       seen.add(sample);
     const HostTime now = HostClock::now();
-    const gloves::MonitorPicture picture{&monitored.glove.info(), monitored.glove.stats(),
-                                         any ? &sample : nullptr, &seen,
-                                         monitored.active,        to_seconds(now - sample.arrival),
-                                         light.is_lit(),          terminal.has_keys()};
+    const gloves::MonitorPicture picture{&monitored.glove.info(),
+                                         monitored.glove.stats(),
+                                         any ? &sample : nullptr,
+                                         &seen,
+                                         monitored.active,
+                                         to_seconds(now - sample.arrival),
+                                         light.is_lit(),
+                                         terminal.has_keys(),
+                                         any && monitored.is_uncalibrated(sample.side)};
     lines = gloves::monitor_lines(picture, terminal.size());
     terminal.draw(lines);
-    while (goes_on && !cli::stop_requested() && !terminal.is_gone() &&
+    while (goes_on && !ended && !cli::stop_requested() && !terminal.is_gone() &&
            HostClock::now() < now + frame_time) {
       const auto left =
           std::chrono::ceil<std::chrono::milliseconds>(now + frame_time - HostClock::now());
@@ -104,26 +126,31 @@ void show_screen(Monitored& monitored) {
 
 int monitor(const Options& options) {
   if (const auto fine = gloves::check(options.calibration); !fine) return cli::report(fine.error());
-  const auto glove = driver::open_glove(options.glove);
+  const auto glove = gloves::open_glove(options.glove);
   if (!glove) return cli::report(glove.error());
+  std::optional<hand::Wearer> wearer;
   std::optional<hand::ActiveCalibration> calibrations;
   if (!options.raw) {
-    const auto wearer =
+    const auto found =
         gloves::find_wearer((*glove)->info(), (*glove)->info().side, options.calibration);
-    if (!wearer) return cli::report(wearer.error());
+    if (!found) return cli::report(found.error());
+    wearer = *found;
     calibrations.emplace(*wearer);
   }
   SampleRing ring(1024);
   cli::install_stop_signals();
   if (const auto started = (*glove)->start(ring); !started) return cli::report(started.error());
 
-  Monitored monitored{**glove, ring, calibrations ? &*calibrations : nullptr, options.count};
-  if (options.json || isatty(STDOUT_FILENO) == 0) {
+  Monitored monitored{**glove, ring, wearer ? &*wearer : nullptr,
+                      calibrations ? &*calibrations : nullptr, options.count};
+  const bool lines = options.json || isatty(STDOUT_FILENO) == 0;
+  if (lines) {
     show_lines(monitored);
   } else {
     show_screen(monitored);
   }
   (*glove)->stop();
+  if (lines) note_losses(**glove);
   return 0;
 }
 
@@ -136,7 +163,10 @@ void add(cli::Command& program) {
       "Shows what a glove sends: bars in a terminal, JSON lines when piped or asked for");
   command.set_footer(
       "In a bar, # shows the count, and [ ] the least and the greatest seen so far.\n"
-      "Keys: q quit, r forget the ranges seen, l light on and off.");
+      "A ~ before degrees: the glove is uncalibrated, and they are an average hand's.\n"
+      "Keys: q quit, r forget the ranges seen, l light on and off.\n"
+      "It ends with Ctrl-C, with --count, and when a recording (replay:FILE) ends. Records that "
+      "got lost\non the line are missed; those that this program had no room for are refused.");
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
   command.add_flag("--json", options->json, "One JSON object a line, also in a terminal");
   command.add_flag("--raw", options->raw, "Raw counts only, no angles");

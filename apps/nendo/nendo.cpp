@@ -1,5 +1,6 @@
 // The nendo program: one command a file.
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <string_view>
@@ -17,6 +18,8 @@ int run(int argc, char** argv) {
   using namespace nendo;
   using namespace nendo::app;
   if (argc > 1 && std::string_view(argv[1]) == "bench") return bench_command::start(argv + 1);
+  // A command whose reader has gone finishes its work: the shape of `nendo run` is still written.
+  std::signal(SIGPIPE, SIG_IGN);
   // The drivers' log lines must not mix with what a command prints.
   spdlog::set_default_logger(spdlog::stderr_color_mt("nendo"));
   spdlog::set_pattern("nendo: %v");

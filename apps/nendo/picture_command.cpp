@@ -185,7 +185,7 @@ void add(cli::Command& program) {
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
   command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
   command.add_option("--turntable", options->turntable, "So many pictures all round, on one sheet");
-  command.add_option("--time", options->time_s, "Of a recording: the moment, in seconds");
+  command.add_duration("--time", options->time_s, "Of a recording: the moment, in seconds");
   command.add_option("--strip", options->strip,
                      "Of a recording: so many moments from its begin to its end, on one sheet");
   command.add_flag("--numbered", options->numbered,

@@ -6,6 +6,7 @@
 #include <span>
 #include <thread>
 
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/tick_grid.hpp>
 #include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/sensor_gate.hpp>
@@ -110,11 +111,13 @@ Result<void> stream(gloves::OpenHand& hand, const Options& options, gloves::Pose
   GloveSample sample;
   bool goes_on = poses.take(hand.first);
   while (goes_on && !cli::stop_requested()) {
-    const HostTime now = HostClock::now(); // what came before it is in the ring
+    const bool ended = hand.glove->has_ended(); // then all that it sent is in the ring
+    const HostTime now = HostClock::now();      // what came before it is in the ring
     while (goes_on && hand.ring->try_pop(sample))
       goes_on = poses.take(sample);
     goes_on = goes_on && poses.pass_time(now);
     if (auto flushed = output.flush(); !flushed) return flushed;
+    goes_on = goes_on && !ended;
     if (goes_on) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return poses.state();
@@ -140,8 +143,11 @@ int poses(const Options& options) {
 
   const auto streamed = stream(*hand, options, **output);
   hand->glove->stop();
-  if (const auto lost = hand->glove->stats().ring_refused; lost > 0)
-    cli::note(std::to_string(lost) + " samples were lost: the poses were not taken fast enough");
+  const auto counts = driver::counts_of(hand->glove->stats());
+  if (counts.refused > 0)
+    cli::note(std::to_string(counts.refused) +
+              " samples were refused: the poses were not taken fast enough");
+  if (counts.missed > 0) cli::note(hand->glove->info().source + ": " + driver::in_words(counts));
   if (!streamed) return cli::report(streamed.error());
   const auto finished = (*output)->finish();
   return finished ? 0 : cli::report(finished.error());
@@ -164,7 +170,9 @@ void add(cli::Command& program) {
   command.add_option("--rate", options->rate_hz,
                      "Poses a second, 1 to 10000, each of the newest sample; without it, one a "
                      "sample, in a BVH file 90 a second");
-  command.add_option("--duration", options->duration_s, "Seconds to run; 0: until Ctrl-C");
+  command.add_duration("--duration", options->duration_s,
+                       "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until a "
+                       "recording (replay:FILE) ends");
   command.add_option("--count", options->count, "End after so many poses");
   gloves::add_hand_length(command, options->length);
   gloves::add_calibration_options(command, options->calibration);

@@ -8,8 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/driver/record_counts.hpp>
+
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
+#include "cli/quantities.hpp"
+#include "gloves/glove_json.hpp"
 #include "nendo/commands.hpp"
 #include "session/run_recording.hpp"
 
@@ -70,7 +74,8 @@ recording::Setup setup_for(const std::vector<gloves::OpenHand>& hands, const Opt
   return setup;
 }
 
-/// Copies samples from the gloves' rings to the input log, until the recording is over.
+/// Copies samples from the gloves' rings to the input log, until the recording is over or nothing
+/// more can come.
 void copy_samples(const std::vector<gloves::OpenHand>& hands, flow::InputLog& input_log,
                   double duration_s) {
   const HostTime start = HostClock::now();
@@ -83,7 +88,7 @@ void copy_samples(const std::vector<gloves::OpenHand>& hands, flow::InputLog& in
   };
   for (std::size_t at = 0; at < hands.size(); ++at)
     input_log.sample(static_cast<std::uint8_t>(at), hands[at].first);
-  while (!cli::stop_requested() &&
+  while (!cli::stop_requested() && !gloves::have_ended(hands) &&
          (duration_s <= 0.0 || to_seconds(HostClock::now() - start) < duration_s)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     drain();
@@ -91,6 +96,33 @@ void copy_samples(const std::vector<gloves::OpenHand>& hands, flow::InputLog& in
   for (const auto& hand : hands)
     hand.glove->stop();
   drain();
+}
+
+void print_summary(const Options& options, const std::vector<gloves::OpenHand>& hands,
+                   const recording::Recorded& recorded, double elapsed_s) {
+  if (!options.json) {
+    std::cout << fmt::format("recorded {} samples in {:.1f} s; {} bytes in {}\n", recorded.samples,
+                             elapsed_s, recorded.bytes, options.out);
+    for (std::size_t at = 0; at < hands.size(); ++at)
+      std::cout << fmt::format("  {:14} {}\n", fmt::format("{} hand", name_of(hands[at].side)),
+                               driver::in_words(recorded.sent[at]));
+    if (recorded.lost > 0)
+      std::cout << fmt::format("  {:14} {} of these samples, for the disk was too slow\n",
+                               "not recorded", recorded.lost);
+    return;
+  }
+  nlohmann::ordered_json line{{"event", "recorded"},
+                              {"elapsed_s", elapsed_s},
+                              {"samples", recorded.samples},
+                              {"lost", recorded.lost},
+                              {"bytes", recorded.bytes}};
+  for (std::size_t at = 0; at < hands.size(); ++at) {
+    nlohmann::ordered_json glove{{"hand", name_of(hands[at].side)},
+                                 {"source", hands[at].glove->info().source}};
+    gloves::add_counts(glove, recorded.sent[at]);
+    line["gloves"].push_back(std::move(glove));
+  }
+  cli::print_line(line);
 }
 
 int record(Options& options) {
@@ -102,6 +134,7 @@ int record(Options& options) {
   recording::RecorderOptions wanted;
   wanted.file = options.out;
   wanted.report = cli::note;
+  wanted.sent = [&hands] { return session::counts_of(*hands); };
   const HostTime start = HostClock::now();
   auto recorder =
       recording::Recorder::begin(setup_for(*hands, options), input_log, std::move(wanted));
@@ -109,18 +142,7 @@ int record(Options& options) {
   copy_samples(*hands, input_log, options.duration_s);
   const auto recorded = (*recorder)->end();
   if (!recorded) return static_cast<int>(recorded.error().code); // it was reported at once
-  const double elapsed_s = to_seconds(HostClock::now() - start);
-  if (options.json) {
-    cli::print_line(nlohmann::ordered_json{{"event", "recorded"},
-                                           {"elapsed_s", elapsed_s},
-                                           {"samples", recorded->samples},
-                                           {"lost", recorded->lost},
-                                           {"bytes", recorded->bytes}});
-  } else {
-    std::cout << fmt::format("recorded {} samples in {:.1f} s, {} lost; {} bytes in {}\n",
-                             recorded->samples, elapsed_s, recorded->lost, recorded->bytes,
-                             options.out);
-  }
+  print_summary(options, *hands, *recorded, to_seconds(HostClock::now() - start));
   return 0;
 }
 
@@ -135,8 +157,10 @@ void add(cli::Command& program) {
       .add_option("GLOVE", options->gloves, "One, or one for each hand: serial:/dev/ttyUSB0, sim")
       .required();
   command.add_option("--out", options->out, "The recording, a new file").required();
-  command.add_option("--duration", options->duration,
-                     "How long, e.g. 30s or 10m; without it, until Ctrl-C");
+  command.add_option(
+      "--duration", options->duration,
+      "How long, e.g. 30s or 10m; without it, until Ctrl-C, or until the gloves end, "
+      "as replay:FILE does");
   gloves::add_calibration_options(command, options->calibration);
   gloves::add_hand_length(command, options->length);
   command.add_flag("--json", options->json, "A summary as one JSON object");

@@ -35,6 +35,16 @@ int info(const Options& options) {
   return 0;
 }
 
+/// Returns where the damage is, without a full stop.
+std::string extent_of(const recording::TakeSummary& summary) {
+  if (summary.damage_count == 0) return "each chunk is whole, but not what stands in them";
+  if (summary.good_end < summary.bytes)
+    return "nothing is whole behind byte " + std::to_string(summary.good_end) + " of " +
+           std::to_string(summary.bytes);
+  return "what follows the damage is whole to the end, which is byte " +
+         std::to_string(summary.bytes);
+}
+
 int check(const Options& options) {
   const auto summary = recording::summarise(options.file);
   if (!summary) return cli::report(summary.error());
@@ -45,10 +55,9 @@ int check(const Options& options) {
     return 0;
   }
   takes::print_damages(*summary);
-  return cli::report({Errc::failed, options.file + ": is damaged; what is whole ends at byte " +
-                                        std::to_string(summary->good_end) + " of " +
-                                        std::to_string(summary->bytes) +
-                                        ", and `nendo recording repair` makes a new file of it"});
+  return cli::report({Errc::failed, options.file + ": is damaged; " + extent_of(*summary) +
+                                        ", and `nendo recording repair` makes a new file of what "
+                                        "is whole"});
 }
 
 void print_made(const Options& options, std::uint64_t count, const char* what,
@@ -62,6 +71,7 @@ int repair(const Options& options) {
   const auto made = recording::repair_take(options.file, options.out);
   if (!made) return cli::report(made.error());
   print_made(options, made->chunks, "whole chunks", made->bytes);
+  if (made->damages == 0) cli::note(options.file + ": was whole already; the new file is a copy");
   if (made->damages > 0)
     cli::note("damaged places that are gaps now: " + std::to_string(made->damages) +
               "; a replay from there on need not be the same");
@@ -123,8 +133,8 @@ void add(cli::Command& program) {
 
   cli::Command cutting = command.add_command("cut", "Makes a new file of a part");
   cutting.add_option("FILE", options->file, "A recording; it stays as it is").required();
-  cutting.add_option("--from", options->from_s, "Seconds from the beginning");
-  cutting.add_option("--to", options->to_s, "Seconds from the beginning; without it, the end");
+  cutting.add_duration("--from", options->from_s, "Seconds from the beginning");
+  cutting.add_duration("--to", options->to_s, "Seconds from the beginning; without it, the end");
   cutting.add_option("--out", options->out, "The new file").required();
   cutting.on_chosen([options] { return cut(*options); });
 

@@ -12,6 +12,7 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/simd.hpp>
 #include <nendo/recording/loop_replay.hpp>
+#include <nendo/recording/take_tools.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/json_line.hpp"
@@ -158,10 +159,22 @@ void print(const Options& options, const Replayed& done) {
   std::cout << std::flush;
 }
 
+/// Tells that --from lies behind the end, where nothing could be replayed.
+Result<void> check_from(const Options& options) {
+  if (options.from_s <= 0.0) return {};
+  const auto summary = recording::summarise(options.file);
+  if (!summary) return summary.error();
+  const double end_s = to_seconds(summary->duration());
+  if (options.from_s < end_s) return {};
+  return Error{Errc::usage, fmt::format("--from {:g}: {} lasts {:.2f} s; use less", options.from_s,
+                                        options.file, end_s)};
+}
+
 int replay(const Options& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   const auto reader = recording::TakeReader::open(options.file);
   if (!reader) return cli::report(reader.error());
+  if (const auto fine = check_from(options); !fine) return cli::report(fine.error());
   auto model = takes::recorded_model(options.file, reader->setup(), options.mesh);
   if (!model) return cli::report(model.error());
   const std::string simd(deform::simd_names().front());
@@ -194,9 +207,9 @@ void add(cli::Command& program) {
   command.add_option("--speed", options->speed, "0.01 to 100 times as fast");
   command.add_flag("--no-clock", options->no_clock, "As fast as the machine can");
   command.add_flag("--loop", options->loops, "Again and again, until Ctrl-C");
-  command.add_option("--from", options->from_s,
-                     "Seconds from the beginning; what was before is made without a clock");
-  command.add_option("--to", options->to_s, "Seconds from the beginning where it ends");
+  command.add_duration("--from", options->from_s,
+                       "Seconds from the beginning; what was before is made without a clock");
+  command.add_duration("--to", options->to_s, "Seconds from the beginning where it ends");
   command.add_option("--mesh", options->mesh, "The model, if it is no longer where it was");
   command.add_option("--out", options->out, "Where to write the shape, .obj or .ply");
   command.add_flag("--json", options->json, "A summary as JSON");

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <memory>
 
+#include <spdlog/fmt/fmt.h>
+
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/flow/tick_grid.hpp>
 
@@ -37,6 +39,7 @@ struct CommandOptions {
   std::string web; ///< [ADDR:]PORT; empty: none
   bool injective = false;
   bool not_injective = false;
+  bool force = false; ///< --out may be the model
 };
 
 // Up to this size, a tick of 64 links takes less time than a tick at 90 Hz has.
@@ -57,6 +60,7 @@ Result<void> check_outputs(const CommandOptions& options) {
   if (!view.window && (view.frames > 0 || !view.screenshot.empty()))
     return Error{Errc::usage, "--frames and --screenshot are the window's; add --view"};
   if (auto fine = cli::check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
+  if (auto fine = cli::check_spares(run.mesh, "--out", run.out, options.force); !fine) return fine;
   if (auto fine = cli::check_place("--picture", run.picture, {".png"}); !fine) return fine;
   if (auto fine = cli::check_place("--record", run.recording.file); !fine) return fine;
   if (auto fine = cli::check_place("--screenshot", view.screenshot, {".png"}); !fine) return fine;
@@ -127,15 +131,49 @@ Result<Views> open_views(const CommandOptions& options) {
   return views;
 }
 
+/// Tells what is hardly meant: a model that has no surface or size, or a radius in another unit
+/// than the model's.
+void note_oddities(const deform::Mesh& model, const CommandOptions& options) {
+  if (const auto remark = deform::remark_on(model); !remark.empty())
+    cli::note(options.run.mesh + ": " + std::string(remark));
+  if (!options.run.supports) return;
+  const deform::Supports& supports = *options.run.supports;
+  double reach = supports.own.empty() ? 0.0 : supports.own.front().support.radius;
+  for (const auto& own : supports.own)
+    reach = std::min(reach, own.support.radius);
+  for (const auto& shared : supports.shared)
+    reach = std::max(reach, shared.radius);
+  const deform::Box box = deform::finite_box_of(model.vertices);
+  deform::Points corners(3, 2); // no fingertip that touches the model is farther from all of it
+  corners << box.lowest, box.highest;
+  if (!deform::reach_all_of(box, corners, deform::one_radius(reach))) return;
+  cli::note("--radius " + options.radius +
+            ": a fingertip reaches all of the model, whose longest "
+            "side is " +
+            fmt::format("{:.3g}", (box.highest - box.lowest).maxCoeff()) +
+            ", so no part of it stays as it is; use a smaller radius to shape a part");
+}
+
+/// Turns the guard against folds on, or says that a model of this size goes without.
+void choose_injective(const deform::Mesh& model, CommandOptions& options) {
+  if (options.not_injective) return;
+  if (options.injective || model.vertices.cols() <= most_injective_unasked) {
+    options.run.loop.sculptor.deformer.injective.emplace();
+    return;
+  }
+  cli::note(fmt::format("{}: has more than {} vertices, so nothing keeps the surface from folding; "
+                        "--injective does, and may make ticks late",
+                        options.run.mesh, most_injective_unasked));
+}
+
 int run(CommandOptions& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   auto published = session::publish_to(options.publish);
   if (!published) return cli::report(published.error());
   auto model = deform::read_mesh(options.run.mesh);
   if (!model) return cli::report(model.error());
-  if (options.injective ||
-      (!options.not_injective && model->vertices.cols() <= most_injective_unasked))
-    options.run.loop.sculptor.deformer.injective.emplace();
+  note_oddities(*model, options);
+  choose_injective(*model, options);
   cli::install_stop_signals();
   session::RunOptions& wanted = options.run;
   const flow::RealtimeProcess process(wanted.realtime);
@@ -146,7 +184,7 @@ int run(CommandOptions& options) {
   if (!opened) return cli::report(opened.error());
   service::ServiceNotice service;
   session::RunParticipants participants;
-  participants.progress = [&service, shown = session::progress_for(wanted)](
+  participants.progress = [&service, shown = session::progress_for(wanted, opened->hands)](
                               const flow::Frame& frame, double elapsed_s) {
     service.alive();
     shown(frame, elapsed_s);
@@ -215,15 +253,20 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
   session::add_recording_options(command, run_options.recording);
   session::add_filter_options(command, options->filter);
   session::add_publish_option(command, options->publish);
-  command.add_option("--duration", run_options.duration_s, "Seconds to run; 0: until Ctrl-C");
+  command.add_duration("--duration", run_options.duration_s,
+                       "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until the "
+                       "gloves are recordings (replay:FILE) that have ended; a window stays open");
   command.add_option("--undo-memory", run_options.undo_memory_mb,
                      "Megabytes that undo and redo may take at most; without it, half of what the "
                      "program may use. Then the oldest steps go");
   command.add_option("--out", run_options.out,
                      "Where to write the shape, .obj or .ply; without it, nendo-<date>-<time>.obj");
+  command.add_flag("--force", options->force, cli::force_summary);
   command.add_option("--picture", run_options.picture,
                      "Where to draw the model and the hands before and after, .png");
   command.add_flag("--json", run_options.json, "Progress and summary as JSON, an object a line");
+  command.add_flag("--verbose", run_options.verbose,
+                   "A longer summary: how the shape was kept from folding");
   command.add_option("--web", options->web,
                      "[ADDR:]PORT at which a browser shows the run, with buttons; without ADDR, a "
                      "browser on this machine");

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli/cli.hpp"
@@ -96,6 +97,11 @@ int run(const stress::StressArguments& arguments) {
                             *arguments.histogram_us);
   if (const auto done = write_files(arguments, *options, **outcome); !done)
     return cli::report(done.error());
+  const std::string difference =
+      earlier->is_object() ? stress::different_work(*earlier, results) : std::string();
+  if (!difference.empty())
+    cli::note("--compare " + arguments.compare +
+              ": was measured with other work: " + printable(difference));
   const auto bad = stress::fulfilled(options->conditions, results);
   for (const auto& line : bad)
     cli::note("--fail-if " + line);
@@ -132,15 +138,16 @@ void add(cli::Command& program) {
                      "measures what an ordinary thread gets.");
   command.add_option("-i,--interval", arguments->interval_us,
                      "Microseconds from tick to tick, 100 to 1000000");
-  command.add_option("-D,--duration", arguments->duration, "How long: seconds, or 10m, 2h, 1d");
+  command.add_option("-D,--duration", arguments->duration,
+                     "How long: seconds, or 90s, 10m, 2h, 1d");
   command.add_option("--stages", arguments->stages,
                      "What a tick does: sleep, input, hands, deform, publish, with commas");
   command.add_option("--load", arguments->load,
                      "Work beside it, by processes of its own: cpu, mem, io, with commas");
   command.add_option("-b,--break", arguments->break_us,
                      "End at a tick that is later than this many microseconds");
-  command.add_option("--floor", arguments->floor_s,
-                     "Seconds to look at the machine alone before; 0: do not");
+  command.add_duration("--floor", arguments->floor_s,
+                       "Seconds to look at the machine alone before; 0: do not");
   command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");
   command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", arguments->run.mesh,

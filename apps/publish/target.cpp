@@ -91,6 +91,8 @@ Result<Target> parse_target(std::string_view text) {
   constexpr std::string_view segment = "shm";
   constexpr std::string_view datagrams = "udp:";
   if (text == segment) return parse_segment(text, "");
+  if (text == "shm:" || text.starts_with("shm:?"))
+    return wrong(text, "has no name; use shm:NAME, or shm, which is shm:run");
   if (text.starts_with("shm:") || text.starts_with("shm?"))
     return parse_segment(text, text.substr(text[3] == ':' ? 4 : 3));
   if (text.starts_with(datagrams)) return parse_datagrams(text, text.substr(datagrams.size()));

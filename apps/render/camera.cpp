@@ -63,6 +63,7 @@ Matrix4d Camera::projection(double aspect) const noexcept {
   eye_of_world.topRightCorner<3, 1>() = -axes() * eye();
   Matrix4d clip_of_eye = Matrix4d::Zero();
   clip_of_eye(0, 0) = 1.0 / (tangent() * aspect);
+  clip_of_eye(0, 2) = -centre; // times w, which is -z
   clip_of_eye(1, 1) = 1.0 / tangent();
   clip_of_eye(2, 2) = (far + near) / (near - far);
   clip_of_eye(2, 3) = 2.0 * far * near / (near - far);

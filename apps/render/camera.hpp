@@ -25,6 +25,9 @@ struct Camera {
   double distance_m = 3.0;                          ///< from the target
   View view;
   double field_of_view_deg = 24.0; ///< of the picture's height
+  /// Where the target is in the picture, as a part of half its width: 0 is the middle, 1 the right
+  /// edge. The picture is shifted as a whole, without distortion, if something covers its left.
+  double centre = 0.0;
 
   static constexpr double least_distance_m = 0.05;
   static constexpr double most_distance_m = 50.0;

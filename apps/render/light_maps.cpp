@@ -154,9 +154,9 @@ float DepthMap::lit_part(const Vector3f& place, float slack_m, int reach) const 
 
 Lighting::Lighting(const Scene& scene, double azimuth_deg)
     : scene_(&scene), maps_(std::make_unique<Maps>()) {
-  maps_->key = {turned({-0.55F, 0.75F, 0.55F}, azimuth_deg), {1.42F, 1.35F, 1.25F}};
-  maps_->fill = {turned({0.85F, 0.25F, 0.50F}, azimuth_deg), {0.22F, 0.27F, 0.34F}};
-  maps_->rim = {turned({0.45F, 0.45F, -0.80F}, azimuth_deg), {0.62F, 0.66F, 0.72F}};
+  maps_->key = {turned(key_direction, azimuth_deg), {1.42F, 1.35F, 1.25F}};
+  maps_->fill = {turned(fill_direction, azimuth_deg), {0.22F, 0.27F, 0.34F}};
+  maps_->rim = {turned(rim_direction, azimuth_deg), {0.62F, 0.66F, 0.72F}};
   maps_->key_shadow.emplace_back(scene, maps_->key.toward, shadow_side);
   std::vector<std::pair<float, float>> model;
   std::vector<std::vector<std::pair<float, float>>> veils(scene.veils.size());

@@ -34,6 +34,11 @@ private:
   std::vector<float> nearest_; ///< along `toward`; the lowest float where there is nothing
 };
 
+/// The directions to the lights, seen from the front. They turn with the view.
+inline const Eigen::Vector3f key_direction{-0.55F, 0.75F, 0.55F};
+inline const Eigen::Vector3f fill_direction{0.85F, 0.25F, 0.50F};
+inline const Eigen::Vector3f rim_direction{0.45F, 0.45F, -0.80F};
+
 /// Returns the direction turned with the view around the vertical axis, as a unit vector.
 Eigen::Vector3f turned(const Eigen::Vector3f& direction, double azimuth_deg);
 

@@ -33,7 +33,7 @@ public:
   Projection(const Camera& camera, Size size, int samples)
       : rows_(camera.axes()), eye_(camera.eye()),
         scale_(samples * size.height / (2.0 * camera.tangent())),
-        middle_{samples * size.width / 2.0, samples * size.height / 2.0} {}
+        middle_{samples * size.width * (1.0 + camera.centre) / 2.0, samples * size.height / 2.0} {}
 
   Seen see(const Surface& surface, const std::vector<float>* sky) const {
     Seen seen{&surface, sky, {}, {}};

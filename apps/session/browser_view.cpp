@@ -1,6 +1,5 @@
 #include "session/browser_view.hpp"
 
-#include <array>
 #include <filesystem>
 
 #include "cli/cli.hpp"
@@ -29,10 +28,7 @@ Result<void> BrowserView::begin(const LoopStart& start) {
 }
 
 void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
-  std::array<std::uint32_t, 2> bad{};
-  for (std::size_t slot = 0; slot < bad.size(); ++slot)
-    bad[slot] = static_cast<std::uint32_t>(status.gloves[slot].bad_records);
-  server_->set_bad_records(bad);
+  server_->set_counts({status.gloves[0].counts, status.gloves[1].counts});
   while (const auto command = server_->next_command())
     commands.try_push(*command);
 }

@@ -38,8 +38,8 @@ public:
   void update(const RunStatus& status, flow::CommandRing& commands) override {
     for (std::size_t slot = 0; slot < status.gloves.size(); ++slot) {
       gauges_.gloves[slot] = status.gloves[slot].source;
-      gauges_.bad_records[slot] = status.gloves[slot].bad_records;
-      gauges_.lost[slot] = status.gloves[slot].lost;
+      if (status.gloves[slot].uncalibrated) gauges_.gloves[slot] += " (uncalibrated)";
+      gauges_.counts[slot] = status.gloves[slot].counts;
     }
     LoopChange change;
     for (const flow::Command& command : window_->show(status.frame, status.fresh, gauges_)) {
@@ -53,6 +53,7 @@ public:
 
   void report(const std::string& message) override { gauges_.report = message; }
   bool sets_pace() const noexcept override { return true; }
+  bool stays_open() const noexcept override { return true; }
 
   Result<void> end() override {
     if (options_.screenshot.empty()) return {};

@@ -5,9 +5,8 @@ namespace nendo::session {
 GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands) {
   GloveStatuses statuses;
   for (const gloves::OpenHand& hand : hands) {
-    const auto stats = hand.glove->stats();
-    statuses[flow::Placement::index_of(hand.side)] = {hand.glove->info().source, stats.bad_records,
-                                                      stats.ring_refused};
+    statuses[flow::Placement::index_of(hand.side)] = {
+        hand.glove->info().source, driver::counts_of(hand.glove->stats()), hand.uncalibrated};
   }
   return statuses;
 }

@@ -3,10 +3,10 @@
 // browser.
 
 #include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
 
@@ -16,8 +16,8 @@ namespace nendo::session {
 
 struct GloveStatus {
   std::string source; ///< GloveInfo::source; empty: there is no glove on this hand
-  std::uint64_t bad_records = 0;
-  std::uint64_t lost = 0; ///< samples that found the ring full
+  driver::RecordCounts counts;
+  bool uncalibrated = false; ///< gloves::OpenHand::uncalibrated
 };
 /// The states of both gloves, by flow::Placement::index_of(side).
 using GloveStatuses = std::array<GloveStatus, 2>;
@@ -43,6 +43,9 @@ public:
   virtual void report(const std::string& message) { static_cast<void>(message); }
   /// Tells whether update() waits by itself, as a window waits for its screen.
   virtual bool sets_pace() const noexcept { return false; }
+  /// Tells whether the run goes on when all gloves have ended (Glove::has_ended()), because
+  /// somebody would be surprised: a window closes only when its person closes it.
+  virtual bool stays_open() const noexcept { return false; }
   /// Called after the last loop, when the shape has been written. An error becomes the run's.
   virtual Result<void> end() { return {}; }
 };

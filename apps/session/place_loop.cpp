@@ -91,7 +91,7 @@ Carryover carryover_of(const flow::DeformLoop& ended) {
 Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
   if (text.empty()) return std::optional<deform::Supports>();
   auto supports = flow::parse_finger_supports(text);
-  if (!supports) return bad_radius(" " + text, "is no radius");
+  if (!supports) return bad_radius(" " + text, "is not a number above 0, nor a list of them");
   return supports;
 }
 

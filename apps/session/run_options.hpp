@@ -23,6 +23,7 @@ struct RunOptions {
   /// means one radius for all, computed from the model's size.
   std::optional<deform::Supports> supports{};
   bool json = false;
+  bool verbose = false; ///< the summary has what matters to those who look into a deformation, too
   std::optional<double> undo_memory_mb{}; ///< nothing: half of what there is
   gloves::CalibrationOptions calibration;
   gloves::HandLength length;

@@ -1,12 +1,15 @@
 #include "session/run_recording.hpp"
 
 #include <filesystem>
+#include <utility>
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/simd.hpp>
+#include <nendo/driver/record_counts.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/quantities.hpp"
 #include "session/place_loop.hpp"
 
 namespace nendo::session {
@@ -62,6 +65,13 @@ recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands,
   return setup;
 }
 
+std::vector<driver::RecordCounts> counts_of(const std::vector<gloves::OpenHand>& hands) {
+  std::vector<driver::RecordCounts> counts;
+  for (const auto& hand : hands)
+    counts.push_back(driver::counts_of(hand.glove->stats()));
+  return counts;
+}
+
 flow::InputLog* RunRecorder::input_log_for(const RecordingOptions& options) {
   input_log_ = options.wanted() ? std::make_unique<flow::InputLog>() : nullptr;
   return input_log_.get();
@@ -80,6 +90,10 @@ std::string RunRecorder::next_name(const RecordingOptions& options, bool with_mo
 Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& placed,
                                 const std::vector<gloves::OpenHand>& hands,
                                 const deform::Mesh& model) {
+  // The first loop takes all that came since the gloves were started; a later one begins anew.
+  const auto before = std::exchange(first_loop_, false)
+                          ? std::vector<driver::RecordCounts>(hands.size())
+                          : counts_of(hands);
   if (!input_log_) return {};
   const auto& asked = options.recording;
   const auto sum = recording::sum_of(model.vertices);
@@ -100,6 +114,12 @@ Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& pl
   wanted.kept_stem = asked.kept_stem;
   wanted.keep_on_switch = options.loop.switch_action == flow::SwitchAction::keep;
   wanted.report = cli::note;
+  wanted.sent = [&hands, before] {
+    auto counts = counts_of(hands);
+    for (std::size_t at = 0; at < counts.size(); ++at)
+      counts[at] = driver::since(before[at], counts[at]);
+    return counts;
+  };
   auto recorder = recording::Recorder::begin(setup, *input_log_, std::move(wanted));
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/recording/recorder.hpp>
 
 #include "cli/command.hpp"
@@ -42,6 +43,10 @@ struct RecordingOutcome {
 /// the hands.
 recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const std::string& wearer);
 
+/// Returns what became of the records of each glove since it was started, in the order of the
+/// hands. Any thread; wait-free but for its memory.
+std::vector<driver::RecordCounts> counts_of(const std::vector<gloves::OpenHand>& hands);
+
 /// Records the loops of a run. Each loop gets a file of its own; from the second on their names are
 /// numbered. If a loop begins with another model than the one that was loaded, that model is
 /// written beside its recording.
@@ -52,8 +57,8 @@ public:
 
   /// Makes the log that the next loop writes to. Returns null if the loop is not to be recorded.
   flow::InputLog* input_log_for(const RecordingOptions& options);
-  /// Begins to record. Call it before the loop runs. Error: failed, if the files cannot be made;
-  /// nothing is recorded then.
+  /// Begins to record. Call it before each loop runs; `hands` must outlive its recording. Error:
+  /// failed, if the files cannot be made; nothing is recorded then.
   Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
                      const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model);
   /// Returns true with --keep-last, from begin() to end().
@@ -75,6 +80,7 @@ private:
   int number_ = 1; ///< of the latest recording's name
   std::vector<RecordingOutcome> outcomes_;
   bool keeps_last_minute_ = false;
+  bool first_loop_ = true;
 };
 
 } // namespace nendo::session

@@ -1,17 +1,27 @@
 #include "session/run_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <numeric>
+#include <string>
 #include <string_view>
 
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <nendo/driver/record_counts.hpp>
+
+#include "cli/terminal.hpp"
+
 namespace nendo::session {
 namespace {
 
-std::string progress_line(const flow::Frame& frame, double elapsed_s, double duration_s) {
+/// Whether angles are an average hand's, by flow::Placement::index_of(side).
+using Uncalibrated = std::array<bool, 2>;
+
+std::string progress_line(const flow::Frame& frame, double elapsed_s, double duration_s,
+                          const Uncalibrated& uncalibrated) {
   std::string line = duration_s > 0.0 ? fmt::format("{:5.1f} of {:.1f} s", elapsed_s, duration_s)
                                       : fmt::format("{:5.1f} s (Ctrl-C ends)", elapsed_s);
   line += fmt::format("  {} ticks, {} missed", frame.ticks_run, frame.missed);
@@ -20,10 +30,38 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
     if (!hand.present) continue;
     line += fmt::format("  {}: {}", name_of(side),
                         hand.silent ? "silent" : std::to_string(hand.samples) + " samples");
+    if (uncalibrated[flow::Placement::index_of(side)]) line += ", uncalibrated";
   }
   if (!frame.held) line += "  let go";
   if (frame.chain.held_pairs > 0) line += "  fingertips held apart";
   return line;
+}
+
+/// The same for a terminal that is too narrow for all of it: what matters most, and first.
+std::string brief_progress_line(const flow::Frame& frame, double elapsed_s,
+                                const Uncalibrated& uncalibrated) {
+  std::string line = fmt::format("{:5.1f} s  {} ticks", elapsed_s, frame.ticks_run);
+  if (frame.missed > 0) line += fmt::format(", {} missed", frame.missed);
+  std::string without;
+  for (const Side side : {Side::left, Side::right}) {
+    const std::size_t slot = flow::Placement::index_of(side);
+    const auto& hand = frame.hands[slot];
+    if (!hand.present) continue;
+    line += fmt::format("  {} {}", name_of(side),
+                        hand.silent ? "silent" : std::to_string(hand.samples));
+    if (uncalibrated[slot]) without += (without.empty() ? "  " : ", ") + std::string(name_of(side));
+  }
+  if (!frame.held) line += "  let go";
+  if (frame.chain.held_pairs > 0) line += "  held apart";
+  if (!without.empty()) line += without + " uncalibrated";
+  return line;
+}
+
+/// Returns the part of a line that a terminal shows in one row. The last column stays free, where
+/// some terminals would begin the next row.
+std::string fitting(const std::string& line) {
+  const auto columns = static_cast<std::size_t>(cli::screen_size(STDERR_FILENO).columns);
+  return line.substr(0, columns - 1);
 }
 
 /// Returns the whole part of a number, with a comma after each three digits.
@@ -72,14 +110,14 @@ void print_ranges(const hand::SensorRanges& ranges, SensorMask sensors) {
 void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
   const std::size_t slot = flow::Placement::index_of(hand.side);
-  const auto glove = hand.glove->stats();
   const driver::GloveInfo& info = hand.glove->info();
   print_row(fmt::format("{} hand", name_of(hand.side)),
-            fmt::format("{} samples ({:.1f}/s), {} bad records, {} lost, {} silences; {}",
-                        thousands(stats.samples[slot]),
-                        static_cast<double>(stats.samples[slot]) / outcome.elapsed_s,
-                        glove.bad_records, glove.ring_refused, stats.silences[slot], info.source));
+            fmt::format("{} samples ({:.1f}/s), {} silences; {}", thousands(stats.samples[slot]),
+                        stats.rates[slot].per_s(), stats.silences[slot], info.source));
+  print_row("", driver::in_words(driver::counts_of(hand.glove->stats())));
   print_spikes(stats.spikes[slot]);
+  if (hand.uncalibrated)
+    print_row("", "uncalibrated: its angles are an average hand's; see `nendo calibrate`");
   if (hand.wearer.adapt) print_ranges(stats.ranges[slot], info.sensors);
 }
 
@@ -108,17 +146,21 @@ void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stat
 
 void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
   if (!options.loop.sculptor.deformer.injective) return;
-  print_row("injective", fmt::format("at most {} links a tick, bound in one step {:.3g}, least "
-                                     "determinant {:.3g}; fingertips held apart in {} ticks",
-                                     stats.most_links, stats.most_bound, stats.least_determinant,
-                                     stats.held_apart_ticks));
+  if (options.verbose)
+    print_row("injective", fmt::format("at most {} links a tick, bound in one step {:.3g}, least "
+                                       "determinant {:.3g}; fingertips held apart in {} ticks",
+                                       stats.most_links, stats.most_bound, stats.least_determinant,
+                                       stats.held_apart_ticks));
+  else if (stats.held_apart_ticks > 0)
+    print_row("no folds", fmt::format("fingertips whose ways cross were held apart in {} ticks",
+                                      thousands(stats.held_apart_ticks)));
 }
 
 void print_recordings(const std::vector<RecordingOutcome>& recordings) {
   for (const auto& [file, recorded] : recordings) {
     const std::string name = file.empty() ? "" : file + ", ";
     print_row("recording",
-              recorded ? fmt::format("{}{} bytes, {} entries lost, {} kept", name,
+              recorded ? fmt::format("{}{} bytes, {} entries not recorded, {} kept", name,
                                      thousands(recorded->bytes), recorded->lost, recorded->kept)
                        : name + "not complete, as was told");
   }
@@ -138,7 +180,7 @@ void print_published(const RunOutcome& outcome) {
 void print_summary_text(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
-  const flow::SculptorOptions& sculptor = options.loop.sculptor;
+  const flow::SculptorOptions& sculptor = outcome.sculptor;
   std::cout << fmt::format("\nnendo run: {:.1f} s, {}, {}, radius {:.3g}\n", outcome.elapsed_s,
                            flow::name_of(sculptor.mode),
                            deform::name_of(sculptor.deformer.csrbf.kernel), outcome.radius);
@@ -165,7 +207,7 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
 
 } // namespace
 
-Progress progress_for(const RunOptions& options) {
+Progress progress_for(const RunOptions& options, const std::vector<gloves::OpenHand>& hands) {
   if (options.json) {
     return [next_s = 1.0](const flow::Frame& frame, double elapsed_s) mutable {
       if (elapsed_s < next_s) return;
@@ -173,12 +215,17 @@ Progress progress_for(const RunOptions& options) {
       next_s += 1.0;
     };
   }
+  Uncalibrated uncalibrated{};
+  for (const auto& hand : hands)
+    uncalibrated[flow::Placement::index_of(hand.side)] = hand.uncalibrated;
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  return [terminal, next_s = 2.0, duration_s = options.duration_s](const flow::Frame& frame,
-                                                                   double elapsed_s) mutable {
+  return [terminal, uncalibrated, next_s = 2.0,
+          duration_s = options.duration_s](const flow::Frame& frame, double elapsed_s) mutable {
     if (!terminal && elapsed_s < next_s) return;
     next_s += 2.0;
-    const std::string line = progress_line(frame, elapsed_s, duration_s);
+    std::string line = progress_line(frame, elapsed_s, duration_s, uncalibrated);
+    if (terminal && fitting(line) != line)
+      line = fitting(brief_progress_line(frame, elapsed_s, uncalibrated));
     std::cerr << (terminal ? "\r" + line + "\x1b[K" : line + "\n") << std::flush;
   };
 }

@@ -6,10 +6,10 @@
 
 namespace nendo::session {
 
-/// Returns the function that reports progress. In a terminal it rewrites one line of standard
-/// error, and elsewhere it prints a line every two seconds. With `options.json` it prints an object
-/// a second on standard output.
-Progress progress_for(const RunOptions& options);
+/// Returns the function that reports the progress of a run with these hands. In a terminal it
+/// rewrites one line of standard error, and elsewhere it prints a line every two seconds. With
+/// `options.json` it prints an object a second on standard output.
+Progress progress_for(const RunOptions& options, const std::vector<gloves::OpenHand>& hands);
 
 /// Prints the summary on standard output: a table, or with `options.json` one object.
 void print_summary(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,

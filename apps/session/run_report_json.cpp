@@ -2,7 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/driver/record_counts.hpp>
+
 #include "cli/json_line.hpp"
+#include "gloves/glove_json.hpp"
 #include "session/loop_options.hpp"
 
 namespace nendo::session {
@@ -71,6 +74,9 @@ ordered_json recordings_json(const std::vector<RecordingOutcome>& recordings) {
       line["lost"] = recorded->lost;
       line["bytes"] = recorded->bytes;
       line["kept"] = recorded->kept;
+      line["gloves"] = ordered_json::array();
+      for (const auto& counts : recorded->sent)
+        gloves::add_counts(line["gloves"].emplace_back(ordered_json::object()), counts);
     }
     lines.push_back(std::move(line));
   }
@@ -113,8 +119,8 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
   const auto& stats = outcome.stats;
   ordered_json line{{"event", "summary"},
                     {"elapsed_s", outcome.elapsed_s},
-                    {"mode", flow::name_of(options.loop.sculptor.mode)},
-                    {"kernel", deform::name_of(options.loop.sculptor.deformer.csrbf.kernel)},
+                    {"mode", flow::name_of(outcome.sculptor.mode)},
+                    {"kernel", deform::name_of(outcome.sculptor.deformer.csrbf.kernel)},
                     {"radius", outcome.radius},
                     {"rate_hz", options.loop.rate_hz},
                     {"policy", flow::describe_policy(options.loop)},
@@ -139,13 +145,13 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
                {"model", hand.glove->info().model},
                {"hand_length_mm", 1e3 * hand.wearer.of(hand.first.side).size.length_m},
                {"samples", stats.samples[slot]},
-               {"samples_per_s", static_cast<double>(stats.samples[slot]) / outcome.elapsed_s},
+               {"samples_per_s", stats.rates[slot].per_s()},
                {"silences", stats.silences[slot]},
                {"spikes", spikes_json(stats.spikes[slot])},
                {"switch_uses", stats.switch_uses[slot]},
-               {"bad_records", glove.bad_records},
                {"ring_refused", glove.ring_refused},
                {"reopened", glove.reopened}};
+    gloves::add_counts(of_hand, driver::counts_of(glove));
     if (hand.wearer.adapt)
       of_hand["ranges"] = ranges_json(stats.ranges[slot], hand.glove->info().sensors);
   }

@@ -89,9 +89,11 @@ public:
     if (const auto drawn = picture.write(model_.vertices); !drawn) return drawn.error();
     for (Observer* observer : observers_)
       if (const auto ended = observer->end(); !ended) return ended.error();
-    return RunOutcome{placed_.loop->stats(), elapsed_s_,   model_.vertices.cols(),
-                      placed_.radius,        options_.out, std::move(grants_),
-                      recorder_.outcomes()};
+    RunOutcome outcome{placed_.loop->stats(), elapsed_s_,   model_.vertices.cols(),
+                       placed_.radius,        options_.out, std::move(grants_),
+                       recorder_.outcomes()};
+    outcome.sculptor = placed_.setup.options.sculptor;
+    return outcome;
   }
 
 private:
@@ -194,6 +196,27 @@ private:
       cli::note(line);
   }
 
+  // Returns whether no glove will send any more, and the loop has taken all that they sent. Its
+  // present tick, for which whoever stops it waits, shows the last of it.
+  bool is_exhausted() const {
+    return gloves::have_ended(hands_) && placed_.loop->frames().front().ticks_run > 0 &&
+           std::all_of(hands_.begin(), hands_.end(),
+                       [](const auto& hand) { return hand.ring->size() == 0; });
+  }
+
+  // Returns whether the run ends for it. Somebody who looks at a window decides that himself.
+  bool ends_with_gloves() {
+    if (!is_exhausted()) return false;
+    const auto& observers = participants_.observers;
+    if (std::none_of(observers.begin(), observers.end(),
+                     [](const Observer* observer) { return observer->stays_open(); }))
+      return true;
+    if (!std::exchange(end_reported_, true))
+      report("the recording has ended, and the hands stay as they are; q or closing the window "
+             "ends the run");
+    return false;
+  }
+
   bool watch(const LoopThread& thread, RunPicture& picture) {
     auto& frames = placed_.loop->frames();
     HostTime next_progress = thread.start;
@@ -208,7 +231,7 @@ private:
         picture.add(frames.front());
       }
       update_observers(fresh);
-      if (ends_) return false;
+      if (ends_ || ends_with_gloves()) return false;
       if (is_change_due(thread.start)) return true;
       if (saving_.is_due_now()) save();
       if (HostClock::now() < next_progress) continue;
@@ -270,6 +293,7 @@ private:
   double before_s_ = 0.0;  ///< of all loops but the latest
   double elapsed_s_ = 0.0; ///< of the latest loop
   bool refusals_reported_ = false;
+  bool end_reported_ = false; ///< that all gloves have ended
 };
 
 } // namespace

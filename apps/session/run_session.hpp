@@ -22,6 +22,8 @@ struct RunOutcome {
   std::vector<flow::Grant> grants;
   std::vector<RecordingOutcome> recordings; ///< one a loop
   std::vector<PublishedTo> published{};     ///< added by whoever owns the sinks
+  /// The last loop's, after all changes of settings.
+  flow::SculptorOptions sculptor{};
 };
 
 /// Returns how many deadlines of the grid a run lasts. The number is unlimited if only the clock
@@ -41,10 +43,10 @@ struct RunParticipants {
   std::vector<Sink*> sinks{};
 };
 
-/// Runs until the duration is over, a stop signal comes or a command asks for the end, and then
-/// writes the shape. The keys (run_keys.hpp) observe every run. Prints on standard error which
-/// rights were refused. `grants` are the rights that were asked for before, for the process and the
-/// readers.
+/// Runs until the duration is over, a stop signal comes, a command asks for the end, or all gloves
+/// have ended (unless an observer stays open), and then writes the shape. The keys (run_keys.hpp)
+/// observe every run. Prints on standard error which rights were refused. `grants` are the rights
+/// that were asked for before, for the process and the readers.
 ///
 /// For a command that a running loop cannot obey (loop_change.hpp), the loop is ended and another
 /// one is made, at most four times a second. It goes on from the present shape and poses, with the

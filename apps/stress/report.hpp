@@ -37,6 +37,11 @@ std::string wall_time(const StressOutcome& outcome, HostTime time);
 /// key says otherwise. Keys are stable, because --compare reads earlier reports.
 nlohmann::ordered_json stress_json(const StressOptions& options, const StressOutcome& outcome);
 
+/// Returns what makes the figures of two reports those of different work, in one line: stages,
+/// load, rate, mode or model. Empty if nothing does.
+std::string different_work(const nlohmann::ordered_json& earlier,
+                           const nlohmann::ordered_json& report);
+
 /// Prints the same figures as a table. `earlier` is the JSON report of another test, which is
 /// printed beside this one, or null.
 void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,

@@ -1,8 +1,12 @@
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <string>
 
 #include <nlohmann/json.hpp>
+
+#include <nendo/driver/record_counts.hpp>
 
 #include "session/loop_options.hpp"
 #include "stress/report.hpp"
@@ -79,6 +83,17 @@ ordered_json causes_json(const TickTally& tally) {
           {"by_cause", causes}};
 }
 
+ordered_json gloves_json(const StressOutcome& outcome) {
+  auto lines = ordered_json::array();
+  for (std::size_t at = 0; at < outcome.glove_records.size(); ++at) {
+    ordered_json line{{"source", outcome.gloves[at]}};
+    for (const auto& [name, count] : driver::by_name(outcome.glove_records[at]))
+      line[std::string(name)] = count;
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
 ordered_json floor_json(const PlatformFloor& floor) {
   if (floor.spun_s <= 0.0) return nullptr;
   ordered_json line{{"spun_s", floor.spun_s}, {"stalled_s", floor.stalled_s}};
@@ -130,6 +145,7 @@ ordered_json stress_json(const StressOptions& options, const StressOutcome& outc
                     {"overruns", outcome.overruns},
                     {"failed", outcome.failed},
                     {"samples", tally.samples()},
+                    {"gloves", gloves_json(outcome)},
                     {"longest_outage_us", to_microseconds(tally.longest_outage())}};
   ordered_json corrected;
   for (std::size_t k = 0; k < measure_names.size(); ++k) {
@@ -155,6 +171,33 @@ ordered_json stress_json(const StressOptions& options, const StressOutcome& outc
   line["floor"] = floor_json(outcome.floor);
   line["ended"] = outcome.broke ? "break" : outcome.stopped ? "stopped" : "duration";
   return line;
+}
+
+std::string different_work(const ordered_json& earlier, const ordered_json& report) {
+  struct Kind {
+    const char* key;
+    const char* name;
+  };
+  constexpr std::array<Kind, 6> conditions{{{"stages", "stages"},
+                                            {"load", "load"},
+                                            {"rate_hz", "rate in Hz"},
+                                            {"mode", "mode"},
+                                            {"vertices", "vertices"},
+                                            {"threads", "threads"}}};
+  const ordered_json none;
+  const auto value_in = [&](const ordered_json& of, const char* key) {
+    const ordered_json environment = of.value("environment", none);
+    return environment.is_object() ? environment.value(key, none) : none;
+  };
+  std::string differences;
+  for (const auto& [key, name] : conditions) {
+    const ordered_json then = value_in(earlier, key);
+    const ordered_json now = value_in(report, key);
+    if (then == now) continue;
+    differences += (differences.empty() ? "" : ", ") + std::string(name) + " " + then.dump() +
+                   " then and " + now.dump() + " now";
+  }
+  return differences;
 }
 
 } // namespace nendo::stress

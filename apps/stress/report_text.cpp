@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/driver/record_counts.hpp>
+
 #include "stress/report.hpp"
 
 namespace nendo::stress {
@@ -115,6 +117,9 @@ void print_counts(std::FILE* out, const StressOutcome& outcome) {
                "%s us\n",
                number(tally.ticks()), number(outcome.overruns), number(outcome.missed),
                shown(static_cast<double>(tally.longest_outage().count()) / 1e3).c_str());
+  for (std::size_t at = 0; at < outcome.glove_records.size(); ++at)
+    std::fprintf(out, "  %s: %s\n", outcome.gloves[at].c_str(),
+                 driver::in_words(outcome.glove_records[at]).c_str());
   std::fprintf(out, "  %ld page faults (%ld from disk), %ld involuntary switches, %.1f %% of a CPU",
                outcome.costs.minor_faults + outcome.costs.major_faults, outcome.costs.major_faults,
                outcome.costs.involuntary_switches,

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "cli/cli.hpp"
+#include "cli/quantities.hpp"
 #include "session/place_loop.hpp"
 #include "stress/load.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "cli/cli.hpp"
 #include "session/open_hands.hpp"
+#include "session/run_recording.hpp"
 #include "stress/load.hpp"
 
 namespace nendo::stress {
@@ -173,6 +174,7 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   run_loop(options, *placed->loop, ring, *outcome, progress, watched);
   for (const auto& hand : hands)
     hand.glove->stop();
+  outcome->glove_records = session::counts_of(hands);
   const flow::LoopStats& stats = placed->loop->stats();
   outcome->overruns = stats.overruns;
   outcome->missed = stats.missed;

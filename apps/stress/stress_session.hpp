@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <nendo/driver/record_counts.hpp>
+
 #include "session/run_session.hpp"
 #include "stress/environment.hpp"
 #include "stress/stress_options.hpp"
@@ -39,6 +41,7 @@ struct StressOutcome {
   double elapsed_s = 0.0;
   Eigen::Index vertices = 0;
   std::vector<std::string> gloves;                  ///< GloveInfo::source of each
+  std::vector<driver::RecordCounts> glove_records;  ///< of each, since it was started
   std::uint64_t pictures = 0;                       ///< that the observer made of the loop
   std::chrono::system_clock::time_point wall_start; ///< `start` by the system clock
   HostTime start{};

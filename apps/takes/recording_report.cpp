@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <nendo/base/text.hpp>
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/hand/calibration_file.hpp>
 
 #include "cli/json_line.hpp"
@@ -22,6 +23,7 @@ unsigned long long number(std::uint64_t value) {
 }
 
 std::string begun_of(const TakeSummary& summary) {
+  if (summary.setup.begun == decltype(summary.setup.begun){}) return {}; // that chunk is not whole
   return hand::rfc3339(std::chrono::floor<std::chrono::seconds>(summary.setup.begun));
 }
 
@@ -30,10 +32,13 @@ double pause_s(const GloveSummary& glove) {
 }
 
 void print_glove(const driver::GloveInfo& info, const GloveSummary& glove) {
-  std::printf("  %-12s %s, %s; %llu samples (%.1f/s), %llu lost, longest pause %.3f s\n",
+  std::printf("  %-12s %s, %s; %llu samples (%.1f/s), longest pause %.3f s\n",
               (std::string(name_of(info.side)) + " glove").c_str(), info.source.c_str(),
-              info.model.c_str(), number(glove.samples), glove.rate_hz(), number(glove.lost),
-              pause_s(glove));
+              info.model.c_str(), number(glove.samples), glove.rate_hz(), pause_s(glove));
+  const std::string line =
+      glove.sent ? driver::in_words(*glove.sent) : "what was missed on the line was not counted";
+  std::printf("  %-12s %s; %llu delivered, but not recorded\n", "", line.c_str(),
+              number(glove.lost));
 }
 
 void print_loop(const TakeSummary& summary) {
@@ -56,13 +61,16 @@ ordered_json gloves_json(const TakeSummary& summary) {
   for (std::size_t at = 0; at < summary.gloves.size(); ++at) {
     const driver::GloveInfo& info = summary.setup.gloves[at];
     const GloveSummary& glove = summary.gloves[at];
-    gloves.push_back({{"hand", name_of(info.side)},
-                      {"source", info.source},
-                      {"model", info.model},
-                      {"samples", glove.samples},
-                      {"rate_hz", glove.rate_hz()},
-                      {"lost", glove.lost},
-                      {"longest_pause_s", pause_s(glove)}});
+    ordered_json line{
+        {"hand", name_of(info.side)},       {"source", info.source},      {"model", info.model},
+        {"samples", glove.samples},         {"rate_hz", glove.rate_hz()}, {"lost", glove.lost},
+        {"longest_pause_s", pause_s(glove)}};
+    const auto counts = driver::by_name(glove.sent.value_or(driver::RecordCounts{}));
+    for (const auto& [name, count] : counts) {
+      ordered_json& value = line[std::string(name)];
+      if (glove.sent) value = count; // otherwise null: nobody knows
+    }
+    gloves.push_back(std::move(line));
   }
   return gloves;
 }
@@ -88,10 +96,12 @@ ordered_json loop_json(const TakeSummary& summary) {
 
 void print_take(const std::string& file, const TakeSummary& summary) {
   const recording::Setup& setup = summary.setup;
-  std::printf("%s: begun %s, %.1f s, by %s%s%s; %llu bytes\n", file.c_str(),
-              begun_of(summary).c_str(), to_seconds(summary.duration()),
-              printable(setup.program).c_str(), setup.wearer.empty() ? "" : ", worn by ",
-              printable(setup.wearer).c_str(), number(summary.bytes));
+  const std::string begun = begun_of(summary);
+  std::printf("%s: begun %s, %.1f s%s%s%s%s; %llu bytes\n", file.c_str(),
+              begun.empty() ? "nobody knows when" : begun.c_str(), to_seconds(summary.duration()),
+              setup.program.empty() ? "" : ", by ", printable(setup.program).c_str(),
+              setup.wearer.empty() ? "" : ", worn by ", printable(setup.wearer).c_str(),
+              number(summary.bytes));
   for (std::size_t at = 0; at < summary.gloves.size(); ++at)
     print_glove(setup.gloves[at], summary.gloves[at]);
   if (setup.loop) print_loop(summary);
@@ -104,8 +114,9 @@ void print_take(const std::string& file, const TakeSummary& summary) {
 }
 
 void print_take_json(const std::string& file, const TakeSummary& summary) {
+  const std::string begun = begun_of(summary);
   const ordered_json line{{"file", file},
-                          {"begun", begun_of(summary)},
+                          {"begun", begun.empty() ? ordered_json() : ordered_json(begun)},
                           {"duration_s", to_seconds(summary.duration())},
                           {"program", summary.setup.program},
                           {"wearer", summary.setup.wearer},

@@ -13,6 +13,7 @@
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/recording/take_tools.hpp>
 
+#include "cli/cli.hpp"
 #include "takes/recorded_frames.hpp"
 #include "takes/recorded_model.hpp"
 #include "takes/timeline_frames.hpp"
@@ -143,6 +144,8 @@ Result<Take> read_take(const std::filesystem::path& path) {
   if (is_recording(path)) return read_recording(path);
   auto mesh = deform::read_mesh(path);
   if (!mesh) return mesh.error();
+  if (const auto remark = deform::remark_on(*mesh); !remark.empty())
+    cli::note(path.string() + ": " + std::string(remark));
   Take take;
   take.rest = *std::move(mesh);
   take.frame_at = [vertices = take.rest.vertices](double) -> Result<render::SceneFrame> {

@@ -83,6 +83,17 @@ std::string name_of_key(Side side, std::size_t key) {
   return std::string(name_of(side)) + " hand, key " + std::to_string(key);
 }
 
+double time_near_end(const Timeline& timeline, Side side, double time_s,
+                     std::optional<std::size_t> moved) {
+  const double end_s = timeline.duration_s;
+  const double tick_s = 1.0 / timeline.rate_hz;
+  const HandTrack* track = timeline.track(side);
+  if (track == nullptr || !(time_s > end_s && time_s <= end_s + tick_s)) return time_s;
+  for (std::size_t at = 0; at < track->keys.size(); ++at)
+    if (track->keys[at].time_s == end_s && at != moved) return std::max(0.0, end_s - tick_s / 2.0);
+  return end_s;
+}
+
 Result<void> move_key(Timeline& timeline, Side side, std::size_t key, double to_s) {
   auto track = track_with_key(timeline, side, key);
   if (!track) return track.error();

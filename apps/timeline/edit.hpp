@@ -4,12 +4,21 @@
 // from 0.
 
 #include <array>
+#include <cstddef>
+#include <optional>
 
 #include <nendo/base/result.hpp>
 
 #include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
+
+/// Returns where a key goes that somebody wants at `time_s`: there, unless it is behind the end by
+/// at most a tick, as where the last tick of a run was missed. Then it goes to the end, or, if the
+/// hand has a key there already, half a tick before it. `moved` is the key that goes, and that is
+/// not in its own way.
+double time_near_end(const Timeline& timeline, Side side, double time_s,
+                     std::optional<std::size_t> moved = {});
 
 /// Moves a key to another time, which may be beyond other keys. Error: there is no such hand or
 /// key, there is already a key at that time, or the time is outside of the timeline.

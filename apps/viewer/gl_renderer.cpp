@@ -6,9 +6,8 @@
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
-#include <nendo/base/units.hpp>
-
 #include "render/light_maps.hpp"
+#include "viewer/gl_program.hpp"
 #include "viewer/gl_shaders.hpp"
 
 namespace nendo::viewer {
@@ -19,30 +18,16 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr std::size_t block_floats = 3 * block_size;
+constexpr int shadow_unit = 2; // after the model's two textures
 
-Result<GLuint> compiled(GLenum kind, const char* text) {
-  const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &text, nullptr);
-  glCompileShader(shader);
-  GLint fine = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &fine);
-  if (fine != 0) return shader;
-  std::string log(1000, '\0');
-  GLsizei length = 0;
-  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
-  std::replace(log.begin(), log.end(), '\n', ' ');
-  return Error{Errc::failed, "this OpenGL refuses a shader: " + log};
+bool casts(const render::Surface& surface) {
+  return surface.material.opacity > 0.0F;
 }
 
-void set(GLuint program, const char* name, const Vector3f& value) {
-  glUniform3f(glGetUniformLocation(program, name), value.x(), value.y(), value.z());
-}
-void set(GLuint program, const char* name, float value) {
-  glUniform1f(glGetUniformLocation(program, name), value);
-}
-void set(GLuint program, const char* name, int value) {
-  glUniform1i(glGetUniformLocation(program, name), value);
+// What is beyond, or nowhere, casts no shadow.
+void extend(Eigen::AlignedBox3f& box, const Vector3f& place) {
+  constexpr float far_m = 1e3F;
+  if (place.cwiseAbs().maxCoeff() < far_m) box.extend(place);
 }
 
 template <class T>
@@ -60,20 +45,10 @@ Result<std::unique_ptr<GlRenderer>> GlRenderer::make() {
   if (10 * major + minor < 33)
     return Error{Errc::failed, "OpenGL 3.3 is needed, and this is " + std::to_string(major) + "." +
                                    std::to_string(minor)};
-  const auto vertex = compiled(GL_VERTEX_SHADER, vertex_shader);
-  if (!vertex) return vertex.error();
-  const auto fragment = compiled(GL_FRAGMENT_SHADER, fragment_shader);
-  if (!fragment) return fragment.error();
+  const auto program = make_program(vertex_shader, fragment_shader);
+  if (!program) return program.error();
   std::unique_ptr<GlRenderer> renderer(new GlRenderer);
-  renderer->program_ = glCreateProgram();
-  for (const GLuint shader : {*vertex, *fragment}) {
-    glAttachShader(renderer->program_, shader);
-    glDeleteShader(shader);
-  }
-  glLinkProgram(renderer->program_);
-  GLint linked = 0;
-  glGetProgramiv(renderer->program_, GL_LINK_STATUS, &linked);
-  if (linked == 0) return Error{Errc::failed, "this OpenGL cannot link the shaders"};
+  renderer->program_ = *program;
   glGenVertexArrays(1, &renderer->vertex_array_);
   glGenBuffers(1, &renderer->model_indices_);
   glGenBuffers(2, renderer->model_buffers_.data());
@@ -151,6 +126,9 @@ void GlRenderer::follow(const deform::BlockShape& shape) {
     send(model_buffers_[1], block, block_.data());
   }
   normals_.swap(new_normals_);
+  box_.setEmpty();
+  for (const Vector3f& place : places_)
+    extend(box_, scale_ * place + offset_);
 }
 
 void GlRenderer::send_surface(const render::Surface& surface) {
@@ -203,47 +181,89 @@ void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
   if (veil) glDisable(GL_BLEND);
 }
 
-void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera, render::Size size,
-                      Look look, int below) {
-  const bool shaded = look == Look::shaded;
-  glViewport(0, below, size.width, size.height);
-  glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
-  if (shaded) glClearColor(0.90F, 0.91F, 0.92F, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
-  glDisable(GL_CULL_FACE);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  glBindVertexArray(vertex_array_);
-  glUseProgram(program_);
-  const Eigen::Matrix4f clip = camera.projection(1.0 * size.width / size.height).cast<float>();
-  glUniformMatrix4fv(glGetUniformLocation(program_, "clip_of_world"), 1, GL_FALSE, clip.data());
-  set(program_, "eye", camera.eye().cast<float>());
-  set(program_, "key", render::turned({-0.55F, 0.75F, 0.55F}, camera.view.azimuth_deg));
-  set(program_, "fill", render::turned({0.85F, 0.25F, 0.50F}, camera.view.azimuth_deg));
-  set(program_, "rim", render::turned({0.45F, 0.45F, -0.80F}, camera.view.azimuth_deg));
-  set(program_, "height", static_cast<float>(size.height));
-  set(program_, "below", static_cast<float>(below));
+// Makes the map of what the key light does not reach. Returns false if nothing casts a shadow.
+bool GlRenderer::cast_shadows(const render::Scene& beside, const Vector3f& key) {
+  Eigen::AlignedBox3f box = whole_ ? box_ : Eigen::AlignedBox3f();
+  for (const auto* surfaces : {&beside.solids, &beside.veils})
+    for (const render::Surface& surface : *surfaces)
+      if (casts(surface))
+        for (const Vector3f& place : surface.places)
+          extend(box, place);
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(shadow_unit));
+  glBindTexture(GL_TEXTURE_2D, 0); // nothing may read what is being drawn
+  if (!shadows_.begin(box, key)) return false;
+  set(program_, "clip_of_world", shadows_.map_of_world());
+  set(program_, "flat_white", 1);
+  if (whole_) draw_surface(beside.model, true);
+  for (const auto* surfaces : {&beside.solids, &beside.veils})
+    for (const render::Surface& surface : *surfaces)
+      if (casts(surface)) draw_surface(surface, false);
+  shadows_.end();
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(shadow_unit));
+  glBindTexture(GL_TEXTURE_2D, shadows_.texture());
+  set(program_, "map_of_world", shadows_.map_of_world());
+  set(program_, "slack", shadows_.slack_m());
+  return true;
+}
+
+void GlRenderer::use_model() const {
   set(program_, "scale", scale_);
   set(program_, "offset", offset_);
-  set(program_, "flat_white", shaded ? 0 : 1);
+  set(program_, "block_places", 0);
+  set(program_, "block_normals", 1);
   for (std::size_t which = 0; which < 2; ++which) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(which));
     glBindTexture(GL_TEXTURE_BUFFER, model_textures_[which]);
   }
-  set(program_, "block_places", 0);
-  set(program_, "block_normals", 1);
+}
+
+void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera, render::Size size,
+                      Look look) {
+  const bool shaded = look != Look::silhouette;
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SCISSOR_TEST);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBindVertexArray(vertex_array_);
+  glUseProgram(program_);
+  use_model();
+  set(program_, "shadows", shadow_unit);
+  const Vector3f key = render::turned(render::key_direction, camera.view.azimuth_deg);
+  const bool shadowed = shaded && cast_shadows(beside, key);
+  glViewport(0, 0, size.width, size.height);
+  glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+  if (shaded) glClearColor(0.90F, 0.91F, 0.92F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  set(program_, "clip_of_world",
+      Eigen::Matrix4f(camera.projection(1.0 * size.width / size.height).cast<float>()));
+  set(program_, "eye", Vector3f(camera.eye().cast<float>()));
+  set(program_, "key", key);
+  set(program_, "fill", render::turned(render::fill_direction, camera.view.azimuth_deg));
+  set(program_, "rim", render::turned(render::rim_direction, camera.view.azimuth_deg));
+  set(program_, "height", static_cast<float>(size.height));
+  set(program_, "flat_white", shaded ? 0 : 1);
+  draw_parts(beside, look, shadowed);
+}
+
+void GlRenderer::draw_parts(const render::Scene& beside, Look look, bool shadowed) {
+  const bool shaded = look != Look::silhouette;
+  const auto receives = [&](bool yes) { set(program_, "shadowed", yes && shadowed ? 1 : 0); };
+  receives(true);
+  set(program_, "facets", look == Look::facets ? 1 : 0);
   if (whole_) draw_surface(beside.model, true);
-  for (const render::Surface& solid : beside.solids)
-    draw_surface(solid, false);
+  set(program_, "facets", 0);
   if (shaded)
     for (const render::Surface& ground : beside.grounds)
       draw_surface(ground, false);
+  receives(false); // bones lie in the shadow of their skin
+  for (const render::Surface& solid : beside.solids)
+    draw_surface(solid, false);
+  receives(true);
   // Hands, then what has no depth of its own.
   for (const bool reaches : {false, true})
     for (const render::Surface& veil : beside.veils)
-      if ((veil.material.opacity <= 0.0F) == reaches && (shaded || !reaches))
-        draw_surface(veil, false);
+      if (casts(veil) != reaches && (shaded || !reaches)) draw_surface(veil, false);
   glActiveTexture(GL_TEXTURE0);
 }
 

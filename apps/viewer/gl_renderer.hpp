@@ -6,11 +6,14 @@
 #include <memory>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include <nendo/base/result.hpp>
 
 #include "render/camera.hpp"
 #include "render/image.hpp"
 #include "render/scene.hpp"
+#include "viewer/shadow_map.hpp"
 
 namespace nendo::viewer {
 
@@ -31,17 +34,24 @@ public:
   /// Returns the number of blocks that follow() has sent since set_model().
   std::uint64_t blocks_sent() const noexcept { return blocks_sent_; }
 
-  enum class Look { shaded, silhouette };
-  /// Draws the model, and everything of `beside` except its model, into the bound frame buffer. The
-  /// picture begins `below` pixels above the bottom. The whole buffer is cleared.
+  /// Returns the box of the model as follow() last had it, in metres of the scene; empty before.
+  const Eigen::AlignedBox3f& model_box() const noexcept { return box_; }
+
+  /// The model's surface is smooth or shows its facets; or all is white on black.
+  enum class Look { shaded, facets, silhouette };
+  /// Draws the model, and everything of `beside` except its model, into the bound frame buffer,
+  /// which is cleared. The model and the hands cast a shadow.
   void draw(const render::Scene& beside, const render::Camera& camera, render::Size size,
-            Look look = Look::shaded, int below = 0);
+            Look look = Look::shaded);
 
 private:
   GlRenderer() = default;
   void send_surface(const render::Surface& surface);
   void draw_surface(const render::Surface& surface, bool model);
+  void draw_parts(const render::Scene& beside, Look look, bool shadowed);
+  bool cast_shadows(const render::Scene& beside, const Eigen::Vector3f& key);
   void use_material(const render::Material& material) const;
+  void use_model() const;
 
   unsigned program_ = 0;
   unsigned vertex_array_ = 0;
@@ -53,6 +63,8 @@ private:
   deform::BlockShape shape_;           ///< as the graphics card has it
   std::vector<Eigen::Vector3f> places_, normals_, new_normals_;
   std::vector<float> block_;
+  Eigen::AlignedBox3f box_; ///< of the whole model, in the scene
+  ShadowMap shadows_;
   Eigen::Vector3f offset_ = Eigen::Vector3f::Zero();
   float scale_ = 1.0F;
   bool whole_ = false; ///< the graphics card has the whole model

@@ -1,5 +1,5 @@
 #pragma once
-// The shaders. They use the same lights as light_maps.cpp, without shadows.
+// The shaders. They use the same lights as light_maps.cpp, without the sky's shadows.
 
 namespace nendo::viewer {
 
@@ -13,7 +13,10 @@ uniform vec3 offset;
 layout(location = 0) in vec3 given_place;
 layout(location = 1) in vec3 given_normal;
 out vec3 place;
-out vec3 normal;
+// At an edge the middle of a pixel may lie outside of the triangle, and far away from it if the
+// triangle is seen edge on. These two are of where the triangle is.
+centroid out vec3 within;
+centroid out vec3 normal;
 vec3 of_block(samplerBuffer blocks) {
   int at = gl_VertexID / 64 * 192 + gl_VertexID % 64;
   return vec3(texelFetch(blocks, at).r, texelFetch(blocks, at + 64).r, texelFetch(blocks, at + 128).r);
@@ -21,23 +24,28 @@ vec3 of_block(samplerBuffer blocks) {
 void main() {
   place = from_blocks ? scale * of_block(block_places) + offset : given_place;
   normal = from_blocks ? of_block(block_normals) : given_normal;
+  within = place;
   gl_Position = clip_of_world * vec4(place, 1.0);
 }
 )";
 
 inline constexpr const char* fragment_shader = R"(#version 330
 uniform vec3 eye, colour, key, fill, rim;
-uniform float gloss, opacity, rim_opacity, grid, fade, height, below;
-uniform bool flat_white, unlit;
+uniform float gloss, opacity, rim_opacity, grid, fade, height;
+uniform bool flat_white, unlit, facets, shadowed;
+uniform mat4 map_of_world;
+uniform float slack;
+uniform sampler2DShadow shadows;
 in vec3 place;
-in vec3 normal;
+centroid in vec3 within;
+centroid in vec3 normal;
 out vec4 shown;
 vec3 screen(vec3 linear) {
   vec3 soft = mix(linear, 0.8 + (linear - 0.8) / (1.0 + (linear - 0.8) / 0.2), greaterThan(linear, vec3(0.8)));
   return pow(max(soft, 0.0), vec3(1.0 / 2.2));
 }
 vec3 background() {
-  float t = smoothstep(0.0, 1.0, 1.0 - (gl_FragCoord.y - below) / height);
+  float t = smoothstep(0.0, 1.0, 1.0 - gl_FragCoord.y / height);
   return mix(vec3(0.86, 0.885, 0.91), vec3(0.70, 0.70, 0.695), t);
 }
 float line(float coordinate) {
@@ -45,26 +53,44 @@ float line(float coordinate) {
   float off = abs(fract(coordinate / grid + 0.5) - 0.5) * grid;
   return clamp((width - off) / width + 0.5, 0.0, 1.0) * 0.0015 / width;
 }
+// How much of the key light reaches the place. Samples round about make the shadow's edge soft.
+float lit_part(vec3 n) {
+  if (!shadowed) return 1.0;
+  vec3 on = 0.5 + 0.5 * (map_of_world * vec4(within + slack * (n + key), 1.0)).xyz;
+  vec2 step = 1.5 / vec2(textureSize(shadows, 0));
+  float lit = 0.0;
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x)
+      lit += texture(shadows, vec3(on.xy + step * (vec2(x, y) - 1.5), min(on.z, 1.0)));
+  return lit / 16.0;
+}
 void main() {
   if (flat_white) { shown = vec4(1.0); return; }
-  vec3 sight = normalize(eye - place);
+  vec3 sight = normalize(eye - within);
   if (grid > 0.0) {
     float near = clamp(1.25 - 1.25 * length(place.xz) / fade, 0.0, 1.0);
     float drawn = max(line(place.x), line(place.z));
-    shown = vec4(screen(background() * mix(1.0, 0.9 * (1.0 - 0.3 * drawn), near)), 1.0);
+    float bright = 0.9 * (0.68 + 0.32 * lit_part(vec3(0.0, 1.0, 0.0))) * (1.0 - 0.3 * drawn);
+    shown = vec4(screen(background() * mix(1.0, bright, near)), 1.0);
     return;
   }
+  // A smooth normal may lean away from the eye at an outline. So the triangle's own side counts:
+  // turning that normal to the eye would light single pixels from behind.
+  vec3 side = cross(dFdx(place), dFdy(place));
+  if (dot(side, sight) < 0.0) side = -side;
   vec3 n = length(normal) > 0.0 ? normalize(normal) : sight;
-  if (dot(n, sight) < 0.0) n = -n;
+  if (dot(n, side) < 0.0) n = -n;
+  if (facets) n = normalize(side);
   float across = 1.0 - clamp(dot(n, sight), 0.0, 1.0);
   float part = mix(opacity, rim_opacity, across * across * across);
   if (unlit) { shown = vec4(screen(colour), part); return; }
   vec3 light = vec3(0.54 * (0.71 + 0.29 * n.y));
-  light += max(0.0, (dot(n, key) + 0.12) / 1.12) * vec3(1.42, 1.35, 1.25);
+  float lit = dot(n, key) > -0.12 ? lit_part(n) : 0.0;
+  light += lit * max(0.0, (dot(n, key) + 0.12) / 1.12) * vec3(1.42, 1.35, 1.25);
   light += max(0.0, (dot(n, fill) + 0.3) / 1.3) * vec3(0.22, 0.27, 0.34);
   light += across * across * max(0.0, (dot(n, rim) + 0.2) / 1.2) * vec3(0.62, 0.66, 0.72);
   float highlight = pow(max(0.0, dot(n, normalize(key + sight))), 32.0);
-  shown = vec4(screen(colour * light + gloss * highlight * vec3(1.42, 1.35, 1.25)), part);
+  shown = vec4(screen(colour * light + gloss * lit * highlight * vec3(1.42, 1.35, 1.25)), part);
 }
 )";
 

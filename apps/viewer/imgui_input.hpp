@@ -55,6 +55,8 @@ inline ImGuiKey imgui_key(int key) {
     return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));
   if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9)
     return static_cast<ImGuiKey>(ImGuiKey_0 + (key - GLFW_KEY_0));
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
+    return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + (key - GLFW_KEY_KP_0));
   constexpr std::array others{std::pair{GLFW_KEY_SPACE, ImGuiKey_Space},
                               std::pair{GLFW_KEY_ESCAPE, ImGuiKey_Escape},
                               std::pair{GLFW_KEY_ENTER, ImGuiKey_Enter},

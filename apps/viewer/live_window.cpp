@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/panel.hpp"
+#include "viewer/panel_style.hpp"
 
 namespace nendo::viewer {
 
@@ -20,6 +21,8 @@ Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, r
       "on a box without a screen `nendo run --web 8080` shows the run in a browser, and `nendo "
       "picture` and `nendo run --picture` draw files");
   if (!window) return window.error();
+  use_page_style();
+  (*window)->parts().radii = false; // as on the page
   return std::unique_ptr<LiveWindow>(new LiveWindow(*std::move(window)));
 }
 
@@ -43,6 +46,7 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
     window_->follow(frame.shape);
   }
   set_hands(frame, holds_, scene_frame_);
+  window_->leave_left(panel_->covered_px());
   window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there
   if (!move_hand(frame, commands)) window_->move_camera();
   draw_panel(frame, gauges, commands);
@@ -50,6 +54,10 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   panel_->pictures_ms.add(static_cast<float>(1e3 * to_seconds(HostClock::now() - begin)));
   if (window_->take_close_request()) commands.emplace_back(flow::EndRun{});
   return commands;
+}
+
+const std::string& LiveWindow::told() const noexcept {
+  return panel_->told;
 }
 
 // True: the mouse holds a hand, and does nothing else.

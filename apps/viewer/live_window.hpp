@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
 
@@ -20,11 +21,10 @@ struct Gauges {
   std::string model;                 ///< its name
   double rate_hz = 0.0;              ///< wanted
   std::array<std::string, 2> gloves; ///< their names; empty means no glove
-  std::array<std::uint64_t, 2> bad_records{};
-  std::array<std::uint64_t, 2> lost{}; ///< samples that found no room
-  bool recording = false;              ///< to a file
-  double restart_ms = 0.0;             ///< of the last change of settings; 0 means none yet
-  std::string report;                  ///< the result of the last command that saved something
+  std::array<driver::RecordCounts, 2> counts{};
+  bool recording = false;  ///< to a file
+  double restart_ms = 0.0; ///< of the last change of settings; 0 means none yet
+  std::string report;      ///< the result of the last command that saved something
 };
 
 /// The commands that a person has given since the last picture, in their order.
@@ -45,6 +45,9 @@ public:
   /// Draws one picture of the latest frame and waits for the screen, or for at most 8 ms if there
   /// is none. fresh: the frame differs from that of the previous call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
+
+  /// Returns the line below the panel's buttons: the report, or that there is nothing to undo.
+  const std::string& told() const noexcept;
 
   /// The following functions are those of SceneWindow.
   render::Image screenshot() const { return window_->screenshot(); }

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "viewer/key_list.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -16,26 +15,13 @@ using hand::Joint;
 namespace {
 
 constexpr std::array finger_names{"thumb", "index", "middle", "ring", "little"};
-constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2, deform::Wendland::c4,
-                             deform::Wendland::c6};
-constexpr double least_radius_m = 0.01;
-constexpr double most_radius_m = 0.4;
+constexpr float label_width = 48.0F; // of "kernel" and of fingers, beside what they name
 
-constexpr std::array key_table{
-    KeyLine{"g", "grab: the hands take hold"},
-    KeyLine{"l", "let go; what is shaped stays"},
-    KeyLine{"c", "commit: this shape becomes the rest shape"},
-    KeyLine{"u", "undo the last commit"},
-    KeyLine{"r", "redo what was undone"},
-    KeyLine{"x", "reset: back to the model as it was loaded"},
-    KeyLine{"t", "a take: record from this shape on, and end that"},
-    KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
-    KeyLine{"s", "save the model as it is now"},
-    KeyLine{"m, n", "the other mode, the next kernel"},
-    KeyLine{"[, ]", "smaller radii, larger ones"},
-    KeyLine{"Enter", "apply the mode, kernel and radii that are chosen"},
-    KeyLine{"q", "quit; the shape is written"},
-};
+const char* kernel_words(deform::Wendland kernel) {
+  constexpr std::array words{"Wendland C0", "Wendland C2", "Wendland C4", "Wendland C6"};
+  return words[static_cast<std::size_t>(std::find(kernels.begin(), kernels.end(), kernel) -
+                                        kernels.begin())];
+}
 
 // How far two joints that follow each other are turned, degrees.
 float bend_deg(const hand::HandPose& pose, Joint from, Joint to) {
@@ -61,9 +47,21 @@ std::array<float, 15> bends_of(const hand::HandPose& pose) {
 
 void chart(const char* name, const Strip& strip, const char* unit) {
   char words[64];
-  std::snprintf(words, sizeof words, "most %.2f %s", static_cast<double>(strip.most()), unit);
-  ImGui::PlotLines(name, strip.data(), strip.size(), strip.oldest(), words, 0.0F,
-                   std::max(1.0F, strip.most()), ImVec2(200.0F, 44.0F));
+  std::snprintf(words, sizeof words, "%s, most %.2f %s", name, static_cast<double>(strip.most()),
+                unit);
+  ImGui::PushID(name);
+  ImGui::PlotLines("##chart", strip.data(), strip.size(), strip.oldest(), words, 0.0F,
+                   std::max(1.0F, strip.most()), ImVec2(ImGui::GetContentRegionAvail().x, 44.0F));
+  ImGui::PopID();
+}
+
+// True: pressed, and it can be.
+bool tipped_button(const char* words, const char* what, float width, bool possible = true) {
+  ImGui::BeginDisabled(!possible);
+  const bool chosen = ImGui::Button(words, ImVec2(width, 0.0F));
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", what);
+  return chosen && possible;
 }
 
 } // namespace
@@ -83,29 +81,48 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
   last_tick = frame.tick;
 }
 
+// In the page's order (apps/web/page/index.html), and with its names.
 void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
                                 Commands& commands) {
   ImGui::TextUnformatted(frame.held ? "The hands hold the model." : "The hands have let go.");
-  const auto ask = [&](const char* words, Request request) {
-    if (ImGui::Button(words)) commands.emplace_back(request);
-    ImGui::SameLine();
+  const float all = ImGui::GetContentRegionAvail().x;
+  const float half = (all - ImGui::GetStyle().ItemSpacing.x) / 2.0F;
+  bool second = false;
+  const auto button = [&](const char* words, const char* what, bool possible = true) {
+    if (std::exchange(second, !second)) ImGui::SameLine();
+    return tipped_button(words, what, half, possible);
   };
-  ask("Grab", Request::grab);
-  ask("Let go", Request::let_go);
-  ask("Commit", Request::commit);
-  ask("Undo", Request::undo);
-  ask("Redo", Request::redo);
-  if (ImGui::Button("Reset")) reset_asked = true;
-  if (ImGui::Button(gauges.recording ? "End the recording" : "Record"))
+  const auto ask = [&](const char* words, const char* what, Request request, bool possible = true) {
+    if (button(words, what, possible)) commands.emplace_back(request);
+  };
+  ask("Grab", "The hands take hold (g)", Request::grab);
+  ask("Let go", "What is shaped stays (l)", Request::let_go);
+  ask("Undo", "Undo the last commit (u, ctrl z)", Request::undo, frame.undo_steps > 0);
+  ask("Redo", "Redo what was undone (r, ctrl y)", Request::redo, frame.redo_steps > 0);
+  ask("Commit", "This shape becomes the rest shape (c)", Request::commit);
+  if (button("Reset", "Back to the model as it was loaded (x)")) reset_asked = true;
+  if (button("Save", "The model as it is now, to a file of its own (s)"))
+    commands.emplace_back(flow::SaveShape{});
+  if (button("Keep", "The recording of what was just done (k)"))
+    commands.emplace_back(flow::SaveRecording{});
+  if (tipped_button(gauges.recording ? "End the recording" : "Record",
+                    "A recording from this shape on (t)", all))
     commands.emplace_back(flow::SetRecording{!gauges.recording});
-  ImGui::SameLine();
-  if (ImGui::Button("Keep")) commands.emplace_back(flow::SaveRecording{});
-  ImGui::SameLine();
-  if (ImGui::Button("Save")) commands.emplace_back(flow::SaveShape{});
-  if (!gauges.report.empty()) {
-    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 290.0F);
-    ImGui::TextUnformatted(gauges.report.c_str());
-    ImGui::PopTextWrapPos();
+  told = note.empty() ? gauges.report : note;
+  if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());
+}
+
+void LiveWindow::Panel::parts(SceneWindow& window) {
+  render::SceneParts& shown = window.parts();
+  const std::array boxes{std::pair{"hands", &shown.hands}, std::pair{"bones", &shown.bones},
+                         std::pair{"vectors", &shown.vectors}, std::pair{"radii", &shown.radii},
+                         std::pair{"facets", &window.facets()}};
+  constexpr std::size_t a_line = 3;
+  const float width = ImGui::GetContentRegionAvail().x / a_line;
+  for (std::size_t at = 0; at < boxes.size(); ++at) {
+    if (at % a_line != 0)
+      ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + width * static_cast<float>(at % a_line));
+    ImGui::Checkbox(boxes[at].first, boxes[at].second);
   }
 }
 
@@ -124,14 +141,13 @@ void LiveWindow::Panel::question(Commands& commands) {
 
 void LiveWindow::Panel::settings(Commands& commands) {
   int mode = static_cast<int>(wanted.mode);
-  ImGui::RadioButton("type1: pull", &mode, 0);
-  ImGui::SameLine();
-  ImGui::RadioButton("type2: strokes", &mode, 1);
+  ImGui::RadioButton("type 1: pull", &mode, 0);
+  ImGui::RadioButton("type 2: strokes", &mode, 1);
   wanted.mode = static_cast<flow::Mode>(mode);
-  if (ImGui::BeginCombo("kernel", std::string(deform::name_of(wanted.kernel)).c_str())) {
+  ImGui::PushItemWidth(-label_width);
+  if (ImGui::BeginCombo("kernel", kernel_words(wanted.kernel))) {
     for (const auto kernel : kernels)
-      if (ImGui::Selectable(std::string(deform::name_of(kernel)).c_str(), kernel == wanted.kernel))
-        wanted.kernel = kernel;
+      if (ImGui::Selectable(kernel_words(kernel), kernel == wanted.kernel)) wanted.kernel = kernel;
     ImGui::EndCombo();
   }
   ImGui::Checkbox("one radius for all fingers", &one_radius);
@@ -144,24 +160,28 @@ void LiveWindow::Panel::settings(Commands& commands) {
           std::clamp(static_cast<double>(radius_cm) / 100, least_radius_m, most_radius_m);
   }
   if (one_radius) wanted.radius_m.fill(wanted.radius_m[0]);
-  if (wanted == in_force) {
-    ImGui::TextDisabled("as in force");
-  } else if (ImGui::Button("Apply")) {
+  ImGui::PopItemWidth();
+  const bool same = wanted == in_force;
+  if (tipped_button("Apply", "The mode, kernel and radii that are chosen (Enter)",
+                    ImGui::GetContentRegionAvail().x, !same))
     commands.emplace_back(flow::ChangeSettings{wanted});
-  } else {
-    ImGui::SameLine();
-    ImGui::TextDisabled("restarts the loop from this shape; undo begins anew");
-  }
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+  ImGui::TextWrapped("%s", same ? "As in force."
+                                : "Restarts the loop from this shape; undo begins anew.");
+  ImGui::PopStyleColor();
 }
 
 void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) const {
-  ImGui::Text("%g Hz wanted, %llu ticks, %llu missed", gauges.rate_hz,
-              static_cast<unsigned long long>(frame.ticks_run),
-              static_cast<unsigned long long>(frame.missed));
+  ImGui::Text("%g Hz wanted, type %d", gauges.rate_hz, in_force.mode == flow::Mode::type1 ? 1 : 2);
+  ImGui::TextWrapped("%llu ticks, %llu missed", static_cast<unsigned long long>(frame.ticks_run),
+                     static_cast<unsigned long long>(frame.missed));
+  ImGui::TextWrapped("%llu commits, %llu undone", static_cast<unsigned long long>(frame.commits),
+                     static_cast<unsigned long long>(frame.undos));
   chart("late", late_ms, "ms");
   chart("uneven", gap_ms, "ms");
   chart("picture", pictures_ms, "ms");
-  if (gauges.restart_ms > 0.0) ImGui::Text("the last change took %.1f ms", gauges.restart_ms);
+  if (gauges.restart_ms > 0.0)
+    ImGui::TextWrapped("the last change took %.1f ms", gauges.restart_ms);
 }
 
 void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) const {
@@ -169,73 +189,46 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
     const std::size_t slot = flow::Placement::index_of(side);
     const auto& hand = frame.hands[slot];
     if (!hand.present) continue;
-    ImGui::Text("%s: %s", std::string(name_of(side)).c_str(), gauges.gloves[slot].c_str());
-    ImGui::Text("%llu samples%s, %llu bad records, %llu lost",
-                static_cast<unsigned long long>(hand.samples), hand.silent ? " (silent)" : "",
-                static_cast<unsigned long long>(gauges.bad_records[slot]),
-                static_cast<unsigned long long>(gauges.lost[slot]));
+    ImGui::TextWrapped("%s: %s", std::string(name_of(side)).c_str(), gauges.gloves[slot].c_str());
+    ImGui::Text("%llu samples%s", static_cast<unsigned long long>(hand.samples),
+                hand.silent ? " (silent)" : "");
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted(driver::in_words(gauges.counts[slot]).c_str());
+    ImGui::PopTextWrapPos();
     const auto bends = bends_of(hand.pose);
     ImGui::PushID(static_cast<int>(slot));
-    ImGui::PlotHistogram("joints", bends.data(), static_cast<int>(bends.size()), 0,
-                         "thumb to little, degrees", 0.0F, 110.0F, ImVec2(200.0F, 60.0F));
+    ImGui::PlotHistogram("##joints", bends.data(), static_cast<int>(bends.size()), 0,
+                         "thumb to little, degrees", 0.0F, 110.0F,
+                         ImVec2(ImGui::GetContentRegionAvail().x, 50.0F));
     ImGui::PopID();
   }
 }
 
-void LiveWindow::Panel::settings_keys(Commands& commands) {
-  if (pressed(GLFW_KEY_M))
-    wanted.mode = wanted.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
-  if (pressed(GLFW_KEY_N)) {
-    const auto at = std::find(kernels.begin(), kernels.end(), wanted.kernel) - kernels.begin();
-    wanted.kernel = kernels[(static_cast<std::size_t>(at) + 1) % kernels.size()];
-  }
-  constexpr double larger = 1.1;
-  for (const auto& [key, factor] :
-       {std::pair{GLFW_KEY_LEFT_BRACKET, 1.0 / larger}, {GLFW_KEY_RIGHT_BRACKET, larger}})
-    if (pressed(key, true))
-      for (double& radius_m : wanted.radius_m)
-        radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
-  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force))
-    commands.emplace_back(flow::ChangeSettings{wanted});
-}
-
-void LiveWindow::Panel::keys(const Gauges& gauges, Commands& commands) {
-  if (!takes_keys()) return;
-  for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
-                                     {GLFW_KEY_L, Request::let_go},
-                                     {GLFW_KEY_C, Request::commit},
-                                     {GLFW_KEY_U, Request::undo},
-                                     {GLFW_KEY_R, Request::redo}})
-    if (pressed(key)) commands.emplace_back(request);
-  if (pressed(GLFW_KEY_X)) reset_asked = true;
-  if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
-  if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
-  if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});
-  settings_keys(commands);
-  if (pressed(GLFW_KEY_Q)) commands.emplace_back(flow::EndRun{});
-  if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
-  if (keys_shown)
-    draw_key_list(key_table,
-                  "right drag on a hand moves it, with shift turns it, with the wheel\n"
-                  "pushes and pulls it",
-                  keys_shown);
-}
-
 void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
-  ImGui::SetNextWindowPos(ImVec2(10.0F, 10.0F), ImGuiCond_FirstUseEver);
-  ImGui::Begin("Nendo", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::Text("%s   (? for keys)", gauges.model.c_str());
-  panel_->buttons(frame, gauges, commands);
-  if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen))
-    panel_->settings(commands);
-  if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
-    panel_->timing(frame, gauges);
-  if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
-    panel_->hands(frame, gauges);
+  constexpr float gap = Panel::gap_px;
+  const float high = ImGui::GetIO().DisplaySize.y - 2.0F * gap;
+  ImGui::SetNextWindowPos(ImVec2(gap, gap));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(Panel::width_px, 0.0F),
+                                      ImVec2(Panel::width_px, std::max(40.0F, high)));
+  if (std::exchange(panel_->fold_asked, false)) ImGui::SetNextWindowCollapsed(!panel_->folded);
+  const bool open =
+      ImGui::Begin("Nendo", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+  panel_->folded = ImGui::IsWindowCollapsed();
+  if (open) {
+    ImGui::TextWrapped("%s   (? for keys)", gauges.model.c_str());
+    panel_->buttons(frame, gauges, commands);
+    panel_->parts(*window_);
+    if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen))
+      panel_->settings(commands);
+    if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
+      panel_->timing(frame, gauges);
+    if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
+      panel_->hands(frame, gauges);
+  }
   ImGui::End();
   panel_->question(commands);
-  window_->follow_part_keys();
-  panel_->keys(gauges, commands);
+  if (!commands.empty()) panel_->note.clear();
+  panel_->keys(frame, gauges, *window_, commands);
 }
 
 } // namespace nendo::viewer

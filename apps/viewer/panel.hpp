@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 #include "viewer/live_window.hpp"
 
@@ -25,21 +26,45 @@ private:
   std::size_t next_ = 0;
 };
 
+/// The kernels and the radii that a person can choose, as on the browser's page.
+inline constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
+                                    deform::Wendland::c4, deform::Wendland::c6};
+inline constexpr double least_radius_m = 0.01;
+inline constexpr double most_radius_m = 0.4;
+
 struct LiveWindow::Panel {
+  static constexpr float gap_px = 10.0F; ///< to the window's edges
+  static constexpr float width_px = 250.0F;
+
   flow::LoopSettings in_force, wanted;
   Strip late_ms, gap_ms, pictures_ms;
   std::uint64_t last_tick = 0;
   bool keys_shown = false;
   bool one_radius = true;
   bool reset_asked = false; ///< the question whether to reset is open
+  bool fold_asked = false;
+  bool folded = false;
+  std::string note; ///< takes the place of Gauges::report until the next command
+  std::string told; ///< the line that is shown below the buttons
 
+  /// Returns how much of the window's left the panel covers.
+  int covered_px() const noexcept { return folded ? 0 : static_cast<int>(gap_px + width_px); }
   void follow(const flow::Frame& frame, double rate_hz);
   void buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
+  static void parts(SceneWindow& window);
   void question(Commands& commands);
   void settings(Commands& commands);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
-  void keys(const Gauges& gauges, Commands& commands);
+  /// What keys do. It also draws their list.
+  void keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
+            Commands& commands);
+
+private:
+  void step(flow::Request request, const flow::Frame& frame, Commands& commands);
+  void step_keys(const flow::Frame& frame, Commands& commands);
+  void single_keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
+                   Commands& commands);
   void settings_keys(Commands& commands);
 };
 

@@ -85,12 +85,8 @@ Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title,
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  glfwWindowHint(GLFW_SAMPLES, 4);
+  glfwWindowHint(GLFW_SAMPLES, 0); // SmoothTarget has them, on screens without any, too
   window->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
-  if (window->window_ == nullptr) { // perhaps only for want of samples
-    glfwWindowHint(GLFW_SAMPLES, 0);
-    window->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
-  }
   if (window->window_ == nullptr)
     return without_window("no OpenGL 3.3 here: " + glfw_error(), instead);
   glfwMakeContextCurrent(window->window_);
@@ -98,6 +94,7 @@ Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title,
   auto renderer = GlRenderer::make();
   if (!renderer) return without_window(renderer.error().message, instead);
   window->renderer_ = *std::move(renderer);
+  window->target_ = std::make_unique<SmoothTarget>();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
   ImGui::GetStyle().Colors[ImGuiCol_TextDisabled] = {0.68F, 0.70F, 0.72F, 1.0F}; // to be read, too
@@ -118,6 +115,7 @@ SceneWindow::~SceneWindow() {
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
   }
+  target_.reset();
   renderer_.reset();
   if (window_ != nullptr) glfwDestroyWindow(window_);
   glfwTerminate();
@@ -133,7 +131,8 @@ void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_w
   begun_ = HostClock::now();
   glfwPollEvents();
   builder_->build_beside(scene_frame, parts_, scene_);
-  if (!framed_) choose_camera();
+  if (!framed_) choose_camera({22.0, 10.0});
+  camera_.centre = covered_part();
   framed_ = framed_ || is_whole;
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
@@ -142,15 +141,28 @@ void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_w
   ImGui::NewFrame();
 }
 
-void SceneWindow::choose_camera() {
+// Of the window's width: what is covered at its left.
+double SceneWindow::covered_part() const noexcept {
+  constexpr double most = 0.4;
+  return std::clamp(1.0 * left_ / scene_size().width, 0.0, most);
+}
+
+void SceneWindow::choose_camera(render::View view) {
   auto points = scene_.outline();
   const Eigen::Vector3f half = (builder_->size_m() / 2).cast<float>();
-  for (const float x : {-half.x(), half.x()})
-    for (const float y : {0.0F, 2.0F * half.y()})
-      for (const float z : {-half.z(), half.z()})
-        points.emplace_back(x, y, z);
+  Eigen::AlignedBox3f box = renderer_->model_box();
+  box.extend(Eigen::Vector3f(-half.x(), 0.0F, -half.z()));
+  box.extend(Eigen::Vector3f(half.x(), 2.0F * half.y(), half.z()));
+  for (int corner = 0; corner < 8; ++corner)
+    points.push_back(box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)));
   const render::Size size = scene_size();
-  camera_ = render::framing(points, {22.0, 10.0}, 1.0 * size.width / size.height, 0.1);
+  const double free_width = (1.0 - covered_part()) * size.width;
+  camera_ = render::framing(points, view, free_width / size.height, 0.1);
+  camera_.centre = covered_part();
+}
+
+void SceneWindow::frame_all() {
+  choose_camera(camera_.view);
 }
 
 void SceneWindow::simulate(const SimulatedInput& input) {
@@ -199,8 +211,25 @@ void SceneWindow::follow_part_keys() {
   for (const auto& [key, part] : {std::pair{GLFW_KEY_H, &parts_.hands},
                                   {GLFW_KEY_B, &parts_.bones},
                                   {GLFW_KEY_V, &parts_.vectors},
-                                  {GLFW_KEY_D, &parts_.radii}})
+                                  {GLFW_KEY_D, &parts_.radii},
+                                  {GLFW_KEY_F, &facets_}})
     if (pressed(key)) *part = !*part;
+}
+
+void SceneWindow::follow_view_keys() {
+  if (!takes_keys()) return;
+  struct ViewKey {
+    std::array<int, 2> keys; // also of the number pad
+    render::View view, other;
+  };
+  constexpr std::array views{
+      ViewKey{{GLFW_KEY_1, GLFW_KEY_KP_1}, {0.0, 0.0}, {180.0, 0.0}},
+      ViewKey{{GLFW_KEY_3, GLFW_KEY_KP_3}, {90.0, 0.0}, {-90.0, 0.0}},
+      ViewKey{{GLFW_KEY_7, GLFW_KEY_KP_7}, {0.0, 90.0}, {0.0, -90.0}},
+  };
+  for (const ViewKey& choice : views)
+    for (const int key : choice.keys)
+      if (pressed(key)) camera_.view = ImGui::GetIO().KeyCtrl ? choice.other : choice.view;
 }
 
 void SceneWindow::end_picture() {
@@ -214,8 +243,12 @@ void SceneWindow::end_picture() {
 void SceneWindow::draw_all() const {
   const render::Size all = pixels_of(window_);
   const int below = std::clamp(below_, 0, all.height - 1);
-  renderer_->draw(scene_, camera_, {all.width, all.height - below}, GlRenderer::Look::shaded,
-                  below);
+  const render::Size size{all.width, all.height - below};
+  glClear(GL_COLOR_BUFFER_BIT);
+  target_->begin(size);
+  renderer_->draw(scene_, camera_, size,
+                  facets_ ? GlRenderer::Look::facets : GlRenderer::Look::shaded);
+  target_->end(below);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "viewer/gl_renderer.hpp"
+#include "viewer/smooth_target.hpp"
 
 struct GLFWwindow;
 
@@ -48,9 +49,16 @@ public:
   void begin_picture(const render::SceneFrame& scene_frame, bool is_whole = true);
   /// Turns, shifts and zooms the camera by the mouse, unless the mouse is over a widget.
   void move_camera();
-  /// Lets the keys h, b, v and d show and hide parts of the scene, unless a text is being entered
-  /// or a question is open.
+  /// Moves the camera, without turning it, so that it has all of the model and the hands.
+  void frame_all();
+  /// Lets the keys h, b, v, d and f show and hide parts of the scene, unless a text is being
+  /// entered or a question is open.
   void follow_part_keys();
+  /// Lets the keys 1, 3 and 7 turn the camera to the front, the right and the top, and with ctrl to
+  /// the back, the left and the bottom, as in Blender.
+  void follow_view_keys();
+  render::SceneParts& parts() noexcept { return parts_; }
+  bool& facets() noexcept { return facets_; } ///< in place of smooth shading
   /// Draws the picture and waits for the screen, or for at most 8 ms if there is none.
   void end_picture();
 
@@ -58,6 +66,9 @@ public:
   bool take_close_request() noexcept;
   /// Reserves that many pixels at the bottom of the window, which the scene does not use.
   void leave_below(int pixels) noexcept { below_ = pixels; }
+  /// Tells how many pixels at the left of the window something covers. The scene is behind it, but
+  /// its middle is the middle of what is free, as long as that is most of the window.
+  void leave_left(int pixels) noexcept { left_ = pixels; }
   render::Size scene_size() const noexcept; ///< from the window's top left corner
   const render::Camera& camera() const noexcept { return camera_; }
   /// Returns the same camera for places on the stage, such as those of hands. camera() is for
@@ -74,12 +85,14 @@ public:
 
 private:
   SceneWindow();
-  void choose_camera();
+  double covered_part() const noexcept;
+  void choose_camera(render::View view);
   void put_simulated() const;
   void draw_all() const;
 
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<GlRenderer> renderer_;
+  std::unique_ptr<SmoothTarget> target_;
   std::optional<render::SceneBuilder> builder_;
   std::optional<SimulatedInput> simulated_;
   std::unique_ptr<QuickInput> quick_;
@@ -88,7 +101,9 @@ private:
   render::Camera camera_;
   HostTime begun_{};
   int below_ = 0;
+  int left_ = 0;
   bool framed_ = false;
+  bool facets_ = false;
 };
 
 } // namespace nendo::viewer

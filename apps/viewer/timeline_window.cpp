@@ -46,6 +46,7 @@ EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFr
                      actions);
   panel_->draw(view, actions);
   window_->follow_part_keys();
+  window_->follow_view_keys();
   panel_->keys(view, actions);
   panel_->leave(view, window_->take_close_request(), actions);
   window_->end_picture();

@@ -61,7 +61,13 @@ std::optional<std::vector<std::byte>> Feed::update(std::span<const Record> recor
   head.most_late_us = max_late(records);
   head.lost = static_cast<std::uint32_t>(counters.lost);
   head.skipped = static_cast<std::uint32_t>(skipped_);
-  std::copy(counters.bad_records.begin(), counters.bad_records.end(), head.bad_records);
+  for (std::size_t slot = 0; slot < counters.gloves.size(); ++slot) {
+    const driver::RecordCounts& counts = counters.gloves[slot];
+    head.bad_records[slot] = static_cast<std::uint32_t>(counts.bad);
+    head.delivered[slot] = static_cast<std::uint32_t>(counts.delivered);
+    head.missed_records[slot] = static_cast<std::uint32_t>(counts.missed);
+    head.refused[slot] = static_cast<std::uint32_t>(counts.refused);
+  }
   std::vector<std::byte> message = newest.head;
   for (std::size_t at = 0; !lacks_shape_ && at < news.size(); ++at) {
     const Record& record = news[at];

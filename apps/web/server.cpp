@@ -52,8 +52,14 @@ void Server::report(std::string message) {
   work_->report(std::move(message));
 }
 
-void Server::set_bad_records(std::array<std::uint32_t, 2> counts) noexcept {
-  work_->bad_records = counts[0] | std::uint64_t{counts[1]} << 32U;
+void Server::set_counts(const std::array<driver::RecordCounts, 2>& gloves) noexcept {
+  for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
+    Work::GloveCounts& counts = work_->gloves[slot];
+    counts.delivered = gloves[slot].delivered;
+    counts.missed = gloves[slot].missed;
+    counts.refused = gloves[slot].refused;
+    counts.bad = gloves[slot].bad;
+  }
 }
 
 ServerCounters Server::counters() const noexcept {

@@ -183,9 +183,11 @@ void Server::Work::send_frames(HostTime now) {
   const SharedBytes bytes =
       shape ? std::make_shared<const std::vector<std::byte>>(std::move(shape->message)) : nullptr;
   feed_counters_.lost = presented_.stream->lost();
-  const std::uint64_t bad = bad_records;
-  feed_counters_.bad_records = {static_cast<std::uint32_t>(bad),
-                                static_cast<std::uint32_t>(bad >> 32U)};
+  for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
+    const GloveCounts& of_glove = gloves[slot];
+    feed_counters_.gloves[slot] = {of_glove.delivered, of_glove.missed, of_glove.refused,
+                                   of_glove.bad};
+  }
   bool shape_wanted = false;
   for (Connection& client : connections_) {
     if (client.stage() != Connection::Stage::socket) continue;

@@ -1,6 +1,7 @@
 #pragma once
 // The server's thread and everything that it owns.
 
+#include <array>
 #include <atomic>
 #include <list>
 #include <mutex>
@@ -31,7 +32,11 @@ public:
   /// Has room for what 16 clients may send in half a second. Commands that find no room are
   /// dropped.
   flow::CommandRing commands{1024};
-  std::atomic<std::uint64_t> bad_records{0}; ///< two counts of 32 bits, the first in the low half
+  /// Each number is right by itself; they need not be all of the same moment.
+  struct GloveCounts {
+    std::atomic<std::uint64_t> delivered{0}, missed{0}, refused{0}, bad{0};
+  };
+  std::array<GloveCounts, 2> gloves; ///< by flow::Placement::index_of(side)
   struct Counts {
     std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
         update_bytes{0}, shapes{0}, shape_bytes{0}, skipped{0};

@@ -129,6 +129,8 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
         (hand.present ? 1U : 0U) | (hand.silent ? 4U : 0U) | (hand.swapped ? 16U : 0U);
     head.hands = static_cast<std::uint8_t>(head.hands | bits << slot);
   }
+  const unsigned history = (frame.undo_steps > 0 ? 64U : 0U) | (frame.redo_steps > 0 ? 128U : 0U);
+  head.hands = static_cast<std::uint8_t>(head.hands | history);
   return head;
 }
 

@@ -23,7 +23,9 @@ enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
   std::uint8_t held = 0;
-  std::uint8_t hands = 0; ///< bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones
+  /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones. And of the history: 6, 7:
+  /// there is something to undo, to redo.
+  std::uint8_t hands = 0;
   std::uint8_t status = 0;
   std::uint32_t steps = 0;
   std::uint64_t number = 0;
@@ -40,8 +42,11 @@ struct UpdateHead {
   std::uint32_t links = 0;
   std::uint32_t samples[2]{};
   std::uint32_t bad_records[2]{};
+  std::uint32_t delivered[2]{};
+  std::uint32_t missed_records[2]{};
+  std::uint32_t refused[2]{};
 };
-static_assert(sizeof(UpdateHead) == 88);
+static_assert(sizeof(UpdateHead) == 112);
 
 struct ShapeHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::shape);
@@ -55,7 +60,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 1;
+  std::uint32_t version = 2;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -326,6 +328,20 @@ TEST_SUITE("bench") {
     CHECK(one.exit_code == 0);
     CHECK(one.out.find("plain ring") != std::string::npos);
     CHECK(one.out.find("publishing") == std::string::npos);
+  }
+
+  TEST_CASE("a benchmark's figures that cannot be written are an error") {
+    const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+    REQUIRE(full >= 0);
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"bench", "hand", "--poses", "1", "--solves", "1"},
+          {"bench", "hand", "--poses", "1", "--solves", "1", "--json"},
+          {"bench", "--help"}}) {
+      const auto done = nendo::test::Program(arguments, full).wait();
+      CHECK(done.exit_code == 1);
+      CHECK(is_one_line_about(done.err, "standard output cannot be written: No space left"));
+    }
+    ::close(full);
   }
 
   TEST_CASE("bench says what cannot be measured") {

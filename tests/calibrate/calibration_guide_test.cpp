@@ -195,6 +195,75 @@ TEST_SUITE("calibration_guide") {
     CHECK(session.guide.readings().size() == 1);
   }
 
+  TEST_CASE("a fist that is the flat hand is none, also where another session took the flat hand") {
+    for (const bool quick : {true, false}) {
+      CAPTURE(quick);
+      const auto poses = quick ? hand::quick_poses() : hand::full_takes();
+      Session before(3011, poses);
+      const auto flat = before.wearer.perform(PoseId::flat);
+      REQUIRE(before.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+      Session after(3011, poses);
+      after.guide.restore(before.guide.readings(), {});
+      REQUIRE(after.guide.asked() == PoseId::fist);
+      CHECK(after.hold(flat, 3.0) == CalibrationGuide::Event::none); // held on since then
+      CHECK(after.guide.capture().state() == hand::CaptureState::unchanged);
+      // Another flat hand, or the same after a movement, is no fist either.
+      hand::SensorAngles turned = flat;
+      turned[static_cast<std::size_t>(Sensor::wrist_pitch)] += 0.6;
+      CHECK(after.hold(turned, 2.0) == CalibrationGuide::Event::implausible);
+      CHECK(after.hold(flat, 2.0) == CalibrationGuide::Event::implausible);
+      CHECK(after.guide.implausible_sensor());
+      CHECK(after.guide.asked() == PoseId::fist);
+      CHECK(after.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
+    }
+  }
+
+  TEST_CASE("fist and flat in each other's place are noticed at the second, and one can go back") {
+    Session session(3012, hand::quick_poses());
+    REQUIRE(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured); // as if flat
+    CHECK(session.do_pose(PoseId::flat) == CalibrationGuide::Event::implausible);
+    session.guide.go_back();
+    CHECK(session.guide.asked() == PoseId::flat);
+    session.do_pose(PoseId::fist); // on the way
+    session.guide.go_back();
+    CHECK(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
+    CHECK(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
+    CHECK(session.guide.is_done());
+  }
+
+  TEST_CASE("every wearer's flat hand and fist are taken, in either order") {
+    for (std::uint64_t seed = 3100; seed < 3140; ++seed) {
+      CAPTURE(seed);
+      Session session(seed, hand::quick_poses());
+      CHECK(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
+      CHECK(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
+      Session other(seed, hand::quick_poses());
+      const std::vector<hand::PoseReading> fist{session.guide.readings().back()};
+      other.guide.restore(fist, {});
+      REQUIRE(other.guide.asked() == PoseId::flat);
+      CHECK(other.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
+      CHECK(other.guide.is_done());
+    }
+  }
+
+  TEST_CASE("one that begins anew has no pose and no free motion, and takes any pose first") {
+    Session session(3013);
+    const auto flat = session.wearer.perform(PoseId::flat);
+    for (int n = 0; n < 3; ++n)
+      session.guide.push_free_motion(session.wearer.read(flat));
+    REQUIRE(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+    REQUIRE(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
+    session.guide.take_again();
+    session.guide.begin_anew();
+    CHECK(session.guide.pose_count() == hand::full_poses().size());
+    CHECK(session.guide.readings().empty());
+    CHECK_FALSE(session.guide.has_any());
+    CHECK(session.guide.free_motion().present.bits == 0);
+    CHECK(session.guide.number() == 0);
+    CHECK(session.hold(flat, 2.0) == CalibrationGuide::Event::captured);
+    CHECK(session.do_pose(PoseId::fist) == CalibrationGuide::Event::captured);
+  }
+
   TEST_CASE("a file of takes without end is cut at the most that count") {
     Session session(3010);
     REQUIRE(session.do_pose(PoseId::flat) == CalibrationGuide::Event::captured);
@@ -248,9 +317,37 @@ TEST_SUITE("calibration_guide") {
         }
         if (rows < 4 || columns < 80) continue;
         CHECK(lines.back().find("q quit") != std::string::npos);
-        CHECK(lines[1] == hand::pose_of(session.guide.asked())
-                              .instruction.substr(0, static_cast<std::size_t>(columns)));
+        CHECK(lines[1] == hand::pose_of(session.guide.asked()).instruction);
       }
+  }
+
+  TEST_CASE("at 40 columns every instruction, notice and key can be read to its end") {
+    driver::GloveInfo info;
+    info.sensors = sensors_22;
+    const std::string user = "anna";
+    const std::string notice = "No calibration yet: index_middle_abduction: the poses contradict "
+                               "each other; hold them again. b goes back a pose; n begins anew.";
+    Session session(3014);
+    const GloveSample sample = session.wearer.read(session.wearer.perform(PoseId::flat));
+    SeenCounts seen;
+    seen.add(sample);
+    for (; session.guide.number() + 1 < session.guide.pose_count(); session.guide.skip()) {
+      const hand::HandPose pose = demonstrated(session.guide.asked(), info.side);
+      const CalibrationPicture picture{&info, &user, &session.guide, &sample,    &seen,
+                                       0.0,   &pose, false,          sensors_22, notice};
+      for (const int columns : {40, 31, 60}) {
+        std::string text;
+        for (const auto& line : calibration_lines(picture, {columns, 24})) {
+          CHECK(static_cast<int>(line.size()) <= columns);
+          text += line + " ";
+        }
+        CAPTURE(text);
+        for (const std::string_view whole :
+             {hand::pose_of(session.guide.asked()).instruction, std::string_view(notice),
+              std::string_view("Then SPACE begins."), std::string_view("q quit")})
+          CHECK(text.find(whole) != std::string::npos);
+      }
+    }
   }
 }
 

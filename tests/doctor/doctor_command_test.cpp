@@ -1,7 +1,11 @@
 // What the doctor makes of a machine's facts, and what the command says of this one.
 
+#include <string>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
+
+#include <nendo/driver/devices.hpp>
 
 #include "doctor/doctor.hpp"
 #include "support/program.hpp"
@@ -139,7 +143,15 @@ TEST_SUITE("doctor") {
     CHECK(done.exit_code == (fails ? 1 : 0));
     const auto text = nendo::test::nendo({"doctor"});
     CHECK(text.exit_code == done.exit_code);
-    CHECK_FALSE(text.out.empty());
+    // What was looked at is told, whatever was found.
+    const auto told = text.out.rfind("Looked at: ");
+    REQUIRE(told != std::string::npos);
+    for (const char* const subject :
+         {"programs that take ports", "real-time priority", "governors", "timers", "udev rules"})
+      CHECK(text.out.find(subject, told) != std::string::npos);
+    for (const auto& candidate : nendo::driver::find_gloves())
+      CHECK(text.out.find(candidate.device, told) != std::string::npos);
+    CHECK(done.out.find("Looked at") == std::string::npos);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "export/gltf_export.hpp"
 
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "render/hand_skin.hpp"
@@ -100,7 +102,47 @@ TEST_SUITE("gltf_export") {
     REQUIRE(done);
     const double off = farthest_off(motion, read(motion));
     CHECK(off <= done->morphs->greatest_error + readers_rounding);
-    CHECK(off <= 1e-4 + 1e-6);
+    CHECK(off <= GltfOptions{}.tolerance + 1e-6);
+  }
+
+  TEST_CASE("a tolerance may be a length on the stage, and is kept to as such") {
+    const RecordedMotion motion(Motion{.mode = flow::Mode::type2});
+    const double diagonal_m = motion.diagonal() / motion.played.test.placement.units_per_metre;
+    for (const double length_m : {1e-3, 1e-4}) {
+      const auto done = export_it(motion, {}, {.tolerance_m = length_m});
+      REQUIRE(done);
+      CHECK(done->morphs->diagonal_m == doctest::Approx(diagonal_m));
+      CHECK(done->morphs->tolerance == doctest::Approx(length_m / diagonal_m));
+      CHECK(diagonal_m * farthest_off(motion, read(motion)) <= length_m + 1e-6 * diagonal_m);
+      const auto same = export_it(motion, {}, {.tolerance = length_m / diagonal_m});
+      REQUIRE(same);
+      CHECK(same->morphs->keys == done->morphs->keys);
+    }
+  }
+
+  TEST_CASE("each hand hangs under a node of its own, and the model under none of them") {
+    const RecordedMotion motion(Motion{.ticks = 5});
+    REQUIRE(export_it(motion));
+    const Glb glb = read(motion);
+    const auto& nodes = glb.json["nodes"];
+    std::vector<std::size_t> parent(nodes.size(), nodes.size());
+    for (std::size_t at = 0; at < nodes.size(); ++at)
+      for (const std::size_t child : nodes[at].value("children", std::vector<std::size_t>()))
+        parent[child] = at;
+    CHECK(parent[glb.node_named("model")] == nodes.size());
+    for (const auto& skin : glb.json["skins"]) {
+      // What importers make an armature of: the nearest common ancestor that is no joint.
+      const std::string name = skin["name"];
+      for (const std::size_t joint : skin["joints"]) {
+        const std::size_t above = parent[joint];
+        REQUIRE(above < nodes.size());
+        const auto joints = skin["joints"].get<std::vector<std::size_t>>();
+        const bool is_joint = std::find(joints.begin(), joints.end(), above) != joints.end();
+        if (!is_joint) CHECK(nodes[above]["name"] == name);
+        CHECK((is_joint || parent[above] == nodes.size()));
+      }
+      CHECK(parent[glb.node_named(name + " skin")] == nodes.size()); // as glTF wants of skins
+    }
   }
 
   TEST_CASE("joints stand where the hands' were, and the skin follows as the viewer's does") {
@@ -118,7 +160,7 @@ TEST_SUITE("gltf_export") {
           worlds.push_back(glb.world(glb.node_named(name), time_s));
           CHECK((worlds.back().matrix() - pose.joints[joint].matrix()).norm() < 1e-5);
         }
-        const auto node = glb.node_named(std::string(name_of(side)) + " hand");
+        const auto node = glb.node_named(std::string(name_of(side)) + " hand skin");
         const auto& skin = glb.json["skins"][glb.json["nodes"][node]["skin"].get<std::size_t>()];
         const Eigen::MatrixXd inverses = glb.accessor(skin["inverseBindMatrices"]);
         const auto& attributes =

@@ -131,6 +131,31 @@ TEST_SUITE("deform_loop") {
     CHECK(plain.loop->stats().filter_moving.count() == 0);
   }
 
+  TEST_CASE("a rate does not count what had waited before the first tick") {
+    LoopUnderTest test(Mode::type1);
+    const HostTime begin = HostClock::now() - 10s;
+    // 40 samples in the ring, the last 25 of them read from the port in one go, as where another
+    // glove took long to open; then 100 a second for 3 s, of which the left one loses every second.
+    for (int n = 0; n < 40; ++n)
+      test.bend(0, n < 15 ? begin + n * 10ms : begin + 150ms);
+    test.frame_after_tick(0);
+    CHECK(test.loop->stats().samples[0] == 40);
+    CHECK(test.loop->stats().rates[0].per_s() == 0.0); // nobody knows yet
+    for (int n = 1; n <= 300; ++n) {
+      const HostTime arrival = begin + 150ms + n * 10ms;
+      if (n % 2 == 0) test.rings[0]->try_push(test::bent_sample(Side::left, 0, arrival));
+      test.rings[1]->try_push(test::bent_sample(Side::right, 0, arrival));
+      if (n % 5 == 0) test.frame_after_tick(static_cast<std::uint64_t>(n));
+    }
+    const LoopStats& stats = test.loop->stats();
+    CHECK(stats.samples[0] == 40 + 150);
+    CHECK(stats.samples[1] == 40 + 300);
+    CHECK(stats.rates[0].per_s() == doctest::Approx(50.0));
+    CHECK(stats.rates[1].per_s() == doctest::Approx(100.0));
+    test.frame_after_tick(1000); // silence is no slower glove
+    CHECK(stats.rates[1].per_s() == doctest::Approx(100.0));
+  }
+
   TEST_CASE("every sample is counted, and only the newest of a tick is shown") {
     LoopUnderTest test(Mode::type1);
     const HostTime now = HostClock::now();

@@ -265,6 +265,42 @@ TEST_SUITE("request") {
     CHECK(person.shape() == end);
   }
 
+  TEST_CASE("a frame tells how often one can undo and redo, and at 0 neither changes anything") {
+    for (const Mode mode : modes) {
+      CAPTURE(name_of(mode));
+      Person person(mode);
+      CHECK(person.bend(0).undo_steps == 0); // held, and not shaped yet
+      const Points rest = person.shape();
+      CHECK(person.ask(Request::undo, 0).undo_steps == 0);
+      CHECK(person.ask(Request::redo, 0).redo_steps == 0);
+      CHECK(person.shape() == rest);
+
+      CHECK(person.move(0, 12).undo_steps == 1); // what is held, and of no commit
+      CHECK(person.shape() != rest);
+      CHECK(person.ask(Request::undo, 12).undo_steps == 0);
+      CHECK(person.shape() == rest);
+
+      person.move(12, 5);
+      CHECK(person.ask(Request::commit, 5).undo_steps == 1);
+      person.move(5, 15);
+      person.ask(Request::let_go, 15);
+      const Points end = person.shape();
+      const std::uint64_t steps = person.bend(15).undo_steps;
+      CHECK(steps >= 2);
+      for (std::uint64_t undone = 0; undone < steps; ++undone) {
+        const Frame& frame = person.ask(Request::undo, 15);
+        CHECK(frame.undo_steps == steps - undone - 1);
+        CHECK(frame.redo_steps >= undone + 1);
+      }
+      CHECK(person.shape() == rest);
+      const std::uint64_t redos = person.bend(15).redo_steps;
+      for (std::uint64_t redone = 0; redone < redos; ++redone)
+        CHECK(person.ask(Request::redo, 15).redo_steps == redos - redone - 1);
+      CHECK(person.shape() == end);
+      CHECK(person.bend(15).undo_steps == redos);
+    }
+  }
+
   TEST_CASE("a commit that nobody holds is none") {
     Person person(Mode::type1);
     person.ask(Request::let_go, 0);

@@ -83,7 +83,9 @@ TEST_SUITE("monitor_screen") {
     Glove glove;
     CHECK(glove.lines()[0].find("serial:/dev/ttyUSB0: CyberGlove, 22 sensors") == 0);
     CHECK(glove.lines()[0].ends_with("right hand"));
-    CHECK(glove.lines()[1].find("11 ms old, nothing lost") == 0);
+    glove.picture.stats.records = 359;
+    CHECK(glove.lines()[1].find("11 ms old, 359 delivered, nothing lost") == 0);
+    CHECK(glove.lines()[1].ends_with("q quit, r ranges"));
     glove.sample.wrist_switch = WristSwitch::on;
     glove.sample.side = Side::left;
     glove.info.abilities.light = true;
@@ -94,9 +96,12 @@ TEST_SUITE("monitor_screen") {
     glove.picture.stats.silences = 6;
     glove.picture.stats.reopened = 7;
     CHECK(glove.lines()[0].ends_with("left hand, switch on, light off"));
-    CHECK(glove.lines(120)[1].find("90.0/s, 11 ms old, 3 bad, 4 missed, 5 refused, 6 silences, "
-                                   "7 reopened") == 0);
-    CHECK(glove.lines(120)[1].ends_with("q quit, r ranges, l light"));
+    CHECK(glove.lines(130)[1].find("90.0/s, 11 ms old, 363 sent, 359 delivered, 4 missed, 5 "
+                                   "refused, 3 bad, 6 silences, 7 reopened") == 0);
+    CHECK(glove.lines(130)[1].ends_with("q quit, r ranges, l light"));
+    // Where both have no room, what was lost matters more than the keys.
+    CHECK(glove.lines()[1].find("363 sent, 359 delivered, 4 missed, 5 refused, 3 bad") !=
+          std::string::npos);
     glove.picture.light = true;
     glove.picture.age_s = 2.34;
     CHECK(glove.lines()[0].ends_with("light on"));
@@ -104,6 +109,30 @@ TEST_SUITE("monitor_screen") {
     glove.picture.sample = nullptr;
     CHECK(glove.lines().size() == 2);
     CHECK(glove.lines()[1].find("no sample yet") != std::string::npos);
+  }
+
+  TEST_CASE("an average hand's angles are marked, each of them and the hand, at any size") {
+    Glove glove;
+    glove.calibration.sensors[0] = {0.01, 100.0 - 78.54};
+    for (const int columns : {48, 80, 120}) {
+      for (const bool uncalibrated : {false, true}) {
+        CAPTURE(columns);
+        glove.picture.uncalibrated = uncalibrated;
+        int marked = 0, shown = 0;
+        for (const auto& line : glove.lines(columns, 30)) {
+          if (!line.ends_with(" deg")) continue;
+          ++shown;
+          if (line.find('~') != std::string::npos) ++marked;
+        }
+        CHECK(shown == 22);
+        CHECK(marked == (uncalibrated ? 22 : 0));
+        CHECK(glove.lines(columns, 30)[2].ends_with(uncalibrated ? " ~45 deg" : "  45 deg"));
+      }
+    }
+    CHECK(glove.lines()[0].ends_with("right hand, uncalibrated"));
+    glove.calibration.sensors[0] = {0.1, 100.0 + 31.4}; // the longest, of three digits and a sign
+    CHECK(glove.lines()[2].size() == 80);
+    CHECK(glove.lines()[2].ends_with("~-180 deg"));
   }
 
   TEST_CASE("a device's text cannot speak to the terminal") {
@@ -144,6 +173,8 @@ TEST_SUITE("monitor_screen") {
     glove.calibration.sensors[1] = {};
     CHECK(glove.lines()[2].ends_with(" 45 deg"));
     CHECK(glove.lines()[3].find("deg") == std::string::npos);
+    glove.calibration.sensors[0] = {0.005, 101.0}; // -0.3 degrees
+    CHECK(glove.lines()[2].ends_with("  0 deg"));
     glove.calibration.sensors[0].gain_rad_per_count = std::nan("");
     CHECK(glove.lines()[2].size() == 80);
     glove.picture.calibration = nullptr;

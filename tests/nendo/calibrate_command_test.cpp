@@ -88,6 +88,9 @@ TEST_SUITE("calibrate") {
         CHECK(written->calibration[sensor].gain_rad_per_count ==
               doctest::Approx(truth).epsilon(0.15));
       }
+      CHECK(contents(picture).find("anna, " + std::string(name_of(wearer.side())) + " hand, " +
+                                   hand::rfc3339(written->made)) != std::string::npos);
+      CHECK(contents(picture).find("-0 deg") == std::string::npos);
       CHECK(contents(picture).starts_with("<svg"));
       CHECK(contents(picture).ends_with("</svg>\n"));
     }
@@ -235,6 +238,71 @@ TEST_SUITE("calibrate") {
     REQUIRE(fresh.sees("Pose 1 of"));
     REQUIRE(fresh.press('q'));
     CHECK(fresh.wait() == 0);
+  }
+
+  TEST_CASE("two poses that contradict each other can be taken again, and be left behind") {
+    const TemporaryFolder folder;
+    REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
+    const auto stored = folder.path() / "nendo" / "calibrations";
+    std::filesystem::create_directories(stored);
+    const auto written = stored / hand::calibration_file_name("fay", "", Side::right);
+    const std::filesystem::path file = written.string() + ".unfinished";
+    // As an earlier program kept them: a fist that is the flat hand.
+    hand::HeldPose flat;
+    flat.present = sensors_22;
+    flat.mean_counts.fill(100.0);
+    const std::vector<hand::PoseReading> same{{hand::PoseId::flat, flat},
+                                              {hand::PoseId::fist, flat}};
+    REQUIRE(calibrate::write_readings(file, same, {}, Side::right, {}));
+    const std::vector<std::string> again{"calibrate", "sim:wave", "--user", "fay", "--quick"};
+    {
+      TerminalProgram program(again, 200, 26);
+      for (const char* word :
+           {"Pose 2 of 2", "No calibration yet", "contradict", "n begins anew"}) {
+        CAPTURE(word);
+        REQUIRE(program.sees(word));
+      }
+      REQUIRE(program.press('w')); // with a pose missing it is no end
+      REQUIRE(program.sees("fist is missing"));
+      REQUIRE(program.press('q'));
+      CHECK(program.wait() == 0);
+      CHECK(program.screen().transcript().find("1 pose is kept") != std::string::npos);
+    }
+    const auto kept = calibrate::read_capture(file);
+    REQUIRE(kept);
+    CHECK(kept->readings.size() == 1);
+    {
+      TerminalProgram program(again, 100, 26);
+      REQUIRE(program.sees("Pose 2 of 2"));
+      REQUIRE(program.press('n'));
+      REQUIRE(program.sees("n once more"));
+      REQUIRE(program.press(' ')); // something else was meant
+      REQUIRE(program.sees([](const VtScreen& screen) { return !screen.shows("n once more"); }));
+      CHECK(program.screen().shows("Pose 2 of 2"));
+      REQUIRE(program.press('n'));
+      REQUIRE(program.sees("n once more"));
+      REQUIRE(program.press('n'));
+      REQUIRE(program.sees("Pose 1 of 2"));
+      REQUIRE(program.sees("SPACE begins"));
+      REQUIRE(program.press('q'));
+      CHECK(program.wait() == 0);
+    }
+    CHECK_FALSE(std::filesystem::exists(file));
+    CHECK_FALSE(std::filesystem::exists(written));
+  }
+
+  TEST_CASE("w with a pose missing goes on, and says which") {
+    const TemporaryFolder folder;
+    REQUIRE(::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1) == 0);
+    TerminalProgram program({"calibrate", "sim:wave", "--user", "gus"}, 40, 26);
+    REQUIRE(program.sees("Pose 1 of"));
+    REQUIRE(program.press('w'));
+    for (const char* word : {"No calibration yet", "the pose flat is", "Pose 1 of"}) {
+      CAPTURE(word);
+      REQUIRE(program.sees(word));
+    }
+    REQUIRE(program.press('q'));
+    CHECK(program.wait() == 0);
   }
 
   TEST_CASE("at a terminal the pose is drawn, a moving hand is told to hold still, and q gives the "

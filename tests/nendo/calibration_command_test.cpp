@@ -252,6 +252,44 @@ TEST_SUITE("calibration command") {
     CHECK(home.count() == 0);
   }
 
+  TEST_CASE("a file whose name says its hand gets that hand offered, but not unasked") {
+    const Home home;
+    // The first two are the names that KIT's files have.
+    const std::vector<std::pair<std::string, std::string>> names{
+        {"GloveCalibrationLeft.cal", "add --hand left"},
+        {"GloveCalibrationRight.cal", "add --hand right"},
+        {"kit_left.csv", "add --hand left"},
+        {"RIGHT-2.csv", "add --hand right"},
+        {"copyright.csv", "add --hand left or right"},
+        {"leftover.csv", "add --hand left or right"},
+        {"left or right.csv", "add --hand left or right"},
+        {"x.csv", "add --hand left or right"}};
+    for (const auto& [name, offered] : names) {
+      CAPTURE(name);
+      write_file(home.file(name), csv);
+      const auto done = calibration({"import", home.file(name).string(), "--user", "anna"});
+      CHECK(done.exit_code == 2);
+      CHECK(is_one_line_about(done.err, name));
+      CHECK(done.err.ends_with(offered + "\n"));
+    }
+    CHECK(home.count() == 0);
+  }
+
+  TEST_CASE("an export that a format cannot hold names the wearer, the sensors and the remedy") {
+    const Home home;
+    write_file(home.file("x.csv"), "sensor,gain_rad_per_count,offset_counts\n"
+                                   "index_mcp,0.0125,60\nthumb_abduction,0.0026,-29.33\n");
+    REQUIRE(
+        calibration({"import", home.file("x.csv").string(), "--user", "anna", "--hand", "right"})
+            .exit_code == 0);
+    const auto done = calibration({"export", "anna", "--format", "cal"});
+    CHECK(done.exit_code == 5);
+    CHECK(done.out.empty());
+    CHECK(is_one_line_about(done.err, "anna: "));
+    CHECK(done.err.find("thumb_abduction (-29.3)") != std::string::npos);
+    CHECK(done.err.find("toml or csv") != std::string::npos);
+  }
+
   TEST_CASE("a stored file that cannot be read is told, and the rest is listed") {
     const Home home;
     write_file(home.file("x.csv"), csv);
@@ -288,7 +326,8 @@ TEST_SUITE("calibration command") {
     };
     take_in("anna", "right", "0.02");
     const auto other_hand = monitor({});
-    CHECK(other_hand.err.empty());
+    CHECK(is_one_line_about(other_hand.err, "not calibrated for this left hand"));
+    CHECK(other_hand.err.find("nendo calibrate serial:" + link.string()) != std::string::npos);
     CHECK(gain(other_hand) == doctest::Approx(0.0125)); // the default
     CHECK(monitor({"--user", "anna"}).exit_code == 5);
     CHECK(is_one_line_about(monitor({"--calibration", "anna"}).err, "right hand"));
@@ -296,6 +335,7 @@ TEST_SUITE("calibration command") {
     take_in("anna", "left", "0.03");
     const auto own = monitor({});
     CHECK(is_one_line_about(own.err, "anna, left hand"));
+    CHECK(own.err.find("does not tell with which glove it was made") != std::string::npos);
     CHECK(gain(own) == doctest::Approx(0.03));
     take_in("berta", "left", "0.01");
     CHECK(gain(monitor({"--user", "anna"})) == doctest::Approx(0.03));
@@ -310,6 +350,93 @@ TEST_SUITE("calibration command") {
                                          home.file("shape.obj").string()});
     CHECK(run.exit_code == 0);
     CHECK(run.err.find("berta, left hand") != std::string::npos);
+  }
+
+  TEST_CASE("a calibration that may be another glove's says so, and one that is this one's not") {
+    const Home home;
+    nendo::hand::WearerCalibration wearer;
+    wearer.user = "anna";
+    wearer.method = "full";
+    wearer.calibration = nendo::hand::default_calibration();
+    wearer.calibration[nendo::Sensor::index_mcp].gain_rad_per_count = 0.02;
+    const auto link = home.file("glove");
+    const nendo::test::EmulatedGlove glove(link, "right", "22");
+    const std::string spec = "serial:" + link.string();
+    const json info = json::parse(nendo::test::nendo({"info", spec, "--json"}).out);
+    const auto said = [&](const std::string& model, const std::string& serial) {
+      wearer.glove_model = model;
+      wearer.glove_serial = serial;
+      REQUIRE(nendo::hand::write_calibration(home.stored("x"), wearer));
+      return nendo::test::nendo({"monitor", spec, "--json", "--count", "1"}).err;
+    };
+    const std::string model = info["model"];
+    CHECK(is_one_line_about(said(model, "B2"), "made with another glove of this model"));
+    CHECK(is_one_line_about(said(model, ""), "maybe another one"));
+    CHECK(is_one_line_about(said("", ""), "does not tell with which glove"));
+    CHECK(is_one_line_about(said("another model", ""), "not calibrated"));
+    CHECK(is_one_line_about(said("another model", "B2"), "not calibrated"));
+  }
+
+  TEST_CASE(
+      "run says once that it shapes by default angles, and its progress and end keep a mark") {
+    const Home home;
+    const auto link = home.file("glove");
+    const nendo::test::EmulatedGlove glove(link, "right", "22");
+    const auto run = [&](std::vector<std::string> more) {
+      more.insert(more.begin(), {"run", "--right", "serial:" + link.string(), "--duration", "2.5",
+                                 "--out", home.file("shape.obj").string()});
+      const auto done = nendo::test::nendo(more);
+      REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+      return done;
+    };
+    const auto count = [](const std::string& text, const std::string& word) {
+      std::size_t found = 0;
+      for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+        ++found;
+      return found;
+    };
+    const auto bare = run({});
+    CHECK(count(bare.err, "not calibrated for this right hand") == 1);
+    CHECK(count(bare.err, ", uncalibrated") >= 1);
+    CHECK(count(bare.out, "uncalibrated") == 1);
+    const auto asked = run({"--calibration", "none"});
+    CHECK(count(asked.err, "not calibrated") == 0); // it was asked for
+    CHECK(count(asked.out, "uncalibrated") == 1);
+    const auto learning = run({"--adapt"});
+    CHECK(count(learning.err + learning.out, "calibrated") == 0);
+    write_file(home.file("x.csv"), with_gain("0.02"));
+    REQUIRE(
+        calibration({"import", home.file("x.csv").string(), "--user", "anna", "--hand", "right"})
+            .exit_code == 0);
+    const auto own = run({});
+    CHECK(count(own.err, "anna, right hand") == 1);
+    CHECK(count(own.err + own.out, "uncalibrated") == 0);
+  }
+
+  TEST_CASE("a simulated hand is the default's, and the demo uses no real hand's calibration") {
+    const Home home;
+    const auto sim = nendo::test::nendo({"monitor", "sim", "--json", "--count", "1"});
+    CHECK(sim.err.empty());
+    for (const std::string hand : {"left", "right"}) {
+      write_file(home.file("x.csv"), with_gain("0.03"));
+      REQUIRE(calibration({"import", home.file("x.csv").string(), "--user", "anna", "--hand", hand})
+                  .exit_code == 0);
+    }
+    const auto demo =
+        nendo::test::nendo({"demo", "--duration", "2.5", "--out", home.file("x.obj").string(),
+                            "--picture", home.file("x.png").string()});
+    REQUIRE_MESSAGE(demo.exit_code == 0, demo.err);
+    CHECK((demo.err + demo.out).find("anna") == std::string::npos);
+    CHECK((demo.err + demo.out).find("calibrated") == std::string::npos);
+  }
+
+  TEST_CASE("an empty list says how to make a calibration") {
+    const Home home;
+    const auto done = calibration({"list"});
+    CHECK(done.exit_code == 0);
+    CHECK(done.out.empty());
+    if (fs::exists("/etc/nendo/calibrations")) return; // this machine has some for all users
+    CHECK(is_one_line_about(done.err, "`nendo calibrate GLOVE --user NAME`"));
   }
 
   TEST_CASE("a glove of the other hand that is plugged in instead gets that hand's calibration") {

@@ -331,6 +331,57 @@ TEST_SUITE("deform") {
     CHECK(is_one_line_about(far.err, "vectors.csv"));
   }
 
+  TEST_CASE("what is hardly meant is done, and told in a line") {
+    const TemporaryFolder folder;
+    const auto in = (folder.path() / "m.obj").string();
+    const auto vectors = (folder.path() / "v.csv").string();
+    const auto out = (folder.path() / "o.obj").string();
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const std::string lift = "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n";
+    const auto told = [&](const std::string& mesh, const std::string& rows, const char* radius) {
+      nendo::test::write_file(in, mesh);
+      nendo::test::write_file(vectors, rows);
+      const auto done = nendo::test::nendo(
+          {"deform", in, "--vectors", vectors, "--radius", radius, "--out", out});
+      CHECK(done.exit_code == 0);
+      return done.err;
+    };
+    CHECK(told(triangle, lift, "0.5").empty());
+    CHECK(is_one_line_about(told("v 0 0 0\nv 1 0 0\n", lift, "0.5"), "no faces"));
+    CHECK(is_one_line_about(told("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", lift, "0.5"),
+                            "in one place"));
+    CHECK(is_one_line_about(told(triangle, lift, "1.5"), "--radius 1.5: reaches all"));
+    const std::string far_away = "x,y,z,dx,dy,dz\n9,0,0,0,0,1\n";
+    CHECK(is_one_line_about(told(triangle, far_away, "0.5"), "moves no vertex"));
+    const std::string still = "x,y,z,dx,dy,dz\n0,0,0,0,0,0\n";
+    CHECK(is_one_line_about(told(triangle, still, "0.5"), "moves no vertex"));
+    const std::string own = "x,y,z,dx,dy,dz,radius\n0,0,0,0,0,1,2\n";
+    CHECK(is_one_line_about(told(triangle, own, "0.5"), vectors + ": reaches all"));
+  }
+
+  TEST_CASE("the model itself is written over only with --force, by whatever name") {
+    const TemporaryFolder folder;
+    const auto in = (folder.path() / "m.obj").string();
+    const auto vectors = (folder.path() / "v.csv").string();
+    const auto same = (folder.path() / "same.obj").string();
+    const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    nendo::test::write_file(in, text);
+    nendo::test::write_file(vectors, "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n");
+    std::filesystem::create_symlink("m.obj", same);
+    for (const std::string& out : {in, same}) {
+      const auto done =
+          nendo::test::nendo({"deform", in, "--vectors", vectors, "--radius", "0.5", "--out", out});
+      CHECK(done.exit_code == 2);
+      CHECK(is_one_line_about(done.err, "--force"));
+      CHECK(nendo::test::contents(in) == text);
+    }
+    const auto forced = nendo::test::nendo(
+        {"deform", in, "--vectors", vectors, "--radius", "0.5", "--out", same, "--force"});
+    CHECK(forced.exit_code == 0);
+    CHECK(std::filesystem::is_symlink(same));
+    CHECK(nendo::test::contents(in).find("v 0 0 1") != std::string::npos);
+  }
+
   TEST_CASE("wrong options are wrong usage") {
     const TemporaryFolder folder;
     const auto mesh = (folder.path() / "m.obj").string();

@@ -92,6 +92,14 @@ TEST_SUITE("devices") {
     const auto unknown = nendo::test::nendo({"dance"});
     CHECK(unknown.exit_code == 2);
     CHECK(is_one_line_about(unknown.err, "dance"));
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"runn", "--help"}, {"edit", "shwo", "--help"}}) {
+      const auto help = nendo::test::nendo(arguments); // not the help of what stands before it
+      CHECK(help.exit_code == 2);
+      CHECK(help.out.empty());
+      CHECK(is_one_line_about(help.err, "no command " + arguments[arguments.size() - 2]));
+    }
+    CHECK(nendo::test::nendo({"edit", "show", "--help"}).exit_code == 0);
     const auto option = nendo::test::nendo({"devices", "--jsom"});
     CHECK(option.exit_code == 2);
     CHECK(is_one_line_about(option.err, "--jsom"));

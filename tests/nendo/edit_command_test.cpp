@@ -110,6 +110,11 @@ TEST_SUITE("edit_command") {
     const std::string at = std::to_string(to_s);
     run.fine({"copy", run.timeline, "--hand", "right", "--key", "1", "--to", at, "--out", other});
     CHECK(run.shown(run.timeline) == before); // it went elsewhere
+    const std::string late = std::to_string(before["duration_s"].get<double>() + 0.02);
+    const auto near_end = EditedRun::edit({"copy", run.timeline, "--hand", "right", "--key", "1",
+                                           "--to", late, "--out", run.path("late.timeline.toml")});
+    CHECK(near_end.exit_code == 0);
+    CHECK(is_one_line_about(near_end.err, "behind the end"));
     CHECK(run.shown(other)["hands"]["right"].size() == keys.size() + 1);
     run.fine({"delete", other, "--hand", "right", "--key", "1"});
     run.fine({"move", other, "--hand", "right", "--key", "1", "--to", keys[1]["time_s"].dump()});
@@ -184,6 +189,7 @@ TEST_SUITE("edit_command") {
     };
     const std::string& file = run.timeline;
     refuses({"move", file, "--hand", "left", "--key", "999", "--to", "0.5"}, "take.timeline.toml");
+    refuses({"move", file, "--hand", "left", "--key", "0", "--to", "1.2"}, "lasts from 0 to ");
     refuses({"move", file, "--hand", "upper", "--key", "0", "--to", "0.5"}, "upper");
     refuses({"delete", file, "--hand", "left", "--key", "0", "--out", "x.toml"}, "x.toml");
     refuses({"retime", file, "--scale", "-1"}, "take.timeline.toml");

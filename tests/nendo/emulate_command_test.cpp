@@ -42,6 +42,58 @@ TEST_SUITE("emulate") {
     CHECK_FALSE(std::filesystem::exists(std::filesystem::symlink_status(link)));
   }
 
+  TEST_CASE("a glove's variants are in the help, and each can be asked who it is") {
+    const auto help = nendo::test::nendo({"emulate", "--help"});
+    struct Case {
+      std::string glove, option, name, driver, said;
+    };
+    for (const Case& c :
+         {Case{"lucidgloves", "--firmware", "senseshift", "lucidgloves:%", "device_type"},
+          Case{"lucidgloves", "--firmware", "streaming", "lucidgloves:%", "alpha"},
+          Case{"lucidgloves", "--firmware", "waiting", "lucidgloves:%", "alpha"},
+          Case{"lucidgloves", "--firmware", "legacy", "lucidgloves:%", "legacy"},
+          Case{"5dt", "--firmware", "pinky-first", "5dt:%?left_first=pinky", "pinky first"},
+          Case{"5dt", "--connection", "wireless", "5dt:%?baud=9600&hand=left", "wireless"},
+          Case{"forte", "--connection", "usb", "forte:%", "usb"},
+          Case{"forte", "--connection", "bluetooth", "forte:%?link=bluetooth", "bluetooth"}}) {
+      CAPTURE(c.name);
+      CHECK(help.out.find(c.glove + " " + c.option + " " + c.name) != std::string::npos);
+      const nendo::test::TemporaryFolder folder;
+      const auto link = folder.path() / "glove";
+      nendo::test::Program emulator({"emulate", "--link", link.string(), "--glove", c.glove,
+                                     c.option, c.name, "--hand", "left"});
+      for (int turn = 0; turn < 2000 && !std::filesystem::exists(link); ++turn)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      std::string glove = c.driver;
+      glove.replace(glove.find('%'), 1, link.string());
+      const auto info = nendo::test::nendo({"info", glove});
+      CHECK_MESSAGE(info.exit_code == 0, info.err);
+      CHECK(info.out.find(c.said) != std::string::npos);
+      emulator.signal(SIGINT);
+      CHECK(emulator.wait().exit_code == 0);
+    }
+  }
+
+  TEST_CASE("a variant that a glove does not have is refused with those that it has") {
+    const nendo::test::TemporaryFolder folder;
+    const std::string link = (folder.path() / "glove").string();
+    struct Case {
+      std::string glove, option, name, about;
+    };
+    for (const Case& c :
+         {Case{"lucidgloves", "--firmware", "v9", "senseshift, streaming, waiting, legacy"},
+          Case{"forte", "--connection", "radio", "usb, bluetooth"},
+          Case{"forte", "--firmware", "waiting", "no choice"},
+          Case{"5dt", "--connection", "bluetooth", "wired, wireless"},
+          Case{"cyberglove", "--connection", "usb", "no choice"}}) {
+      CAPTURE(c.glove);
+      const auto done =
+          nendo::test::nendo({"emulate", "--link", link, "--glove", c.glove, c.option, c.name});
+      CHECK(done.exit_code == 2);
+      CHECK(is_one_line_about(done.err, c.about));
+    }
+  }
+
   TEST_CASE("wrong options get one line that names them, and their exit code") {
     const nendo::test::TemporaryFolder folder;
     const std::string link = (folder.path() / "glove").string();
@@ -51,17 +103,26 @@ TEST_SUITE("emulate") {
       int exit_code;
       std::string about;
     };
-    for (const Case& c :
-         {Case{"--glove", "mitten", 2, "mitten"}, Case{"--fault", "drop=1", 2, "drop=RATE%"},
-          Case{"--hand", "up", 2, "--hand up"}, Case{"--mask", "7g", 2, "--mask 7g"},
-          Case{"--mask", "0", 2, "--mask 0"}, Case{"--mask", "1ffffff", 2, "--mask"},
-          Case{"--sensors", "20", 2, "sensors 20"}, Case{"--pace", "fast", 2, "--pace"},
-          Case{"--model", "0", 2, "model 0"}, Case{"--rate", "nan", 2, "rate"},
-          Case{"--rate", "481", 2, "rate"}, Case{"--reply-bytes", "4", 2, "reply-bytes 4"},
-          Case{"--stamp-bit7", "maybe", 2, "--stamp-bit7"}, Case{"--motion", "fly", 2, "fly"},
-          Case{"--replay", "/no/such/file", 5, "/no/such/file"},
-          Case{"--log", "/no/such/folder/log", 1, "/no/such/folder/log"},
-          Case{"--duration", "-1", 2, "--duration"}}) {
+    for (const Case& c : {Case{"--glove", "mitten", 2, "mitten"},
+                          Case{"--fault", "drop=1", 2, "drop=RATE%"},
+                          Case{"--hand", "up", 2, "--hand up"},
+                          Case{"--mask", "7g", 2, "--mask 7g"},
+                          Case{"--mask", "0", 2, "--mask 0"},
+                          Case{"--mask", "1ffffff", 2, "--mask"},
+                          Case{"--sensors", "20", 2, "sensors 20"},
+                          Case{"--pace", "fast", 2, "--pace"},
+                          Case{"--model", "0", 2, "model 0"},
+                          Case{"--rate", "nan", 2, "rate"},
+                          Case{"--rate", "481", 2, "rate"},
+                          Case{"--reply-bytes", "4", 2, "reply-bytes 4"},
+                          Case{"--stamp-bit7", "maybe", 2, "--stamp-bit7"},
+                          Case{"--hires-form", "nul", 2, "--hires-form"},
+                          Case{"--restart-time", "61s", 2, "restart-time"},
+                          Case{"--restart-time", "-1", 2, "restart-time"},
+                          Case{"--motion", "fly", 2, "fly"},
+                          Case{"--replay", "/no/such/file", 5, "/no/such/file"},
+                          Case{"--log", "/no/such/folder/log", 1, "/no/such/folder/log"},
+                          Case{"--duration", "-1", 2, "--duration"}}) {
       CAPTURE(c.option);
       CAPTURE(c.value);
       const auto done = nendo::test::nendo({"emulate", "--link", link, c.option, c.value});

@@ -1,3 +1,14 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
@@ -41,13 +52,14 @@ TEST_SUITE("export_command") {
     const auto shape = deform::read_mesh(run.path("clay.ply"));
     REQUIRE(shape);
     const double near = 1e-5 * deform::diagonal_of(shape->vertices);
-    const auto done = run.export_to("take.glb");
+    const auto done = run.export_to("take.glb", {"--every-frame"});
     CAPTURE(done.err);
     REQUIRE(done.exit_code == 0);
     const json told = json::parse(done.out);
     CHECK(told["morphs"]["by"] == "control vectors");
     CHECK(told["morphs"]["greatest_error"].get<double>() < 1e-5);
     CHECK(told["frames"].get<int>() > 10);
+    CHECK_FALSE(told.contains("rate_hz"));
     const test::Glb glb(contents(run.path("take.glb")));
     CHECK((glb.vertices(0, 1e6) - shape->vertices).colwise().norm().maxCoeff() < near);
     for (const std::string out : {"a.pc2", "a.mdd", "hands.bvh", "a.csv", "a-%03d.obj"}) {
@@ -94,6 +106,134 @@ TEST_SUITE("export_command") {
     CHECK_FALSE(test::Glb(contents(run.path("take.glb"))).json.contains("skins"));
   }
 
+  TEST_CASE("what was chosen for an animator is said, and a millimetre is the same part of all") {
+    const RecordedRun run("type2");
+    const auto plain = test::nendo({"export", run.path("take.nendo"), "--out", run.path("a.glb")});
+    CAPTURE(plain.out);
+    CHECK(plain.out.find("24 a second (--rate)") != std::string::npos);
+    CHECK(plain.out.find("1 % of the model's diagonal") != std::string::npos);
+    CHECK(plain.out.find("(--tolerance)") != std::string::npos);
+    const json told = json::parse(run.export_to("b.glb").out);
+    CHECK(contents(run.path("a.glb")) == contents(run.path("b.glb")));
+    CHECK(told["rate_hz"] == 24.0);
+    CHECK(told["morphs"]["tolerance"] == doctest::Approx(0.01));
+    CHECK(told["frames"].get<int>() >= 20);
+    CHECK(told["frames"].get<int>() <= 26);
+    const json percent = json::parse(run.export_to("c.glb", {"--tolerance", "0.2%"}).out);
+    CHECK(percent["morphs"]["tolerance"] == doctest::Approx(0.002));
+    const json millimetre = json::parse(run.export_to("d.glb", {"--tolerance", "1mm"}).out);
+    const json tenth = json::parse(run.export_to("e.glb", {"--tolerance", "0.01cm"}).out);
+    CHECK(millimetre["morphs"]["tolerance"].get<double>() ==
+          doctest::Approx(10.0 * tenth["morphs"]["tolerance"].get<double>()));
+    // The longest side of the Moai's box is 0.8 m on the stage, so its diagonal is a little more.
+    const double diagonal_m = 1e-3 / millimetre["morphs"]["tolerance"].get<double>();
+    CHECK(diagonal_m > 0.8);
+    CHECK(diagonal_m < 0.8 * 1.74);
+  }
+
+  TEST_CASE("what nendo record wrote comes out: every sample, and the hands") {
+    const test::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+    const std::string take = path("rec.nendo");
+    const json recorded = json::parse(test::nendo({"record", "sim:pinch?hand=left", "sim:grasp",
+                                                   "--duration", "1s", "--out", take, "--json"})
+                                          .out);
+    const auto export_to = [&](const std::string& out, std::vector<std::string> more = {}) {
+      std::vector<std::string> arguments{"export", take, "--out", path(out), "--json"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return test::nendo(arguments);
+    };
+    const auto table = export_to("rec.csv");
+    CAPTURE(table.err);
+    REQUIRE(table.exit_code == 0);
+    CHECK(json::parse(table.out)["frames"] == recorded["samples"]);
+    const std::string text = contents(path("rec.csv"));
+    CHECK(std::count(text.begin(), text.end(), '\n') ==
+          1 + recorded["samples"].get<std::ptrdiff_t>());
+    CHECK(text.find("index_mcp_count") != std::string::npos);
+    CHECK(text.find("index_mcp_deg") != std::string::npos);
+    CHECK(text.find("measured_s") != std::string::npos);
+    REQUIRE(export_to("rec.bvh").exit_code == 0);
+    CHECK(std::filesystem::exists(path("rec-left.bvh")));
+    CHECK(std::filesystem::exists(path("rec-right.bvh")));
+    REQUIRE(export_to("rec.glb").exit_code == 0);
+    CHECK(test::Glb(contents(path("rec.glb"))).json["skins"].size() == 2);
+    for (const std::string out : {"rec.pc2", "rec-%04d.obj"}) {
+      const auto refused = export_to(out);
+      CHECK(refused.exit_code == 5);
+      CHECK(is_one_line_about(refused.err, "nendo run"));
+    }
+    CHECK(is_one_line_about(export_to("x.csv", {"--rate", "10"}).err, "--rate"));
+  }
+
+  TEST_CASE(
+      "a replayed sample has its original times, those of the table, and when it came again") {
+    const test::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+    REQUIRE(test::nendo({"record", "sim", "--duration", "500ms", "--out", path("rec.nendo")})
+                .exit_code == 0);
+    REQUIRE(test::nendo({"export", path("rec.nendo"), "--out", path("rec.csv")}).exit_code == 0);
+    const auto shown = test::nendo({"monitor", "replay:" + path("rec.nendo") + "?speed=4", "--json",
+                                    "--raw", "--count", "20"});
+    CAPTURE(shown.err);
+    REQUIRE(shown.exit_code == 0);
+    std::istringstream table(contents(path("rec.csv")));
+    std::istringstream lines(shown.out);
+    std::string row;
+    std::string line;
+    std::getline(table, row); // the head
+    double base_s = 0.0;      // the host's clock at the beginning of the recording
+    double first_replayed_s = 0.0;
+    for (int at = 0; at < 20; ++at) {
+      REQUIRE(std::getline(table, row));
+      REQUIRE(std::getline(lines, line));
+      const json sample = json::parse(line);
+      const double time_s = sample["time_s"];
+      if (at == 0) base_s = time_s - std::stod(row);
+      if (at == 0) first_replayed_s = sample["replayed_s"];
+      CHECK(std::abs(time_s - base_s - std::stod(row)) < 1e-6);
+      const double measured_s = std::stod(row.substr(row.find(',') + 1));
+      CHECK(std::abs(sample["measured_s"].get<double>() - base_s - measured_s) < 1e-6);
+      CHECK(sample["replayed_s"].get<double>() > time_s); // by the same clock, and later
+    }
+    const double took_s = json::parse(line)["replayed_s"].get<double>() - first_replayed_s;
+    CHECK(took_s >= 19.0 / 90.0 / 4.0 * 0.8); // a quarter of the recorded time, and no less
+    const auto live = test::nendo({"monitor", "sim", "--json", "--count", "1"});
+    CHECK_FALSE(json::parse(live.out).contains("replayed_s"));
+  }
+
+  TEST_CASE("a run's samples come out as a table, too, as many as the recording counts") {
+    const RecordedRun run("type1");
+    const json info =
+        json::parse(test::nendo({"recording", "info", run.path("take.nendo"), "--json"}).out);
+    std::uint64_t samples = 0;
+    for (const auto& glove : info["gloves"])
+      samples += glove["samples"].get<std::uint64_t>();
+    const auto done = run.export_to("samples.csv", {"--samples"});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    CHECK(json::parse(done.out)["frames"] == samples);
+    CHECK(is_one_line_about(run.export_to("a.glb", {"--samples"}).err, "--samples"));
+  }
+
+  TEST_CASE("a hand that was recorded without a calibration is named, and has no angles") {
+    const test::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+    test::Program unit({"emulate", "--link", path("glove"), "--duration", "20s"});
+    for (int tries = 0; tries < 500 && !std::filesystem::exists(path("glove")); ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const auto recorded = test::nendo({"record", "serial:" + path("glove"), "--calibration", "none",
+                                       "--duration", "500ms", "--out", path("rec.nendo")});
+    CAPTURE(recorded.err);
+    REQUIRE(recorded.exit_code == 0);
+    const auto done = test::nendo({"export", path("rec.nendo"), "--out", path("rec.csv")});
+    CHECK(done.exit_code == 0);
+    CHECK(is_one_line_about(done.err, "without a calibration"));
+    const auto hands = test::nendo({"export", path("rec.nendo"), "--out", path("rec.bvh")});
+    CHECK(hands.exit_code == 0);
+    CHECK(is_one_line_about(hands.err, "average hand"));
+  }
+
   TEST_CASE("wrong usage and files that are no takes are one line each") {
     const test::TemporaryFolder folder;
     const std::string text = (folder.path() / "a.nendo").string();
@@ -108,16 +248,22 @@ TEST_SUITE("export_command") {
       int exit_code;
       const char* about;
     };
-    for (const Row& row :
-         std::initializer_list<Row>{{{"--out", "a.glb"}, 5, "a.nendo"},
-                                    {{"--out", "a.fbx"}, 2, "--out a.fbx"},
-                                    {{"--out", "/nowhere/a.glb"}, 1, "/nowhere"},
-                                    {{"--out", "a.obj"}, 2, "%04d"},
-                                    {{"--out", "a-%d.ply", "--format", "obj"}, 2, ".obj"},
-                                    {{"--out", "a.glb", "--rate", "0"}, 2, "--rate"},
-                                    {{"--out", "a.glb", "--from", "2", "--to", "1"}, 2, "--from"},
-                                    {{"--out", "a.glb", "--tolerance", "0"}, 2, "--tolerance"},
-                                    {{"--out", "a.glb", "--format", "fbx"}, 2, "fbx"}}) {
+    for (const Row& row : std::initializer_list<Row>{
+             {{"--out", "a.glb"}, 5, "a.nendo"},
+             {{"--out", "a.fbx"}, 2, "--out a.fbx"},
+             {{"--out", "/nowhere/a.glb"}, 1, "/nowhere"},
+             {{"--out", "a.obj"}, 2, "%04d"},
+             {{"--out", "a-%d.ply", "--format", "obj"}, 2, ".obj"},
+             {{"--out", "a.glb", "--rate", "0"}, 2, "--rate"},
+             {{"--out", "a.glb", "--from", "2", "--to", "1"}, 2, "--from"},
+             {{"--out", "a.glb", "--tolerance", "0"}, 2, "--tolerance"},
+             {{"--out", "a.glb", "--tolerance", "1"}, 2, "1mm"},
+             {{"--out", "a.glb", "--tolerance", "2in"}, 2, "1mm"},
+             {{"--out", "a.glb", "--tolerance", "0mm"}, 2, "--tolerance"},
+             {{"--out", "a.pc2", "--every-frame"}, 2, "--every-frame"},
+             {{"--out", "a.glb", "--every-frame", "--rate", "24"}, 2, "--every-frame"},
+             {{"--out", "a.csv", "--from", "1x"}, 2, "--from"},
+             {{"--out", "a.glb", "--format", "fbx"}, 2, "fbx"}}) {
       const auto done = run(row.arguments);
       CAPTURE(done.err);
       CHECK(done.exit_code == row.exit_code);

@@ -1,6 +1,13 @@
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <functional>
 #include <set>
+#include <string>
+
+#include <poll.h>
+#include <pty.h>
+#include <unistd.h>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -128,7 +135,7 @@ TEST_SUITE("monitor") {
     CHECK(program.is_raw());
     CHECK(program.screen().on_page());
     CHECK_FALSE(program.screen().cursor_shown());
-    CHECK(program.screen().shows("left hand"));
+    CHECK(program.screen().shows("left hand, uncalibrated"));
     REQUIRE(program.sees("q quit"));
     for (const auto& name : names_in(nendo::sensors_22)) {
       const std::string line = program.screen().line_of(name + " ");
@@ -136,6 +143,7 @@ TEST_SUITE("monitor") {
       REQUIRE(line.size() == 80);
       CHECK(line.find_first_of("[|") != std::string::npos);
       CHECK(line.find(" deg") != std::string::npos);
+      CHECK(line.find("~") != std::string::npos); // nobody has calibrated this emulator's hand
       CHECK(std::stoi(line.substr(22)) >= 1);
       CHECK(std::stoi(line.substr(22)) <= 255);
     }
@@ -228,6 +236,23 @@ TEST_SUITE("monitor") {
     CHECK(program.is_restored());
   }
 
+  TEST_CASE("a glove that is in use is told as it was typed, with its port and the other program") {
+    const nendo::test::TemporaryFolder folder;
+    const auto link = folder.path() / "glove";
+    const EmulatedGlove glove(link, "left", "22");
+    const std::string spec = "serial:" + link.string();
+    TerminalProgram first({"monitor", spec}, 80, 24);
+    REQUIRE(first.sees("wrist_yaw"));
+    const auto second = nendo::test::nendo({"monitor", spec, "--count", "1"});
+    CHECK(second.exit_code == 3);
+    CHECK(is_one_line_about(second.err, "in use by another program, "));
+    CHECK(second.err.find("(pid ") != std::string::npos);
+    CHECK(second.err.find(link.string()) != std::string::npos);
+    CHECK(second.err.find(spec) != std::string::npos);
+    first.press('q');
+    CHECK(first.wait() == 0);
+  }
+
   TEST_CASE("what is no glove gets one clear line, the right exit code, and no long wait") {
     const nendo::test::TemporaryFolder folder;
     nendo::test::write_file(folder.path() / "file", "not a terminal");
@@ -250,6 +275,32 @@ TEST_SUITE("monitor") {
       CHECK(done.out.empty());
       CHECK(done.seconds < 5.0);
     }
+  }
+
+  TEST_CASE("Ctrl-C while a port is asked for its glove says so, and ends the command") {
+    // A port at whose other end nobody answers.
+    std::array<char, 64> name{};
+    int far = -1;
+    int near = -1;
+    REQUIRE(::openpty(&far, &near, name.data(), nullptr, nullptr) == 0);
+    const std::string port = "serial:" + std::string(name.data());
+    for (const char* command : {"monitor", "info", "poses"}) {
+      CAPTURE(command);
+      nendo::test::Program program({command, port});
+      // It has asked: the command's handler is there.
+      pollfd asked{far, POLLIN, 0};
+      REQUIRE(::poll(&asked, 1, 10'000) == 1);
+      program.signal(SIGINT);
+      const auto done = program.wait();
+      CHECK(done.exit_code == 1);
+      CHECK(is_one_line_about(done.err, "interrupted"));
+      CHECK(done.err.find(name.data()) != std::string::npos);
+      std::array<char, 256> bytes{};
+      while (::poll(&asked, 1, 0) == 1 && ::read(far, bytes.data(), bytes.size()) > 0) {
+      }
+    }
+    ::close(near);
+    ::close(far);
   }
 }
 

@@ -144,6 +144,20 @@ TEST_SUITE("recording_command") {
     CHECK(repaired.out.find(" 0 whole chunks") == std::string::npos);
     CHECK(is_one_line_about(repaired.err, "gap"));
     CHECK(test::nendo({"recording", "check", mended}).exit_code == 0);
+    CHECK(checked.err.find("behind") == std::string::npos);
+    CHECK(checked.err.find("whole to the end") != std::string::npos);
+    test::write_file(bad, bytes.substr(0, bytes.size() - 1));
+    const auto cut = test::nendo({"recording", "check", bad});
+    CHECK(cut.exit_code == 1);
+    CHECK(cut.err.find("nothing is whole behind byte ") != std::string::npos);
+    CHECK(cut.err.find(" of " + std::to_string(bytes.size() - 1)) != std::string::npos);
+    test::write_file(bad, bytes);
+    const auto copied =
+        test::nendo({"recording", "repair", run.take, "--out", run.path("copy.nendo")});
+    CHECK(copied.exit_code == 0);
+    CHECK(copied.out.find(" 0 whole chunks") == std::string::npos);
+    CHECK(is_one_line_about(copied.err, "whole already"));
+    CHECK(contents(run.path("copy.nendo")).size() == contents(run.take).size());
     CHECK(contents(bad) == bytes);
     const auto replayed = test::nendo({"replay", mended, "--no-clock", "--json"});
     CHECK(replayed.exit_code == 0);
@@ -180,6 +194,41 @@ TEST_SUITE("recording_command") {
     CHECK(checked.exit_code == 0);
     CHECK(checked.out.find("cut off") != std::string::npos);
     CHECK(test::nendo({"replay", take, "--no-clock"}).exit_code == 0);
+    const auto mended =
+        test::nendo({"recording", "repair", take, "--out", (folder.path() / "m.nendo").string()});
+    CHECK(mended.exit_code == 0);
+    CHECK(mended.out.find(" 0 whole chunks") == std::string::npos);
+    CHECK(is_one_line_about(mended.err, "whole already"));
+  }
+
+  TEST_CASE("a recording cut off before its first chunk is no recording of 1970") {
+    const RecordedRun run;
+    const std::string bytes = contents(run.take);
+    const std::string cut = run.path("cut.nendo");
+    for (const std::size_t size : {16U, 20U, 40U, 60U}) {
+      test::write_file(cut, bytes.substr(0, size));
+      for (const Arguments& arguments :
+           {Arguments{"recording", "info", cut},
+            {"recording", "info", cut, "--json"},
+            {"recording", "check", cut},
+            {"replay", cut, "--no-clock"},
+            {"monitor", "replay:" + cut},
+            {"recording", "repair", cut, "--out", run.path("mended.nendo")}}) {
+        const auto done = test::nendo(arguments);
+        CAPTURE(size);
+        CAPTURE(done.out);
+        CHECK(done.exit_code == 5);
+        CHECK(is_one_line_about(done.err, "cut.nendo"));
+        CHECK(done.out.empty());
+      }
+    }
+    std::string headless = bytes;
+    headless[50] = static_cast<char>(headless[50] ^ 1); // in the chunk that tells when it was
+    test::write_file(cut, headless);
+    const auto told = test::nendo({"recording", "info", cut});
+    CHECK(told.exit_code == 0);
+    CHECK(told.out.find("1970") == std::string::npos);
+    CHECK(last_object(test::nendo({"recording", "info", cut, "--json"}))["begun"].is_null());
   }
 
   TEST_CASE("--keep-last: a crash writes what was done last") {
@@ -232,6 +281,7 @@ TEST_SUITE("recording_command") {
              {{"replay", run.folder.path().string()}, 5, "regular file"},
              {{"replay", run.take, "--speed", "0"}, 2, "--speed"},
              {{"replay", run.take, "--from", "3", "--to", "2"}, 2, "--from"},
+             {{"replay", run.take, "--from", "99", "--no-clock"}, 2, "--from 99"},
              {{"replay", run.take, "--loop", "--no-clock"}, 2, "--loop"},
              {{"replay", run.take, "--out", "shape.stl"}, 2, ".obj"},
              {{"replay", run.take, "--no-clock", "--mesh", "/nowhere.obj"}, 5, "/nowhere.obj"},

@@ -14,6 +14,7 @@
 
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
+#include "support/test_meshes.hpp"
 
 namespace run_command_test {
 
@@ -128,6 +129,47 @@ TEST_SUITE("run") {
       }
     const auto both = nendo::test::nendo({"run", "--injective", "--no-injective"});
     CHECK(both.exit_code == 2);
+  }
+
+  TEST_CASE("how a shape was kept from folding is told to those who ask, or where it mattered") {
+    const TemporaryFolder folder;
+    const auto run = [&](std::vector<std::string> more) {
+      std::vector<std::string> arguments{
+          "run",        "--right", "sim:rest", "--out", (folder.path() / "shape.ply").string(),
+          "--duration", "300ms"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const auto done = nendo::test::nendo(arguments);
+      CAPTURE(done.err);
+      REQUIRE(done.exit_code == 0);
+      return done;
+    };
+    const auto plain = run({});
+    CHECK(plain.out.find("least determinant") == std::string::npos);
+    CHECK(plain.out.find("held apart") == std::string::npos); // a hand at rest keeps its fingers
+    CHECK(run({"--verbose"}).out.find("least determinant") != std::string::npos);
+    CHECK(run({"--verbose", "--no-injective"}).out.find("determinant") == std::string::npos);
+  }
+
+  TEST_CASE("a model that is too large for the guard against folds says that there is none") {
+    const TemporaryFolder folder;
+    const auto mesh = (folder.path() / "large.ply").string();
+    REQUIRE(deform::write_mesh(mesh, test::sphere(320, 320, 1.0))); // 102,000 vertices
+    const auto run = [&](std::vector<std::string> more) {
+      std::vector<std::string> arguments{"run",
+                                         "--right",
+                                         "sim",
+                                         "--mesh",
+                                         mesh,
+                                         "--out",
+                                         (folder.path() / "a.ply").string(),
+                                         "--duration",
+                                         "200ms"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return nendo::test::nendo(arguments).err;
+    };
+    CHECK(run({}).find("keeps the surface from folding; --injective") != std::string::npos);
+    CHECK(run({"--no-injective"}).find("folding") == std::string::npos); // who says so knows
+    CHECK(run({"--injective"}).find("folding") == std::string::npos);
   }
 
   TEST_CASE("a hang-up ends a run early, and does not under nohup") {

@@ -1,4 +1,7 @@
 #include <fstream>
+#include <initializer_list>
+#include <regex>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -51,6 +54,38 @@ TEST_SUITE("run_keys") {
     const auto saved = deform::read_mesh(folder.path() / "shape-2.obj");
     REQUIRE(saved);
     CHECK(saved->vertices.cols() == deform::read_mesh(out)->vertices.cols());
+  }
+
+  TEST_CASE("the line of progress stays within the terminal's width, and keeps its marks") {
+    for (const unsigned short columns : std::initializer_list<unsigned short>{80, 44}) {
+      CAPTURE(columns);
+      const TemporaryFolder folder;
+      TerminalProgram program({"run", "--left", "sim:sculpt", "--right", "sim:sculpt", "--duration",
+                               "1000s", "--out", (folder.path() / "shape.obj").string()},
+                              columns, 24);
+      REQUIRE(program.tells(" ticks"));
+      CHECK(program.press('g'));
+      if (columns == 80) REQUIRE(program.tells("  let go"));
+      CHECK(program.press('q'));
+      CHECK(program.wait() == 0);
+      const std::string& all = program.screen().transcript();
+      const std::string progress = all.substr(0, all.find("nendo run:"));
+      const std::regex begin(
+          R"(  [0-9]+\.[0-9]( of 1000\.0)? s  )"); // the transcript has no carriage returns
+      int seen = 0;
+      for (std::sregex_iterator at(progress.begin(), progress.end(), begin), end; at != end;) {
+        const auto first = static_cast<std::size_t>(at->position());
+        const std::size_t next =
+            ++at == end ? progress.size() : static_cast<std::size_t>(at->position());
+        std::string line = progress.substr(first, next - first);
+        line = line.substr(0, line.find('\n'));
+        ++seen;
+        CAPTURE(line);
+        CHECK(line.size() < columns); // the last column stays free
+        CHECK(line.find(" left") != std::string::npos);
+      }
+      CHECK(seen > 0);
+    }
   }
 
   TEST_CASE("where no key can come none is spoken of") {

@@ -47,6 +47,29 @@ TEST_SUITE("run_outputs") {
     CHECK(failed.err.find("full") != std::string::npos);
   }
 
+  TEST_CASE("the model itself is no output without --force, and what is odd about it is told") {
+    const TemporaryFolder folder;
+    const auto model = (folder.path() / "m.obj").string();
+    const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    nendo::test::write_file(model, text);
+    const auto run = [&](std::vector<std::string> more) {
+      std::vector<std::string> all{"run", "--right", "sim", "--duration", "0.2", "--mesh", model};
+      all.insert(all.end(), more.begin(), more.end());
+      return nendo::test::nendo(all);
+    };
+    const auto refused = run({"--out", model});
+    CHECK(refused.exit_code == 2);
+    CHECK(is_one_line_about(refused.err, "--force"));
+    CHECK(nendo::test::contents(model) == text);
+    CHECK(run({"--out", model, "--force"}).exit_code == 0);
+    CHECK(nendo::test::contents(model) != text);
+    const auto out = (folder.path() / "o.obj").string();
+    CHECK(run({"--out", out, "--radius", "100"}).err.find("reaches all") != std::string::npos);
+    CHECK(run({"--out", out, "--radius", "0.5"}).err.find("reaches all") == std::string::npos);
+    nendo::test::write_file(model, "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    CHECK(run({"--out", out}).err.find("m.obj: has no faces") != std::string::npos);
+  }
+
   TEST_CASE("names that are no UTF-8 do not end the program, and its JSON stays JSON") {
     const TemporaryFolder folder;
     const std::string out = (folder.path() / "sh\xff"

@@ -183,6 +183,15 @@ TEST_SUITE("stress") {
     CHECK(second.out.find("per scheduled tick") != std::string::npos);
     CHECK(second.out.find("earlier") != std::string::npos);
     CHECK(second.out.find("\n000049 ") != std::string::npos);
+    CHECK(second.err.find("other work") == std::string::npos);
+    const auto other =
+        nendo::test::nendo({"stress", "-D", "0.3", "--floor", "0", "-p", "0", "--stages",
+                            "sleep,input", "--load", "cpu", "--compare", file("a.json")});
+    CHECK(other.exit_code == 0);
+    CHECK(other.err.find("--compare " + file("a.json")) != std::string::npos);
+    CHECK(other.err.find("stages [") != std::string::npos);
+    CHECK(other.err.find("load [] then and [\"cpu\"] now") != std::string::npos);
+    CHECK(other.err.find("vertices") == std::string::npos); // the same model
     nendo::test::write_file(file("b.json"), "{\"event\":\"summary\"}");
     const auto bad = nendo::test::nendo({"stress", "-D", "0.3", "--compare", file("b.json")});
     CHECK(bad.exit_code == 5);

@@ -81,6 +81,10 @@ def end(b):
                     b.take("qQQQQBQI")))
 
 
+def sent(b):
+    return {"gloves": [dict(zip(("delivered", "missed", "refused", "bad"), b.take("4Q"))) for _ in range(b.take("B"))]}
+
+
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
              3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
@@ -103,10 +107,10 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 1, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 2, crc32c(data[:12])), "header"
     at = 16
     number = 0
-    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "TAPE": tape, "SHAP": shape, "END ": end}
+    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
     while at < len(data):
         magic, kind, size, found, check = struct.unpack_from("<4s4sIII", data, at)
         assert magic == b"NCHK" and check == crc32c(data[at:at + 16]) and found == number, f"chunk header at {at}"

@@ -1,5 +1,7 @@
 #include <nendo/recording/recorder.hpp>
 
+#include <atomic>
+
 #include <doctest/doctest.h>
 
 #include "support/eventually.hpp"
@@ -35,6 +37,15 @@ Counts counts_of(const std::filesystem::path& path) {
   counts.has_ending = reader->ending().has_value();
   CHECK(reader->strange() == 0);
   return counts;
+}
+
+std::vector<driver::RecordCounts> sent_in(const std::filesystem::path& path) {
+  auto reader = TakeReader::open(path);
+  REQUIRE(reader);
+  while (reader->next()) {
+  }
+  CHECK(reader->strange() == 0);
+  return reader->sent();
 }
 
 } // namespace
@@ -73,6 +84,36 @@ TEST_SUITE("recorder") {
     CHECK(test::eventually([&] { return counts_of(live.path).ticks == 100; }));
     CHECK_FALSE(counts_of(live.path).has_ending);
     REQUIRE(live.end());
+  }
+
+  TEST_CASE("what the gloves sent is in the file, newest last, before the end and at the end") {
+    RecordedLoop live(Mode::type1);
+    std::atomic<std::uint64_t> turn{0};
+    live.record({.chunk_time = 20ms,
+                 .sent =
+                     [&] {
+                       const std::uint64_t n = ++turn;
+                       return std::vector<driver::RecordCounts>{{10 * n, n, 2, 3},
+                                                                {20 * n, 0, 0, n}};
+                     },
+                 .sent_time = 30ms});
+    test::play(live, 100);
+    std::vector<driver::RecordCounts> seen;
+    // As after a crash: no ending, but what was told so far.
+    CHECK(test::eventually([&] {
+      seen = sent_in(live.path);
+      return seen.size() == 2 && seen[0].missed > 1;
+    }));
+    CHECK_FALSE(counts_of(live.path).has_ending);
+    CHECK(seen[0].delivered == 10 * seen[0].missed);
+    const auto recorded = live.end();
+    REQUIRE(recorded);
+    const std::uint64_t n = turn;
+    const std::vector<driver::RecordCounts> last{{10 * n, n, 2, 3}, {20 * n, 0, 0, n}};
+    CHECK(recorded->sent == last);
+    CHECK(sent_in(live.path) == last);
+    CHECK(counts_of(live.path).has_ending);
+    CHECK(counts_of(live.path).ticks == 100);
   }
 
   TEST_CASE("no recording is written over, and a folder that is missing is told at once") {

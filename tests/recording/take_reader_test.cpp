@@ -291,6 +291,27 @@ TEST_SUITE("take_reader") {
     }
   }
 
+  TEST_CASE("what the gloves sent is where and what FORMAT.md says") {
+    RecordedLoop live(Mode::type1);
+    live.record({.sent = [] {
+      return std::vector<driver::RecordCounts>{{359, 98, 7, 12}, {1ULL << 40U, 0, 0, 0}};
+    }});
+    test::play(live, 20);
+    REQUIRE(live.end());
+    std::vector<std::string> kinds;
+    json sent;
+    for (const auto& line : told_by_python(live.path)) {
+      kinds.push_back(line["chunk"]);
+      if (kinds.back() == "SENT") sent = line;
+    }
+    REQUIRE(kinds.size() > 2);
+    CHECK(kinds.back() == "END ");
+    CHECK(kinds[kinds.size() - 2] == "SENT");
+    CHECK(sent["gloves"][0] ==
+          json{{"delivered", 359}, {"missed", 98}, {"refused", 7}, {"bad", 12}});
+    CHECK(sent["gloves"][1]["delivered"] == 1ULL << 40U);
+  }
+
   TEST_CASE("shapes are where and what FORMAT.md says") {
     RecordedLoop live(Mode::type1);
     live.record();

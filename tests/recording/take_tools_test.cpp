@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -207,6 +210,57 @@ TEST_SUITE("take_tools") {
     const auto refused = cut_take(take.live.path, take.live.folder.path() / "none", 1h, 2h);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().code == Errc::bad_input);
+  }
+
+  TEST_CASE("a recording says what was missed on the line, and one that does not know says so") {
+    const std::vector<driver::RecordCounts> sent{{359, 98, 1, 12}, {400, 0, 0, 0}};
+    RecordedLoop live(Mode::type1);
+    live.record({.sent = [&] { return sent; }});
+    test::play(live, 50);
+    REQUIRE(live.end());
+    const auto told = [](const std::filesystem::path& path) {
+      const auto summary = summarise(path);
+      REQUIRE(summary);
+      CHECK(summary->is_whole());
+      return std::vector{summary->gloves[0].sent, summary->gloves[1].sent};
+    };
+    const std::vector<std::optional<driver::RecordCounts>> known{sent[0], sent[1]};
+    CHECK(told(live.path) == known);
+    const auto made = live.folder.path() / "made.nendo";
+    REQUIRE(repair_take(live.path, made));
+    CHECK(told(made) == known);
+    const auto with_shapes = live.folder.path() / "shapes.nendo";
+    REQUIRE(add_shapes(live.path, with_shapes, live.test.model, 10.0));
+    CHECK(told(with_shapes) == known);
+    // Nobody knows which part of it was missed in a part of the time.
+    const auto part = live.folder.path() / "part.nendo";
+    REQUIRE(cut_take(live.path, part, 0s, 1h));
+    CHECK(told(part) == std::vector<std::optional<driver::RecordCounts>>(2));
+    Take old;
+    CHECK(told(old.live.path) == std::vector<std::optional<driver::RecordCounts>>(2));
+  }
+
+  TEST_CASE("counts of other gloves than the recording has, or half of them, are none") {
+    Setup setup = begin_setup("test 1.0");
+    setup.gloves.resize(2);
+    const std::vector<driver::RecordCounts> sent(3, driver::RecordCounts{5, 4, 3, 2});
+    for (const std::size_t gloves : {std::size_t{1}, std::size_t{2}, std::size_t{3}}) {
+      for (const bool cuts : {false, true}) {
+        CAPTURE(gloves);
+        std::uint32_t chunks = 0;
+        std::vector<std::byte> bytes = setup_bytes(setup, chunks);
+        std::vector<std::byte> payload;
+        ByteWriter writer(payload);
+        put_sent(writer, std::span(sent).first(gloves));
+        if (cuts) payload.pop_back();
+        driver::append_chunk(bytes, sent_chunk, chunks++, payload);
+        const auto summary = summarise(bytes, "counts");
+        REQUIRE(summary);
+        const bool fine = gloves == 2 && !cuts;
+        CHECK(summary->strange == (fine ? 0 : 1));
+        CHECK(summary->gloves[0].sent.has_value() == fine);
+      }
+    }
   }
 
   TEST_CASE("gloves that are told of behind the first sample are none, and nor are their samples") {

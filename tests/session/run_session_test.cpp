@@ -218,9 +218,60 @@ ReplayedLoop replay(const std::filesystem::path& file) {
   return {model->vertices, (*again)->loop().final_shape()};
 }
 
+/// Watches as a window or as a browser does, until it has seen enough.
+class Onlooker final : public PacingObserver {
+public:
+  explicit Onlooker(bool stays) : stays_(stays) {}
+  void update(const RunStatus& status, flow::CommandRing& commands) override {
+    wait();
+    silent = status.frame.hands[0].silent;
+    if (silent && !reports.empty() && ++frames_after > 50) commands.try_push(flow::EndRun{});
+  }
+  void report(const std::string& message) override { reports.push_back(message); }
+  bool stays_open() const noexcept override { return stays_; }
+
+  std::vector<std::string> reports;
+  bool silent = false;
+  int frames_after = 0; ///< after the end was told
+
+private:
+  bool stays_;
+};
+
 } // namespace
 
 TEST_SUITE("run_session") {
+  TEST_CASE(
+      "a run of recordings ends with them, but not before whoever looks at a window says so") {
+    Run run;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    run.options.right.clear();
+    run.options.duration_s = 0.5;
+    auto sim = open_hands(run.options, run.mesh, run.event_count);
+    REQUIRE(sim);
+    const RunParticipants alone{[](const auto&, double) {}};
+    const auto recorded = run_session(run.options, sim->hands, run.mesh, alone);
+    REQUIRE((recorded && recorded->recordings.front().recorded));
+    const std::uint64_t samples = recorded->recordings.front().recorded->samples;
+
+    Run again;
+    again.options.left = "replay:" + run.options.recording.file;
+    again.options.right.clear();
+    for (const bool stays : {false, true}) {
+      CAPTURE(stays);
+      auto replayed = open_hands(again.options, again.mesh, again.event_count);
+      REQUIRE(replayed);
+      Onlooker onlooker(stays);
+      const auto outcome = run_session(again.options, replayed->hands, again.mesh,
+                                       {[](const auto&, double) {}, {&onlooker}});
+      REQUIRE(outcome);
+      CHECK(outcome->stats.samples[0] == samples - 1); // the first one placed the hand
+      CHECK(onlooker.reports.size() == (stays ? 1 : 0));
+      CHECK((onlooker.frames_after > 50) == stays);
+    }
+  }
+
   TEST_CASE("a loop that is made anew goes on from the shape as it was, with the hands where they "
             "were, and what was shaped is in the file") {
     const test::TemporaryFolder folder;
@@ -329,7 +380,9 @@ TEST_SUITE("run_session") {
   TEST_CASE("whoever watches a run has its settings changed, and only those that it names") {
     Run run;
     Asker asker(Changes{{change(other_settings)}, {reset}});
-    run.follow({&asker});
+    const auto outcome = run.follow({&asker});
+    CHECK(outcome.sculptor.mode == flow::Mode::type2); // which the summary tells
+    CHECK(outcome.sculptor.deformer.csrbf.kernel == deform::Wendland::c4);
     REQUIRE(asker.begun.size() == 3);
     const auto& first = asker.in_force[0];
     const auto& second = asker.in_force[1];

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
-#include "cli/cli.hpp"
+#include "cli/quantities.hpp"
 #include "stress/load.hpp"
 #include "stress/stress_options.hpp"
 

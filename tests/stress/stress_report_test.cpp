@@ -127,6 +127,26 @@ TEST_SUITE("stress report") {
                     "mem\n") != std::string::npos);
   }
 
+  TEST_CASE("what became of the gloves' records stands in both, by the same names") {
+    StressOptions options;
+    StressOutcome outcome(options.run.loop);
+    outcome.gloves = {"serial:/dev/a", "sim"};
+    outcome.glove_records = {{359, 98, 7, 12}, {90, 0, 0, 0}};
+    const ordered_json report = stress_json(options, outcome);
+    REQUIRE(report["gloves"].size() == 2);
+    CHECK(report["gloves"][0] == ordered_json{{"source", "serial:/dev/a"},
+                                              {"sent", 457},
+                                              {"delivered", 359},
+                                              {"missed", 98},
+                                              {"refused", 7},
+                                              {"bad_records", 12}});
+    CHECK(report["gloves"][1]["sent"] == 90);
+    CHECK(report["missed"] == 0); // the loop's deadlines
+    CHECK(text_of(options, outcome, nullptr)
+              .find("serial:/dev/a: 457 sent, 359 delivered, 98 missed, 7 refused, 12 bad") !=
+          std::string::npos);
+  }
+
   TEST_CASE("what was never recorded is null in the JSON and has no line in the text") {
     StressOptions options;
     const StressOutcome outcome(options.run.loop);

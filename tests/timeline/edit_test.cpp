@@ -64,6 +64,30 @@ TEST_SUITE("edit") {
     CHECK(test::same_bits(edited, before));
   }
 
+  TEST_CASE("a time behind the end by a tick at most is the end, or just before the key there") {
+    Timeline edited = some_timeline();
+    std::vector<Key>& keys = edited.hands[1].keys;
+    const double end_s = edited.duration_s;
+    const double tick_s = 1.0 / edited.rate_hz;
+    while (keys.back().time_s >= end_s)
+      keys.pop_back();
+    REQUIRE_FALSE(keys.empty());
+    const auto placed = [&](double time_s) { return time_near_end(edited, Side::right, time_s); };
+    for (const double inside_s : {0.0, 0.5 * end_s, end_s})
+      CHECK(placed(inside_s) == inside_s);
+    CHECK(placed(end_s + 0.9 * tick_s) == end_s);
+    CHECK(placed(end_s + 1.1 * tick_s) == end_s + 1.1 * tick_s);
+    CHECK_FALSE(copy_key(edited, Side::right, 0, placed(end_s + 1.1 * tick_s)));
+    REQUIRE(copy_key(edited, Side::right, 0, placed(end_s + 0.9 * tick_s)));
+    REQUIRE(keys.back().time_s == end_s);
+    const std::size_t last = keys.size() - 1;
+    CHECK(time_near_end(edited, Side::right, end_s + 0.9 * tick_s, last) == end_s);
+    REQUIRE(copy_key(edited, Side::right, 0, placed(end_s + 0.9 * tick_s)));
+    CHECK(keys[last].time_s == doctest::Approx(end_s - 0.5 * tick_s));
+    CHECK(keys.back().time_s == end_s);
+    CHECK(complaint_about(edited).empty());
+  }
+
   TEST_CASE("an added key is on the curve") {
     Timeline edited = some_timeline();
     const Key wanted = HandCurve(edited.hands[0].keys).at(0.005);

@@ -106,7 +106,8 @@ TEST_SUITE("window") {
     settings.radius_m.fill(0.1);
     window.begin(test.loop->layout(), SceneBuilder(test.model, test.placement.units_per_metre),
                  settings);
-    const flow::Frame& frame = test.frame_after_tick(0);
+    flow::Frame frame = test.frame_after_tick(0);
+    frame.undo_steps = frame.redo_steps = 1;
     const auto type = [&](int key) {
       SimulatedInput input;
       input.taps = {key};

@@ -77,6 +77,8 @@ TEST_SUITE("follow") {
       double worst = 0.0;
       double moved = 0.0;
       int compared = 0;
+      int undoable = 0;
+      int redoable = 0;
       for (int tick = 0; tick < 600; ++tick) {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
         if (random() % 25 == 0)
@@ -84,6 +86,11 @@ TEST_SUITE("follow") {
         const auto shape = streamed.tick(bent);
         moved = std::max(moved, (shape - streamed.test.model.vertices).cwiseAbs().maxCoeff());
         followed.pass();
+        const flow::Frame& frame = streamed.test.loop->frames().front();
+        REQUIRE(followed.client.can_undo == (frame.undo_steps > 0));
+        REQUIRE(followed.client.can_redo == (frame.redo_steps > 0));
+        undoable += followed.client.can_undo ? 1 : 0;
+        redoable += followed.client.can_redo ? 1 : 0;
         if (!followed.is_up_to_date()) continue;
         worst = std::max(worst, followed.gap(shape));
         ++compared;
@@ -91,6 +98,8 @@ TEST_SUITE("follow") {
       CHECK(worst < 1e-5);
       CHECK(moved > 0.05); // of a ball of radius 1
       CHECK(compared > 500);
+      CHECK((undoable > 0 && undoable < 600)); // neither always nor never
+      CHECK((redoable > 0 && redoable < 600));
       CHECK(followed.client.commits > 3);
       CHECK(followed.client.undos > 3);
       CHECK(followed.client.shapes >= static_cast<int>(followed.client.undos));
@@ -230,7 +239,7 @@ TEST_SUITE("follow") {
         followed.pass();
         most = std::max(most, followed.client.update_bytes);
       }
-      CHECK(most > 88 + 2 * 126);
+      CHECK(most > 112 + 2 * 126);
       CHECK(most < 1000);
       const auto& chain = streamed.test.loop->frames().front().chain;
       const bool in_links = way.second && way.first == flow::Mode::type1;

@@ -20,7 +20,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 1;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 2;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
@@ -93,6 +93,8 @@ public:
   std::array<std::array<Eigen::Quaterniond, 26>, 2> turns{};
   std::array<Eigen::Quaterniond, 2> forearms{};
   std::array<bool, 2> present{}, other_bones{};
+  bool can_undo = false, can_redo = false;
+  std::array<std::uint32_t, 2> bad{}, delivered{}, missed{}, refused{}; ///< records of the gloves
   std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
   std::string report;                ///< the last report of the server
@@ -161,6 +163,8 @@ private:
     update_bytes = in.bytes.size();
     held = in.take<std::uint8_t>() != 0;
     const auto hands = in.take<std::uint8_t>();
+    can_undo = (hands & 64U) != 0;
+    can_redo = (hands & 128U) != 0;
     in.at += 1;
     const auto steps = in.take<std::uint32_t>();
     newest = in.take<std::uint64_t>();
@@ -171,7 +175,10 @@ private:
     in.at = 60;
     lost = in.take<std::uint32_t>();
     skipped = in.take<std::uint32_t>();
-    in.at = 88;
+    in.at = 80;
+    for (auto* counts : {&bad, &delivered, &missed, &refused})
+      for (std::uint32_t& count : *counts)
+        count = in.take<std::uint32_t>();
     for (unsigned slot = 0; slot < 2; ++slot) {
       present[slot] = (hands >> slot & 1U) != 0;
       other_bones[slot] = (hands >> slot & 16U) != 0;

@@ -40,6 +40,24 @@ TEST_SUITE("server") {
     CHECK(server->url() == "http://" + server->endpoint().authority() + "/#" + server->token());
   }
 
+  TEST_CASE("a client hears what became of each glove's records, each loss under its own name") {
+    Served served(flow::Mode::type1);
+    served.server->set_counts({{{359, 98, 7, 12}, {1000, 0, 1, 2}}});
+    served.begin();
+    Viewer viewer(served);
+    CHECK(viewer.follow_until([&] { return viewer.updates > 0; }));
+    const auto pair = [](std::uint32_t left, std::uint32_t right) {
+      return std::array<std::uint32_t, 2>{left, right};
+    };
+    CHECK(viewer.delivered == pair(359, 1000));
+    CHECK(viewer.missed == pair(98, 0));
+    CHECK(viewer.refused == pair(7, 1));
+    CHECK(viewer.bad == pair(12, 2));
+    served.server->set_counts({{{400, 99, 7, 12}, {1001, 0, 1, 2}}});
+    CHECK(viewer.follow_until([&] { return viewer.delivered == pair(400, 1001); }));
+    CHECK(viewer.missed == pair(99, 0));
+  }
+
   TEST_CASE("a wrong origin, host or token is refused, and there is nothing before a loop begins") {
     const auto server = open_server();
     const auto status = [&](const std::string& path, const std::string& headers = {},

@@ -8,15 +8,8 @@ import struct
 import sys
 
 import bpy
-import io_anim_bvh.import_bvh
 import numpy as np
 from mathutils import Vector
-
-# Debian 12's Blender 3.4 stands on a newer Python and numpy than its importers: open(mode "U") and np.bool are no more.
-io_anim_bvh.import_bvh.open = lambda path, mode="r", *rest, **named: open(path, mode.replace("U", ""), *rest, **named)
-for name, kind in (("bool", bool), ("int", int), ("float", float), ("object", object)):
-    if name not in np.__dict__:
-        setattr(np, name, kind)
 
 WORK, MODEL = sys.argv[sys.argv.index("--") + 1:]
 FPS = 30
@@ -121,6 +114,23 @@ def judge_tips(name, rows, first_frame, step):
 judge_tips.seen = 0
 
 
+def judge_rigs(name, has_model):
+    """Each hand is an armature of its own, with its own bones and skin, and the model hangs under neither."""
+    global complaints
+    begin()
+    bpy.ops.import_scene.gltf(filepath=path(name))
+    found = {}
+    for thing in bpy.data.objects:
+        if thing.type == "ARMATURE":
+            skins = sorted(child.name for child in thing.children)
+            found[thing.name] = (thing.parent, skins, len(thing.data.bones), {bone.name[-2:] for bone in thing.data.bones})
+    wanted = {side + " hand": (None, [side + " hand skin"], 26, {suffix}) for side, suffix in (("left", "_L"), ("right", "_R"))}
+    model = bpy.data.objects.get("model")
+    fine = found == wanted and (model is not None and model.parent is None) == has_model
+    complaints += not fine
+    print(f"nendo: {'' if fine else 'WRONG: '}{name}: armatures {found}", flush=True)
+
+
 def judge_even(take, limit):
     """The frames of a file at 30 a second, against the sequence of meshes."""
     model = import_glb(take + "-even.glb")
@@ -215,6 +225,8 @@ for take in ("type1", "type2"):
     for kind in ("PC2", "MDD"):
         judge_cache(take, kind)
 judge_bvh("type1")
+judge_rigs("type2.glb", True)
+judge_rigs("gloves.glb", False)
 assert judge_tips.seen > 0
 draw("type1.glb")
 print(f"nendo: {complaints} complaints", flush=True)

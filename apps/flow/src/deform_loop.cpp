@@ -86,6 +86,13 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
       record.samples += static_cast<std::uint32_t>(count);
     }
     stats_.samples[hand.slot] += count;
+    SampleRate& rate = stats_.rates[hand.slot];
+    if (stats_.ticks == 0) {
+      rate = {0, hand.latest.arrival, hand.latest.arrival};
+    } else if (hand.fresh) {
+      rate.samples += count;
+      rate.last = hand.latest.arrival;
+    }
     stats_.spikes[hand.slot] = hand.gate.spikes();
     if (const auto* learned = hand.calibration.adaptation())
       stats_.ranges[hand.slot] = learned->ranges();

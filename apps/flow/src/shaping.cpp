@@ -23,6 +23,13 @@ SculptorOptions with_memory(SculptorOptions options, deform::UndoMemory* memory)
   return options;
 }
 
+bool moves_anything(const deform::FieldSequence& sequence) noexcept {
+  const auto fields = sequence.fields();
+  return std::any_of(fields.begin(), fields.end(), [](const deform::CsrbfField& field) {
+    return !field.coefficients.isZero(0.0) || !field.polynomial.isZero(0.0);
+  });
+}
+
 void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
   stats.most_links = std::max(stats.most_links, chain.links);
   stats.most_bound = std::max(stats.most_bound, chain.whole_bound);
@@ -56,8 +63,17 @@ void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
     // What cannot be done now has changed nothing, and is tried again at the next tick.
     if (!is_solved(undoes ? sculptor_.undo(tips) : sculptor_.redo(tips))) break;
     ++(undoes ? stats.undos : stats.redos);
+    shaped_ = false;
   }
   steps_due_.erase(steps_due_.begin(), due);
+}
+
+// Type-1 drops with an undo what was shaped since the commit that it undoes. Type-2 keeps it as a
+// step of its own.
+std::size_t Shaping::undo_steps() const noexcept {
+  const std::size_t steps = sculptor_.undo_steps();
+  if (!held_ || !shaped_) return steps;
+  return sculptor_.mode() == Mode::type2 ? steps + 1 : std::max<std::size_t>(steps, 1);
 }
 
 FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats) noexcept {
@@ -73,10 +89,13 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats) n
     frame.fields.follow(sculptor_.fields());
     frame.chain = sculptor_.report();
     count_chain(frame.chain, stats);
+    const bool moves = moves_anything(frame.fields);
+    shaped_ = moves || (shaped_ && sculptor_.mode() == Mode::type2); // type 1 begins at the rest
     // What cannot be committed now stays held, and is tried again at the next tick.
     if (commits && is_solved(status) && is_solved(sculptor_.commit(tips))) {
       ++stats.commits;
       commit_due_ = false;
+      shaped_ = false;
       held_ = hold_wanted_;
     }
   } else {
@@ -88,6 +107,8 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats) n
   stats.forgotten_steps = sculptor_.forgotten_steps();
   frame.commits = stats.commits;
   frame.undos = stats.undos + stats.redos;
+  frame.undo_steps = undo_steps();
+  frame.redo_steps = sculptor_.redo_steps();
   frame.held = held_;
   return status;
 }

@@ -73,6 +73,7 @@ private:
     std::condition_variable_any wake;
     std::unique_lock lock(mutex);
     HostTime next_chunk = HostClock::now() + options_.chunk_time;
+    HostTime next_sent = HostClock::now() + options_.sent_time;
     while (!stop.stop_requested()) {
       wake.wait_until(lock, stop, std::min(next_chunk, HostClock::now() + drain_time),
                       [] { return false; });
@@ -81,6 +82,10 @@ private:
       if (now >= next_chunk || payload_.size() >= largest_payload) {
         write_chunk();
         next_chunk = now + options_.chunk_time;
+      }
+      if (now >= next_sent) {
+        write_sent();
+        next_sent = now + options_.sent_time;
       }
       if (last_minute_ && saves_.exchange(0, std::memory_order_relaxed) > 0) write_last_minute();
     }
@@ -133,6 +138,15 @@ private:
     payload_.clear();
     entries_ = 0;
   }
+  void write_sent() {
+    if (!options_.sent) return;
+    write_chunk(); // it stands behind the samples that it counts
+    recorded_.sent = options_.sent();
+    ByteWriter writer(payload_);
+    put_sent(writer, recorded_.sent);
+    append(sent_chunk);
+    payload_.clear();
+  }
   void append(driver::ChunkType type) {
     if (!file_) return;
     if (const auto written = file_->append(type, payload_); !written) fail(written.error());
@@ -163,6 +177,7 @@ private:
     drain();
     note_lost(input_log_.lost());
     write_chunk();
+    write_sent();
     if (last_minute_ && saves_.exchange(0, std::memory_order_relaxed) > 0) write_last_minute();
     ByteWriter writer(payload_);
     put_ending(writer, {HostClock::now(), recorded_.samples, recorded_.requests, recorded_.ticks,

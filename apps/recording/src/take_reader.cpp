@@ -96,6 +96,19 @@ std::optional<Ending> ending_of(std::span<const std::byte> payload) {
   return ending;
 }
 
+std::optional<std::vector<driver::RecordCounts>> sent_of(std::span<const std::byte> payload) {
+  ByteReader reader(payload);
+  std::vector<driver::RecordCounts> gloves(reader.u8());
+  for (driver::RecordCounts& counts : gloves) {
+    counts.delivered = reader.u64_le();
+    counts.missed = reader.u64_le();
+    counts.refused = reader.u64_le();
+    counts.bad = reader.u64_le();
+  }
+  if (reader.overrun()) return std::nullopt;
+  return gloves;
+}
+
 } // namespace
 
 void put_entry(ByteWriter& writer, const Entry& entry) {
@@ -112,20 +125,33 @@ void put_ending(ByteWriter& writer, const Ending& ending) {
   writer.u32_le(shape.crc);
 }
 
+void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves) {
+  writer.u8(static_cast<std::uint8_t>(gloves.size()));
+  for (const driver::RecordCounts& counts : gloves)
+    for (const std::uint64_t count : {counts.delivered, counts.missed, counts.refused, counts.bad})
+      writer.u64_le(count);
+}
+
 TakeReader::TakeReader(driver::ChunkReader chunks) : chunks_(std::move(chunks)) {
   next_chunk(); // the setup stands before the first input log
+}
+
+Result<TakeReader> TakeReader::begin(driver::ChunkReader chunks, const std::string& name) {
+  TakeReader reader(std::move(chunks));
+  if (reader.chunks_.good_end() > driver::file_header().size()) return reader;
+  return Error{Errc::bad_input, name + ": is cut off or damaged before anything was recorded"};
 }
 
 Result<TakeReader> TakeReader::open(const std::filesystem::path& path) {
   auto chunks = driver::ChunkReader::open(path);
   if (!chunks) return chunks.error();
-  return TakeReader(*std::move(chunks));
+  return begin(*std::move(chunks), path.string());
 }
 
 Result<TakeReader> TakeReader::of(std::span<const std::byte> bytes, std::string_view name) {
   auto chunks = driver::ChunkReader::of(bytes, name);
   if (!chunks) return chunks.error();
-  return TakeReader(*std::move(chunks));
+  return begin(*std::move(chunks), std::string(name));
 }
 
 /// Goes on to the next chunk of an input log. Returns false if there is none.
@@ -140,18 +166,29 @@ bool TakeReader::next_chunk() {
       records_ = driver::LogEntries(chunk->payload);
       return true;
     }
-    if (chunk->type == ending_chunk) {
-      ending_ = ending_of(chunk->payload);
-      if (!ending_) ++strange_;
-    } else if (chunk->type == shape_chunk) {
-      shape_ = read_shape(chunk->payload);
-      ++(shape_ ? shapes_ : strange_);
-    } else if (setup_done_ && is_setup_chunk(chunk->type)) {
-      ++strange_; // the setup does not change once it has been read
-    } else if (!read_setup_chunk(chunk->type, chunk->payload, setup_)) {
-      ++strange_;
-    }
+    if (!take_chunk(*chunk)) ++strange_;
   }
+}
+
+/// Takes a chunk that is no input log's. Returns false if nendo does not write such a one.
+bool TakeReader::take_chunk(const driver::Chunk& chunk) {
+  if (chunk.type == ending_chunk) {
+    ending_ = ending_of(chunk.payload);
+    return ending_.has_value();
+  }
+  if (chunk.type == shape_chunk) {
+    shape_ = read_shape(chunk.payload);
+    if (shape_) ++shapes_;
+    return shape_.has_value();
+  }
+  if (chunk.type == sent_chunk) {
+    auto sent = sent_of(chunk.payload);
+    const bool fine = sent && sent->size() == setup_.gloves.size();
+    if (fine) sent_ = *std::move(sent);
+    return fine;
+  }
+  if (setup_done_ && is_setup_chunk(chunk.type)) return false; // it does not change any more
+  return read_setup_chunk(chunk.type, chunk.payload, setup_);
 }
 
 /// Returns nothing if the kind of the entry is unknown. Returns nothing, and makes a gap due, if

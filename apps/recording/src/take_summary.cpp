@@ -73,6 +73,8 @@ Result<TakeSummary> summary_of(Result<TakeReader> reader) {
   while (const auto entry = reader->next())
     std::visit(counter, *entry);
   summary.ending = reader->ending();
+  for (std::size_t at = 0; at < summary.gloves.size() && at < reader->sent().size(); ++at)
+    summary.gloves[at].sent = reader->sent()[at];
   summary.bytes = reader->chunks().size();
   summary.good_end = reader->chunks().good_end();
   summary.damage_count = reader->chunks().damage_count();

@@ -43,6 +43,15 @@ public:
     put_shape(writer, shape);
     return file_.append(shape_chunk, payload);
   }
+  /// Appends what the gloves have sent, if anybody has counted.
+  Result<void> put(std::span<const driver::RecordCounts> sent) {
+    if (sent.empty()) return {};
+    if (auto flushed = flush(); !flushed) return flushed;
+    std::vector<std::byte> payload;
+    ByteWriter writer(payload);
+    put_sent(writer, sent);
+    return file_.append(sent_chunk, payload);
+  }
   /// Writes the ending, whose time is `host`. All of it except the counts is taken from
   /// `of_original`, if given.
   Result<NewTake> end(HostTime host, const std::optional<Ending>& of_original = {}) {
@@ -211,6 +220,7 @@ Result<NewTake> add_shapes(const std::filesystem::path& from, const std::filesys
     loop.layout().unpack(frame.shape, vertices);
     if (const auto put = copy->put(shape_of(frame.tick, vertices)); !put) return put.error();
   }
+  if (const auto put = copy->put(reader->sent()); !put) return put.error();
   return copy->end(reader->ending() ? reader->ending()->host : ended, reader->ending());
 }
 

@@ -36,6 +36,15 @@ class Camera {
     Object.assign(this, { ...this.home, target: [...this.home.target] })
     this.changed()
   }
+  look(azimuth, elevation) {
+    Object.assign(this, { azimuth, elevation })
+    this.changed()
+  }
+  // All in the picture, from where one looks.
+  frame() {
+    Object.assign(this, { distance: this.home.distance, target: [...this.home.target] })
+    this.changed()
+  }
   orbit(dx, dy) {
     this.azimuth -= 0.006 * dx
     this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + 0.006 * dy))
@@ -69,7 +78,7 @@ class Camera {
     return 2 * Math.tan(FIELD_OF_VIEW / 2) * depth / narrow
   }
   eye() { return add(this.target, times(this.axes()[2], this.distance)) }
-  // Column by column, as WebGL takes it. shift: of the middle, as a share of the width.
+  // Column by column, as WebGL takes it. shift: of the middle, as a share of half the width.
   projection(aspect, shift) {
     const near = Math.max(0.02, this.distance - 4), far = this.distance + 8
     const [r, u, b] = this.axes(), eye = this.eye()

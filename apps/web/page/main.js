@@ -16,6 +16,7 @@ try {
   panel.say(trouble)
 }
 const camera = new Camera(element('scene'), () => { dirty = true })
+panel.camera = camera
 const mover = new HandMover(element('scene'), camera, () => scene && scene.shape && latest &&
   { hands: latest.hands, origin: scene.origin, pixelOf: place => scene.pixelOf(place) })
 
@@ -104,7 +105,7 @@ function picture() {
   if (move) ask(move)
   if (!dirty) return
   dirty = false
-  if (scene) scene.draw(camera, latest, holds)
+  if (scene) scene.draw(camera, latest, holds, panel.covered())
   panel.draw()
 }
 

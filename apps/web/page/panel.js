@@ -1,10 +1,18 @@
 // The panel: buttons, keys, figures.
+// As in Blender: where one looks from, and where from with Ctrl.
+const RIGHT_ANGLE = Math.PI / 2
+const VIEWS = {
+  1: { plain: [0, 0], ctrl: [Math.PI, 0] },
+  3: { plain: [RIGHT_ANGLE, 0], ctrl: [-RIGHT_ANGLE, 0] },
+  7: { plain: [0, RIGHT_ANGLE], ctrl: [0, -RIGHT_ANGLE] },
+}
 const KEYS = [
   ['g', 'grab: the hands take hold', panel => panel.ask('grab')],
   ['l', 'let go; what is shaped stays', panel => panel.ask('let go')],
   ['c', 'commit: this shape becomes the rest shape', panel => panel.ask('commit')],
-  ['u', 'undo the last commit', panel => panel.ask('undo')],
-  ['r', 'redo what was undone', panel => panel.ask('redo')],
+  ['u', 'undo the last commit', panel => panel.step('undo')],
+  ['r', 'redo what was undone', panel => panel.step('redo')],
+  ['Ctrl Z', 'undo, too; with Shift, or Ctrl Y: redo'],
   ['x', 'reset: back to the model as it was loaded', panel => panel.reset()],
   ['t', 'a take: record from this shape on, and end that', panel => panel.record()],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
@@ -19,29 +27,40 @@ const KEYS = [
   ['v', 'control vectors on and off', panel => panel.toggle('vectors')],
   ['d', 'radii on and off', panel => panel.toggle('radii')],
   ['f', 'facets in place of smooth shading', panel => panel.toggle('facets')],
+  ['1', 'the view from the front; with Ctrl from the back', panel => panel.camera.look(...VIEWS[1].plain)],
+  ['3', 'from the right; with Ctrl from the left', panel => panel.camera.look(...VIEWS[3].plain)],
+  ['7', 'from the top; with Ctrl from the bottom', panel => panel.camera.look(...VIEWS[7].plain)],
+  ['Home', 'all of the model in the picture', panel => panel.camera.frame()],
+  ['p', 'the panel folded and unfolded', panel => panel.fold()],
   ['?', 'this list', panel => panel.help()],
 ]
 const element = id => document.getElementById(id)
 
 class Panel {
   constructor(ask, shown) {
-    this.ask = ask
+    this.ask = request => {
+      if (this.noted) this.tell('')
+      ask(request)
+    }
+    Object.assign(this, { camera: null, live: false, noted: false })
     this.late = new Chart(element('chart-late'), 'late', 'ms')
     this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
-    this.shaping = new Shaping(ask)
+    this.shaping = new Shaping(this.ask)
     const requests = [...document.querySelectorAll('[data-request]')]
-    for (const button of requests) button.addEventListener('click', () => ask(button.dataset.request))
+    for (const button of requests) button.addEventListener('click', () => this.ask(button.dataset.request))
+    this.steps = requests.filter(button => ['undo', 'redo'].includes(button.dataset.request))
     this.buttons = [...requests, element('reset'), element('record')]
     element('record').addEventListener('click', () => this.record())
     element('reset').addEventListener('click', () => this.reset())
     element('reset-dialog').addEventListener('close', ({ target }) => {
-      if (target.returnValue === 'reset') ask('reset')
+      if (target.returnValue === 'reset') this.ask('reset')
       target.returnValue = ''
     })
     for (const part of ['skin', 'bones', 'vectors', 'radii', 'facets'])
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
+    element('fold-button').addEventListener('click', () => this.fold())
     for (const [key, words] of KEYS) {
       const row = element('keys').insertRow()
       row.insertCell().appendChild(document.createElement('kbd')).textContent = key
@@ -52,12 +71,42 @@ class Panel {
   }
 
   press(event) {
-    if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return
+    if (event.altKey || event.metaKey) return
     // Which have keys of their own, or take Enter for a click.
     if (event.target.matches('select') || element('reset-dialog').open) return
+    if (event.ctrlKey) return this.pressWithCtrl(event)
+    if (event.repeat) return
     if (event.key === 'Enter' && event.target.matches('button, input')) return
+    if (event.key === 'Home' && event.target.matches('input[type=range]')) return
     const key = KEYS.find(([name]) => name === event.key)
-    if (key) key[2](this)
+    if (key && key[2]) key[2](this)
+  }
+  pressWithCtrl(event) {
+    const key = event.key.toLowerCase(), view = VIEWS[key]
+    if (key !== 'z' && key !== 'y' && !view) return
+    event.preventDefault()
+    if (view) this.camera.look(...view.ctrl)
+    else this.step(key === 'y' || event.shiftKey ? 'redo' : 'undo')
+  }
+  canStep(request) { return Boolean(this.update) && (request === 'undo' ? this.update.canUndo : this.update.canRedo) }
+  // The button is grey then; a key says why nothing happens.
+  step(request) {
+    if (!this.live) return
+    if (this.canStep(request)) this.ask(request)
+    else this.tell(`There is nothing to ${request}.`, true)
+  }
+  showSteps() {
+    for (const button of this.steps) button.disabled = !this.live || !this.canStep(button.dataset.request)
+  }
+  fold() {
+    const folded = element('panel').classList.toggle('folded')
+    element('fold-button').textContent = folded ? '+' : '\u2212'
+    this.camera.changed()
+  }
+  // What the panel covers of the page's width, as far as it counts.
+  covered() {
+    const panel = element('panel')
+    return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
   }
   toggle(part) { element('show-' + part).click() }
   reset() {
@@ -72,13 +121,18 @@ class Panel {
     else dialog.showModal()
   }
 
-  tell(words) { element('told').textContent = words }
+  tell(words, noted = false) {
+    element('told').textContent = words
+    this.noted = noted // it stays until the next command
+  }
   say(words) {
     element('banner').textContent = words
     element('banner').hidden = words === ''
   }
   connected(yes) {
+    this.live = yes
     for (const button of this.buttons) button.disabled = !yes
+    this.showSteps()
     this.shaping.connected(yes)
   }
   setModel(model) {
@@ -108,6 +162,7 @@ class Panel {
     const { update, model } = this
     if (!update || !model) return
     element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
+    this.showSteps()
     const lost = update.lost + update.skipped
     element('timing').textContent = `${model.rate} Hz wanted, type ${model.settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
       `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.commits} commits, ${update.undos} undone`
@@ -126,8 +181,9 @@ class Panel {
     part.hidden = !hand
     if (!hand) return
     part.className = hand.silent ? 'glove silent' : 'glove'
-    part.firstChild.textContent = `${slot === 0 ? 'left' : 'right'}: ${hand.samples} samples` +
-      `${hand.silent ? ', silent' : ''}${hand.badRecords > 0 ? `, ${hand.badRecords} bad records` : ''}`
+    const { sent, delivered, missed, refused, bad } = hand.records
+    part.firstChild.textContent = `${slot === 0 ? 'left' : 'right'}: ${hand.samples} samples${hand.silent ? ', silent' : ''}; ` +
+      `${sent} sent, ${delivered} delivered, ${missed} missed, ${refused} refused, ${bad} bad records`
     drawBends(part.lastChild, hand)
   }
 }

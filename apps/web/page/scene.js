@@ -118,7 +118,8 @@ class Scene {
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height })
   }
 
-  draw(camera, update, holds) {
+  // covered: what the panel covers of the width. The middle of the picture is that of the rest.
+  draw(camera, update, holds, covered) {
     const { gl, canvas } = this
     this.resize()
     const { azimuth } = camera
@@ -129,7 +130,7 @@ class Scene {
     }
     const aspect = canvas.width / Math.max(1, canvas.height)
     this.view = {
-      clip_of_world: camera.projection(aspect, aspect > 1.2 ? 0.16 : 0), eye: camera.eye(),
+      clip_of_world: camera.projection(aspect, aspect > 1.2 ? covered : 0), eye: camera.eye(),
       key: round([-0.55, 0.75, 0.55]), fill: round([0.85, 0.25, 0.50]), rim: round([0.45, 0.45, -0.80]),
     }
     gl.viewport(0, 0, canvas.width, canvas.height)

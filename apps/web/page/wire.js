@@ -1,6 +1,6 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
-const MODEL_HEAD = 128, BONE_BYTES = 28, UPDATE_HEAD = 88
+const MODEL_HEAD = 128, BONE_BYTES = 28, UPDATE_HEAD = 112
 const KERNELS = ['c0', 'c2', 'c4', 'c6']
 // Of each joint, whose place hangs on it; the wrist's on none.
 const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
@@ -12,7 +12,7 @@ function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
   if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (view.getUint32(8, true) !== 1) throw new Error('this server speaks another version; reload the page')
+  if (view.getUint32(8, true) !== 2) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
   const flags = view.getUint8(125), bones = [null, null]
   let places = MODEL_HEAD
@@ -132,6 +132,7 @@ function readUpdate(buffer, model) {
   const u32 = at => view.getUint32(at, true), u64 = at => Number(view.getBigUint64(at, true))
   const bits = view.getUint8(2)
   const update = {
+    canUndo: (bits & 64) !== 0, canRedo: (bits & 128) !== 0,
     held: view.getUint8(1) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
     tick: u64(16), ticks: u64(24), missed: u64(32), commits: u32(40), undos: u32(44),
     late: view.getFloat32(48, true), mostLate: view.getFloat32(52, true), sinceLast: view.getFloat32(56, true),
@@ -143,7 +144,8 @@ function readUpdate(buffer, model) {
     const hand = readHand(view, at, model.bones[slot][bits & 16 << slot ? 1 : 0])
     hand.silent = (bits & 4 << slot) !== 0
     hand.samples = u32(72 + 4 * slot)
-    hand.badRecords = u32(80 + 4 * slot)
+    const [bad, delivered, missed, refused] = [80, 88, 96, 104].map(first => u32(first + 4 * slot))
+    hand.records = { bad, delivered, missed, refused, sent: delivered + missed }
     update.hands[slot] = hand
     at += hand.bytes
   }

@@ -36,6 +36,10 @@ struct Frame {
   /// this frame comes before its fields, so that they do not lead here from the frame before. A
   /// reader that applies fields must then copy the whole shape.
   std::uint64_t undos = 0;
+  /// How often one can undo, and how often redo, after this frame. At 0 it changes nothing. What
+  /// hands that hold the model have shaped since the last commit can be undone, too.
+  std::uint64_t undo_steps = 0;
+  std::uint64_t redo_steps = 0;
   bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};

@@ -4,11 +4,25 @@
 #include <array>
 #include <cstdint>
 
+#include <nendo/base/units.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/histogram.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 
 namespace nendo::flow {
+
+/// How fast a glove's samples came from the loop's first tick on. What had waited for that tick,
+/// while another glove was opened or the model was placed, says nothing of a glove's rate.
+struct SampleRate {
+  std::uint64_t samples = 0; ///< after the first tick's last one
+  HostTime first{};          ///< when that one arrived
+  HostTime last{};           ///< when the latest one did
+
+  /// 0 until there are two.
+  double per_s() const noexcept {
+    return last > first ? static_cast<double>(samples) / to_seconds(last - first) : 0.0;
+  }
+};
 
 /// The loop's thread writes these counters. Read them when run() has returned.
 struct LoopStats {
@@ -17,6 +31,7 @@ struct LoopStats {
   std::uint64_t missed = 0;   ///< deadlines that were skipped for it, as OverrunPolicy says
   std::uint64_t failed = 0;   ///< ticks without a usable field: the shape stayed as it was
   std::array<std::uint64_t, 2> samples{};
+  std::array<SampleRate, 2> rates{};
   std::array<std::uint64_t, 2> silences{};
   std::array<std::uint64_t, 2> switch_uses{}; ///< how often a hand's switch was turned on
   std::array<std::array<std::uint64_t, sensor_slots>, 2> spikes{}; ///< kept out, by sensor

@@ -29,6 +29,10 @@ class Sculptor {
 public:
   Sculptor(deform::Points rest, Eigen::Index control_points, const SculptorOptions& options);
 
+  Mode mode() const noexcept {
+    return std::holds_alternative<deform::Type1Deformer>(deformer_) ? Mode::type1 : Mode::type2;
+  }
+
   /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
   deform::FieldStatus grab(const deform::Points& tips) noexcept;
   /// Writes the shape for the fingertips' present places into `out`; blocks that `out` already has

@@ -51,12 +51,14 @@ public:
 
 private:
   void take_steps(const deform::Points& tips, LoopStats& stats) noexcept;
+  std::size_t undo_steps() const noexcept;
 
   std::unique_ptr<deform::UndoMemory> undo_memory_; ///< outlives the sculptor
   Sculptor sculptor_;
   bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< what is asked for; follows at the next tick that can
   bool commit_due_ = false;
+  bool shaped_ = false;            ///< since the hands took hold, or since the last commit
   std::vector<Request> steps_due_; ///< undos and redos, in their order
 };
 

@@ -8,8 +8,10 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/input_log.hpp>
 #include <nendo/recording/take_reader.hpp>
 
@@ -27,6 +29,11 @@ struct RecorderOptions {
   std::function<void(std::string_view)> report{};
   /// The period in which a chunk is written to the disk. A crash can lose that much.
   HostClock::duration chunk_time = std::chrono::milliseconds(500);
+  /// Returns what became of each glove's records since the recording began, by the gloves' numbers;
+  /// the recorder's thread and end() call it. Empty: the file does not tell.
+  std::function<std::vector<driver::RecordCounts>()> sent{};
+  /// The period in which the file is told. A crash can lose that much of the counts.
+  HostClock::duration sent_time = std::chrono::seconds(10);
 };
 
 /// The counts of a recording that has ended.
@@ -34,9 +41,10 @@ struct Recorded {
   std::uint64_t samples = 0;
   std::uint64_t requests = 0;
   std::uint64_t ticks = 0;
-  std::uint64_t lost = 0;  ///< entries that found the input log full
-  std::uint64_t bytes = 0; ///< of the file
-  std::uint64_t kept = 0;  ///< files that save_last_minute() made
+  std::uint64_t lost = 0;                   ///< entries that found the input log full
+  std::uint64_t bytes = 0;                  ///< of the file
+  std::uint64_t kept = 0;                   ///< files that save_last_minute() made
+  std::vector<driver::RecordCounts> sent{}; ///< at the end, by the gloves' numbers
 };
 
 class Recorder {

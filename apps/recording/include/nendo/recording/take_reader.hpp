@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include <nendo/driver/chunk_file.hpp>
+#include <nendo/driver/record_counts.hpp>
 #include <nendo/driver/sample_record.hpp>
 #include <nendo/flow/input_log.hpp>
 #include <nendo/recording/recorded_shape.hpp>
@@ -42,6 +44,9 @@ struct Ending {
 void put_entry(ByteWriter& writer, const Entry& entry);
 void put_ending(ByteWriter& writer, const Ending& ending);
 inline constexpr driver::ChunkType ending_chunk = driver::chunk_type("END ");
+/// Writes what the gloves have sent so far, by their numbers; there are at most 255.
+void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves);
+inline constexpr driver::ChunkType sent_chunk = driver::chunk_type("SENT");
 
 class TakeReader {
 public:
@@ -64,6 +69,9 @@ public:
   /// Returns the ending once next() has reached the end. It stays empty if the recording was cut
   /// off.
   const std::optional<Ending>& ending() const noexcept { return ending_; }
+  /// Returns the latest counts of what the gloves sent, by their numbers, as far as next() has
+  /// come. Empty if nobody counted, as before format 1.2.
+  const std::vector<driver::RecordCounts>& sent() const noexcept { return sent_; }
   const driver::ChunkReader& chunks() const noexcept { return chunks_; }
   std::uint64_t shapes() const noexcept { return shapes_; } ///< so far
   /// Returns the number of chunks and entries so far whose checksum is right, but which nendo does
@@ -72,13 +80,16 @@ public:
 
 private:
   explicit TakeReader(driver::ChunkReader chunks);
+  static Result<TakeReader> begin(driver::ChunkReader chunks, const std::string& name);
   bool next_chunk();
+  bool take_chunk(const driver::Chunk& chunk);
   std::optional<Entry> entry_of(const driver::LogEntry& record);
 
   driver::ChunkReader chunks_;
   Setup setup_;
   driver::LogEntries records_{{}};
   std::optional<Ending> ending_;
+  std::vector<driver::RecordCounts> sent_;
   std::optional<RecordedShape> shape_;
   std::uint64_t shapes_ = 0;
   std::uint64_t damages_seen_ = 0;

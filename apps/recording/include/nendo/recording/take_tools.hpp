@@ -17,11 +17,14 @@ namespace nendo::recording {
 
 struct GloveSummary {
   std::uint64_t samples = 0;
-  std::uint64_t lost = 0;         ///< according to the sequence numbers
+  /// Samples that are not in the file, though their records were delivered: numbers that are left
+  /// out of the sequence.
+  std::uint64_t lost = 0;
   std::uint64_t out_of_order = 0; ///< sequence numbers that did not grow
   HostTime first{};
   HostTime last{};
-  HostClock::duration longest_pause{}; ///< between two samples
+  HostClock::duration longest_pause{};      ///< between two samples
+  std::optional<driver::RecordCounts> sent; ///< nothing: nobody has counted
 
   double rate_hz() const noexcept; ///< 0 if there are less than two samples
 };

@@ -1,0 +1,55 @@
+#include "cli/quantities.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <system_error>
+
+namespace nendo::cli {
+namespace {
+
+struct Unit {
+  std::string_view name;
+  double size;
+};
+
+// Not strtod, whose decimal point is a matter of the locale.
+std::optional<double> in_units(std::string_view text, std::span<const Unit> units) noexcept {
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{}) return std::nullopt;
+  const std::string_view suffix(stopped, static_cast<std::size_t>(end - stopped));
+  for (const Unit& unit : units)
+    if (suffix == unit.name && std::isfinite(number * unit.size)) return number * unit.size;
+  return std::nullopt;
+}
+
+} // namespace
+
+std::optional<double> seconds_of(std::string_view text) noexcept {
+  constexpr std::array<Unit, 6> units{
+      {{"", 1.0}, {"ms", 1e-3}, {"s", 1.0}, {"m", 60.0}, {"h", 3600.0}, {"d", 86'400.0}}};
+  return in_units(text, units);
+}
+
+std::optional<double> metres_of(std::string_view text) noexcept {
+  constexpr std::array<Unit, 3> units{{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}}};
+  return in_units(text, units);
+}
+
+std::optional<double> number_of(std::string_view text) noexcept {
+  constexpr std::array<Unit, 1> none{{{"", 1.0}}};
+  return in_units(text, none);
+}
+
+Result<double> parse_duration(const std::string& text, const std::string& option) {
+  constexpr double most_s = 1e7;
+  const auto seconds = seconds_of(text);
+  if (seconds && *seconds > 0.0 && *seconds <= most_s) return *seconds;
+  return Error{Errc::usage,
+               option + " " + text + ": use " + std::string(duration_words) + ", above 0"};
+}
+
+} // namespace nendo::cli

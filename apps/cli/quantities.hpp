@@ -1,0 +1,32 @@
+#pragma once
+// Durations and lengths as people type them: a number, and mostly a unit. Every option that takes
+// one is read by these two functions.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nendo/base/result.hpp>
+
+namespace nendo::cli {
+
+/// What may be typed for a duration and for a length, for error messages.
+inline constexpr std::string_view duration_words = "seconds, or 500ms, 90s, 10m, 2h, 1d";
+inline constexpr std::string_view length_words = "a length like 1mm, 0.5cm or 0.2m";
+
+/// Returns the seconds of "90", "90s", "500ms", "10m", "2h" or "1d". A bare number is seconds, and
+/// any finite number will do, 0 and negative ones too. Nothing if the text is no duration.
+std::optional<double> seconds_of(std::string_view text) noexcept;
+
+/// Returns the metres of "5mm", "1.8cm" or "0.2m". A bare number is none, because it has another
+/// meaning for each option. Nothing if the text is no length.
+std::optional<double> metres_of(std::string_view text) noexcept;
+
+/// Returns the number that is all of the text, if it is finite.
+std::optional<double> number_of(std::string_view text) noexcept;
+
+/// Returns the seconds of a duration that must be more than 0 and at most 10000000 s. Error: usage,
+/// naming the option.
+Result<double> parse_duration(const std::string& text, const std::string& option = "--duration");
+
+} // namespace nendo::cli

@@ -1,0 +1,123 @@
+#include "takes/glove_frames.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+#include <variant>
+
+#include <nendo/hand/joint_angles.hpp>
+
+namespace nendo::takes {
+namespace {
+
+constexpr HostClock::duration silent_after = std::chrono::milliseconds(500); // as of a run
+
+struct GloveExtent {
+  std::uint64_t samples = 0;
+  HostTime first{};
+  HostTime last{};
+
+  double rate_hz() const {
+    const double length_s = seconds_between(first, last);
+    return samples > 1 && length_s > 0.0 ? static_cast<double>(samples - 1) / length_s : 0.0;
+  }
+};
+
+std::vector<GloveExtent> extents_of(recording::TakeReader reader) {
+  std::vector<GloveExtent> gloves(reader.setup().hands.size());
+  while (const auto entry = reader.next()) {
+    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
+    if (recorded == nullptr || recorded->glove >= gloves.size()) continue;
+    GloveExtent& glove = gloves[recorded->glove];
+    glove.last = recorded->sample.arrival;
+    if (glove.samples++ == 0) glove.first = glove.last;
+  }
+  return gloves;
+}
+
+Eigen::Isometry3d wrist_of(Side side) {
+  Eigen::Isometry3d wrist = Eigen::Isometry3d::Identity();
+  wrist.translation().x() =
+      side == Side::left ? -GloveFrames::wrist_aside_m : GloveFrames::wrist_aside_m;
+  return wrist;
+}
+
+} // namespace
+
+Result<std::unique_ptr<GloveFrames>> GloveFrames::open(const std::filesystem::path& path) {
+  auto scanned = recording::TakeReader::open(path);
+  if (!scanned) return scanned.error();
+  const auto gloves = extents_of(*std::move(scanned));
+  auto reader = recording::TakeReader::open(path);
+  if (!reader) return reader.error();
+  std::unique_ptr<GloveFrames> frames(new GloveFrames(*std::move(reader)));
+  const HostTime begun = frames->reader_.setup().begun_host;
+  std::uint64_t samples = 0;
+  for (const GloveExtent& glove : gloves) {
+    samples += glove.samples;
+    frames->rate_hz_ = std::max(frames->rate_hz_, glove.rate_hz());
+    if (glove.samples > 0)
+      frames->duration_s_ = std::max(frames->duration_s_, seconds_between(begun, glove.last));
+  }
+  if (samples == 0)
+    return Error{Errc::bad_input, path.string() + ": there is no sample of a glove in it"};
+  if (!(frames->rate_hz_ > 0.0)) frames->rate_hz_ = 1.0; // one moment has no rate
+  return frames;
+}
+
+GloveFrames::GloveFrames(recording::TakeReader reader)
+    : reader_(std::move(reader)), layout_(deform::Points(3, 0)) {
+  for (auto& hand : frame_.hands)
+    hand.pose.joints.fill(Eigen::Isometry3d::Identity());
+  frame_.held = false;
+  for (const flow::HandInput& input : reader_.setup().hands) {
+    const std::size_t slot = flow::Placement::index_of(input.side);
+    hands_.push_back({slot,
+                      input.first.side,
+                      input.gated,
+                      {input.skeleton(Side::left), input.skeleton(Side::right)},
+                      hand::ActiveCalibration(input.wearer)});
+    flow::HandFrame& hand = frame_.hands[slot];
+    hand.present = true;
+    hand.T_stage_wrist = wrist_of(input.side);
+    follow(hands_.back(), input.first);
+  }
+}
+
+void GloveFrames::follow(Hand& hand, const GloveSample& sample) noexcept {
+  const hand::Calibration& active = hand.calibration.follow(sample);
+  const GloveSample passed = hand.gated ? hand.gate.pass(sample, active) : sample;
+  flow::HandFrame& shown = frame_.hands[hand.slot];
+  shown.angles = hand::joint_angles(passed, active);
+  const auto& skeleton = hand.skeletons[sample.side == Side::left ? 0 : 1];
+  shown.pose = skeleton.pose(shown.angles, shown.T_stage_wrist);
+  shown.swapped = sample.side != hand.glove;
+  hand.latest = sample.arrival;
+}
+
+void GloveFrames::note_silence(HostTime now) noexcept {
+  for (const Hand& hand : hands_)
+    frame_.hands[hand.slot].silent = now - hand.latest > silent_after;
+}
+
+bool GloveFrames::next() {
+  while (const auto entry = reader_.next()) {
+    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
+    if (recorded == nullptr || recorded->glove >= hands_.size()) {
+      exact_ = exact_ && recorded == nullptr && !std::holds_alternative<recording::Gap>(*entry);
+      continue;
+    }
+    Hand& hand = hands_[recorded->glove];
+    follow(hand, recorded->sample);
+    ++frame_.hands[hand.slot].samples;
+    frame_.tick = frame_.ticks_run++;
+    frame_.woke = frame_.scheduled = recorded->sample.arrival;
+    note_silence(frame_.woke);
+    // Times do not fall, whatever the recording says. The first samples came before it began.
+    time_s_ = std::max(time_s_, seconds_between(reader_.setup().begun_host, frame_.woke));
+    return true;
+  }
+  return false;
+}
+
+} // namespace nendo::takes

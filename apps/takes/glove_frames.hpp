@@ -1,0 +1,68 @@
+#pragma once
+// The frames of a recording in which there are gloves and no loop, as `nendo record` makes it: the
+// hands alone, a frame for each sample of either hand.
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/hand/active_calibration.hpp>
+#include <nendo/hand/sensor_gate.hpp>
+#include <nendo/recording/take_reader.hpp>
+
+#include "takes/frame_source.hpp"
+
+namespace nendo::takes {
+
+/// There is no model, so model() is empty. A glove knows no place in space, so the hands lie side
+/// by side on the stage, backs upwards, with the fingers pointing away from the operator.
+class GloveFrames final : public FrameSource {
+public:
+  /// How far the ends of the forearms are from the middle of the stage.
+  static constexpr double wrist_aside_m = 0.12;
+
+  /// Opens a recording. It is read once to find its duration. Blocks. Errors: those of
+  /// TakeReader::open(); bad_input (no glove, or no sample).
+  static Result<std::unique_ptr<GloveFrames>> open(const std::filesystem::path& path);
+
+  const deform::Mesh& model() const override { return model_; }
+  const deform::BlockLayout& layout() const override { return layout_; }
+  /// Returns the rate of the fastest glove.
+  double rate_hz() const override { return rate_hz_; }
+  double duration_s() const override { return duration_s_; }
+  bool next() override;
+  const flow::Frame& frame() const override { return frame_; }
+  double time_s() const override { return time_s_; }
+  bool is_exact() const override { return exact_ && reader_.chunks().damage_count() == 0; }
+
+private:
+  /// A hand, and what it needs to follow its glove as flow::DeformLoop does.
+  struct Hand {
+    std::size_t slot;
+    Side glove; ///< the side for which its glove was sewn at first
+    bool gated;
+    std::array<hand::HandSkeleton, 2> skeletons; ///< for a left and for a right glove
+    hand::ActiveCalibration calibration;
+    hand::SensorGate gate{};
+    HostTime latest{};
+  };
+
+  explicit GloveFrames(recording::TakeReader reader);
+  void follow(Hand& hand, const GloveSample& sample) noexcept;
+  void note_silence(HostTime now) noexcept;
+
+  recording::TakeReader reader_;
+  deform::Mesh model_;
+  deform::BlockLayout layout_;
+  std::vector<Hand> hands_; ///< by the numbers of their gloves
+  flow::Frame frame_;
+  bool exact_ = true;
+  double rate_hz_ = 0.0;
+  double duration_s_ = 0.0;
+  double time_s_ = 0.0;
+};
+
+} // namespace nendo::takes

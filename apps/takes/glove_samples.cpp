@@ -1,0 +1,69 @@
+#include "takes/glove_samples.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include <nendo/hand/calibration.hpp>
+
+namespace nendo::takes {
+namespace {
+
+bool is_same(const hand::Calibration& a, const hand::Calibration& b) {
+  const auto is_same_line = [](const hand::SensorCalibration& x, const hand::SensorCalibration& y) {
+    return x.gain_rad_per_count == y.gain_rad_per_count && x.offset_counts == y.offset_counts;
+  };
+  return std::equal(a.sensors.begin(), a.sensors.end(), b.sensors.begin(), is_same_line) &&
+         a.mixed_in == b.mixed_in && a.middle_bias == b.middle_bias;
+}
+
+} // namespace
+
+bool is_calibrated(const recording::Setup& setup, std::size_t glove) {
+  const flow::HandInput& hand = setup.hands[glove];
+  if (hand.wearer.adapt) return true;
+  if (glove >= setup.gloves.size()) return false; // what told of it is damaged
+  const driver::GloveInfo& info = setup.gloves[glove];
+  return info.kind == driver::GloveKind::simulated ||
+         !is_same(hand.wearer.of(hand.first.side).calibration,
+                  hand::default_calibration(info.counts));
+}
+
+Result<GloveSamples> GloveSamples::open(const std::filesystem::path& path) {
+  auto reader = recording::TakeReader::open(path);
+  if (!reader) return reader.error();
+  return GloveSamples(*std::move(reader));
+}
+
+GloveSamples::GloveSamples(recording::TakeReader reader) : reader_(std::move(reader)) {
+  const recording::Setup& setup = reader_.setup();
+  for (std::size_t glove = 0; glove < setup.hands.size(); ++glove) {
+    calibrations_.emplace_back();
+    if (is_calibrated(setup, glove)) calibrations_.back().emplace(setup.hands[glove].wearer);
+  }
+}
+
+SensorMask GloveSamples::sensors() const {
+  SensorMask sensors;
+  for (const auto& glove : reader_.setup().gloves)
+    sensors.bits |= glove.sensors.bits;
+  for (const auto& hand : reader_.setup().hands)
+    sensors.bits |= hand.first.present.bits;
+  return sensors;
+}
+
+bool GloveSamples::next() {
+  while (const auto entry = reader_.next()) {
+    if (std::holds_alternative<recording::Gap>(*entry)) exact_ = false;
+    const auto* const recorded = std::get_if<driver::RecordedSample>(&*entry);
+    if (recorded == nullptr) continue;
+    sample_ = recorded->sample;
+    const bool is_known =
+        recorded->glove < calibrations_.size() && calibrations_[recorded->glove].has_value();
+    calibration_ = is_known ? &calibrations_[recorded->glove]->follow(sample_) : nullptr;
+    return true;
+  }
+  return false;
+}
+
+} // namespace nendo::takes

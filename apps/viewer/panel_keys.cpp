@@ -1,0 +1,108 @@
+#include "viewer/panel.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "viewer/key_list.hpp"
+#include "viewer/widgets.hpp"
+
+namespace nendo::viewer {
+
+using flow::Request;
+
+namespace {
+
+constexpr std::array key_table{
+    KeyLine{"g", "grab: the hands take hold"},
+    KeyLine{"l", "let go; what is shaped stays"},
+    KeyLine{"c", "commit: this shape becomes the rest shape"},
+    KeyLine{"u, ctrl z", "undo the last commit"},
+    KeyLine{"r, ctrl y", "redo what was undone; ctrl shift z, too"},
+    KeyLine{"x", "reset: back to the model as it was loaded"},
+    KeyLine{"t", "a take: record from this shape on, and end that"},
+    KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
+    KeyLine{"s", "save the model as it is now"},
+    KeyLine{"m, n", "the other mode, the next kernel"},
+    KeyLine{"[, ]", "smaller radii, larger ones"},
+    KeyLine{"Enter", "apply the mode, kernel and radii that are chosen"},
+    KeyLine{"Home", "all of the model and the hands in the picture"},
+    KeyLine{"p", "the panel folded and unfolded"},
+    KeyLine{"q", "quit; the shape is written"},
+};
+
+} // namespace
+
+void LiveWindow::Panel::settings_keys(Commands& commands) {
+  if (pressed(GLFW_KEY_M))
+    wanted.mode = wanted.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
+  if (pressed(GLFW_KEY_N)) {
+    const auto at = std::find(kernels.begin(), kernels.end(), wanted.kernel) - kernels.begin();
+    wanted.kernel = kernels[(static_cast<std::size_t>(at) + 1) % kernels.size()];
+  }
+  constexpr double larger = 1.1;
+  for (const auto& [key, factor] :
+       {std::pair{GLFW_KEY_LEFT_BRACKET, 1.0 / larger}, {GLFW_KEY_RIGHT_BRACKET, larger}})
+    if (pressed(key, true))
+      for (double& radius_m : wanted.radius_m)
+        radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
+  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force))
+    commands.emplace_back(flow::ChangeSettings{wanted});
+}
+
+// The page's button is grey then, too; a key says why nothing happens.
+void LiveWindow::Panel::step(Request request, const flow::Frame& frame, Commands& commands) {
+  const bool undoes = request == Request::undo;
+  if ((undoes ? frame.undo_steps : frame.redo_steps) > 0) {
+    commands.emplace_back(request);
+  } else {
+    note = undoes ? "There is nothing to undo." : "There is nothing to redo.";
+  }
+}
+
+void LiveWindow::Panel::keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
+                             Commands& commands) {
+  const std::size_t before = commands.size();
+  if (takes_keys()) {
+    window.follow_part_keys();
+    window.follow_view_keys();
+    if (ImGui::GetIO().KeyCtrl) {
+      step_keys(frame, commands);
+    } else {
+      single_keys(frame, gauges, window, commands);
+    }
+  }
+  if (commands.size() > before) note.clear();
+  if (keys_shown)
+    draw_key_list(key_table,
+                  "right drag on a hand moves it, with shift turns it, with the wheel\n"
+                  "pushes and pulls it",
+                  keys_shown);
+}
+
+// With ctrl.
+void LiveWindow::Panel::step_keys(const flow::Frame& frame, Commands& commands) {
+  if (pressed(GLFW_KEY_Z, true))
+    step(ImGui::GetIO().KeyShift ? Request::redo : Request::undo, frame, commands);
+  if (pressed(GLFW_KEY_Y, true)) step(Request::redo, frame, commands);
+}
+
+void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gauges,
+                                    SceneWindow& window, Commands& commands) {
+  for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
+                                     {GLFW_KEY_L, Request::let_go},
+                                     {GLFW_KEY_C, Request::commit}})
+    if (pressed(key)) commands.emplace_back(request);
+  if (pressed(GLFW_KEY_U)) step(Request::undo, frame, commands);
+  if (pressed(GLFW_KEY_R)) step(Request::redo, frame, commands);
+  if (pressed(GLFW_KEY_X)) reset_asked = true;
+  if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
+  if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
+  if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});
+  settings_keys(commands);
+  if (pressed(GLFW_KEY_Q)) commands.emplace_back(flow::EndRun{});
+  if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
+  if (pressed(GLFW_KEY_HOME)) window.frame_all();
+  if (pressed(GLFW_KEY_P)) fold_asked = true;
+}
+
+} // namespace nendo::viewer

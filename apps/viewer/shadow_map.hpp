@@ -1,0 +1,43 @@
+#pragma once
+// The shadow that a light casts, as OpenGL draws it: the depth of all that casts, seen from the
+// light. All calls belong to the thread that has the OpenGL context.
+
+#include <Eigen/Geometry>
+
+namespace nendo::viewer {
+
+class ShadowMap {
+public:
+  ShadowMap();
+  ~ShadowMap();
+  ShadowMap(const ShadowMap&) = delete;
+  ShadowMap& operator=(const ShadowMap&) = delete;
+
+  /// Returns false if this OpenGL cannot draw into such a map. Then there are no shadows.
+  bool is_there() const noexcept { return is_there_; }
+  /// Fits the map to a box with all that casts a shadow, in metres, and makes the empty map the
+  /// frame buffer. `toward` is a unit vector to the light. Draw what casts, with map_of_world(),
+  /// and call end(). Returns false, and changes nothing, if the box is empty or infinite.
+  bool begin(const Eigen::AlignedBox3f& casting, const Eigen::Vector3f& toward);
+  /// Makes what was the frame buffer before begin() the frame buffer again.
+  void end() const;
+  /// Returns the matrix from world coordinates to OpenGL's clip coordinates of the map.
+  const Eigen::Matrix4f& map_of_world() const noexcept { return map_of_world_; }
+  /// Returns how far from a surface something must be to be certainly not on it, in metres. It is
+  /// 4 mm, or more if the map's samples are coarse.
+  float slack_m() const noexcept { return slack_m_; }
+  /// Returns the texture with the depths, which compares by itself and smooths between samples.
+  unsigned texture() const noexcept { return texture_; }
+
+  static constexpr int side = 2048; ///< samples
+
+private:
+  unsigned texture_ = 0;
+  unsigned frame_buffer_ = 0;
+  int before_ = 0; ///< the frame buffer before begin()
+  bool is_there_ = false;
+  Eigen::Matrix4f map_of_world_ = Eigen::Matrix4f::Identity();
+  float slack_m_ = 0.0F;
+};
+
+} // namespace nendo::viewer

@@ -1,0 +1,115 @@
+// Durations and lengths, as every command reads them.
+
+#include "cli/quantities.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/program.hpp"
+
+namespace quantities_test {
+
+using namespace nendo;
+using nendo::test::is_one_line_about;
+
+TEST_SUITE("quantities") {
+  TEST_CASE("a duration is its number times its unit, and a bare number is seconds") {
+    struct Row {
+      const char* text;
+      double seconds;
+    };
+    for (const Row& row : {Row{"90", 90.0}, Row{"90s", 90.0}, Row{"500ms", 0.5}, Row{"10m", 600.0},
+                           Row{"2h", 7200.0}, Row{"1d", 86'400.0}, Row{"0.5s", 0.5}, Row{"0", 0.0},
+                           Row{"-1.5s", -1.5}, Row{"1e2ms", 0.1}}) {
+      CAPTURE(row.text);
+      REQUIRE(cli::seconds_of(row.text));
+      CHECK(*cli::seconds_of(row.text) == doctest::Approx(row.seconds).epsilon(1e-15));
+    }
+    for (const char* none : {"", "s", "3x", "3 s", "3ss", "3s ", "+3", "nan", "inf", "infs",
+                             "0x1p3", "1e400", "1e308d", "3,5"}) {
+      CAPTURE(none);
+      CHECK_FALSE(cli::seconds_of(none));
+    }
+  }
+
+  TEST_CASE("a length has a unit, and metres, centimetres and millimetres agree") {
+    for (const char* text : {"250mm", "25cm", "0.25m", "2.5e1cm"}) {
+      CAPTURE(text);
+      REQUIRE(cli::metres_of(text));
+      CHECK(*cli::metres_of(text) == doctest::Approx(0.25).epsilon(1e-15));
+    }
+    for (const char* none : {"", "250", "mm", "3 mm", "3km", "3mmm", "nanm", "infmm", "1e308x"}) {
+      CAPTURE(none);
+      CHECK_FALSE(cli::metres_of(none));
+    }
+    CHECK(cli::number_of("-2.5e-1") == -0.25);
+    for (const char* none : {"", "1mm", "1s", "nan", "inf", "1 "})
+      CHECK_FALSE(cli::number_of(none));
+  }
+
+  TEST_CASE("a time to run for is above 0 and not longer than a recording may be") {
+    CHECK(cli::parse_duration("115d"));
+    for (const char* none : {"0", "-1", "116d", "never"}) {
+      const auto parsed = cli::parse_duration(none, "--keep-last");
+      REQUIRE_FALSE(parsed);
+      CHECK(parsed.error().code == Errc::usage);
+      CHECK(parsed.error().message.starts_with("--keep-last " + std::string(none)));
+    }
+  }
+
+  TEST_CASE("every command that runs for a while takes a duration with its unit") {
+    const test::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+    using Arguments = std::vector<std::string>;
+    for (const Arguments& arguments :
+         {Arguments{"run", "--right", "sim", "--out", path("a.obj"), "--record", path("a.nendo")},
+          Arguments{"record", "sim", "--out", path("b.nendo")}, Arguments{"poses", "sim"},
+          Arguments{"emulate", "--link", path("glove")},
+          Arguments{"stress", "--floor", "0ms", "--json"},
+          Arguments{"demo", "--out", path("c.obj"), "--picture", path("c.png")}}) {
+      Arguments timed = arguments;
+      timed.insert(timed.end(), {"--duration", "300ms"});
+      CAPTURE(arguments.front());
+      const auto done = test::nendo(timed);
+      CAPTURE(done.err);
+      CHECK(done.exit_code == 0);
+      timed.back() = "3x";
+      const auto refused = test::nendo(timed);
+      CHECK(refused.exit_code == 2);
+      CHECK(is_one_line_about(refused.err, "3x"));
+      CHECK(refused.err.find("10m") != std::string::npos);
+    }
+    for (const Arguments& arguments :
+         {Arguments{"replay", path("a.nendo"), "--no-clock", "--from", "50ms", "--to", "0.2s"},
+          Arguments{"recording", "cut", path("a.nendo"), "--to", "200ms", "--out", path("d.nendo")},
+          Arguments{"export", path("a.nendo"), "--from", "50ms", "--to", "0.2s", "--out",
+                    path("e.csv")}}) {
+      CAPTURE(arguments.front());
+      const auto done = test::nendo(arguments);
+      CAPTURE(done.err);
+      CHECK(done.exit_code == 0);
+    }
+  }
+
+  TEST_CASE("a hand's length is the same in millimetres, centimetres and metres") {
+    const auto with = [](const std::string& length) {
+      const auto done = test::nendo({"poses", "sim:rest", "--count", "1", "--hand-length", length});
+      CAPTURE(done.err);
+      REQUIRE(done.exit_code == 0);
+      return done.out.substr(done.out.find("\"joints\"")); // without the time
+    };
+    const std::string bare = with("200");
+    CHECK(with("200mm") == bare);
+    CHECK(with("20cm") == bare);
+    CHECK(with("0.2m") == bare);
+    CHECK_FALSE(with("19cm") == bare);
+    const auto refused = test::nendo({"poses", "sim", "--hand-length", "20in"});
+    CHECK(refused.exit_code == 2);
+    CHECK(is_one_line_about(refused.err, "--hand-length"));
+  }
+}
+
+} // namespace quantities_test

@@ -1,0 +1,179 @@
+// What the windows' OpenGL draws: edges, outlines and shadows, on a screen in memory.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <GLFW/glfw3.h>
+#include <doctest/doctest.h>
+
+#include "support/memory_screen.hpp"
+#include "support/restraint.hpp"
+#include "support/test_meshes.hpp"
+#include "viewer/pointing.hpp"
+#include "viewer/scene_window.hpp"
+
+namespace window_picture_test {
+
+using namespace nendo;
+using namespace nendo::render;
+using namespace nendo::viewer;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr Size size{800, 600};
+
+/// A window over a model alone, without hands.
+struct Look {
+  deform::Mesh mesh;
+  deform::BlockLayout layout;
+  SceneBuilder builder;
+  std::unique_ptr<SceneWindow> window;
+  SceneFrame nobody;
+
+  explicit Look(const deform::Mesh& model) : mesh(model), layout(model.vertices), builder(model) {
+    auto opened = SceneWindow::open("test", size, "nothing else");
+    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
+    window = *std::move(opened);
+    window->set_model(layout, builder);
+    window->follow(layout.pack());
+    picture();
+  }
+  Image picture(const SimulatedInput& input = {}) {
+    window->simulate(input);
+    window->begin_picture(nobody);
+    window->move_camera();
+    window->follow_view_keys();
+    window->end_picture();
+    return window->screenshot();
+  }
+  /// Turns the camera by a drag of the mouse.
+  Image turn(double dx, double dy) {
+    SimulatedInput drag;
+    drag.pointer = {400.0, 300.0};
+    picture(drag);
+    drag.buttons[0] = true;
+    picture(drag);
+    drag.pointer += Vector2d(dx, dy);
+    picture(drag);
+    return picture();
+  }
+};
+
+double brightness(const Pixel& pixel) {
+  return (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+}
+
+double brightness_about(const Image& image, const Vector2d& place) {
+  double sum = 0.0;
+  constexpr int reach = 4;
+  for (int y = -reach; y <= reach; ++y)
+    for (int x = -reach; x <= reach; ++x)
+      sum += brightness(image.at(static_cast<int>(place.x()) + x, static_cast<int>(place.y()) + y));
+  return sum / ((2 * reach + 1) * (2 * reach + 1));
+}
+
+bool is_clay(const Pixel& pixel) { // which is warmer than all else
+  return pixel[0] > pixel[2] + 20;
+}
+
+} // namespace
+
+TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
+  TEST_CASE("edges are smooth: the pixel on the outline is between the model and what is behind") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Look look(test::sphere(40, 80, 1.0));
+    look.window->parts().ground = false;
+    const Image image = look.picture();
+    int rows = 0;
+    int between = 0;
+    for (int y = 150; y < 450; ++y) {
+      const double behind = brightness(image.at(5, y));
+      int x = 5;
+      while (x < size.width - 5 && std::abs(brightness(image.at(x, y)) - behind) < 3.0)
+        ++x;
+      if (x >= size.width - 5) continue;
+      ++rows;
+      const double whole = behind - brightness(image.at(x + 1, y));
+      const double part = behind - brightness(image.at(x, y));
+      if (part < 0.85 * whole) ++between;
+    }
+    CHECK(rows == 300);
+    CHECK(between > 150); // a row in five is covered by more than 85 %, or by nearly nothing
+  }
+
+  TEST_CASE("the ground is darker in the model's shadow than beside it, wherever one looks from") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Look look(test::sphere(40, 80, 1.0));
+    SimulatedInput top;
+    top.taps = {GLFW_KEY_7};
+    look.picture(top);
+    for (int view = 0; view < 3; ++view) {
+      const Image image = view == 0 ? look.picture() : look.turn(200.0, 0.0);
+      const Camera& camera = look.window->camera();
+      CHECK(camera.view.elevation_deg == 90.0);
+      const double radius = look.builder.size_m().x() / 2;
+      // The light comes from the left in the picture, from in front and from above; from the top
+      // one sees the shadow behind the ball, to the right.
+      const Eigen::Matrix3d axes = camera.axes();
+      const Vector3d right = axes.row(0).transpose();
+      const Vector3d behind = axes.row(1).transpose();
+      const double away = 1.8 * radius / std::numbers::sqrt2;
+      const auto shadow = pixel_of(camera, away * right + away * behind, size);
+      const auto beside = pixel_of(camera, -away * right + away * behind, size);
+      REQUIRE(shadow);
+      REQUIRE(beside);
+      CHECK_FALSE(is_clay(image.at(static_cast<int>(shadow->x()), static_cast<int>(shadow->y()))));
+      const double dark = brightness_about(image, *shadow);
+      const double bright = brightness_about(image, *beside);
+      CHECK(dark < 0.93 * bright);
+      CHECK(dark > 0.5 * bright); // and is no hole
+    }
+  }
+
+  TEST_CASE("a model lies in the shadow of what is above it") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    // A ball above a plate, whose rim stands on the ground.
+    deform::Mesh mesh = test::sphere(30, 60, 0.4);
+    const auto ball = mesh.vertices.cols();
+    deform::Mesh plate = test::grid(20, 4.0);
+    deform::Points all(3, ball + plate.vertices.cols());
+    all.leftCols(ball) = mesh.vertices.colwise() + Vector3d(0.0, 1.1, 0.0);
+    for (Eigen::Index at = 0; at < plate.vertices.cols(); ++at) {
+      const double x = plate.vertices(0, at) - 2.0;
+      const double z = 2.0 - plate.vertices(1, at);
+      all.col(ball + at) << x, std::max(std::abs(x), std::abs(z)) > 1.99 ? 0.0 : 0.2, z;
+    }
+    mesh.vertices = all;
+    for (std::size_t face = 0; face + 1 < plate.face_starts.size(); ++face) {
+      for (auto corner = plate.face_starts[face]; corner < plate.face_starts[face + 1]; ++corner)
+        mesh.face_corners.push_back(plate.face_corners[corner] + static_cast<std::uint32_t>(ball));
+      mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+    }
+    Look look(mesh);
+    SimulatedInput top;
+    top.taps = {GLFW_KEY_7};
+    look.picture(top);
+    const Image image = look.picture();
+    const Camera& camera = look.window->camera();
+    const double metre = look.builder.units_per_metre();
+    // Where the ball's middle casts its shadow: along the light, (-0.55, 0.75, 0.55).
+    const double away = 0.9 * 0.55 / 0.75;
+    const auto place = [&](double x, double z) {
+      return pixel_of(camera, Vector3d(x, 0.2, z) / metre, size);
+    };
+    const auto shadow = place(away, -away);
+    const auto beside = place(-away, -away);
+    REQUIRE(shadow);
+    REQUIRE(beside);
+    CHECK(is_clay(image.at(static_cast<int>(shadow->x()), static_cast<int>(shadow->y()))));
+    CHECK(brightness_about(image, *shadow) < 0.8 * brightness_about(image, *beside));
+  }
+}
+
+} // namespace window_picture_test
