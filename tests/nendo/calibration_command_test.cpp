@@ -265,7 +265,6 @@ TEST_SUITE("calibration command") {
         {"left or right.csv", "add --hand left or right"},
         {"x.csv", "add --hand left or right"}};
     for (const auto& [name, offered] : names) {
-      CAPTURE(name);
       write_file(home.file(name), csv);
       const auto done = calibration({"import", home.file(name).string(), "--user", "anna"});
       CHECK(done.exit_code == 2);
