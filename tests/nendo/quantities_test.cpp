@@ -83,9 +83,10 @@ TEST_SUITE("quantities") {
       CHECK(refused.err.find("10m") != std::string::npos);
     }
     for (const Arguments& arguments :
-         {Arguments{"replay", path("a.nendo"), "--no-clock", "--from", "50ms", "--to", "0.2s"},
-          Arguments{"recording", "cut", path("a.nendo"), "--to", "200ms", "--out", path("d.nendo")},
-          Arguments{"export", path("a.nendo"), "--from", "50ms", "--to", "0.2s", "--out",
+         {Arguments{"replay", path("a.nendo"), "--no-clock", "--from", "1ms", "--to", "1m"},
+          Arguments{"recording", "cut", path("a.nendo"), "--to", "60000ms", "--out",
+                    path("d.nendo")},
+          Arguments{"export", path("a.nendo"), "--from", "1ms", "--to", "1m", "--out",
                     path("e.csv")}}) {
       CAPTURE(arguments.front());
       const auto done = test::nendo(arguments);

@@ -63,7 +63,7 @@ TEST_SUITE("run_keys") {
       TerminalProgram program({"run", "--left", "sim:sculpt", "--right", "sim:sculpt", "--duration",
                                "1000s", "--out", (folder.path() / "shape.obj").string()},
                               columns, 24);
-      REQUIRE(program.tells(" ticks"));
+      REQUIRE(program.tells(" left"));
       CHECK(program.press('g'));
       if (columns == 80) REQUIRE(program.tells("  let go"));
       CHECK(program.press('q'));
