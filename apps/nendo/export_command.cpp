@@ -243,12 +243,12 @@ void print_morphs(const exporting::MorphReport& morphs) {
                              morphs.targets, morphs.greatest_error);
     return;
   }
-  std::cout << fmt::format("{} morph targets of key shapes, for at most {:.3g} % of the model's "
-                           "diagonal, {:.2g} mm on the stage, off (--tolerance); no vertex of any "
-                           "frame is off by more than {:.2g} %\n",
-                           morphs.targets, 100.0 * morphs.tolerance,
-                           1e3 * morphs.tolerance * morphs.diagonal_m,
-                           100.0 * morphs.greatest_error);
+  std::cout << fmt::format(
+      "{} morph targets of key shapes, within {:.3g} % of the model's diagonal, "
+      "{:.2g} mm on the stage (--tolerance); the worst vertex is off by {:.2g} "
+      "%\n",
+      morphs.targets, 100.0 * morphs.tolerance, 1e3 * morphs.tolerance * morphs.diagonal_m,
+      100.0 * morphs.greatest_error);
 }
 
 void print(const exporting::Exported& done, bool samples) {

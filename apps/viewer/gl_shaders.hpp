@@ -57,12 +57,14 @@ float line(float coordinate) {
 float lit_part(vec3 n) {
   if (!shadowed) return 1.0;
   vec3 on = 0.5 + 0.5 * (map_of_world * vec4(within + slack * (n + key), 1.0)).xyz;
-  vec2 step = 1.5 / vec2(textureSize(shadows, 0));
+  // Each of the four is smoothed between its four samples by the card. More would cost most of the
+  // picture's time where there is no card.
+  vec2 step = 1.0 / vec2(textureSize(shadows, 0));
   float lit = 0.0;
-  for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 4; ++x)
-      lit += texture(shadows, vec3(on.xy + step * (vec2(x, y) - 1.5), min(on.z, 1.0)));
-  return lit / 16.0;
+  for (int y = -1; y <= 1; y += 2)
+    for (int x = -1; x <= 1; x += 2)
+      lit += textureLod(shadows, vec3(on.xy + step * vec2(x, y), min(on.z, 1.0)), 0.0);
+  return lit / 4.0;
 }
 void main() {
   if (flat_white) { shown = vec4(1.0); return; }
@@ -70,7 +72,8 @@ void main() {
   if (grid > 0.0) {
     float near = clamp(1.25 - 1.25 * length(place.xz) / fade, 0.0, 1.0);
     float drawn = max(line(place.x), line(place.z));
-    float bright = 0.9 * (0.68 + 0.32 * lit_part(vec3(0.0, 1.0, 0.0))) * (1.0 - 0.3 * drawn);
+    float lit = near > 0.0 ? lit_part(vec3(0.0, 1.0, 0.0)) : 1.0;
+    float bright = 0.9 * (0.68 + 0.32 * lit) * (1.0 - 0.3 * drawn);
     shown = vec4(screen(background() * mix(1.0, bright, near)), 1.0);
     return;
   }
