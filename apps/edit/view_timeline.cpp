@@ -81,7 +81,7 @@ Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const
   } while (!session.has_ended() && !cli::stop_requested() &&
            (options.frames == 0 || shown < options.frames));
   if (options.screenshot.empty()) return {};
-  return write_png(options.screenshot, window.scene_window().screenshot());
+  return write_png(options.screenshot, window.screenshot());
 }
 
 int view_timeline(const Options& options) {

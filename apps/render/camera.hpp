@@ -14,6 +14,7 @@ namespace nendo::render {
 struct View {
   double azimuth_deg = 0.0;
   double elevation_deg = 0.0;
+  bool operator==(const View&) const = default;
 };
 
 /// Parses front, back, left, right, side, top, or "AZ,EL" in degrees. Returns nullopt if the text
@@ -47,6 +48,7 @@ struct Camera {
   void orbit(double dx, double dy) noexcept;
   void pan(double dx, double dy, double height) noexcept;
   void zoom(double steps) noexcept;
+  bool operator==(const Camera&) const = default;
 };
 
 /// Returns a camera that has all the points in the middle of its picture. `margin` is the part of

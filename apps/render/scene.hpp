@@ -27,6 +27,7 @@ struct Scene {
   std::vector<Surface> grounds; ///< one or none
   /// Returns the points that a camera should have in its picture: the model's and the hands'.
   std::vector<Eigen::Vector3f> outline() const;
+  bool operator==(const Scene&) const = default;
 };
 
 class SceneBuilder {

@@ -17,6 +17,7 @@ struct Material {
   float rim_opacity = 1.0F; ///< where the line of sight is along the surface
   float grid_m = 0.0F;      ///< of a ground: distance between its lines; it has faded out at fade_m
   float fade_m = 0.0F;
+  bool operator==(const Material&) const = default;
 };
 
 struct Surface {
@@ -27,6 +28,7 @@ struct Surface {
 
   void clear() noexcept;
   bool is_empty() const noexcept { return corners.empty(); }
+  bool operator==(const Surface&) const = default;
 };
 
 /// Computes the area-weighted normals of all places.

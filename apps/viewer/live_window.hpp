@@ -50,7 +50,7 @@ public:
   const std::string& told() const noexcept;
 
   /// The following functions are those of SceneWindow.
-  render::Image screenshot() const { return window_->screenshot(); }
+  render::Image screenshot() { return window_->screenshot(); }
   render::Image silhouette(render::Size size) { return window_->silhouette(size); }
   const render::Camera& camera() const noexcept { return window_->camera(); }
   const render::Scene& scene() const noexcept { return window_->scene(); }

@@ -124,6 +124,7 @@ SceneWindow::~SceneWindow() {
 void SceneWindow::set_model(const deform::BlockLayout& layout,
                             const render::SceneBuilder& builder) {
   builder_.emplace(builder);
+  shown_.reset();
   renderer_->set_model(layout, builder);
 }
 
@@ -240,14 +241,23 @@ void SceneWindow::end_picture() {
   std::this_thread::sleep_until(begun_ + least_period);
 }
 
-void SceneWindow::draw_all() const {
+// A model that nobody touches is drawn once. Most of the time goes into the scene where there is no
+// graphics card.
+void SceneWindow::draw_scene(render::Size size) {
+  Shown now{scene_, camera_, size, blocks_sent(), facets_};
+  if (target_->keeps() && shown_ == now) return;
+  target_->begin(size);
+  renderer_->draw(scene_, camera_, size,
+                  facets_ ? GlRenderer::Look::facets : GlRenderer::Look::shaded);
+  shown_ = std::move(now);
+}
+
+void SceneWindow::draw_all() {
   const render::Size all = pixels_of(window_);
   const int below = std::clamp(below_, 0, all.height - 1);
   const render::Size size{all.width, all.height - below};
   glClear(GL_COLOR_BUFFER_BIT);
-  target_->begin(size);
-  renderer_->draw(scene_, camera_, size,
-                  facets_ ? GlRenderer::Look::facets : GlRenderer::Look::shaded);
+  draw_scene(size);
   target_->end(below);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
@@ -269,7 +279,7 @@ render::Camera SceneWindow::stage_camera() const noexcept {
   return camera;
 }
 
-render::Image SceneWindow::screenshot() const {
+render::Image SceneWindow::screenshot() {
   draw_all(); // anew, for what was shown may be gone
   return read_pixels(pixels_of(window_));
 }

@@ -77,18 +77,29 @@ public:
   const render::Scene& scene() const noexcept { return scene_; } ///< without the model's positions
   std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
 
-  render::Image screenshot() const; ///< of what was shown last
+  render::Image screenshot(); ///< of what was shown last
   /// Does the same as render::silhouette() with OpenGL, for the scene that was shown last.
   render::Image silhouette(render::Size size);
   /// Replaces the real mouse and keyboard by `input` from the next picture on.
   void simulate(const SimulatedInput& input);
 
 private:
+  /// Decides the picture of a scene, with the model's blocks.
+  struct Shown {
+    render::Scene scene;
+    render::Camera camera;
+    render::Size size;
+    std::uint64_t blocks_sent = 0;
+    bool facets = false;
+    bool operator==(const Shown&) const = default;
+  };
+
   SceneWindow();
   double covered_part() const noexcept;
   void choose_camera(render::View view);
   void put_simulated() const;
-  void draw_all() const;
+  void draw_all();
+  void draw_scene(render::Size size);
 
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<GlRenderer> renderer_;
@@ -99,6 +110,7 @@ private:
   render::SceneParts parts_;
   render::Scene scene_;
   render::Camera camera_;
+  std::optional<Shown> shown_; ///< what target_ keeps the picture of
   HostTime begun_{};
   int below_ = 0;
   int left_ = 0;

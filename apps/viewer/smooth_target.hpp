@@ -20,6 +20,8 @@ public:
   /// Makes the window's buffer the frame buffer again, and copies the picture into it, `below`
   /// pixels above the bottom.
   void end(int below) const;
+  /// Returns whether end() may be called again: the picture is still there.
+  bool keeps() const noexcept { return frame_buffer_ != 0; }
   /// Returns the samples for each pixel; 1 if edges are not smoothed.
   int samples() const noexcept { return samples_; }
 

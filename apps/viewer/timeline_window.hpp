@@ -32,6 +32,7 @@ public:
   EditActions show(const TimelineView& view, const render::SceneFrame& scene_frame);
 
   const SceneWindow& scene_window() const noexcept { return *window_; }
+  render::Image screenshot() { return window_->screenshot(); } ///< of what was shown last
   void simulate(const SimulatedInput& input) { window_->simulate(input); }
 
 private:

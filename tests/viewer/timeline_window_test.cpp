@@ -292,11 +292,11 @@ TEST_SUITE("timeline_window") {
     const Room room;
     if (!room.seat) return;
     Seat& seat = *room.seat;
-    const Image before = seat.window->scene_window().screenshot();
+    const Image before = seat.window->screenshot();
     CHECK(before.size() == size);
     seat.view.selected = StripKey{0, 1};
     seat.show();
-    const Image after = seat.window->scene_window().screenshot();
+    const Image after = seat.window->screenshot();
     const Vector2d key = seat.on_key(0, 1);
     const auto colour = [&](const Image& image) {
       return image.at(static_cast<int>(key.x()), static_cast<int>(key.y()));
