@@ -57,8 +57,8 @@ function(nendo_settings target scope)
   if(NENDO_SANITIZE)
     # Bad pointers are the address sanitizer's to find; the other's checks of them would double the time that Eigen's
     # templates take to compile.
-    target_compile_options(${target} PRIVATE -fsanitize=${NENDO_SANITIZE} -fno-sanitize=null,alignment,object-size
-      -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(${target} PRIVATE -fsanitize=${NENDO_SANITIZE}
+      -fno-sanitize=null,alignment,object-size,pointer-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${NENDO_SANITIZE})
   endif()
 endfunction()
