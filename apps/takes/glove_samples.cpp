@@ -1,6 +1,7 @@
 #include "takes/glove_samples.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -9,12 +10,16 @@
 namespace nendo::takes {
 namespace {
 
-bool is_same(const hand::Calibration& a, const hand::Calibration& b) {
-  const auto is_same_line = [](const hand::SensorCalibration& x, const hand::SensorCalibration& y) {
-    return x.gain_rad_per_count == y.gain_rad_per_count && x.offset_counts == y.offset_counts;
-  };
-  return std::equal(a.sensors.begin(), a.sensors.end(), b.sensors.begin(), is_same_line) &&
-         a.mixed_in == b.mixed_in && a.middle_bias == b.middle_bias;
+bool is_of_simulated(std::string_view source) {
+  return source == "sim" || source.starts_with("sim:") || source.starts_with("sim?");
+}
+
+/// Tells by where a glove's samples came from, at first, because a recording keeps no more of that.
+bool was_simulated(const driver::GloveInfo& glove) {
+  return is_of_simulated(glove.source) ||
+         std::any_of(glove.facts.begin(), glove.facts.end(), [](const auto& fact) {
+           return fact.name == "recorded_from" && is_of_simulated(fact.value);
+         });
 }
 
 } // namespace
@@ -24,9 +29,8 @@ bool is_calibrated(const recording::Setup& setup, std::size_t glove) {
   if (hand.wearer.adapt) return true;
   if (glove >= setup.gloves.size()) return false; // what told of it is damaged
   const driver::GloveInfo& info = setup.gloves[glove];
-  return info.kind == driver::GloveKind::simulated ||
-         !is_same(hand.wearer.of(hand.first.side).calibration,
-                  hand::default_calibration(info.counts));
+  return was_simulated(info) ||
+         !(hand.wearer.of(hand.first.side).calibration == hand::default_calibration(info.counts));
 }
 
 Result<GloveSamples> GloveSamples::open(const std::filesystem::path& path) {
