@@ -25,6 +25,16 @@ void report_none(const driver::GloveInfo& glove, Side side) {
             " --user NAME` makes them the wearer's");
 }
 
+/// Tells of the calibration that a glove of the other hand would get in place of `glove`, if it is
+/// another wearer's.
+void report_other(const driver::GloveInfo& glove, const hand::StoredCalibration& own,
+                  const hand::StoredCalibration& other) {
+  if (own.wearer.user == other.wearer.user) return;
+  cli::note(printable(glove.source) + ": a " + std::string(name_of(other.wearer.side)) +
+            "-hand glove in its place would be calibrated for " + title_of(other.wearer) + " (" +
+            printable(other.path.string()) + ")");
+}
+
 /// Returns what the wearer should know of a choice that another glove may have been meant by. A
 /// CyberGlove tells no serial number, so that its calibrations are for any glove.
 std::string doubt_about(const hand::CalibrationChoice& choice) {
@@ -95,8 +105,10 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
   }
   if (glove.kind == driver::GloveKind::simulated) return wearer; // its hand does not change
   // The serial number of a glove that may be plugged in later is not known.
-  if (const auto other = choose(opposite(side), ""))
+  if (const auto other = choose(opposite(side), "")) {
+    if (own) report_other(glove, *own->file, *other->file);
     wearer.of(opposite(side)) = hand_of(other->file->wearer, glove.counts);
+  }
   return wearer;
 }
 

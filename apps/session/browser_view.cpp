@@ -28,7 +28,10 @@ Result<void> BrowserView::begin(const LoopStart& start) {
 }
 
 void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
-  server_->set_counts({status.gloves[0].counts, status.gloves[1].counts});
+  web::GloveStates gloves;
+  for (std::size_t slot = 0; slot < gloves.size(); ++slot)
+    gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
+  server_->set_gloves(gloves);
   while (const auto command = server_->next_command())
     commands.try_push(*command);
 }

@@ -20,6 +20,8 @@ public:
   void report(const std::string& message) override;
 
 private:
+  void step(flow::Request request, std::uint64_t steps, flow::CommandRing& commands);
+
   cli::Keys keys_;
   std::chrono::milliseconds timeout_;
 };

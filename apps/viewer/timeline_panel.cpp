@@ -10,7 +10,6 @@
 namespace nendo::viewer {
 namespace {
 
-constexpr float panel_width = 300.0F;
 constexpr const char* question = "Unsaved changes";
 
 constexpr std::array timeline_key_table{
@@ -74,9 +73,11 @@ void seconds(const char* label, double& value_s, double head_s) {
 } // namespace
 
 void TimelineWindow::Panel::draw(const TimelineView& view, EditActions& actions) {
-  ImGui::SetNextWindowPos(ImVec2(10.0F, 10.0F), ImGuiCond_FirstUseEver);
+  constexpr float gap = gap_px;
+  constexpr float panel_width = width_px;
+  ImGui::SetNextWindowPos(ImVec2(gap, gap));
   ImGui::SetNextWindowSizeConstraints(ImVec2(panel_width, 0.0F), ImVec2(panel_width, 4096.0F));
-  ImGui::Begin("Nendo: edit", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::Begin("Nendo: edit", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
   ImGui::PushTextWrapPos(panel_width - 12.0F);
   file(view, actions);
   if (ImGui::CollapsingHeader("Key", ImGuiTreeNodeFlags_DefaultOpen)) key(view, actions);

@@ -8,6 +8,9 @@
 namespace nendo::viewer {
 
 struct TimelineWindow::Panel {
+  static constexpr int gap_px = 10;
+  static constexpr int width_px = 300;
+
   DopeSheetWidget strip;
   TipMover tips;
   Retiming retiming{0.0, 0.0, 2.0};

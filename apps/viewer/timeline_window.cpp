@@ -39,6 +39,7 @@ TimelineWindow::open(const std::string& title, render::Size size, const std::str
 EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFrame& scene_frame) {
   EditActions actions;
   window_->leave_below(DopeSheetWidget::height_for(view.lanes.size()));
+  window_->leave_left(Panel::gap_px + Panel::width_px);
   window_->begin_picture(scene_frame);
   if (!move_tip(view, scene_frame, actions)) window_->move_camera();
   mark_tips(view, scene_frame);

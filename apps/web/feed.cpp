@@ -62,11 +62,12 @@ std::optional<std::vector<std::byte>> Feed::update(std::span<const Record> recor
   head.lost = static_cast<std::uint32_t>(counters.lost);
   head.skipped = static_cast<std::uint32_t>(skipped_);
   for (std::size_t slot = 0; slot < counters.gloves.size(); ++slot) {
-    const driver::RecordCounts& counts = counters.gloves[slot];
+    const auto& [counts, uncalibrated] = counters.gloves[slot];
     head.bad_records[slot] = static_cast<std::uint32_t>(counts.bad);
     head.delivered[slot] = static_cast<std::uint32_t>(counts.delivered);
     head.missed_records[slot] = static_cast<std::uint32_t>(counts.missed);
     head.refused[slot] = static_cast<std::uint32_t>(counts.refused);
+    if (uncalibrated) head.state = static_cast<std::uint8_t>(head.state | 2U << slot);
   }
   std::vector<std::byte> message = newest.head;
   for (std::size_t at = 0; !lacks_shape_ && at < news.size(); ++at) {

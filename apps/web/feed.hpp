@@ -8,16 +8,15 @@
 #include <span>
 #include <vector>
 
-#include <nendo/driver/record_counts.hpp>
-
 #include "web/frame_stream.hpp"
+#include "web/glove_state.hpp"
 
 namespace nendo::web {
 
-/// The numbers that the server adds to an update message.
+/// What the server adds to an update message.
 struct FeedCounters {
-  std::uint64_t lost = 0;                       ///< frames that found no room in the ring
-  std::array<driver::RecordCounts, 2> gloves{}; ///< by flow::Placement::index_of(side)
+  std::uint64_t lost = 0; ///< frames that found no room in the ring
+  GloveStates gloves;
 };
 
 class Feed {

@@ -52,13 +52,15 @@ void Server::report(std::string message) {
   work_->report(std::move(message));
 }
 
-void Server::set_counts(const std::array<driver::RecordCounts, 2>& gloves) noexcept {
+void Server::set_gloves(const GloveStates& gloves) noexcept {
   for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
-    Work::GloveCounts& counts = work_->gloves[slot];
-    counts.delivered = gloves[slot].delivered;
-    counts.missed = gloves[slot].missed;
-    counts.refused = gloves[slot].refused;
-    counts.bad = gloves[slot].bad;
+    Work::SharedGloveState& shared = work_->gloves[slot];
+    const auto& [counts, uncalibrated] = gloves[slot];
+    shared.delivered = counts.delivered;
+    shared.missed = counts.missed;
+    shared.refused = counts.refused;
+    shared.bad = counts.bad;
+    shared.uncalibrated = uncalibrated;
   }
 }
 

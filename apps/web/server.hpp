@@ -13,11 +13,11 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
-#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/command.hpp>
 
 #include "web/endpoint.hpp"
 #include "web/frame_stream.hpp"
+#include "web/glove_state.hpp"
 
 namespace nendo::web {
 
@@ -86,9 +86,8 @@ public:
   std::optional<flow::Command> next_command() noexcept;
   /// Sends a text for people to all clients. Any thread may call it; does not wait for the network.
   void report(std::string message);
-  /// Sets what became of the records of each glove, for the page to show. The counts are indexed by
-  /// flow::Placement::index_of(side). Any thread may call it; wait-free.
-  void set_counts(const std::array<driver::RecordCounts, 2>& gloves) noexcept;
+  /// Sets what the page shows of each glove. Any thread may call it; wait-free.
+  void set_gloves(const GloveStates& gloves) noexcept;
   /// Returns the counters. Each number is right by itself, but they are not all of the same moment.
   /// Any thread may call it; wait-free.
   ServerCounters counters() const noexcept;

@@ -184,9 +184,9 @@ void Server::Work::send_frames(HostTime now) {
       shape ? std::make_shared<const std::vector<std::byte>>(std::move(shape->message)) : nullptr;
   feed_counters_.lost = presented_.stream->lost();
   for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
-    const GloveCounts& of_glove = gloves[slot];
-    feed_counters_.gloves[slot] = {of_glove.delivered, of_glove.missed, of_glove.refused,
-                                   of_glove.bad};
+    const SharedGloveState& shared = gloves[slot];
+    feed_counters_.gloves[slot] = {{shared.delivered, shared.missed, shared.refused, shared.bad},
+                                   shared.uncalibrated};
   }
   bool shape_wanted = false;
   for (Connection& client : connections_) {

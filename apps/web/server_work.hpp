@@ -33,10 +33,11 @@ public:
   /// dropped.
   flow::CommandRing commands{1024};
   /// Each number is right by itself; they need not be all of the same moment.
-  struct GloveCounts {
+  struct SharedGloveState {
     std::atomic<std::uint64_t> delivered{0}, missed{0}, refused{0}, bad{0};
+    std::atomic<bool> uncalibrated{false};
   };
-  std::array<GloveCounts, 2> gloves; ///< by flow::Placement::index_of(side)
+  std::array<SharedGloveState, 2> gloves; ///< by flow::Placement::index_of(side)
   struct Counts {
     std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
         update_bytes{0}, shapes{0}, shape_bytes{0}, skipped{0};

@@ -112,7 +112,7 @@ void write_turn(const Eigen::Isometry3d& pose, WireWriter& out) noexcept {
 
 UpdateHead head_of(const flow::Frame& frame) noexcept {
   UpdateHead head;
-  head.held = frame.held ? 1 : 0;
+  head.state = frame.held ? 1 : 0;
   head.status = static_cast<std::uint8_t>(frame.status);
   head.tick = frame.tick;
   head.ticks = frame.ticks_run;

@@ -22,7 +22,7 @@ enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 /// The head of an update message, in PROTOCOL.md's order and without gaps.
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
-  std::uint8_t held = 0;
+  std::uint8_t state = 0; ///< bit 0: the hands hold the model; 1, 2: left, right is uncalibrated
   /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones. And of the history: 6, 7:
   /// there is something to undo, to redo.
   std::uint8_t hands = 0;

@@ -188,6 +188,23 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(fact(assumed->info(), "hand_source") == "assumed");
   }
 
+  TEST_CASE("a glove that tells its hand late is that hand from then on") {
+    Wire wire;
+    const auto glove = glove_at(wire);
+    CHECK(glove->info().side == Side::right); // assumed
+    SampleRing ring(1U << 14U);
+    REQUIRE(glove->start(ring));
+    GloveSample sample;
+    REQUIRE(eventually([&] { return ring.try_pop(sample); }));
+    CHECK(sample.side == Side::right);
+    {
+      const std::lock_guard lock(wire.mutex);
+      wire.chunks.insert(wire.chunks.begin(), "(ZH)0\n");
+    }
+    CHECK(eventually([&] { return ring.try_pop(sample) && sample.side == Side::left; }));
+    glove->stop();
+  }
+
   TEST_CASE("a glove that somebody stopped is started") {
     const PtyUnit port(lucidgloves().make(Side::left));
     const int other = ::open(port.path().c_str(), O_RDWR | O_NOCTTY);

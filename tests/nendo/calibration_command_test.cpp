@@ -464,7 +464,26 @@ TEST_SUITE("calibration command") {
     }
     CHECK(left > 0);
     CHECK(right > 0);
-    CHECK(told == 2); // once a glove
+    CHECK(told == 2);                                          // once a glove
+    CHECK(done.err.find("in its place") == std::string::npos); // the same wearer's, as one expects
+  }
+
+  TEST_CASE("who would get another wearer's calibration by changing the glove is told so") {
+    const Home home;
+    for (const auto& [user, hand] : {std::pair{"anna", "left"}, {"bert", "right"}}) {
+      write_file(home.file("x.csv"), with_gain("0.03"));
+      REQUIRE(calibration({"import", home.file("x.csv").string(), "--user", user, "--hand", hand})
+                  .exit_code == 0);
+    }
+    const auto link = home.file("glove");
+    const nendo::test::Program emulator({"emulate", "--link", link.string(), "--hand", "left"});
+    REQUIRE(nendo::test::appears(link));
+    const auto done =
+        nendo::test::nendo({"monitor", "serial:" + link.string(), "--json", "--count", "1"});
+    CHECK(done.err.find("calibrated for anna, left hand") != std::string::npos);
+    CHECK(
+        done.err.find("a right-hand glove in its place would be calibrated for bert, right hand") !=
+        std::string::npos);
   }
 
   TEST_CASE("a wearer's hand has the size that the calibration says, unless another is given") {

@@ -42,6 +42,8 @@ TEST_SUITE("run_keys") {
       return text.rfind("ticks") > text.rfind("let go") + 20; // a line of progress without it
     }));
     CHECK(program.press('?')); // is nothing
+    CHECK(program.press('r'));
+    CHECK(program.tells("there is nothing to redo"));
     CHECK(program.press('c'));
     CHECK(program.press('u'));
     CHECK(program.press('q'));

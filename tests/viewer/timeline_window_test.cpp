@@ -179,6 +179,15 @@ TEST_SUITE("timeline_window") {
     CHECK(at_mark.seek_s == 0.8);
   }
 
+  TEST_CASE("what the panel covers does not count as the scene's middle") {
+    const Room room;
+    if (!room.seat) return;
+    const SceneWindow& scene = room.seat->window->scene_window();
+    const Vector2d middle = room.seat->seen_at(scene.stage_camera().target);
+    CHECK(middle.x() == doctest::Approx((310.0 + scene.scene_size().width) / 2.0).epsilon(1e-3));
+    CHECK(middle.y() == doctest::Approx(scene.scene_size().height / 2.0).epsilon(1e-3));
+  }
+
   TEST_CASE("the wheel zooms about the pointer") {
     const Room room;
     if (!room.seat) return;

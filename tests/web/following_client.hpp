@@ -92,7 +92,7 @@ public:
   std::array<std::array<Eigen::Vector3d, 26>, 2> joints{};
   std::array<std::array<Eigen::Quaterniond, 26>, 2> turns{};
   std::array<Eigen::Quaterniond, 2> forearms{};
-  std::array<bool, 2> present{}, other_bones{};
+  std::array<bool, 2> present{}, other_bones{}, uncalibrated{};
   bool can_undo = false, can_redo = false;
   std::array<std::uint32_t, 2> bad{}, delivered{}, missed{}, refused{}; ///< records of the gloves
   std::size_t update_bytes = 0;
@@ -161,7 +161,9 @@ private:
   void take_update(Bytes& in) {
     ++updates;
     update_bytes = in.bytes.size();
-    held = in.take<std::uint8_t>() != 0;
+    const auto state = in.take<std::uint8_t>();
+    held = (state & 1U) != 0;
+    uncalibrated = {(state & 2U) != 0, (state & 4U) != 0};
     const auto hands = in.take<std::uint8_t>();
     can_undo = (hands & 64U) != 0;
     can_redo = (hands & 128U) != 0;

@@ -40,9 +40,10 @@ TEST_SUITE("server") {
     CHECK(server->url() == "http://" + server->endpoint().authority() + "/#" + server->token());
   }
 
-  TEST_CASE("a client hears what became of each glove's records, each loss under its own name") {
+  TEST_CASE(
+      "a client hears of each loss of a glove's records by its own name, and who is uncalibrated") {
     Served served(flow::Mode::type1);
-    served.server->set_counts({{{359, 98, 7, 12}, {1000, 0, 1, 2}}});
+    served.server->set_gloves({{{{359, 98, 7, 12}, false}, {{1000, 0, 1, 2}, true}}});
     served.begin();
     Viewer viewer(served);
     CHECK(viewer.follow_until([&] { return viewer.updates > 0; }));
@@ -53,9 +54,12 @@ TEST_SUITE("server") {
     CHECK(viewer.missed == pair(98, 0));
     CHECK(viewer.refused == pair(7, 1));
     CHECK(viewer.bad == pair(12, 2));
-    served.server->set_counts({{{400, 99, 7, 12}, {1001, 0, 1, 2}}});
+    CHECK(viewer.uncalibrated == std::array{false, true});
+    CHECK(viewer.held);
+    served.server->set_gloves({{{{400, 99, 7, 12}, true}, {{1001, 0, 1, 2}, false}}});
     CHECK(viewer.follow_until([&] { return viewer.delivered == pair(400, 1001); }));
     CHECK(viewer.missed == pair(99, 0));
+    CHECK(viewer.uncalibrated == std::array{true, false});
   }
 
   TEST_CASE("a wrong origin, host or token is refused, and there is nothing before a loop begins") {

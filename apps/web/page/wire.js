@@ -130,10 +130,10 @@ function texelsOf({ kernel, polynomial, functions }) {
 function readUpdate(buffer, model) {
   const view = new DataView(buffer)
   const u32 = at => view.getUint32(at, true), u64 = at => Number(view.getBigUint64(at, true))
-  const bits = view.getUint8(2)
+  const state = view.getUint8(1), bits = view.getUint8(2)
   const update = {
     canUndo: (bits & 64) !== 0, canRedo: (bits & 128) !== 0,
-    held: view.getUint8(1) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
+    held: (state & 1) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
     tick: u64(16), ticks: u64(24), missed: u64(32), commits: u32(40), undos: u32(44),
     late: view.getFloat32(48, true), mostLate: view.getFloat32(52, true), sinceLast: view.getFloat32(56, true),
     lost: u32(60), skipped: u32(64), links: u32(68), bytes: buffer.byteLength, hands: [null, null], steps: [],
@@ -143,6 +143,7 @@ function readUpdate(buffer, model) {
     if (!(bits & 1 << slot)) continue
     const hand = readHand(view, at, model.bones[slot][bits & 16 << slot ? 1 : 0])
     hand.silent = (bits & 4 << slot) !== 0
+    hand.uncalibrated = (state & 2 << slot) !== 0
     hand.samples = u32(72 + 4 * slot)
     const [bad, delivered, missed, refused] = [80, 88, 96, 104].map(first => u32(first + 4 * slot))
     hand.records = { bad, delivered, missed, refused, sent: delivered + missed }

@@ -28,6 +28,12 @@ constexpr auto at_once = 0ms;          ///< for the reader, which must not wait
 constexpr auto starting_time = 2500ms; ///< a board that restarts at opening, boot loader included
 constexpr auto learning_time = 300ms;  ///< for an answer, and for lines with all slots
 
+std::optional<Side> hand_told_by(const Line& line) noexcept {
+  if (line.hand == hand_left) return Side::left;
+  if (line.hand == hand_right) return Side::right;
+  return std::nullopt;
+}
+
 /// What the glove shows and says of itself at the beginning.
 struct Acquaintance {
   SensorMask sensors;
@@ -45,8 +51,7 @@ struct Acquaintance {
     clamped = clamped || line.clamped;
     if (line.firmware) firmware = line.firmware;
     if (line.device) device = line.device;
-    if (line.hand == hand_left) hand = Side::left;
-    if (line.hand == hand_right) hand = Side::right;
+    if (const auto told = hand_told_by(line)) hand = told;
   }
 };
 
@@ -106,6 +111,7 @@ public:
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
             SampleSink& sink) noexcept override {
     const auto take = [&](const Line& line) {
+      side_ = hand_told_by(line).value_or(side_); // an answer may be later than identify() waits
       if (!line.measures()) return;
       legacy_ = line.legacy; // another glove may have come to the same port
       GloveSample sample;
