@@ -1,7 +1,8 @@
-# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [PROGRAM] [ALONE] [OPTIMISED]): one doctest program
+# nendo_test(<name> SOURCES ... LIBRARIES ... [INCLUDES ...] [PROGRAM] [ALONE] [OPTIMISED] [COMPUTES]): one doctest program
 # test_<name>, one ctest case per TEST_CASE. INCLUDES names private src/ folders of the unit under test. PROGRAM: the tests
 # run nendo, whose path is NENDO_PROGRAM. ALONE: nothing else is tested meanwhile. OPTIMISED doubles the compile time; it is
-# for tests that compute much themselves, or test templates, which are compiled with the test.
+# for tests that compute much themselves, or test templates, which are compiled with the test. COMPUTES: these wait for no
+# clock and no device, and give way to tests that do.
 include(doctest)
 
 # doctest's own implementation, compiled once for all test programs.
@@ -16,7 +17,7 @@ foreach(kind test optimised_test)
 endforeach()
 
 function(nendo_test name)
-  cmake_parse_arguments(ARG "PROGRAM;ALONE;OPTIMISED" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
+  cmake_parse_arguments(ARG "PROGRAM;ALONE;OPTIMISED;COMPUTES" "" "SOURCES;LIBRARIES;INCLUDES" ${ARGN})
   set(target test_${name})
   add_executable(${target} ${ARG_SOURCES})
   # These replace malloc and the like, or stand before a program's own libraries: each is compiled alone.
@@ -40,7 +41,13 @@ function(nendo_test name)
       add_dependencies(${target} nendo-bench)
     endif()
   endif()
+  if(ARG_COMPUTES AND NOT CMAKE_CROSSCOMPILING)
+    set_target_properties(${target} PROPERTIES CROSSCOMPILING_EMULATOR "nice;-n;10")
+  endif()
   set(timeout_s 120)
+  if(ARG_COMPUTES) # which takes long while others need the processors
+    set(timeout_s 300)
+  endif()
   if(CMAKE_CROSSCOMPILING) # an emulator takes ten times as long
     set(timeout_s 1200)
   endif()
