@@ -288,7 +288,7 @@ TEST_SUITE("lucidgloves_driver") {
     REQUIRE(glove->start(ring));
     const auto start = HostClock::now();
     REQUIRE(eventually([&] { return glove->stats().records >= 300; }));
-    CHECK(HostClock::now() - start < 30s); // a host that says nothing needs five minutes
+    CHECK(HostClock::now() - start < 3s); // a host that says nothing needs five minutes
     CHECK(brakes_of(port) == std::array{0, 0, 0, 0, 0});
     glove->set_feedback(resistance({0, 1, 500, 1000, 65535}));
     CHECK(eventually([&] { return brakes_of(port) == std::array{0, 1, 500, 1000, 1000}; }));
@@ -297,6 +297,7 @@ TEST_SUITE("lucidgloves_driver") {
     CHECK(brakes_of(port) == std::array{0, 1, 500, 1000, 1000});
     glove->stop();
     CHECK(eventually([&] { return brakes_of(port) == std::array{0, 0, 0, 0, 0}; }));
+    CHECK(glove->stats().silences == 0);
     CHECK(glove->stats().bad_records == 0);
   }
 

@@ -69,6 +69,9 @@ public:
       return glove.sensors.bits != 0;
     };
     const auto learn = [&](std::span<const std::byte> chunk) { return take(chunk), false; };
+    const auto learn_hand = [&](std::span<const std::byte> chunk) {
+      return take(chunk), glove.hand.has_value();
+    };
     IoStatus heard = listen(transport, patience, starting_time, take);
     const bool mute = heard == IoStatus::timeout && parser.counters().bytes == 0;
     if (mute && !legacy_) { // another program may have stopped it
@@ -79,12 +82,17 @@ public:
     if (heard == IoStatus::done && !glove.legacy) {
       heard = send(transport, ask_information);
       if (heard != IoStatus::gone) heard = listen(transport, patience, learning_time, learn);
+      // What answered before answers again, if late, and its first sample shall be the right
+      // hand's.
+      if (heard != IoStatus::gone && tells_hand_ && !glove.hand)
+        heard = listen(transport, patience, starting_time, learn_hand);
     }
     parser_.count_discarded(parser.counters().bytes);
     if (heard == IoStatus::gone) return went_away(source);
     if (glove.sensors.bits == 0) return stranger(source, parser.counters());
     const ChosenHand hand = choose_hand(glove.hand, hands_);
     side_ = hand.side;
+    tells_hand_ = glove.hand.has_value();
     legacy_ = glove.legacy;
     if (glove.clamped && !std::exchange(told_of_clamping_, true)) {
       spdlog::warn("device: {} sends numbers above {}, which count as {}{}", source, range_, range_,
@@ -187,6 +195,7 @@ private:
   const SideOptions hands_;
   Side side_ = Side::right;
   bool legacy_ = false;
+  bool tells_hand_ = false; ///< the glove that was here last did
   bool its_turn_ = false;   ///< the glove may be waiting for an answer
   bool has_braked_ = false; ///< since it was started
   bool told_of_clamping_ = false;
