@@ -245,8 +245,7 @@ void print_morphs(const exporting::MorphReport& morphs) {
   }
   std::cout << fmt::format(
       "{} morph targets of key shapes, within {:.3g} % of the model's diagonal, "
-      "{:.2g} mm on the stage (--tolerance); the worst vertex is off by {:.2g} "
-      "%\n",
+      "{:.2g} mm on the stage (--tolerance); the worst vertex is off by {:.2g} %\n",
       morphs.targets, 100.0 * morphs.tolerance, 1e3 * morphs.tolerance * morphs.diagonal_m,
       100.0 * morphs.greatest_error);
 }

@@ -5,13 +5,15 @@
 #include <utility>
 #include <variant>
 
+#include <nendo/driver/open_glove.hpp>
 #include <nendo/hand/calibration.hpp>
 
 namespace nendo::takes {
 namespace {
 
 bool is_of_simulated(std::string_view source) {
-  return source == "sim" || source.starts_with("sim:") || source.starts_with("sim?");
+  const auto spec = driver::parse_glove_spec(source);
+  return spec && spec->kind == "sim";
 }
 
 /// Tells by where a glove's samples came from, at first, because a recording keeps no more of that.

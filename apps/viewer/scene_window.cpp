@@ -124,7 +124,7 @@ SceneWindow::~SceneWindow() {
 void SceneWindow::set_model(const deform::BlockLayout& layout,
                             const render::SceneBuilder& builder) {
   builder_.emplace(builder);
-  shown_.reset();
+  shown_.size = {};
   renderer_->set_model(layout, builder);
 }
 
@@ -241,15 +241,19 @@ void SceneWindow::end_picture() {
   std::this_thread::sleep_until(begun_ + least_period);
 }
 
+bool SceneWindow::Shown::is_of(const SceneWindow& window, render::Size wanted) const {
+  return size == wanted && blocks_sent == window.blocks_sent() && facets == window.facets_ &&
+         camera == window.camera_ && scene == window.scene_;
+}
+
 // A model that nobody touches is drawn once. Most of the time goes into the scene where there is no
 // graphics card.
 void SceneWindow::draw_scene(render::Size size) {
-  Shown now{scene_, camera_, size, blocks_sent(), facets_};
-  if (target_->keeps() && shown_ == now) return;
+  if (target_->keeps() && shown_.is_of(*this, size)) return;
   target_->begin(size);
   renderer_->draw(scene_, camera_, size,
                   facets_ ? GlRenderer::Look::facets : GlRenderer::Look::shaded);
-  shown_ = std::move(now);
+  shown_ = {scene_, camera_, size, blocks_sent(), facets_};
 }
 
 void SceneWindow::draw_all() {

@@ -91,7 +91,8 @@ private:
     render::Size size;
     std::uint64_t blocks_sent = 0;
     bool facets = false;
-    bool operator==(const Shown&) const = default;
+    /// Tells whether the picture would be the same now. Compares the scene last, as it is largest.
+    bool is_of(const SceneWindow& window, render::Size wanted) const;
   };
 
   SceneWindow();
@@ -110,7 +111,7 @@ private:
   render::SceneParts parts_;
   render::Scene scene_;
   render::Camera camera_;
-  std::optional<Shown> shown_; ///< what target_ keeps the picture of
+  Shown shown_; ///< what target_ keeps the picture of; of no size at first
   HostTime begun_{};
   int below_ = 0;
   int left_ = 0;

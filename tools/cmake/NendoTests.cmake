@@ -41,15 +41,12 @@ function(nendo_test name)
       add_dependencies(${target} nendo-bench)
     endif()
   endif()
-  if(ARG_COMPUTES AND NOT CMAKE_CROSSCOMPILING)
-    set_target_properties(${target} PROPERTIES CROSSCOMPILING_EMULATOR "nice;-n;10")
-  endif()
   set(timeout_s 120)
-  if(ARG_COMPUTES) # which takes long while others need the processors
-    set(timeout_s 300)
-  endif()
   if(CMAKE_CROSSCOMPILING) # an emulator takes ten times as long
     set(timeout_s 1200)
+  elseif(ARG_COMPUTES) # takes long while others need the processors
+    set(timeout_s 300)
+    set_target_properties(${target} PROPERTIES CROSSCOMPILING_EMULATOR "nice;-n;10")
   endif()
   doctest_discover_tests(${target} TEST_PREFIX "${name}/"
     PROPERTIES TIMEOUT ${timeout_s} RUN_SERIAL ${ARG_ALONE} FAIL_REGULAR_EXPRESSION "test cases: +0 ")
