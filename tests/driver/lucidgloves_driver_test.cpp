@@ -54,6 +54,7 @@ struct Wire {
   std::size_t reads = 0;
   std::vector<std::string> written;
   std::chrono::milliseconds longest_write{0}; ///< that a writer was ready to wait
+  bool unplugged = false;                     ///< until it is opened again
   bool takes_nothing = false;
   bool takes_all_brakes = true; ///< false: of the next brake command only a part
 
@@ -81,6 +82,7 @@ public:
     if (time == 0ms) return {};
     std::this_thread::sleep_for(std::min(time, 2ms));
     const std::lock_guard lock(wire_.mutex);
+    if (wire_.unplugged) return {IoStatus::gone, 0};
     const std::string& chunk = wire_.chunks[wire_.reads++ % wire_.chunks.size()];
     std::memcpy(buffer.data(), chunk.data(), chunk.size());
     return {chunk.empty() ? IoStatus::timeout : IoStatus::done, chunk.size()};
@@ -105,6 +107,8 @@ private:
 
 std::unique_ptr<Glove> glove_at(Wire& wire) {
   const auto open_port = [&]() -> Result<std::unique_ptr<Transport>> {
+    const std::lock_guard lock(wire.mutex);
+    wire.unplugged = false;
     return std::unique_ptr<Transport>(std::make_unique<ScriptedPort>(wire));
   };
   return required(lucidgloves::open_lucidgloves_by("a scripted glove", open_port, 4095, {}));
@@ -202,6 +206,31 @@ TEST_SUITE("lucidgloves_driver") {
       wire.chunks.insert(wire.chunks.begin(), "(ZH)0\n");
     }
     CHECK(eventually([&] { return ring.try_pop(sample) && sample.side == Side::left; }));
+    glove->stop();
+  }
+
+  TEST_CASE(
+      "a glove that told its hand is waited for when it comes back, however many lines it sends") {
+    Wire wire;
+    wire.chunks.insert(wire.chunks.begin(), "(ZH)0\n");
+    const auto glove = glove_at(wire);
+    CHECK(glove->info().side == Side::left);
+    SampleRing ring(1U << 14U);
+    REQUIRE(glove->start(ring));
+    {
+      const std::lock_guard lock(wire.mutex);
+      wire.chunks.assign(400, "A1B2C3D4E5\n"); // 0.8 s of them: it is asked for 0.3 s otherwise
+      wire.chunks.emplace_back("(ZH)0\n");
+      wire.reads = 0;
+      wire.unplugged = true;
+    }
+    REQUIRE(eventually([&] { return glove->stats().reopened == 1; }));
+    ring.drain([](const GloveSample&) {});
+    GloveSample sample;
+    for (int k = 0; k < 300; ++k) {
+      REQUIRE(eventually([&] { return ring.try_pop(sample); }));
+      CHECK(sample.side == Side::left);
+    }
     glove->stop();
   }
 
