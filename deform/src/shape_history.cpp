@@ -93,6 +93,7 @@ void ShapeHistory::drop_oldest() noexcept {
     add_free({dropped, dropped, 1});
   }
   --steps_;
+  if (fence_ > 0) --fence_;
   if (oldest_ == nullptr)
     newest_ = present_ = nullptr;
   else
@@ -109,7 +110,7 @@ void ShapeHistory::exchange(SavedBlock& saved, BoundedShape& shape) noexcept {
 }
 
 bool ShapeHistory::undo(BoundedShape& shape) noexcept {
-  if (steps_ == 0) return false;
+  if (steps() == 0) return false;
   const std::uint64_t step = present_->step;
   for (; present_ != nullptr && present_->step == step; present_ = present_->previous) {
     exchange(*present_, shape);

@@ -20,19 +20,27 @@ public:
   /// and with fewer bytes than a block needs, nothing is kept.
   ShapeHistory(const BlockShape& first, std::size_t bytes, UndoMemory* more);
   ~ShapeHistory();
+  ShapeHistory(ShapeHistory&&) noexcept = default;
 
   /// Ends a step, which leads from the shape kept last to this one, and forgets undone steps. If
   /// nothing changed, there is no step. A step for which there is no room is not kept, and neither
   /// are those before it.
   void keep(const BlockShape& now) noexcept;
   /// Undoes the last step. `shape` must be the shape that was kept last. Returns false if there is
-  /// no step.
+  /// no step, or none behind the fence.
   bool undo(BoundedShape& shape) noexcept;
   /// Does the last undone step again, from the shape that was kept last; later changes of `shape`
   /// are dropped. Returns false, and changes nothing, if there is no undone step.
   bool redo(BoundedShape& shape) noexcept;
 
-  std::size_t steps() const noexcept { return steps_; }
+  /// Makes undo() stop here, and forgets the undone steps.
+  void fence() noexcept {
+    forget_undone();
+    fence_ = steps_;
+  }
+  void unfence() noexcept { fence_ = 0; }
+
+  std::size_t steps() const noexcept { return steps_ - fence_; } ///< that undo() may undo
   std::size_t undone() const noexcept { return undone_; }
   std::size_t forgotten() const noexcept { return forgotten_; } ///< for want of memory
 
@@ -56,6 +64,7 @@ private:
   SavedBlock* present_ = nullptr; ///< the last that is not undone; nullptr: all are
   std::size_t undone_blocks_ = 0;
   std::size_t steps_ = 0;
+  std::size_t fence_ = 0; ///< as many steps are not undone
   std::size_t undone_ = 0;
   std::size_t forgotten_ = 0;
   std::uint64_t next_step_ = 0;

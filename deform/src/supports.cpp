@@ -38,6 +38,24 @@ void share(Supports& supports, std::optional<Support> common) {
 
 } // namespace
 
+double least_radius(const Supports& supports) noexcept {
+  double least = supports.shared.front().radius;
+  for (const Support& support : supports.shared)
+    least = std::min(least, support.radius);
+  for (const OwnSupport& own : supports.own)
+    least = std::min(least, own.support.radius);
+  return least;
+}
+
+double largest_radius(const Supports& supports) noexcept {
+  double largest = supports.shared.front().radius;
+  for (const Support& support : supports.shared)
+    largest = std::max(largest, support.radius);
+  for (const OwnSupport& own : supports.own)
+    largest = std::max(largest, own.support.radius);
+  return largest;
+}
+
 Eigen::Index Supports::functions(Eigen::Index points) const noexcept {
   return points * static_cast<Eigen::Index>(shared.size()) + static_cast<Eigen::Index>(own.size());
 }

@@ -5,28 +5,38 @@
 #include <utility>
 
 #include "cardinal_weights.hpp"
-#include "shape_history.hpp"
+#include "sculpted_parts.hpp"
 #include "solver_room.hpp"
 
 namespace nendo::deform {
 
 Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
                              const DeformerOptions& options)
-    : layout_(std::move(rest)), rest_(std::make_unique<BoundedShape>(layout_.pack())),
-      starts_(Points::Zero(3, control_points)), rounded_(starts_), displacements_(starts_),
-      asked_(starts_), supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
+    : Type1Deformer(std::make_unique<SculptedShape>(std::move(rest), options), control_points,
+                    options) {}
+
+Type1Deformer::Type1Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
+                             const DeformerOptions& options)
+    : Type1Deformer(*own, control_points, options) {
+  own_ = std::move(own);
+}
+
+Type1Deformer::Type1Deformer(SculptedShape& shape, Eigen::Index control_points,
+                             const DeformerOptions& options)
+    : shape_(&shape), starts_(Points::Zero(3, control_points)), rounded_(starts_),
+      displacements_(starts_), asked_(starts_),
+      supports_(rounded(options.supports, shape.layout())), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
       fields_(options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1,
               field_),
-      evaluator_(
-          std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
-      weights_(std::make_unique<CardinalWeights>(layout_, control_points, field_,
-                                                 options.evaluation.weight_bytes)),
-      history_(
-          std::make_unique<ShapeHistory>(rest_->shape, options.undo_bytes, options.undo_memory)) {
+      evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
+                                                  options.evaluation)),
+      weights_(std::make_unique<CardinalWeights>(shape.layout(), control_points, field_,
+                                                 options.evaluation.weight_bytes)) {
   if (options.injective) {
     chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
-    linked_ = std::make_unique<BoundedShape>(*rest_);
+    // Not of the present shape, which another thread may be changing.
+    linked_ = std::make_unique<BoundedShape>(shape.layout().pack());
   } else {
     make_room(solver_, supports_, control_points);
   }
@@ -36,8 +46,8 @@ Type1Deformer::~Type1Deformer() = default;
 Type1Deformer::Type1Deformer(Type1Deformer&&) noexcept = default;
 Type1Deformer& Type1Deformer::operator=(Type1Deformer&&) noexcept = default;
 
-const BlockShape& Type1Deformer::rest() const noexcept {
-  return rest_->shape;
+const BoundedShape& Type1Deformer::rest_shape() const noexcept {
+  return shape_->parts().now;
 }
 
 FieldStatus Type1Deformer::grab(const Points& starts) {
@@ -50,7 +60,7 @@ FieldStatus Type1Deformer::grab(const Points& starts) {
 /// On failure everything is as it was.
 FieldStatus Type1Deformer::build(const Points& starts) {
   for (Eigen::Index i = 0; i < starts.cols(); ++i)
-    asked_.col(i) = layout_.rounded(starts.col(i));
+    asked_.col(i) = shape_->layout().rounded(starts.col(i));
   const FieldStatus status = chain_ ? chain_->grab(asked_) : solver_.build(asked_, supports_);
   if (!is_solved(status)) {
     // The failed build took the place of the good one.
@@ -71,7 +81,7 @@ void Type1Deformer::take_hold() {
   field_.coefficients.setZero();
   field_.polynomial.setZero();
   fields_.clear();
-  weights_->build(solver(), *rest_, *evaluator_);
+  weights_->build(solver(), rest_shape(), *evaluator_);
 }
 
 FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
@@ -82,7 +92,8 @@ FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
     asked_ = ends - starts_;
     status = solver_.solve(asked_, field_);
     const auto fits = [&] {
-      return weights_->is_built() ? weights_->fits(asked_, *rest_) : evaluator_->set_field(field_);
+      return weights_->is_built() ? weights_->fits(asked_, rest_shape())
+                                  : evaluator_->set_field(field_);
     };
     if (is_solved(status) && !fits()) {
       status = FieldStatus::not_finite;
@@ -124,7 +135,7 @@ FieldStatus Type1Deformer::apply_links(const Points& ends, BlockShape& out) {
 /// From the first, which is made.
 FieldStatus Type1Deformer::follow_links() {
   FieldStatus status = FieldStatus::ok;
-  linked_->follow(*rest_);
+  linked_->follow(rest_shape());
   do {
     const CsrbfField& link = chain_->field();
     if (evaluator_->set_field(link) && evaluator_->displace(*linked_))
@@ -142,27 +153,55 @@ void Type1Deformer::draw(BlockShape& out) {
   }
   if (!weights_->is_built()) {
     evaluator_->set_field(field_);
-    evaluator_->displace(*rest_, out);
+    evaluator_->displace(rest_shape(), out);
     return;
   }
-  if (out.block_count() != rest_->shape.block_count()) out = rest_->shape;
-  weights_->apply(displacements_, rest_->shape, out, *evaluator_);
+  if (out.block_count() != rest_shape().shape.block_count()) out = rest_shape().shape;
+  weights_->apply(displacements_, rest_shape().shape, out, *evaluator_);
+}
+
+/// Makes the applied shape the rest shape.
+void Type1Deformer::absorb() {
+  BoundedShape& rest = shape_->parts().now;
+  if (in_links_) {
+    rest.follow(*linked_);
+  } else if (weights_->is_built()) {
+    weights_->apply(displacements_, rest.shape, rest.shape, *evaluator_);
+    weights_->update_rest_bounds(displacements_, rest);
+  } else {
+    evaluator_->set_field(field_);
+    evaluator_->displace(rest);
+  }
 }
 
 FieldStatus Type1Deformer::commit(const Points& ends) {
   assert(ends.cols() == starts_.cols());
   const FieldStatus status = build(ends);
   if (!is_solved(status)) return status;
-  if (in_links_) {
-    rest_->follow(*linked_);
-  } else if (weights_->is_built()) {
-    weights_->apply(displacements_, rest_->shape, rest_->shape, *evaluator_);
-    weights_->update_rest_bounds(displacements_, *rest_);
-  } else {
-    evaluator_->set_field(field_);
-    evaluator_->displace(*rest_);
-  }
-  history_->keep(rest_->shape);
+  absorb();
+  shape_->parts().history.keep(rest());
+  take_hold();
+  return status;
+}
+
+void Type1Deformer::release(bool is_step) noexcept {
+  const bool is_moved = in_links_ || !displacements_.isZero(0.0);
+  if (grabbed_ && is_moved) absorb();
+  if (is_step) shape_->parts().history.keep(rest());
+  grabbed_ = false;
+  in_links_ = false;
+  displacements_.setZero();
+  field_.coefficients.setZero();
+  field_.polynomial.setZero();
+  fields_.clear();
+}
+
+FieldStatus Type1Deformer::reset(const Points& tips) {
+  assert(tips.cols() == starts_.cols());
+  const FieldStatus status = build(tips);
+  if (!is_solved(status)) return status;
+  if (in_links_ || !displacements_.isZero(0.0)) absorb();
+  shape_->parts().reset();
   take_hold();
   return status;
 }
@@ -171,7 +210,9 @@ FieldStatus Type1Deformer::undo(const Points& tips) {
   assert(tips.cols() == starts_.cols());
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  history_->undo(*rest_);
+  SculptedShape::Parts& parts = shape_->parts();
+  parts.history.keep(parts.now.shape); // what release() left out
+  parts.history.undo(parts.now);
   take_hold();
   return status;
 }
@@ -181,21 +222,9 @@ FieldStatus Type1Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  history_->redo(*rest_);
+  shape_->parts().history.redo(shape_->parts().now);
   take_hold();
   return status;
-}
-
-std::size_t Type1Deformer::undo_steps() const noexcept {
-  return history_->steps();
-}
-
-std::size_t Type1Deformer::redo_steps() const noexcept {
-  return history_->undone();
-}
-
-std::size_t Type1Deformer::forgotten_steps() const noexcept {
-  return history_->forgotten();
 }
 
 std::size_t Type1Deformer::weight_bytes() const noexcept {

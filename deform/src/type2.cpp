@@ -5,13 +5,15 @@
 #include <utility>
 
 #include "fingertip_curve.hpp"
-#include "shape_history.hpp"
+#include "sculpted_parts.hpp"
 #include "solver_room.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
 
 namespace {
+
+static_assert(Type2Deformer::most_pieces == FingertipCurve::most_pieces);
 
 /// Of one call.
 std::size_t most_fields(const DeformerOptions& options) {
@@ -23,16 +25,25 @@ std::size_t most_fields(const DeformerOptions& options) {
 
 Type2Deformer::Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                              const DeformerOptions& options)
-    : layout_(std::move(shape)), shape_(std::make_unique<BoundedShape>(layout_.pack())),
-      curve_(std::make_unique<FingertipCurve>(control_points, piece_length)),
+    : Type2Deformer(std::make_unique<SculptedShape>(std::move(shape), options), control_points,
+                    piece_length, options) {}
+
+Type2Deformer::Type2Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
+                             double piece_length, const DeformerOptions& options)
+    : Type2Deformer(*own, control_points, piece_length, options) {
+  own_ = std::move(own);
+}
+
+Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, double piece_length,
+                             const DeformerOptions& options)
+    : shape_(&shape), curve_(std::make_unique<FingertipCurve>(control_points, piece_length)),
       current_(Points::Zero(3, control_points)), next_(current_), step_(current_),
-      rounded_(current_), supports_(rounded(options.supports, layout_)), solver_(options.csrbf),
+      rounded_(current_), supports_(rounded(options.supports, shape.layout())),
+      solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
       fields_(most_fields(options), field_),
-      evaluator_(
-          std::make_unique<BlockEvaluator>(layout_, field_.centres.cols(), options.evaluation)),
-      history_(
-          std::make_unique<ShapeHistory>(shape_->shape, options.undo_bytes, options.undo_memory)) {
+      evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
+                                                  options.evaluation)) {
   make_room(solver_, supports_, control_points);
   if (!options.injective) return;
   chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
@@ -43,13 +54,23 @@ Type2Deformer::~Type2Deformer() = default;
 Type2Deformer::Type2Deformer(Type2Deformer&&) noexcept = default;
 Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
 
-const BlockShape& Type2Deformer::shape() const noexcept {
-  return shape_->shape;
+FieldStatus Type2Deformer::begin(const Points& tips) {
+  shape_->parts().history.keep(shape());
+  return take_hold(tips);
 }
 
-FieldStatus Type2Deformer::begin(const Points& tips) {
-  history_->keep(shape_->shape);
-  return take_hold(tips);
+void Type2Deformer::release(bool is_step) noexcept {
+  if (is_step) shape_->parts().history.keep(shape());
+  begun_ = false;
+  fields_.clear();
+}
+
+FieldStatus Type2Deformer::reset(const Points& tips) {
+  const FieldStatus status = take_hold(tips);
+  if (!is_solved(status)) return status;
+  shape_->parts().reset();
+  fields_.clear();
+  return status;
 }
 
 FieldStatus Type2Deformer::take_hold(const Points& tips) {
@@ -75,8 +96,8 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
 FieldStatus Type2Deformer::undo(const Points& tips) {
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  history_->keep(shape_->shape);
-  history_->undo(*shape_);
+  shape_->parts().history.keep(shape());
+  shape_->parts().history.undo(shape_->parts().now);
   fields_.clear();
   return status;
 }
@@ -85,21 +106,9 @@ FieldStatus Type2Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  history_->redo(*shape_);
+  shape_->parts().history.redo(shape_->parts().now);
   fields_.clear();
   return status;
-}
-
-std::size_t Type2Deformer::undo_steps() const noexcept {
-  return history_->steps();
-}
-
-std::size_t Type2Deformer::redo_steps() const noexcept {
-  return history_->undone();
-}
-
-std::size_t Type2Deformer::forgotten_steps() const noexcept {
-  return history_->forgotten();
 }
 
 /// A piece without a usable field leaves the shape alone; the curve goes on behind it.
@@ -121,7 +130,7 @@ StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
 /// From current_ to next_.
 FieldStatus Type2Deformer::apply_piece() {
   for (Eigen::Index i = 0; i < current_.cols(); ++i)
-    rounded_.col(i) = layout_.rounded(current_.col(i));
+    rounded_.col(i) = shape_->layout().rounded(current_.col(i));
   step_ = next_ - current_;
   FieldStatus status = solver_.build(rounded_, supports_);
   if (is_solved(status)) status = solver_.solve(step_, field_);
@@ -129,7 +138,7 @@ FieldStatus Type2Deformer::apply_piece() {
 }
 
 FieldStatus Type2Deformer::apply(const CsrbfField& field) {
-  if (!evaluator_->set_field(field) || !evaluator_->displace(*shape_))
+  if (!evaluator_->set_field(field) || !evaluator_->displace(shape_->parts().now))
     return FieldStatus::not_finite;
   fields_.push(field);
   return FieldStatus::ok;

@@ -54,6 +54,10 @@ struct Supports {
 /// nothing in it stays where it is. False if the box or the list is empty, or the box is one point.
 bool reach_all_of(const Box& box, const Points& starts, const Supports& supports);
 
+/// Returns the least and the largest radius of all functions.
+double least_radius(const Supports& supports) noexcept;
+double largest_radius(const Supports& supports) noexcept;
+
 /// Returns one shared function with this radius in model units, > 0.
 inline Supports one_radius(double radius) {
   return {{Support{radius}}, {}};

@@ -9,13 +9,13 @@
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
 
 class BlockEvaluator;
 class CardinalWeights;
-class ShapeHistory;
 struct BoundedShape;
 
 /// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
@@ -27,6 +27,9 @@ public:
   /// `injective`, every apply() goes straight from the start points in as many links as it takes,
   /// so that the shape depends on the ends alone, also where a pair is held apart.
   Type1Deformer(Points rest, Eigen::Index control_points, const DeformerOptions& options);
+  /// Works on a shape that other deformers work on before or after it. Call release() or grab()
+  /// before another one does. `shape` must outlive the deformer.
+  Type1Deformer(SculptedShape& shape, Eigen::Index control_points, const DeformerOptions& options);
   /// Uses one radius > 0 for all start points, in model units.
   Type1Deformer(Points rest, Eigen::Index control_points, double radius, CsrbfOptions csrbf,
                 const EvaluationOptions& evaluation = {})
@@ -46,6 +49,13 @@ public:
   FieldStatus apply(const Points& ends, BlockShape& out);
   /// Makes the shape that apply() last gave the rest shape, and `ends` the new start points.
   FieldStatus commit(const Points& ends);
+  /// Makes the shape that apply() last gave the rest shape, which nothing holds until the next
+  /// grab(). With `is_step`, undo() can go back before it; without, only together with the next
+  /// commit.
+  void release(bool is_step) noexcept;
+  /// Makes the rest shape what it was at first, and `tips` the start points. What apply() made
+  /// since the last commit is a step of its own.
+  FieldStatus reset(const Points& tips);
   /// Makes the rest shape what it was before the last commit, and `tips` the start points. What
   /// apply() made since then is dropped. If no commit can be undone, this is grab(tips).
   FieldStatus undo(const Points& tips);
@@ -53,13 +63,13 @@ public:
   /// is no such undo, or there was a commit since, nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);
   /// Returns how many commits can be undone, and how many undone ones can be redone.
-  std::size_t undo_steps() const noexcept;
-  std::size_t redo_steps() const noexcept;
+  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
+  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
   /// Returns how many commits can no longer be undone because memory ended.
-  std::size_t forgotten_steps() const noexcept;
+  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
 
-  const BlockLayout& layout() const noexcept { return layout_; }
-  const BlockShape& rest() const noexcept;
+  const BlockLayout& layout() const noexcept { return shape_->layout(); }
+  const BlockShape& rest() const noexcept { return shape_->shape(); }
   /// Returns the fields that make the last apply()'s shape from the rest shape: one, or one for
   /// each link. The centres are the start points rounded by BlockLayout::rounded(); those of later
   /// links are where the link before leads.
@@ -70,6 +80,10 @@ public:
   std::size_t weight_bytes() const noexcept;
 
 private:
+  Type1Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
+                const DeformerOptions& options);
+  const BoundedShape& rest_shape() const noexcept;
+  void absorb();
   FieldStatus apply_links(const Points& ends, BlockShape& out);
   FieldStatus follow_links();
   FieldStatus build(const Points& starts);
@@ -77,8 +91,8 @@ private:
   void take_hold();
   void draw(BlockShape& out);
 
-  BlockLayout layout_;
-  std::unique_ptr<BoundedShape> rest_;
+  std::unique_ptr<SculptedShape> own_; ///< null if it was given
+  SculptedShape* shape_;               ///< the rest shape
   Points starts_;
   Points rounded_;       ///< the start points as float holds them
   Points displacements_; ///< the last that had a solution
@@ -89,7 +103,6 @@ private:
   FieldSequence fields_;
   std::unique_ptr<BlockEvaluator> evaluator_;
   std::unique_ptr<CardinalWeights> weights_;
-  std::unique_ptr<ShapeHistory> history_;
   std::optional<InjectiveChain> chain_;
   std::unique_ptr<BoundedShape> linked_; ///< the shape that a chain of several links makes
   bool in_links_ = false;                ///< the last apply() made it so

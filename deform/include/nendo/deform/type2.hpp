@@ -9,14 +9,13 @@
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
 
 class BlockEvaluator;
 class FingertipCurve;
-class ShapeHistory;
-struct BoundedShape;
 
 struct StrokeResult {
   FieldStatus status = FieldStatus::ok;
@@ -27,10 +26,16 @@ struct StrokeResult {
 /// makes in double of the same piece. A deformer belongs to one thread at a time.
 class Type2Deformer {
 public:
+  static constexpr int most_pieces = 16; ///< of one call, without `injective`
+
   /// Allocates for the shape (3 by #vertices) and for `control_points` fingertips. piece_length is
   /// > 0, in model units. With `injective`, a piece is made in as many links as it takes; a call
   /// makes at most InjectiveOptions::most_links, and the rest waits for the next call.
   Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
+                const DeformerOptions& options);
+  /// Works on a shape that other deformers work on before or after it. Call release() before
+  /// another one does. `shape` must outlive the deformer.
+  Type2Deformer(SculptedShape& shape, Eigen::Index control_points, double piece_length,
                 const DeformerOptions& options);
   /// Uses one radius > 0 for all fingertips, in model units.
   Type2Deformer(Points shape, Eigen::Index control_points, double radius, double piece_length,
@@ -41,11 +46,19 @@ public:
   Type2Deformer(Type2Deformer&&) noexcept;
   Type2Deformer& operator=(Type2Deformer&&) noexcept;
 
-  /// Starts a curve at these fingertips (3 by control_points) without deforming anything. The
-  /// status is ok, not_finite, or, with `injective`, what building a field there gives.
+  /// Starts a curve at these fingertips (3 by control_points) without deforming anything, and ends
+  /// the stroke before, which undo() can then undo. The status is ok, not_finite, or, with
+  /// `injective`, what building a field there gives.
   FieldStatus begin(const Points& tips);
+  /// Does the same, but without ending the stroke before.
+  FieldStatus grab(const Points& tips) { return take_hold(tips); }
+  /// Lets go of the shape until the next begin() or grab(). With `is_step`, the stroke has ended.
+  void release(bool is_step) noexcept;
+  /// Makes the shape what it was at first, and begins a new stroke at `tips`. The stroke before is
+  /// a step of its own.
+  FieldStatus reset(const Points& tips);
   /// Extends the curves to `tips` and deforms by the pieces that are whole. What is left, less than
-  /// one and a half pieces, waits for the next call. A jump is made in at most 16 pieces, so that
+  /// one and a half pieces, waits for the next call. A jump is made in at most most_pieces, so that
   /// the time of a call is bounded. Does not allocate. A piece without a usable field is skipped.
   /// If a fingertip is not finite, nothing happens and the status is not_finite.
   StrokeResult stroke_to(const Points& tips);
@@ -60,14 +73,14 @@ public:
   FieldStatus redo(const Points& tips);
   /// Returns how many strokes before the present one can be undone, and how many undone ones can be
   /// redone.
-  std::size_t undo_steps() const noexcept;
-  std::size_t redo_steps() const noexcept;
+  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
+  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
   /// Returns how many strokes can no longer be undone because memory ended.
-  std::size_t forgotten_steps() const noexcept;
+  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
 
-  const BlockLayout& layout() const noexcept { return layout_; }
+  const BlockLayout& layout() const noexcept { return shape_->layout(); }
   /// Returns the shape. BlockShape::follow() brings a copy of it up to date.
-  const BlockShape& shape() const noexcept;
+  const BlockShape& shape() const noexcept { return shape_->shape(); }
   /// Returns the fields that the last call applied to the shape. Their centres are the fingertips
   /// rounded by BlockLayout::rounded().
   const FieldSequence& fields() const noexcept { return fields_; }
@@ -79,14 +92,16 @@ private:
   /// A function of the curve that takes the next tips.
   using Lead = void (FingertipCurve::*)(const Points&);
 
+  Type2Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index control_points,
+                double piece_length, const DeformerOptions& options);
   FieldStatus take_hold(const Points& tips);
   StrokeResult follow(const Points& tips, Lead lead);
   FieldStatus apply_piece();
   FieldStatus apply_links();
   FieldStatus apply(const CsrbfField& field);
 
-  BlockLayout layout_;
-  std::unique_ptr<BoundedShape> shape_;
+  std::unique_ptr<SculptedShape> own_; ///< null if it was given
+  SculptedShape* shape_;
   std::unique_ptr<FingertipCurve> curve_;
   Points current_; ///< where the curves have been cut last
   Points next_;    ///< and where the piece leads
@@ -97,7 +112,6 @@ private:
   CsrbfField field_;
   FieldSequence fields_;
   std::unique_ptr<BlockEvaluator> evaluator_;
-  std::unique_ptr<ShapeHistory> history_;
   std::optional<InjectiveChain> chain_;
   int most_links_ = 0;
   ChainReport report_;

@@ -1,0 +1,50 @@
+#pragma once
+// A shape that deformers change, with its layout and its history. Several deformers may work on one
+// shape, one after another, so that their settings can change and the shape and its history stay.
+
+#include <cstddef>
+#include <memory>
+
+#include <nendo/deform/vertex_blocks.hpp>
+
+namespace nendo::deform {
+
+struct DeformerOptions;
+
+class SculptedShape {
+public:
+  /// Allocates for the vertices (3 by #vertices) and for the history: DeformerOptions::undo_bytes
+  /// and undo_memory. With `first`, which has the layout's size, the shape is that one, and
+  /// `original` is only what reset() of a deformer goes back to.
+  SculptedShape(Points original, const DeformerOptions& options, const BlockShape* first = nullptr);
+  ~SculptedShape();
+  SculptedShape(const SculptedShape&) = delete;
+  SculptedShape& operator=(const SculptedShape&) = delete;
+
+  const BlockLayout& layout() const noexcept { return layout_; }
+  /// Returns the shape as the deformer left it that works on it: Type1Deformer::rest() or
+  /// Type2Deformer::shape().
+  const BlockShape& shape() const noexcept;
+
+  /// Returns how many steps can be undone, and how many undone ones can be redone.
+  std::size_t undo_steps() const noexcept;
+  std::size_t redo_steps() const noexcept;
+  /// Returns how many steps can no longer be undone because memory ended.
+  std::size_t forgotten_steps() const noexcept;
+  /// Lets undo go back to the present shape and no farther, and forgets what can be redone. A
+  /// recording that begins here then has all that an undo needs. Wait-free, like unfence().
+  void fence() noexcept;
+  /// Lets undo go back as far as before.
+  void unfence() noexcept;
+
+  struct Parts;
+  /// Returns what the deformers work on. For this library only.
+  Parts& parts() noexcept { return *parts_; }
+  const Parts& parts() const noexcept { return *parts_; }
+
+private:
+  BlockLayout layout_;
+  std::unique_ptr<Parts> parts_;
+};
+
+} // namespace nendo::deform
