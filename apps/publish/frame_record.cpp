@@ -70,8 +70,7 @@ std::size_t most_record_words(const LoopOutline& outline) noexcept {
 }
 
 FrameRecord::FrameRecord(const LoopOutline& outline, std::uint64_t generation)
-    : words_(most_record_words(outline)), generation_(generation),
-      mode_(outline.mode == flow::Mode::type1 ? 1 : 2) {}
+    : words_(most_record_words(outline)), generation_(generation) {}
 
 std::size_t FrameRecord::put_field(const deform::CsrbfField& field, std::size_t at) noexcept {
   const auto functions = static_cast<std::size_t>(field.centres.cols());
@@ -112,7 +111,7 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
   head.units_per_metre = frame.units_per_metre;
   if (frame.held) head.flags |= NENDO_PUBLISH_HELD;
   head.status = status_number(frame.status);
-  head.mode = mode_;
+  head.mode = frame.settings.mode == flow::Mode::type1 ? 1 : 2;
   used_ = head_words;
   for (const auto& field : frame.fields.fields()) {
     const std::size_t end = put_field(field, used_);

@@ -49,7 +49,6 @@ private:
   std::vector<std::uint64_t> words_;
   std::size_t used_ = 1;
   std::uint64_t generation_ = 0;
-  std::uint32_t mode_ = 0;
 };
 
 } // namespace nendo::publish

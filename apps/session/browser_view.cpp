@@ -3,10 +3,20 @@
 #include <filesystem>
 
 #include "cli/cli.hpp"
-#include "session/loop_change.hpp"
 #include "web/model_message.hpp"
 
 namespace nendo::session {
+namespace {
+
+/// Keeps what a browser does not ask for.
+void keep_numbers(const flow::LoopSettings& in_force, flow::LoopSettings& asked) noexcept {
+  const hand::FilterKind kind = asked.filter.kind;
+  asked.filter = in_force.filter;
+  asked.filter.kind = kind;
+  asked.piece_fraction = in_force.piece_fraction;
+}
+
+} // namespace
 
 Result<void> BrowserView::begin(const LoopStart& start) {
   const PlacedLoop& placed = start.placed;
@@ -18,12 +28,11 @@ Result<void> BrowserView::begin(const LoopStart& start) {
                                       std::to_string(web::max_vertices) +
                                       " at most; run it without --web, or thin it out"};
   const FrameCapacity most = frame_capacity(placed);
-  stream_ = std::make_shared<web::FrameStream>(layout, options.sculptor.mode, most.fields,
-                                               most.functions);
+  stream_ = std::make_shared<web::FrameStream>(layout, most.fields, most.functions);
+  server_->set_settings(placed.loop->settings(), false);
   server_->present(stream_, web::model_message(layout, start.model, placed.setup.inputs,
                                                {model_name_, options.rate_hz,
-                                                placed.setup.placement.units_per_metre,
-                                                settings_of(placed), placed.recorded}));
+                                                placed.setup.placement.units_per_metre}));
   return {};
 }
 
@@ -32,8 +41,12 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
   for (std::size_t slot = 0; slot < gloves.size(); ++slot)
     gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
   server_->set_gloves(gloves);
-  while (const auto command = server_->next_command())
+  server_->set_settings(status.frame.settings, status.recording);
+  while (auto command = server_->next_command()) {
+    if (auto* const change = std::get_if<flow::ChangeSettings>(&*command))
+      keep_numbers(status.frame.settings, change->settings);
     commands.try_push(*command);
+  }
 }
 
 Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,

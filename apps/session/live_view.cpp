@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "session/loop_change.hpp"
 #include "viewer/live_window.hpp"
 
 namespace nendo::session {
@@ -27,12 +26,8 @@ public:
 
   void loop_begins(const LoopStart& start) override {
     const PlacedLoop& placed = start.placed;
-    gauges_.recording = placed.recorded;
-    // The scene keeps its place when a shape that has been pulled about begins a new loop.
-    if (!builder_) builder_.emplace(start.model, placed.setup.placement.units_per_metre);
-    window_->begin(placed.loop->layout(), *builder_, settings_of(placed));
-    if (changed_at_ != HostTime{})
-      gauges_.restart_ms = 1e3 * to_seconds(HostClock::now() - std::exchange(changed_at_, {}));
+    const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
+    window_->begin(placed.loop->layout(), builder, placed.loop->settings());
   }
 
   void update(const RunStatus& status, flow::CommandRing& commands) override {
@@ -41,12 +36,9 @@ public:
       if (status.gloves[slot].uncalibrated) gauges_.gloves[slot] += " (uncalibrated)";
       gauges_.counts[slot] = status.gloves[slot].counts;
     }
-    LoopChange change;
-    for (const flow::Command& command : window_->show(status.frame, status.fresh, gauges_)) {
-      change.add(command);
+    gauges_.recording = status.recording;
+    for (const flow::Command& command : window_->show(status.frame, status.fresh, gauges_))
       commands.try_push(command);
-    }
-    if (!change.is_empty()) changed_at_ = HostClock::now();
     if (status.fresh) ++shown_;
     if (options_.frames > 0 && shown_ >= options_.frames) commands.try_push(flow::EndRun{});
   }
@@ -67,10 +59,8 @@ public:
 private:
   std::unique_ptr<LiveWindow> window_;
   ViewOptions options_;
-  std::optional<SceneBuilder> builder_;
   Gauges gauges_;
   std::uint32_t shown_ = 0;
-  HostTime changed_at_{};
 };
 
 } // namespace

@@ -28,13 +28,14 @@ struct RunStatus {
   const flow::Frame& frame; ///< the latest
   bool fresh = false;       ///< it is another one than at the call before
   const GloveStatuses& gloves;
+  bool recording = false; ///< to a file
 };
 
 /// All calls come from the main thread. No call may block for longer than 30 ms.
 class Observer {
 public:
   virtual ~Observer() = default;
-  /// Called before a loop begins. Its model and hands live until the next call of this function.
+  /// Called before the loop begins. Its model and hands live as long as the run.
   virtual void loop_begins(const LoopStart& start) { static_cast<void>(start); }
   /// Called repeatedly while the loop runs. Pushes the commands that were given since the last
   /// call.
@@ -46,7 +47,7 @@ public:
   /// Tells whether the run goes on when all gloves have ended (Glove::has_ended()), because
   /// somebody would be surprised: a window closes only when its person closes it.
   virtual bool stays_open() const noexcept { return false; }
-  /// Called after the last loop, when the shape has been written. An error becomes the run's.
+  /// Called after the loop, when the shape has been written. An error becomes the run's.
   virtual Result<void> end() { return {}; }
 };
 

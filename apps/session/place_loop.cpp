@@ -18,15 +18,12 @@ constexpr double default_radius_fraction = 0.2;
 constexpr double piece_fraction = 0.05;
 
 std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hands,
-                                       const RunOptions& options,
-                                       const std::optional<Carryover>& carryover) {
+                                       const RunOptions& options) {
   std::vector<flow::HandInput> inputs;
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
     inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
     inputs.back().filter = options.filter;
-    if (carryover)
-      inputs.back().wearer.learned = carryover->learned[flow::Placement::index_of(hand.side)];
   }
   return inputs;
 }
@@ -68,25 +65,7 @@ Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_
   return *std::move(supports);
 }
 
-std::pair<double, double> least_and_largest(const deform::Supports& supports) {
-  double least = supports.shared.front().radius;
-  double largest = least;
-  const auto count = [&](const deform::Support& support) {
-    least = std::min(least, support.radius);
-    largest = std::max(largest, support.radius);
-  };
-  for (const auto& support : supports.shared)
-    count(support);
-  for (const auto& own : supports.own)
-    count(own.support);
-  return {least, largest};
-}
-
 } // namespace
-
-Carryover carryover_of(const flow::DeformLoop& ended) {
-  return {ended.placement(), ended.learned()};
-}
 
 Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
   if (text.empty()) return std::optional<deform::Supports>();
@@ -96,36 +75,37 @@ Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
 }
 
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
-                              const deform::Mesh& model,
-                              const std::optional<Carryover>& carryover) {
+                              const deform::Mesh& model) {
   const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
-  auto inputs = inputs_of(hands, options, carryover);
+  auto inputs = inputs_of(hands, options);
   auto supports = supports_for(options.supports, inputs.size(), size);
   if (!supports) return supports.error();
-  const auto [least_radius, largest_radius] = least_and_largest(*supports);
+  sculptor.piece_length = piece_fraction * deform::least_radius(*supports);
   sculptor.deformer.supports = *std::move(supports);
-  sculptor.piece_length = piece_fraction * least_radius;
   // Live fingertips meet; the exact solution for two that nearly touch would tear the surface
   // between them.
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
-  const auto placement = carryover ? carryover->placement : placement_for(hands, inputs, model);
+  const auto placement = placement_for(hands, inputs, model);
   PlacedSetup setup{inputs, placement, loop_options};
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {
     return Error{Errc::failed, "the hands cannot take hold of the model: " +
                                    std::string(deform::describe(loop->grab_status()))};
   }
-  return PlacedLoop{std::move(loop), largest_radius, std::move(setup), options.recording.on};
+  return PlacedLoop{std::move(loop), std::move(setup)};
 }
 
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto points = 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
-  const auto& supports = placed.setup.options.sculptor.deformer.supports;
-  return {placed.loop->frames().front().fields.room(),
-          static_cast<std::size_t>(supports.functions(points))};
+  const auto& deformer = placed.setup.options.sculptor.deformer;
+  // A radius for each finger: a function that is its own, and one that all share.
+  const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);
+  const int links = deformer.injective.value_or(deform::InjectiveOptions{}).most_links;
+  return {static_cast<std::size_t>(std::max(links, deform::Type2Deformer::most_pieces)),
+          static_cast<std::size_t>(functions)};
 }
 
 } // namespace nendo::session

@@ -1,7 +1,6 @@
 #pragma once
 // Makes a loop over the open hands, which are placed so that they hold the model between them.
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -22,33 +21,23 @@ struct PlacedSetup {
 
 struct PlacedLoop {
   std::unique_ptr<flow::DeformLoop> loop;
-  double radius = 0.0; ///< the largest of its supports, in model units
   PlacedSetup setup;
-  bool recorded = false; ///< it is recorded to a file
 };
 
-/// The things with which a loop begins. All of them outlive the loop.
+/// The things with which a run begins. All of them outlive its loop.
 struct LoopStart {
   const PlacedLoop& placed;
   const deform::Mesh& model;
   const std::vector<gloves::OpenHand>& hands;
 };
 
-/// The state that a loop hands over to the next one.
-struct Carryover {
-  flow::Placement placement;
-  std::array<std::optional<hand::LearnedRanges>, 2> learned; ///< DeformLoop::learned()
-};
-Carryover carryover_of(const flow::DeformLoop& ended);
-
-/// Makes the loop that options.loop describes, with the supports of options.supports. Without a
-/// carryover, the hands are placed at the model. Errors: usage (radius), failed (the hands cannot
-/// take hold of the model).
+/// Makes the loop that options.loop describes, with the supports of options.supports, and places
+/// the hands at the model. Errors: usage (radius), failed (the hands cannot take hold of the
+/// model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
-                              const deform::Mesh& model,
-                              const std::optional<Carryover>& carryover = {});
+                              const deform::Mesh& model);
 
-/// The most that a frame of a loop may hold.
+/// The most that a frame of a loop may hold, whatever its settings become.
 struct FrameCapacity {
   std::size_t fields = 0;
   std::size_t functions = 0; ///< of each field

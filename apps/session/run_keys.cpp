@@ -1,6 +1,9 @@
 #include "session/run_keys.hpp"
 
+#include <algorithm>
 #include <iostream>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "cli/cli.hpp"
 
@@ -9,9 +12,11 @@ namespace nendo::session {
 RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : timeout_(timeout) {
   if (!keys_.are_available()) return;
   cli::note(
-      "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes; s saves; " +
-      std::string(keeps_last_minute ? "k keeps the recording of what was just done; " : "") +
-      "q ends");
+      "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes, x "
+      "resets; " +
+      std::string("[ and ] make the brush smaller, larger; m the other mode, n the next kernel, ") +
+      "i never folds, or may; t records; s saves; " +
+      (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
 
 void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
@@ -22,9 +27,31 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == 'c' || *key == ' ') commands.try_push(flow::Request::commit);
   if (*key == 'u') step(flow::Request::undo, status.frame.undo_steps, commands);
   if (*key == 'r' || *key == 'U') step(flow::Request::redo, status.frame.redo_steps, commands);
+  if (*key == 'x') commands.try_push(flow::Request::reset);
+  if (*key == 't') commands.try_push(flow::SetRecording{!status.recording});
   if (*key == 's') commands.try_push(flow::SaveShape{});
   if (*key == 'k') commands.try_push(flow::SaveRecording{});
   if (*key == 'q') commands.try_push(flow::EndRun{});
+  change(*key, status.frame.settings, commands);
+}
+
+void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::CommandRing& commands) {
+  wanted_.follow(in_force);
+  constexpr double larger = 1.1;
+  if (key == '[') wanted_.scale_radii(1.0 / larger);
+  if (key == ']') wanted_.scale_radii(larger);
+  if (key == 'm') wanted_.other_mode();
+  if (key == 'n') wanted_.next_kernel();
+  if (key == 'i') wanted_.now.injective = !wanted_.now.injective;
+  const auto command = wanted_.ask();
+  if (!command) return;
+  commands.try_push(*command);
+  const auto [least, most] =
+      std::minmax_element(wanted_.now.radius_m.begin(), wanted_.now.radius_m.end());
+  report(fmt::format("{}, {}, {}, radius {:.1f}{} cm", name_of(wanted_.now.mode),
+                     deform::name_of(wanted_.now.kernel),
+                     wanted_.now.injective ? "never folds" : "may fold", 100.0 * *least,
+                     *least == *most ? std::string() : fmt::format(" to {:.1f}", 100.0 * *most)));
 }
 
 // The loop is asked in any case, because it may be a few ticks ahead of `steps`.

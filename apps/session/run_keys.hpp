@@ -4,6 +4,8 @@
 #include <chrono>
 #include <string>
 
+#include <nendo/flow/wanted_settings.hpp>
+
 #include "cli/terminal.hpp"
 #include "session/observer.hpp"
 
@@ -21,9 +23,11 @@ public:
 
 private:
   void step(flow::Request request, std::uint64_t steps, flow::CommandRing& commands);
+  void change(char key, const flow::LoopSettings& in_force, flow::CommandRing& commands);
 
   cli::Keys keys_;
   std::chrono::milliseconds timeout_;
+  flow::WantedSettings wanted_;
 };
 
 } // namespace nendo::session

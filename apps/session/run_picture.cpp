@@ -3,8 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include <nendo/flow/finger_supports.hpp>
-
 #include "render/picture.hpp"
 
 namespace nendo::session {
@@ -18,9 +16,8 @@ constexpr Size panel_size{408, 392};
 
 } // namespace
 
-RunPicture::RunPicture(std::filesystem::path path, const deform::Mesh& model,
-                       const flow::LoopOptions& loop)
-    : path_(std::move(path)), supports_(loop.sculptor.deformer.supports) {
+RunPicture::RunPicture(std::filesystem::path path, const deform::Mesh& model)
+    : path_(std::move(path)) {
   if (!path_.empty()) before_ = model;
 }
 
@@ -31,7 +28,7 @@ void RunPicture::add(const flow::Frame& frame) {
   if (units_per_metre_ > 0.0) return;
   units_per_metre_ = frame.units_per_metre;
   first_ = last_;
-  first_.radius_m = flow::radii_on_stage(supports_, units_per_metre_);
+  first_.radius_m = frame.settings.radius_m;
 }
 
 Result<void> RunPicture::write(const deform::Points& final_shape) {

@@ -12,7 +12,7 @@ namespace nendo::session {
 class RunPicture {
 public:
   /// Does nothing, and writes nothing, if `path` is empty.
-  RunPicture(std::filesystem::path path, const deform::Mesh& model, const flow::LoopOptions& loop);
+  RunPicture(std::filesystem::path path, const deform::Mesh& model);
 
   /// Takes a frame. Call it for each frame that the main thread sees, from the beginning on.
   /// Allocates.
@@ -24,7 +24,6 @@ public:
 private:
   std::filesystem::path path_;
   deform::Mesh before_;
-  deform::Supports supports_;
   render::HoldTracker holds_;
   render::SceneFrame first_, last_;
   double units_per_metre_ = 0.0; ///< 0: no frame was added

@@ -13,14 +13,6 @@
 #include "session/place_loop.hpp"
 
 namespace nendo::session {
-namespace {
-
-std::filesystem::path model_beside(const std::string& recording) {
-  return std::filesystem::path(recording).replace_extension(".model.obj");
-}
-
-} // namespace
-
 Result<void> RecordingOptions::check(const std::string& out, flow::SwitchAction action) {
   if (!keep_last.empty()) {
     constexpr double most_s = 3600.0;
@@ -72,69 +64,114 @@ std::vector<driver::RecordCounts> counts_of(const std::vector<gloves::OpenHand>&
   return counts;
 }
 
-flow::InputLog* RunRecorder::input_log_for(const RecordingOptions& options) {
-  input_log_ = options.wanted() ? std::make_unique<flow::InputLog>() : nullptr;
-  return input_log_.get();
+flow::InputLog* RunRecorder::first_log() {
+  if (options_.recording.wanted()) log_ = std::make_unique<flow::InputLog>();
+  return log_.get();
 }
 
-std::string RunRecorder::next_name(const RecordingOptions& options, bool with_model) {
-  const std::string first = options.file.empty() ? options.kept_stem + ".nendo" : options.file;
+std::string RunRecorder::next_name() {
+  const RecordingOptions& asked = options_.recording;
+  const std::string first = asked.file.empty() ? asked.kept_stem + ".nendo" : asked.file;
   std::error_code ignored;
   std::string name = first;
-  while (std::filesystem::exists(name, ignored) ||
-         (with_model && std::filesystem::exists(model_beside(name), ignored)))
+  while (std::filesystem::exists(name, ignored))
     name = cli::next_free_name(first, number_);
   return name;
 }
 
-Result<void> RunRecorder::begin(const RunOptions& options, const PlacedSetup& placed,
-                                const std::vector<gloves::OpenHand>& hands,
-                                const deform::Mesh& model) {
-  // The first loop takes all that came since the gloves were started; a later one begins anew.
-  const auto before = std::exchange(first_loop_, false)
-                          ? std::vector<driver::RecordCounts>(hands.size())
-                          : counts_of(hands);
-  if (!input_log_) return {};
-  const auto& asked = options.recording;
-  const auto sum = recording::sum_of(model.vertices);
-  const bool with_model = sum != loaded_;
-  const std::string name = next_name(asked, with_model);
-  outcomes_.push_back({asked.on ? name : "", std::nullopt});
-  recording::Setup setup = begin_setup(hands, options.calibration.user);
-  setup.hands = placed.inputs;
-  // Whoever replays the loop needs the model that it began with.
-  const auto mesh = with_model ? model_beside(name) : std::filesystem::path(options.mesh);
-  if (with_model)
-    if (const auto written = deform::write_mesh(mesh, model); !written) return written.error();
-  setup.loop = recording::LoopSetup{std::filesystem::absolute(mesh).string(), sum, placed.placement,
-                                    placed.options, std::string(deform::simd_names().front())};
+recording::Setup RunRecorder::setup_now() const {
+  recording::Setup setup = begin_setup(hands_, options_.calibration.user);
+  setup.hands = placed_.setup.inputs;
+  setup.loop = recording::LoopSetup{std::filesystem::absolute(options_.mesh).string(),
+                                    recording::sum_of(model_.vertices),
+                                    placed_.setup.placement,
+                                    placed_.setup.options,
+                                    std::string(deform::simd_names().front()),
+                                    {}};
+  return setup;
+}
+
+Result<void> RunRecorder::begin() {
+  if (!log_) return {};
+  to_file_ = options_.recording.on;
+  // The loop takes all that came since the gloves were started.
+  return begin(setup_now(), Counts(hands_.size()));
+}
+
+Result<void> RunRecorder::begin(const recording::Setup& setup, const Counts& before) {
+  const RecordingOptions& asked = options_.recording;
+  const std::string name = to_file_ ? next_name() : "";
+  outcomes_.push_back({name, std::nullopt});
   recording::RecorderOptions wanted;
-  if (asked.on) wanted.file = name;
+  wanted.file = name;
   wanted.keep_last = from_seconds(asked.keep_last_s);
   wanted.kept_stem = asked.kept_stem;
-  wanted.keep_on_switch = options.loop.switch_action == flow::SwitchAction::keep;
+  wanted.keep_on_switch = options_.loop.switch_action == flow::SwitchAction::keep;
   wanted.report = cli::note;
-  wanted.sent = [&hands, before] {
+  wanted.sent = [&hands = hands_, before] {
     auto counts = counts_of(hands);
     for (std::size_t at = 0; at < counts.size(); ++at)
       counts[at] = driver::since(before[at], counts[at]);
     return counts;
   };
-  auto recorder = recording::Recorder::begin(setup, *input_log_, std::move(wanted));
+  auto recorder = recording::Recorder::begin(setup, *log_, std::move(wanted));
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);
-  keeps_last_minute_ = asked.keep_last_s > 0.0;
   return {};
 }
 
-void RunRecorder::save_last_minute() noexcept {
-  if (keeps_last_minute_) recorder_->save_last_minute();
+void RunRecorder::set_file(bool on, const flow::Frame& frame) {
+  if (on == to_file_) return;
+  next_to_file_ = on;
+  const bool any = on || options_.recording.keep_last_s > 0.0;
+  next_log_ = any ? std::make_unique<flow::InputLog>() : nullptr;
+  counts_ = counts_of(hands_);
+  is_changing_ = true;
+  placed_.loop->change_log(next_log_.get(), frame.shape);
 }
 
-void RunRecorder::end(const deform::Mesh& shape) {
-  keeps_last_minute_ = false;
+std::optional<std::string> RunRecorder::follow() {
+  if (!is_changing_) return std::nullopt;
+  const auto state = placed_.loop->take_state();
+  if (!state) return std::nullopt;
+  is_changing_ = false;
+  deform::Points vertices;
+  placed_.loop->layout().unpack(state->shape, vertices);
+  end_with(recording::sum_of(vertices));
+  log_ = std::move(next_log_);
+  to_file_ = next_to_file_;
+  if (!log_) return std::nullopt;
+  recording::Setup setup = setup_now();
+  recording::continue_from(*state, placed_.loop->layout(), setup);
+  const auto begun = begin(setup, counts_);
+  if (begun) return std::nullopt;
+  outcomes_.pop_back();
+  to_file_ = false;
+  if (keeps_last_minute() && begin(setup, counts_))
+    return begun.error().message + "; the run goes on, and is kept in memory only";
+  next_log_.reset();
+  is_changing_ = true;
+  placed_.loop->change_log(nullptr, state->shape);
+  return begun.error().message + "; the run goes on, and is not recorded";
+}
+
+bool RunRecorder::keeps_last_minute() const noexcept {
+  return options_.recording.keep_last_s > 0.0;
+}
+
+void RunRecorder::save_last_minute() noexcept {
+  if (keeps_last_minute() && recorder_) recorder_->save_last_minute();
+}
+
+void RunRecorder::end(const deform::Points& shape) {
+  // What the loop has taken in its last tick is a recording, if without a tick.
+  if (const auto message = follow()) cli::note(*message);
+  end_with(recording::sum_of(shape));
+}
+
+void RunRecorder::end_with(const recording::ShapeSum& shape) {
   if (!recorder_) return;
-  const auto recorded = recorder_->end(recording::sum_of(shape.vertices));
+  const auto recorded = recorder_->end(shape);
   if (recorded) outcomes_.back().recorded = *recorded; // otherwise the error was reported at once
   recorder_.reset();
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <nendo/driver/record_counts.hpp>
+#include <nendo/flow/deform_loop.hpp>
 #include <nendo/recording/recorder.hpp>
 
 #include "cli/command.hpp"
@@ -14,7 +15,7 @@
 
 namespace nendo::session {
 
-struct PlacedSetup;
+struct PlacedLoop;
 struct RunOptions;
 
 struct RecordingOptions {
@@ -33,7 +34,7 @@ struct RecordingOptions {
 /// Adds --record and --keep-last.
 void add_recording_options(cli::Command& command, RecordingOptions& options);
 
-/// The result of one loop's recording.
+/// The result of one recording.
 struct RecordingOutcome {
   std::string file;                            ///< empty: it was only kept in memory
   std::optional<recording::Recorded> recorded; ///< nothing: it is not complete
@@ -47,40 +48,60 @@ recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const s
 /// hands. Any thread; wait-free but for its memory.
 std::vector<driver::RecordCounts> counts_of(const std::vector<gloves::OpenHand>& hands);
 
-/// Records the loops of a run. Each loop gets a file of its own; from the second on their names are
-/// numbered. If a loop begins with another model than the one that was loaded, that model is
-/// written beside its recording.
+/// Records a run: from its beginning, or from any tick to any later one. Each recording has a log,
+/// a recorder and, from the second on, a numbered name of its own.
 class RunRecorder {
 public:
-  /// `loaded` is the model as it is in the run's file.
-  explicit RunRecorder(const deform::Mesh& loaded) : loaded_(recording::sum_of(loaded.vertices)) {}
+  /// All of them must outlive this. `options` are the run's, and `placed` what its loop was made
+  /// of.
+  RunRecorder(const RunOptions& options, const PlacedLoop& placed,
+              const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model)
+      : options_(options), placed_(placed), hands_(hands), model_(model) {}
 
-  /// Makes the log that the next loop writes to. Returns null if the loop is not to be recorded.
-  flow::InputLog* input_log_for(const RecordingOptions& options);
-  /// Begins to record. Call it before each loop runs; `hands` must outlive its recording. Error:
-  /// failed, if the files cannot be made; nothing is recorded then.
-  Result<void> begin(const RunOptions& options, const PlacedSetup& placed,
-                     const std::vector<gloves::OpenHand>& hands, const deform::Mesh& model);
-  /// Returns true with --keep-last, from begin() to end().
-  bool keeps_last_minute() const noexcept { return keeps_last_minute_; }
+  /// Makes the log of the recording with which the run begins, which place_loop() then needs.
+  /// Returns null if there is none.
+  flow::InputLog* first_log();
+  /// Begins to record into it, before the loop runs. Error: failed, if the file cannot be made.
+  Result<void> begin();
+  /// Has the loop change to another recording, which is to a file or not, as soon as it can.
+  /// `frame` is the latest. Not while is_changing().
+  void set_file(bool on, const flow::Frame& frame);
+  /// Does what is due when the loop has changed. To be called again and again. Returns a message
+  /// for people if a recording could not be begun; the run goes on.
+  std::optional<std::string> follow();
+  /// Ends the recording. To be called after the loop's last tick, with its final shape.
+  void end(const deform::Points& shape);
+
+  bool is_changing() const noexcept { return is_changing_; }
+  bool is_to_file() const noexcept { return to_file_; } ///< of the present recording
+  /// Returns true with --keep-last.
+  bool keeps_last_minute() const noexcept;
   /// Asks for the recording in memory to be written to a file. Does nothing unless
   /// keeps_last_minute(). Wait-free.
   void save_last_minute() noexcept;
-  /// Ends the recording. Call it after the loop's last tick.
-  void end(const deform::Mesh& shape);
-  /// Returns one outcome for each loop that was to be recorded.
+  /// Returns one outcome for each recording.
   const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }
 
 private:
-  std::string next_name(const RecordingOptions& options, bool with_model);
+  using Counts = std::vector<driver::RecordCounts>;
+  recording::Setup setup_now() const; ///< of the loop as it was made
+  Result<void> begin(const recording::Setup& setup, const Counts& before);
+  void end_with(const recording::ShapeSum& shape);
+  std::string next_name();
 
-  std::unique_ptr<flow::InputLog> input_log_;
-  std::unique_ptr<recording::Recorder> recorder_;
-  recording::ShapeSum loaded_;
+  const RunOptions& options_;
+  const PlacedLoop& placed_;
+  const std::vector<gloves::OpenHand>& hands_;
+  const deform::Mesh& model_; ///< as it was loaded
+  std::unique_ptr<flow::InputLog> log_;
+  std::unique_ptr<recording::Recorder> recorder_; ///< of log_; null: there is none
+  bool to_file_ = false;
+  std::unique_ptr<flow::InputLog> next_log_; ///< to which the loop changes; null: to none
+  Counts counts_;                            ///< when it was asked to
+  bool is_changing_ = false;
+  bool next_to_file_ = false;
   int number_ = 1; ///< of the latest recording's name
   std::vector<RecordingOutcome> outcomes_;
-  bool keeps_last_minute_ = false;
-  bool first_loop_ = true;
 };
 
 } // namespace nendo::session

@@ -11,7 +11,6 @@
 
 #include "cli/cli.hpp"
 #include "gloves/glove_light.hpp"
-#include "session/loop_change.hpp"
 #include "session/loop_thread.hpp"
 #include "session/run_keys.hpp"
 #include "session/run_picture.hpp"
@@ -21,9 +20,6 @@ namespace nendo::session {
 namespace {
 
 using std::chrono::milliseconds;
-
-// A loop lasts so long at least, before it is made anew.
-constexpr milliseconds least_loop(250);
 
 // Returns the memory for undo at the beginning: room for some dozens of whole shapes, of which
 // strokes mostly change parts.
@@ -39,27 +35,14 @@ std::size_t most_undo_bytes(const RunOptions& options) noexcept {
                                 : deform::half_of_memory();
 }
 
-// No loop drains the rings now. The next loop begins with the newest sample of each hand.
-void take_newest(std::vector<gloves::OpenHand>& hands) {
-  for (auto& hand : hands) {
-    const HostTime end = HostClock::now() + milliseconds(25); // a silent glove keeps its pose
-    bool any = false;
-    do {
-      while (hand.ring->try_pop(hand.first))
-        any = true;
-      if (!any) std::this_thread::sleep_for(milliseconds(1));
-    } while (!any && HostClock::now() < end);
-  }
-}
-
-// A run: its loops, one after another, and its participants.
+// A run: its loop and its participants.
 class Session {
 public:
   Session(RunOptions options, std::vector<gloves::OpenHand>& hands, deform::Mesh model,
           const RunParticipants& participants, std::vector<flow::Grant> grants)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
-        loaded_(model_.vertices), participants_(participants), grants_(std::move(grants)),
-        recorder_(model_), saving_(options_.out, model_, recorder_) {
+        participants_(participants), grants_(std::move(grants)),
+        recorder_(options_, placed_, hands_, model_), saving_(options_.out, model_, recorder_) {
     for (const auto& hand : hands_)
       if (options_.loop.switch_action != flow::SwitchAction::none)
         lights_.emplace_back(*hand.glove);
@@ -72,15 +55,19 @@ public:
   }
 
   Result<RunOutcome> run() {
-    if (const auto begun = begin_loop({}); !begun) return begun.error();
-    RunPicture picture(options_.picture, model_, placed_.setup.options);
+    options_.loop.input_log = recorder_.first_log();
+    auto placed = place_loop(options_, hands_, model_);
+    if (!placed) return placed.error();
+    placed_ = *std::move(placed);
+    if (const auto begun = recorder_.begin(); !begun) return begun.error();
+    for (Sink* sink : participants_.sinks)
+      if (const auto begun = sink->begin(start()); !begun) return begun.error();
+    RunPicture picture(options_.picture, model_);
     RunKeys keys(key_timeout(), recorder_.keeps_last_minute());
     observers_.push_back(&keys);
     observers_.insert(observers_.end(), participants_.observers.begin(),
                       participants_.observers.end());
-    while (run_loop(picture)) {
-      if (const auto renewed = renew(); !renewed) return after_writing(renewed.error());
-    }
+    run_loop(picture);
     for (auto& light : lights_)
       light.put_out();
     for (const auto& hand : hands_)
@@ -89,10 +76,12 @@ public:
     if (const auto drawn = picture.write(model_.vertices); !drawn) return drawn.error();
     for (Observer* observer : observers_)
       if (const auto ended = observer->end(); !ended) return ended.error();
-    RunOutcome outcome{placed_.loop->stats(), elapsed_s_,   model_.vertices.cols(),
-                       placed_.radius,        options_.out, std::move(grants_),
+    const flow::SculptorOptions& sculptor = placed_.loop->sculptor_options();
+    RunOutcome outcome{placed_.loop->stats(),  elapsed_s_,
+                       model_.vertices.cols(), deform::largest_radius(sculptor.deformer.supports),
+                       options_.out,           std::move(grants_),
                        recorder_.outcomes()};
-    outcome.sculptor = placed_.setup.options.sculptor;
+    outcome.sculptor = sculptor;
     return outcome;
   }
 
@@ -107,18 +96,6 @@ private:
     return milliseconds(paced ? 0 : 20);
   }
 
-  Result<void> begin_loop(const std::optional<Carryover>& carryover) {
-    options_.loop.input_log = recorder_.input_log_for(options_.recording);
-    auto placed = place_loop(options_, hands_, model_, carryover);
-    if (!placed) return placed.error();
-    placed_ = *std::move(placed);
-    if (const auto begun = recorder_.begin(options_, placed_.setup, hands_, model_); !begun)
-      return begun.error();
-    for (Sink* sink : participants_.sinks)
-      if (const auto begun = sink->begin(start()); !begun) return begun.error();
-    return {};
-  }
-
   void report(const std::string& message) {
     for (Observer* observer : observers_)
       observer->report(message);
@@ -127,7 +104,7 @@ private:
   void save() { report(saving_.save(*placed_.loop)); }
 
   void update_observers(bool fresh) {
-    const RunStatus status{placed_.loop->frames().front(), fresh, gloves_};
+    const RunStatus status{placed_.loop->frames().front(), fresh, gloves_, recorder_.is_to_file()};
     for (Observer* observer : observers_)
       observer->update(status, commands_);
     commands_.drain([this](const flow::Command& command) noexcept { dispatch(command); });
@@ -138,6 +115,17 @@ private:
       refusal_reported_ = true;
       report("the loop does not answer, so it was not asked to " + std::string(name_of(*refused)));
     }
+    change_loop();
+  }
+
+  // Passes on the newest settings when the loop has those before, and begins or ends a recording.
+  void change_loop() {
+    flow::DeformLoop& loop = *placed_.loop;
+    if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
+      report("settings that nothing can be done with; the run goes on as it was");
+    if (record_ && !recorder_.is_changing())
+      recorder_.set_file(*std::exchange(record_, {}), loop.frames().front());
+    if (const auto message = recorder_.follow()) report(*message);
   }
 
   void dispatch(const flow::Command& command) noexcept {
@@ -150,47 +138,47 @@ private:
         refused_ = *request;
       }
     }
+    if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
+      settings_ = change->settings; // only the newest count
+    if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
     ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
     saving_.add(command);
-    change_.add(command);
-  }
-
-  // Returns whether somebody has asked for a change, and the loop has lasted long enough for it.
-  bool is_change_due(HostTime loop_began) {
-    if (!differs(change_, placed_, options_)) change_ = {};
-    return !change_.is_empty() && HostClock::now() - loop_began >= least_loop;
   }
 
   // Commands that came just before the end are still obeyed, if the loop ticks at all.
-  void wait_until_taken() const {
+  void wait_until_taken() {
     const HostTime latest = HostClock::now() + std::chrono::seconds(1);
-    while (loop_commands_.size() > 0 && HostClock::now() < latest)
+    const auto is_due = [this] {
+      return loop_commands_.size() > 0 || settings_ || record_ || recorder_.is_changing() ||
+             placed_.loop->is_changing();
+    };
+    while (is_due() && HostClock::now() < latest) {
       std::this_thread::sleep_for(milliseconds(1));
+      placed_.loop->frames().update();
+      change_loop();
+    }
   }
 
-  // Runs the loop until it ends, and leaves its shape in model_. Returns whether another loop is
-  // wanted.
-  bool run_loop(RunPicture& picture) {
+  // Runs the loop until it ends, and leaves its shape in model_.
+  void run_loop(RunPicture& picture) {
     flow::DeformLoop& loop = *placed_.loop;
     gloves_ = status_of(hands_);
     for (Observer* observer : observers_)
       observer->loop_begins(start());
     LoopThread thread(loop, options_);
     report_refusals(thread.grants());
-    const bool is_another_wanted = watch(thread, picture);
+    watch(thread, picture);
     if (ends_) wait_until_taken();
     if (saving_.is_due()) save(); // asked for just before the end
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
-    model_.vertices = loop.final_shape();
-    recorder_.end(model_);
+    deform::Points shape = loop.final_shape();
+    recorder_.end(shape); // which compares with the model as it was loaded
+    model_.vertices = std::move(shape);
     if (loop.frames().update()) picture.add(loop.frames().front());
-    return is_another_wanted;
   }
 
-  // Each loop's thread asks for the same rights, so refusals are reported only once.
   void report_refusals(std::vector<flow::Grant> of_thread) {
-    if (std::exchange(refusals_reported_, true)) return;
     std::move(of_thread.begin(), of_thread.end(), std::back_inserter(grants_));
     for (const auto& line : flow::refusals(grants_))
       cli::note(line);
@@ -217,7 +205,7 @@ private:
     return false;
   }
 
-  bool watch(const LoopThread& thread, RunPicture& picture) {
+  void watch(const LoopThread& thread, RunPicture& picture) {
     auto& frames = placed_.loop->frames();
     HostTime next_progress = thread.start;
     bool is_news = false;
@@ -231,50 +219,20 @@ private:
         picture.add(frames.front());
       }
       update_observers(fresh);
-      if (ends_ || ends_with_gloves()) return false;
-      if (is_change_due(thread.start)) return true;
+      if (ends_ || ends_with_gloves()) return;
       if (saving_.is_due_now()) save();
       if (HostClock::now() < next_progress) continue;
       gloves_ = status_of(hands_);
       if (is_news)
-        participants_.progress(frames.front(),
-                               before_s_ + to_seconds(HostClock::now() - thread.start));
+        participants_.progress(frames.front(), to_seconds(HostClock::now() - thread.start));
       is_news = false;
       next_progress += milliseconds(250);
     }
-    return false;
-  }
-
-  // The run cannot go on, but its shape is not lost.
-  Error after_writing(const Error& error) {
-    const auto written = write_shape(options_.out, model_);
-    return written ? error : written.error();
-  }
-
-  Result<void> renew() {
-    before_s_ += elapsed_s_;
-    if (options_.duration_s > 0.0)
-      options_.duration_s = std::max(1e-3, options_.duration_s - elapsed_s_);
-    const Carryover carryover = carryover_of(*placed_.loop);
-    const LoopChange change = std::exchange(change_, {});
-    apply({}, placed_, options_);
-    const RunOptions options = options_;
-    const deform::Points shape = model_.vertices;
-    apply(change, placed_, options_);
-    if (change.reset) model_.vertices = loaded_;
-    take_newest(hands_);
-    const auto begun = begin_loop(carryover);
-    if (begun) return {};
-    cli::note(begun.error().message + "; the run goes on as it was");
-    options_ = options;
-    model_.vertices = shape;
-    return begin_loop(carryover);
   }
 
   RunOptions options_;
   std::vector<gloves::OpenHand>& hands_;
-  deform::Mesh model_;
-  const deform::Points loaded_; ///< the model to which a reset goes back
+  deform::Mesh model_; ///< as it was loaded, and at the end as the hands left it
   const RunParticipants& participants_;
   std::vector<Observer*> observers_;
   std::vector<flow::Grant> grants_;
@@ -284,15 +242,14 @@ private:
   std::optional<flow::Request> refused_;                 ///< the loop had no room for it
   bool refusal_reported_ = false;                        ///< and no request was accepted since
   bool ends_ = false;                                    ///< somebody has asked for the end
-  LoopChange change_;                                    ///< for the next loop
+  std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
+  std::optional<bool> record_;                           ///< to a file, or not; not done yet
   RunRecorder recorder_;
   RunSaving saving_;
   std::vector<gloves::GloveLight> lights_; ///< of all gloves, if their switches do something
   PlacedLoop placed_;
   GloveStatuses gloves_;
-  double before_s_ = 0.0;  ///< of all loops but the latest
-  double elapsed_s_ = 0.0; ///< of the latest loop
-  bool refusals_reported_ = false;
+  double elapsed_s_ = 0.0;
   bool end_reported_ = false; ///< that all gloves have ended
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // Runs from open gloves to a shape. The loop has a thread of its own. The main thread watches it,
-// takes commands, and makes a new loop for commands that need one.
+// takes commands, and makes ready what they need.
 
 #include <functional>
 #include <string>
@@ -17,12 +17,12 @@ struct RunOutcome {
   flow::LoopStats stats;
   double elapsed_s = 0.0;
   Eigen::Index vertices = 0;
-  double radius = 0.0; ///< the largest
+  double radius = 0.0; ///< the largest, at the end
   std::string result;
   std::vector<flow::Grant> grants;
-  std::vector<RecordingOutcome> recordings; ///< one a loop
-  std::vector<PublishedTo> published{};     ///< added by whoever owns the sinks
-  /// The last loop's, after all changes of settings.
+  std::vector<RecordingOutcome> recordings;
+  std::vector<PublishedTo> published{}; ///< added by whoever owns the sinks
+  /// After all changes of settings.
   flow::SculptorOptions sculptor{};
 };
 
@@ -48,11 +48,9 @@ struct RunParticipants {
 /// observe every run. Prints on standard error which rights were refused. `grants` are the rights
 /// that were asked for before, for the process and the readers.
 ///
-/// For a command that a running loop cannot obey (loop_change.hpp), the loop is ended and another
-/// one is made, at most four times a second. It goes on from the present shape and poses, with the
-/// hands where they were and what --adapt has learned of them. If no loop can be made with the
-/// change, standard error says so, and the run goes on without the change. Each recorded loop has a
-/// file of its own. Returns the last loop's outcome, with every recording. Blocks.
+/// The loop takes all commands without a pause. What a change of settings needs is made on the main
+/// thread beforehand. If a command cannot be obeyed, the observers are told, and the run goes on.
+/// Blocks.
 Result<RunOutcome> run_session(RunOptions options, std::vector<gloves::OpenHand>& hands,
                                deform::Mesh model, const RunParticipants& participants,
                                std::vector<flow::Grant> grants = {});

@@ -10,8 +10,7 @@ namespace nendo::session {
 /// Its show() is called in the tick, on the loop's thread.
 class Sink : public flow::FrameSink {
 public:
-  /// Called before the first tick of each loop, while no loop runs. Returns an error if it cannot
-  /// take this loop's frames.
+  /// Called before the first tick. Returns an error if it cannot take the loop's frames.
   virtual Result<void> begin(const LoopStart& start) = 0;
 };
 

@@ -52,6 +52,8 @@ void print_loop(const TakeSummary& summary) {
                 request == flow::requests.back() ? "" : ",");
   }
   if (summary.wrist_moves > 0) std::printf(", %llu wrist moves", number(summary.wrist_moves));
+  if (summary.settings_changes > 0)
+    std::printf(", %llu changes of settings", number(summary.settings_changes));
   if (summary.shapes > 0) std::printf(", %llu shapes", number(summary.shapes));
   std::printf("\n");
 }
@@ -88,6 +90,7 @@ ordered_json loop_json(const TakeSummary& summary) {
     line["requests"][std::string(flow::name_of(request))] =
         summary.requests[static_cast<std::size_t>(request)];
   line["wrist_moves"] = summary.wrist_moves;
+  line["settings_changes"] = summary.settings_changes;
   line["shapes"] = summary.shapes;
   return line;
 }

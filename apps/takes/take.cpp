@@ -10,7 +10,6 @@
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/driver/chunk_file.hpp>
-#include <nendo/flow/finger_supports.hpp>
 #include <nendo/recording/take_tools.hpp>
 
 #include "cli/cli.hpp"
@@ -29,9 +28,8 @@ using OpenFrames = std::function<Result<std::unique_ptr<FrameSource>>()>;
 class ScenePlayer {
 public:
   /// `source` may be the frames that were opened first, or null.
-  ScenePlayer(OpenFrames open, deform::Supports supports,
-              std::unique_ptr<FrameSource> source = nullptr)
-      : open_(std::move(open)), supports_(std::move(supports)), opened_(std::move(source)) {}
+  explicit ScenePlayer(OpenFrames open, std::unique_ptr<FrameSource> source = nullptr)
+      : open_(std::move(open)), opened_(std::move(source)) {}
 
   /// Returns the scene of the last frame that is not later than `time_s`, or of the first frame.
   Result<render::SceneFrame> at(double time_s) {
@@ -74,13 +72,12 @@ private:
     holds_.follow(frame);
     render::set_hands(frame, holds_, next_);
     source_->layout().unpack(frame.shape, next_.vertices);
-    next_.radius_m = flow::radii_on_stage(supports_, frame.units_per_metre);
+    next_.radius_m = frame.settings.radius_m;
     next_.time_s = source_->time_s();
     return true;
   }
 
   OpenFrames open_;
-  deform::Supports supports_;
   std::unique_ptr<FrameSource> opened_;
   std::unique_ptr<FrameSource> source_;
   render::HoldTracker holds_;
@@ -104,7 +101,7 @@ Result<Take> read_recording(const std::filesystem::path& path) {
     if (!frames) return frames.error();
     return std::unique_ptr<FrameSource>(*std::move(frames));
   };
-  const auto player = std::make_shared<ScenePlayer>(open, loop.options.sculptor.deformer.supports);
+  const auto player = std::make_shared<ScenePlayer>(open);
   take.frame_at = [player](double time_s) { return player->at(time_s); };
   return take;
 }
@@ -122,8 +119,7 @@ Result<Take> read_edited(const std::filesystem::path& path) {
     if (!anew) return anew.error();
     return std::unique_ptr<FrameSource>(*std::move(anew));
   };
-  const auto player =
-      std::make_shared<ScenePlayer>(open, timeline.sculptor.deformer.supports, *std::move(frames));
+  const auto player = std::make_shared<ScenePlayer>(open, *std::move(frames));
   take.frame_at = [player](double time_s) { return player->at(time_s); };
   return take;
 }

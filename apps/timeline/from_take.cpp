@@ -36,7 +36,7 @@ Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
   timeline.mesh_sum = loop.mesh_sum;
   timeline.units_per_metre = loop.placement.units_per_metre;
   timeline.rate_hz = loop.options.rate_hz;
-  timeline.held = loop.options.switch_action != flow::SwitchAction::grab;
+  timeline.held = loop.options.begins_held();
   timeline.sculptor = loop.options.sculptor;
   timeline.sculptor.deformer.undo_bytes = 0;
   for (const auto& hand : setup.hands) {
@@ -57,7 +57,9 @@ public:
                  options.policy == flow::OverrunPolicy::catch_up) {}
 
   void hear(flow::Request request) {
-    if (request == flow::Request::undo || request == flow::Request::redo) steps_.push_back(request);
+    if (request == flow::Request::undo || request == flow::Request::redo ||
+        request == flow::Request::reset)
+      steps_.push_back(request);
   }
 
   /// A tick has run.
@@ -102,7 +104,7 @@ private:
   bool held_;
   bool on_grid_;
   std::uint64_t commits_ = 0;
-  std::vector<flow::Request> steps_; ///< undos and redos since the last tick
+  std::vector<flow::Request> steps_; ///< undos, redos and resets since the last tick
   std::optional<flow::LoggedTick> first_;
 };
 
@@ -126,11 +128,20 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   auto replay = LoopReplay::make(reader->setup(), model);
   if (!replay) return bad(replay.error().message);
   const Setup& setup = reader->setup();
+  if (!setup.loop->rest.empty())
+    return bad(
+        "begins in the middle of a run, with a shape that is no file's; a timeline begins with "
+        "its model. Record from the beginning of the run, with --record");
   MadeTimeline made;
   made.timeline = begin_timeline(setup, take);
   Follower follower(made.timeline, setup.loop->options);
   while (const auto entry = reader->next()) {
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
+    const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
+    if (settings != nullptr && *settings != (*replay)->loop().settings())
+      return bad(
+          "changes its settings on the way, which a timeline cannot; cut out the part before "
+          "that with `nendo recording cut`");
     if (!(*replay)->feed(*entry)) continue;
     auto& frames = (*replay)->loop().frames();
     frames.update();

@@ -43,6 +43,7 @@ Player::Player(Timeline timeline, const deform::Mesh& model)
         {track.skeleton(), HandCurve(track.keys), flow::Placement::index_of(track.side)});
   frame_.units_per_metre = timeline_.units_per_metre;
   frame_.held = timeline_.held;
+  frame_.settings = flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre);
   frame_.shape = shaping_.sculptor().rest();
   frame_.fields = shaping_.sculptor().fields();
   for (auto& hand : frame_.hands)

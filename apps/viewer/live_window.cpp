@@ -1,6 +1,5 @@
 #include "viewer/live_window.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <imgui.h>
@@ -29,9 +28,8 @@ Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, r
 void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
                        const flow::LoopSettings& settings) {
   window_->set_model(layout, builder);
-  panel_->in_force = panel_->wanted = settings;
-  panel_->one_radius = std::all_of(settings.radius_m.begin(), settings.radius_m.end(),
-                                   [&](double radius) { return radius == settings.radius_m[0]; });
+  panel_->wanted.follow(settings);
+  panel_->one_radius = panel_->wanted.has_one_radius();
   scene_frame_.radius_m = settings.radius_m;
   scene_frame_.vertices = layout.original();
   holds_ = {};
@@ -44,8 +42,10 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
     holds_.follow(frame);
     panel_->follow(frame, gauges.rate_hz);
     window_->follow(frame.shape);
+    scene_frame_.radius_m = frame.settings.radius_m;
   }
   set_hands(frame, holds_, scene_frame_);
+  if (frame.ticks_run > 0) panel_->follow_settings(frame.settings);
   window_->leave_left(panel_->covered_px());
   window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there
   if (!move_hand(frame, commands)) window_->move_camera();
@@ -58,6 +58,10 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
 
 const std::string& LiveWindow::told() const noexcept {
   return panel_->told;
+}
+
+const flow::LoopSettings& LiveWindow::settings() const noexcept {
+  return panel_->wanted.now;
 }
 
 // True: the mouse holds a hand, and does nothing else.

@@ -22,9 +22,8 @@ struct Gauges {
   double rate_hz = 0.0;              ///< wanted
   std::array<std::string, 2> gloves; ///< their names; empty means no glove
   std::array<driver::RecordCounts, 2> counts{};
-  bool recording = false;  ///< to a file
-  double restart_ms = 0.0; ///< of the last change of settings; 0 means none yet
-  std::string report;      ///< the result of the last command that saved something
+  bool recording = false; ///< to a file
+  std::string report;     ///< the result of the last command that saved something
 };
 
 /// The commands that a person has given since the last picture, in their order.
@@ -39,7 +38,7 @@ public:
   LiveWindow(const LiveWindow&) = delete;
   LiveWindow& operator=(const LiveWindow&) = delete;
 
-  /// Begins to show another loop over this model. The camera stays where it was.
+  /// Begins to show a loop over this model, with the settings that it begins with.
   void begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
              const flow::LoopSettings& settings);
   /// Draws one picture of the latest frame and waits for the screen, or for at most 8 ms if there
@@ -48,6 +47,8 @@ public:
 
   /// Returns the line below the panel's buttons: the report, or that there is nothing to undo.
   const std::string& told() const noexcept;
+  /// Returns the settings that the panel shows.
+  const flow::LoopSettings& settings() const noexcept;
 
   /// The following functions are those of SceneWindow.
   render::Image screenshot() { return window_->screenshot(); }

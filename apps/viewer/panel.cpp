@@ -10,6 +10,7 @@
 namespace nendo::viewer {
 
 using flow::Request;
+using Wanted = flow::WantedSettings;
 using hand::Joint;
 
 namespace {
@@ -19,8 +20,8 @@ constexpr float label_width = 48.0F; // of "kernel" and of fingers, beside what 
 
 const char* kernel_words(deform::Wendland kernel) {
   constexpr std::array words{"Wendland C0", "Wendland C2", "Wendland C4", "Wendland C6"};
-  return words[static_cast<std::size_t>(std::find(kernels.begin(), kernels.end(), kernel) -
-                                        kernels.begin())];
+  const auto* const first = Wanted::kernels.begin();
+  return words[static_cast<std::size_t>(std::find(first, Wanted::kernels.end(), kernel) - first)];
 }
 
 // How far two joints that follow each other are turned, degrees.
@@ -100,13 +101,13 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
   ask("Undo", "Undo the last commit (u, ctrl z)", Request::undo, frame.undo_steps > 0);
   ask("Redo", "Redo what was undone (r, ctrl y)", Request::redo, frame.redo_steps > 0);
   ask("Commit", "This shape becomes the rest shape (c)", Request::commit);
-  if (button("Reset", "Back to the model as it was loaded (x)")) reset_asked = true;
+  ask("Reset", "Back to the model as it was loaded; undo takes it back (x)", Request::reset);
   if (button("Save", "The model as it is now, to a file of its own (s)"))
     commands.emplace_back(flow::SaveShape{});
   if (button("Keep", "The recording of what was just done (k)"))
     commands.emplace_back(flow::SaveRecording{});
   if (tipped_button(gauges.recording ? "End the recording" : "Record",
-                    "A recording from this shape on (t)", all))
+                    "A recording from here on (t)", all))
     commands.emplace_back(flow::SetRecording{!gauges.recording});
   told = note.empty() ? gauges.report : note;
   if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());
@@ -126,53 +127,45 @@ void LiveWindow::Panel::parts(SceneWindow& window) {
   }
 }
 
-void LiveWindow::Panel::question(Commands& commands) {
-  constexpr const char* title = "Back to the model as it was loaded?";
-  if (std::exchange(reset_asked, false)) ImGui::OpenPopup(title);
-  if (!begin_question(title)) return;
-  ImGui::TextUnformatted("What has been shaped is lost, for undo begins anew.");
-  const bool reset = ImGui::Button("Reset");
-  ImGui::SameLine();
-  const bool stay = ImGui::Button("Keep the shape") || pressed(GLFW_KEY_ESCAPE);
-  if (reset) commands.emplace_back(flow::ResetModel{});
-  if (reset || stay) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
+void LiveWindow::Panel::follow_settings(const flow::LoopSettings& in_force) {
+  if (wanted.follow(in_force) && !wanted.has_one_radius()) one_radius = false;
 }
 
-void LiveWindow::Panel::settings(Commands& commands) {
-  int mode = static_cast<int>(wanted.mode);
+void LiveWindow::Panel::settings() {
+  flow::LoopSettings& chosen = wanted.now;
+  int mode = static_cast<int>(chosen.mode);
   ImGui::RadioButton("type 1: pull", &mode, 0);
   ImGui::RadioButton("type 2: strokes", &mode, 1);
-  wanted.mode = static_cast<flow::Mode>(mode);
+  chosen.mode = static_cast<flow::Mode>(mode);
   ImGui::PushItemWidth(-label_width);
-  if (ImGui::BeginCombo("kernel", kernel_words(wanted.kernel))) {
-    for (const auto kernel : kernels)
-      if (ImGui::Selectable(kernel_words(kernel), kernel == wanted.kernel)) wanted.kernel = kernel;
+  if (ImGui::BeginCombo("kernel", kernel_words(chosen.kernel))) {
+    for (const auto kernel : Wanted::kernels)
+      if (ImGui::Selectable(kernel_words(kernel), kernel == chosen.kernel)) chosen.kernel = kernel;
     ImGui::EndCombo();
   }
+  ImGui::Checkbox("never folds", &chosen.injective);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("No field folds the surface (i)");
+  ImGui::SameLine();
+  bool smooth = chosen.filter.kind == hand::FilterKind::one_euro;
+  ImGui::Checkbox("smooth hands", &smooth);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The one-euro filter");
+  chosen.filter.kind = smooth ? hand::FilterKind::one_euro : hand::FilterKind::off;
   ImGui::Checkbox("one radius for all fingers", &one_radius);
   for (std::size_t finger = 0; finger < (one_radius ? 1 : finger_names.size()); ++finger) {
-    auto radius_cm = static_cast<float>(100.0 * wanted.radius_m[finger]);
+    auto radius_cm = static_cast<float>(100.0 * chosen.radius_m[finger]);
     if (ImGui::SliderFloat(one_radius ? "radius" : finger_names[finger], &radius_cm,
-                           static_cast<float>(100.0 * least_radius_m),
-                           static_cast<float>(100.0 * most_radius_m), "%.1f cm"))
-      wanted.radius_m[finger] =
-          std::clamp(static_cast<double>(radius_cm) / 100, least_radius_m, most_radius_m);
+                           static_cast<float>(100.0 * Wanted::least_radius_m),
+                           static_cast<float>(100.0 * Wanted::most_radius_m), "%.1f cm"))
+      chosen.radius_m[finger] = std::clamp(static_cast<double>(radius_cm) / 100,
+                                           Wanted::least_radius_m, Wanted::most_radius_m);
   }
-  if (one_radius) wanted.radius_m.fill(wanted.radius_m[0]);
+  if (one_radius) chosen.radius_m.fill(chosen.radius_m[0]);
   ImGui::PopItemWidth();
-  const bool same = wanted == in_force;
-  if (tipped_button("Apply", "The mode, kernel and radii that are chosen (Enter)",
-                    ImGui::GetContentRegionAvail().x, !same))
-    commands.emplace_back(flow::ChangeSettings{wanted});
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-  ImGui::TextWrapped("%s", same ? "As in force."
-                                : "Restarts the loop from this shape; undo begins anew.");
-  ImGui::PopStyleColor();
 }
 
 void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) const {
-  ImGui::Text("%g Hz wanted, type %d", gauges.rate_hz, in_force.mode == flow::Mode::type1 ? 1 : 2);
+  ImGui::Text("%g Hz wanted, type %d", gauges.rate_hz,
+              frame.settings.mode == flow::Mode::type1 ? 1 : 2);
   ImGui::TextWrapped("%llu ticks, %llu missed", static_cast<unsigned long long>(frame.ticks_run),
                      static_cast<unsigned long long>(frame.missed));
   ImGui::TextWrapped("%llu commits, %llu undone", static_cast<unsigned long long>(frame.commits),
@@ -180,8 +173,6 @@ void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) c
   chart("late", late_ms, "ms");
   chart("uneven", gap_ms, "ms");
   chart("picture", pictures_ms, "ms");
-  if (gauges.restart_ms > 0.0)
-    ImGui::TextWrapped("the last change took %.1f ms", gauges.restart_ms);
 }
 
 void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) const {
@@ -218,17 +209,16 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
     ImGui::TextWrapped("%s   (? for keys)", gauges.model.c_str());
     panel_->buttons(frame, gauges, commands);
     panel_->parts(*window_);
-    if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen))
-      panel_->settings(commands);
+    if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings();
     if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->timing(frame, gauges);
     if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->hands(frame, gauges);
   }
   ImGui::End();
-  panel_->question(commands);
   if (!commands.empty()) panel_->note.clear();
   panel_->keys(frame, gauges, *window_, commands);
+  if (const auto change = panel_->wanted.ask()) commands.push_back(*change);
 }
 
 } // namespace nendo::viewer

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include <nendo/flow/wanted_settings.hpp>
+
 #include "viewer/live_window.hpp"
 
 namespace nendo::viewer {
@@ -26,22 +28,15 @@ private:
   std::size_t next_ = 0;
 };
 
-/// The kernels and the radii that a person can choose, as on the browser's page.
-inline constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
-                                    deform::Wendland::c4, deform::Wendland::c6};
-inline constexpr double least_radius_m = 0.01;
-inline constexpr double most_radius_m = 0.4;
-
 struct LiveWindow::Panel {
   static constexpr float gap_px = 10.0F; ///< to the window's edges
   static constexpr float width_px = 250.0F;
 
-  flow::LoopSettings in_force, wanted;
+  flow::WantedSettings wanted;
   Strip late_ms, gap_ms, pictures_ms;
   std::uint64_t last_tick = 0;
   bool keys_shown = false;
   bool one_radius = true;
-  bool reset_asked = false; ///< the question whether to reset is open
   bool fold_asked = false;
   bool folded = false;
   std::string note; ///< takes the place of Gauges::report until the next command
@@ -49,11 +44,11 @@ struct LiveWindow::Panel {
 
   /// Returns how much of the window's left the panel covers.
   int covered_px() const noexcept { return folded ? 0 : static_cast<int>(gap_px + width_px); }
+  void follow_settings(const flow::LoopSettings& in_force);
   void follow(const flow::Frame& frame, double rate_hz);
   void buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
   static void parts(SceneWindow& window);
-  void question(Commands& commands);
-  void settings(Commands& commands);
+  void settings();
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
   /// What keys do. It also draws their list.
@@ -65,7 +60,7 @@ private:
   void step_keys(const flow::Frame& frame, Commands& commands);
   void single_keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
                    Commands& commands);
-  void settings_keys(Commands& commands);
+  void settings_keys();
 };
 
 } // namespace nendo::viewer

@@ -1,6 +1,5 @@
 #include "viewer/panel.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "viewer/key_list.hpp"
@@ -19,12 +18,12 @@ constexpr std::array key_table{
     KeyLine{"u, ctrl z", "undo the last commit"},
     KeyLine{"r, ctrl y", "redo what was undone; ctrl shift z, too"},
     KeyLine{"x", "reset: back to the model as it was loaded"},
-    KeyLine{"t", "a take: record from this shape on, and end that"},
+    KeyLine{"t", "a take: record from here on, and end that"},
     KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
     KeyLine{"s", "save the model as it is now"},
     KeyLine{"m, n", "the other mode, the next kernel"},
     KeyLine{"[, ]", "smaller radii, larger ones"},
-    KeyLine{"Enter", "apply the mode, kernel and radii that are chosen"},
+    KeyLine{"i", "the surface never folds, or may"},
     KeyLine{"Home", "all of the model and the hands in the picture"},
     KeyLine{"p", "the panel folded and unfolded"},
     KeyLine{"q", "quit; the shape is written"},
@@ -32,21 +31,13 @@ constexpr std::array key_table{
 
 } // namespace
 
-void LiveWindow::Panel::settings_keys(Commands& commands) {
-  if (pressed(GLFW_KEY_M))
-    wanted.mode = wanted.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
-  if (pressed(GLFW_KEY_N)) {
-    const auto at = std::find(kernels.begin(), kernels.end(), wanted.kernel) - kernels.begin();
-    wanted.kernel = kernels[(static_cast<std::size_t>(at) + 1) % kernels.size()];
-  }
+void LiveWindow::Panel::settings_keys() {
+  if (pressed(GLFW_KEY_M)) wanted.other_mode();
+  if (pressed(GLFW_KEY_N)) wanted.next_kernel();
   constexpr double larger = 1.1;
-  for (const auto& [key, factor] :
-       {std::pair{GLFW_KEY_LEFT_BRACKET, 1.0 / larger}, {GLFW_KEY_RIGHT_BRACKET, larger}})
-    if (pressed(key, true))
-      for (double& radius_m : wanted.radius_m)
-        radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
-  if (pressed(GLFW_KEY_ENTER) && !(wanted == in_force))
-    commands.emplace_back(flow::ChangeSettings{wanted});
+  if (pressed(GLFW_KEY_LEFT_BRACKET, true)) wanted.scale_radii(1.0 / larger);
+  if (pressed(GLFW_KEY_RIGHT_BRACKET, true)) wanted.scale_radii(larger);
+  if (pressed(GLFW_KEY_I)) wanted.now.injective = !wanted.now.injective;
 }
 
 // The page's button is grey then, too; a key says why nothing happens.
@@ -90,15 +81,15 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
                                     SceneWindow& window, Commands& commands) {
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
-                                     {GLFW_KEY_C, Request::commit}})
+                                     {GLFW_KEY_C, Request::commit},
+                                     {GLFW_KEY_X, Request::reset}})
     if (pressed(key)) commands.emplace_back(request);
   if (pressed(GLFW_KEY_U)) step(Request::undo, frame, commands);
   if (pressed(GLFW_KEY_R)) step(Request::redo, frame, commands);
-  if (pressed(GLFW_KEY_X)) reset_asked = true;
   if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});
-  settings_keys(commands);
+  settings_keys();
   if (pressed(GLFW_KEY_Q)) commands.emplace_back(flow::EndRun{});
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (pressed(GLFW_KEY_HOME)) window.frame_all();

@@ -52,12 +52,17 @@ std::optional<Wendland> kernel_of(std::string_view word) noexcept {
 std::optional<flow::Command> settings_in(Words words) noexcept {
   const auto mode = flow::mode_named(words.next());
   const auto kernel = kernel_of(words.next());
+  const auto folds = words.next();
+  const auto filter = hand::filter_named(words.next());
   flow::LoopSettings settings;
-  if (!mode || !kernel || !words.take(settings.radius_m) || !words.are_over()) return std::nullopt;
+  if (!mode || !kernel || !filter || (folds != "injective" && folds != "free")) return std::nullopt;
+  if (!words.take(settings.radius_m) || !words.are_over()) return std::nullopt;
   for (const double radius_m : settings.radius_m)
     if (radius_m < min_radius_m || radius_m > max_radius_m) return std::nullopt;
   settings.mode = *mode;
   settings.kernel = *kernel;
+  settings.injective = folds == "injective";
+  settings.filter.kind = *filter;
   return flow::ChangeSettings{settings};
 }
 
@@ -82,7 +87,6 @@ std::optional<flow::Command> wrist_in(Words words) noexcept {
 
 std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   if (const auto request = flow::request_named(text)) return *request;
-  if (text == "reset") return flow::ResetModel{};
   if (text == "record") return flow::SetRecording{true};
   if (text == "end recording") return flow::SetRecording{false};
   if (text == "save") return flow::SaveShape{};

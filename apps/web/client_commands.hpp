@@ -16,7 +16,8 @@ inline constexpr double max_radius_m = 10.0;
 inline constexpr double max_norm_error = 0.01;
 
 /// Returns the command that the text means, or nothing if it is no command or if a number in it is
-/// out of range. The quaternion of a wrist is normalised.
+/// out of range. The quaternion of a wrist is normalised. Settings have the usual numbers where the
+/// text has none: the length of a piece, and the filter's.
 std::optional<flow::Command> parse_command(std::string_view text) noexcept;
 
 } // namespace nendo::web

@@ -68,6 +68,7 @@ public:
 
   ClientReader reader;
   Feed feed;
+  SharedBytes settings; ///< the settings message that it was sent last
 
 private:
   struct Part {

@@ -33,12 +33,15 @@ constexpr double max_drift = 2e-6;
 constexpr std::size_t min_chunks = 16384;
 constexpr std::size_t min_records = 16;
 
+bool is_type1(const flow::Frame& frame) noexcept {
+  return frame.settings.mode == flow::Mode::type1;
+}
+
 } // namespace
 
-FrameStream::FrameStream(const deform::BlockLayout& layout, flow::Mode mode, std::size_t max_fields,
+FrameStream::FrameStream(const deform::BlockLayout& layout, std::size_t max_fields,
                          std::size_t max_functions)
     : origin_(layout.origin()), unit_(layout.unit()), vertices_(layout.vertex_count()),
-      type1_(mode == flow::Mode::type1),
       max_drift_(std::pow(max_drift * layout.diagonal() / layout.unit(), 2)), rest_(layout.pack()),
       record_((sizeof(RecordHead) + sizeof(UpdateHead) + 2 * hand_bytes + step_head_bytes +
                max_fields * field_bytes(max_functions) + sizeof(Chunk) - 1) /
@@ -57,16 +60,16 @@ void FrameStream::show(const flow::Frame& frame) noexcept {
   const bool committed = frame.commits != commits_;
   undos_ = frame.undos;
   commits_ = frame.commits;
-  // In both cases this frame's shape is the rest shape from now on: a commit makes it so, and after
-  // an undo the hands have not moved it yet.
-  if (type1_ && (undone || committed)) rest_.follow(frame.shape);
+  // In both cases this frame's shape is the rest shape from now on: a commit makes it so, as does a
+  // change of settings, and after an undo the hands have not moved it yet.
+  if (undone || committed) rest_.follow(frame.shape);
   copy_shape(frame); // before the record is pushed: see take_shape()
   if (active_.load(std::memory_order_relaxed)) push(frame, undone, committed);
 }
 
 void FrameStream::copy_shape(const flow::Frame& frame) noexcept {
   if (request_.load(std::memory_order_acquire) != ShapeRequest::pending) return;
-  shape_copy_.follow(type1_ ? rest_ : frame.shape);
+  shape_copy_.follow(is_type1(frame) ? rest_ : frame.shape);
   shape_copy_number_ = number_;
   request_.store(ShapeRequest::ready, std::memory_order_release);
 }
@@ -84,7 +87,7 @@ double FrameStream::drift_of(const flow::Frame& frame) const noexcept {
 }
 
 void FrameStream::push(const flow::Frame& frame, bool undone, bool committed) noexcept {
-  const bool bakes = !type1_ || committed;
+  const bool bakes = !is_type1(frame) || committed;
   RecordHead head;
   UpdateHead update = head_of(frame);
   update.number = head.number = number_;

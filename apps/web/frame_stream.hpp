@@ -13,7 +13,6 @@
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/flow/frame_sink.hpp>
-#include <nendo/flow/sculptor.hpp>
 
 namespace nendo::web {
 
@@ -32,14 +31,12 @@ struct Record {
 
 class FrameStream final : public flow::FrameSink {
 public:
-  /// layout, mode: those of a loop that has not begun yet. max_fields: of one frame;
-  /// max_functions: of one field. Allocates all that show() needs.
-  FrameStream(const deform::BlockLayout& layout, flow::Mode mode, std::size_t max_fields,
-              std::size_t max_functions);
+  /// layout: that of a loop that has not begun yet. max_fields: of one frame; max_functions: of one
+  /// field, whatever the settings become. Allocates all that show() needs.
+  FrameStream(const deform::BlockLayout& layout, std::size_t max_fields, std::size_t max_functions);
 
   /// Writes a record while the stream is active. Copies the changed blocks of the shape if the
-  /// shape was requested and, in Type-1, after a commit and after an undo. Called in the tick;
-  /// wait-free.
+  /// shape was requested, after a commit and after an undo. Called in the tick; wait-free.
   void show(const flow::Frame& frame) noexcept override;
 
   // All functions that follow are for one other thread.
@@ -75,10 +72,10 @@ private:
   const Eigen::Vector3d origin_;
   const double unit_;
   const std::size_t vertices_;
-  const bool type1_;
   const double max_drift_; ///< squared, in units
   // Used by the tick only.
-  deform::BlockShape rest_; ///< in Type-1, the shape that fields are applied to
+  deform::BlockShape rest_; ///< in Type-1, the shape that fields are applied to; in Type-2, that of
+                            ///< the last commit or undo
   std::uint64_t number_ = 0;
   std::uint64_t commits_ = 0;
   std::uint64_t undos_ = 0;

@@ -1,6 +1,5 @@
 #include "web/model_message.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include <nendo/deform/triangles.hpp>
@@ -45,14 +44,10 @@ ModelHead head_of(const deform::BlockLayout& layout, const Hands& hands, const M
   head.unit = layout.unit();
   head.units_per_metre = facts.units_per_metre;
   head.diagonal = layout.diagonal();
-  head.mode = facts.settings.mode == flow::Mode::type1 ? 1 : 2;
-  head.kernel = static_cast<std::uint8_t>(facts.settings.kernel);
   head.flags =
-      static_cast<std::uint8_t>((hands[0] != nullptr ? 1U : 0U) | (hands[1] != nullptr ? 2U : 0U) |
-                                (facts.recorded ? 4U : 0U));
+      static_cast<std::uint8_t>((hands[0] != nullptr ? 1U : 0U) | (hands[1] != nullptr ? 2U : 0U));
   for (std::size_t axis = 0; axis < 3; ++axis)
     head.origin[axis] = layout.origin()[static_cast<Eigen::Index>(axis)];
-  std::copy(facts.settings.radius_m.begin(), facts.settings.radius_m.end(), head.radius_m);
   return head;
 }
 

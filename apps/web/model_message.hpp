@@ -10,7 +10,6 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/flow/deform_loop.hpp>
-#include <nendo/flow/loop_settings.hpp>
 
 namespace nendo::web {
 
@@ -18,8 +17,6 @@ struct ModelFacts {
   std::string name; ///< for display
   double rate_hz = 0.0;
   double units_per_metre = 1.0;
-  flow::LoopSettings settings; ///< those that the loop runs with
-  bool recorded = false;       ///< whether the loop is recorded to a file
 };
 
 /// The greatest number of vertices that a browser can be expected to show.

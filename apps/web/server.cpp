@@ -52,6 +52,10 @@ void Server::report(std::string message) {
   work_->report(std::move(message));
 }
 
+void Server::set_settings(const flow::LoopSettings& settings, bool recorded) {
+  work_->set_settings(settings, recorded);
+}
+
 void Server::set_gloves(const GloveStates& gloves) noexcept {
   for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
     Work::SharedGloveState& shared = work_->gloves[slot];

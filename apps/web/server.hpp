@@ -86,6 +86,9 @@ public:
   std::optional<flow::Command> next_command() noexcept;
   /// Sends a text for people to all clients. Any thread may call it; does not wait for the network.
   void report(std::string message);
+  /// Sets what the loop runs with and whether it is recorded to a file. Clients are told when they
+  /// come and when it changes. Any thread may call it; does not wait for the network.
+  void set_settings(const flow::LoopSettings& settings, bool recorded);
   /// Sets what the page shows of each glove. Any thread may call it; wait-free.
   void set_gloves(const GloveStates& gloves) noexcept;
   /// Returns the counters. Each number is right by itself, but they are not all of the same moment.

@@ -66,6 +66,19 @@ void Server::Work::report(std::string message) {
   wake();
 }
 
+void Server::Work::set_settings(const flow::LoopSettings& settings, bool recorded) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (settings_message_ && settings == settings_ && recorded == recorded_) return;
+    settings_ = settings;
+    recorded_ = recorded;
+    std::vector<std::byte> message(sizeof(SettingsMessage));
+    WireWriter(message).put(message_of(settings, recorded));
+    settings_message_ = std::make_shared<const std::vector<std::byte>>(std::move(message));
+  }
+  wake();
+}
+
 std::size_t Server::Work::clients() const noexcept {
   return static_cast<std::size_t>(
       std::count_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
@@ -79,6 +92,7 @@ void Server::Work::run() {
     const HostTime now = HostClock::now();
     take_presented();
     send_report(now);
+    send_settings(now);
     std::size_t at = 2; // behind the listener and the waker
     for (Connection& connection : connections_)
       serve(connection, polled_[at++].revents, now);
@@ -148,6 +162,22 @@ void Server::Work::send_report(HostTime now) {
   for (Connection& client : connections_)
     if (client.stage() == Connection::Stage::socket && client.accepts_updates())
       client.send(Opcode::binary, message, false, now);
+}
+
+// Each client gets each message once, before the updates that follow it. It is small, so that also
+// a client whose queue is long gets it.
+void Server::Work::send_settings(HostTime now) {
+  SharedBytes message;
+  {
+    const std::scoped_lock lock(mutex_);
+    message = settings_message_;
+  }
+  if (!message) return;
+  for (Connection& client : connections_) {
+    if (client.stage() != Connection::Stage::socket || client.settings == message) continue;
+    client.settings = message;
+    client.send(Opcode::binary, message, false, now);
+  }
 }
 
 // When the system has no descriptor left, poll() would return at once, over and over. So the

@@ -25,6 +25,7 @@ public:
 
   void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model);
   void report(std::string message);
+  void set_settings(const flow::LoopSettings& settings, bool recorded);
 
   const Endpoint endpoint;
   const std::string token;
@@ -56,6 +57,7 @@ private:
   void wake() noexcept;
   void take_presented();
   void send_report(HostTime now);
+  void send_settings(HostTime now);
   void end();
   void accept_all(HostTime now);
   void make_room();
@@ -73,10 +75,13 @@ private:
 
   const ServerLimits limits_;
   Descriptor listener_, waker_;
-  std::mutex mutex_;              ///< guards the next three
+  std::mutex mutex_;              ///< guards the next six
   std::optional<Presented> next_; ///< set by present() and not taken yet
   std::uint16_t loops_ = 0;
   std::string report_; ///< the newest one; empty if it has been sent
+  flow::LoopSettings settings_;
+  SharedBytes settings_message_; ///< null before they are known
+  bool recorded_ = false;
   Presented presented_;
   std::list<Connection> connections_; ///< the oldest first
   std::vector<pollfd> polled_;

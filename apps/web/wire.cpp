@@ -134,6 +134,17 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   return head;
 }
 
+SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept {
+  SettingsMessage message;
+  message.mode = settings.mode == flow::Mode::type1 ? 1 : 2;
+  message.kernel = static_cast<std::uint8_t>(settings.kernel);
+  const bool filtered = settings.filter.kind == hand::FilterKind::one_euro;
+  message.flags = static_cast<std::uint8_t>((settings.injective ? 1U : 0U) | (filtered ? 2U : 0U) |
+                                            (recorded ? 4U : 0U));
+  std::copy(settings.radius_m.begin(), settings.radius_m.end(), message.radius_m);
+  return message;
+}
+
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept {
   const Eigen::Vector3d wrist = hand.pose[hand::Joint::wrist].translation();
   for (Eigen::Index axis = 0; axis < 3; ++axis)

@@ -16,7 +16,7 @@ namespace nendo::web {
 
 static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
 
-enum class MessageType : std::uint8_t { shape = 1, update = 2, report = 3 };
+enum class MessageType : std::uint8_t { shape = 1, update = 2, report = 3, settings = 4 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 
 /// The head of an update message, in PROTOCOL.md's order and without gaps.
@@ -60,7 +60,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 2;
+  std::uint32_t version = 3;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;
@@ -69,14 +69,22 @@ struct ModelHead {
   double origin[3]{};
   double units_per_metre = 1.0;
   double diagonal = 0.0;
-  double radius_m[5]{};
-  std::uint16_t mode = 1;
-  std::uint16_t loop = 0; ///< the number of the loop within its run; the server sets it
-  std::uint8_t kernel = 0;
-  std::uint8_t flags = 0; ///< bits 0, 1: left, right hand's bones follow; bit 2: it is recorded
-  std::uint16_t spare = 0;
+  std::uint16_t loop = 0; ///< the number of the loop within its server; the server sets it
+  std::uint8_t flags = 0; ///< bits 0, 1: left, right hand's bones follow
+  std::uint8_t spare[5]{};
 };
-static_assert(sizeof(ModelHead) == 128);
+static_assert(sizeof(ModelHead) == 88);
+
+/// The settings message, in PROTOCOL.md's order and without gaps.
+struct SettingsMessage {
+  std::uint8_t type = static_cast<std::uint8_t>(MessageType::settings);
+  std::uint8_t mode = 1;
+  std::uint8_t kernel = 0;
+  std::uint8_t flags = 0; ///< bit 0: injective; 1: the one-euro filter; 2: it is recorded
+  std::uint32_t spare = 0;
+  double radius_m[5]{};
+};
+static_assert(sizeof(SettingsMessage) == 48);
 
 /// Tells whether a joint's rotation is sent with each frame. The other joints do not move relative
 /// to their parents.
@@ -120,6 +128,7 @@ private:
 };
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
+SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept;
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
 /// Writes a step. `origin` and `unit` are those of the loop's BlockLayout. Functions whose
 /// coefficient is zero are left out, and so are centres that follow from the previous field.

@@ -4,10 +4,12 @@
 #include <string>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli/output_place.hpp"
+#include "support/eventually.hpp"
 #include "support/program.hpp"
 #include "support/terminal_program.hpp"
 
@@ -56,6 +58,45 @@ TEST_SUITE("run_keys") {
     const auto saved = deform::read_mesh(folder.path() / "shape-2.obj");
     REQUIRE(saved);
     CHECK(saved->vertices.cols() == deform::read_mesh(out)->vertices.cols());
+  }
+
+  TEST_CASE(
+      "keys change settings, record and reset while the loop runs, and say what is in force") {
+    const TemporaryFolder folder;
+    const auto out = folder.path() / "shape.obj";
+    TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
+    REQUIRE(program.tells("[ and ] make the brush smaller, larger"));
+    REQUIRE(program.tells("ticks"));
+    CHECK(program.press('t'));
+    REQUIRE(
+        test::eventually([&] { return std::filesystem::exists(folder.path() / "shape.nendo"); }));
+    CHECK(program.press(']'));
+    CHECK(program.tells("type1, wendland-c2, never folds, radius 17.6 cm"));
+    CHECK(program.press('['));
+    CHECK(program.press('['));
+    CHECK(program.tells("radius 14.5 cm"));
+    CHECK(program.press('m'));
+    CHECK(program.press('n'));
+    CHECK(program.tells("type2, wendland-c4, never folds, radius 14.5 cm"));
+    CHECK(program.press('i'));
+    CHECK(program.tells("type2, wendland-c4, may fold"));
+    CHECK(program.press('x'));
+    CHECK(program.press('u'));
+    CHECK(program.press('t'));
+    CHECK(program.press('q'));
+    CHECK(program.wait() == 0);
+    CHECK(program.tells(" s, type2, wendland-c4")); // of the summary: the last counts, too
+    const auto info =
+        test::nendo({"recording", "info", "--json", (folder.path() / "shape.nendo").string()});
+    REQUIRE(info.exit_code == 0);
+    const auto told = nlohmann::json::parse(info.out);
+    CHECK(told["whole"] == true);
+    CHECK(told["loop"]["settings_changes"].get<int>() >= 1); // quick ones are taken together
+    CHECK(told["loop"]["requests"]["reset"] == 1);
+    CHECK(told["loop"]["requests"]["undo"] == 1);
+    CHECK(test::nendo({"replay", (folder.path() / "shape.nendo").string(), "--out",
+                       (folder.path() / "again.obj").string()})
+              .exit_code == 0);
   }
 
   TEST_CASE("the line of progress stays within the terminal's width, and keeps its marks") {

@@ -18,6 +18,15 @@ using test::segment_name;
 
 namespace {
 
+double wendland(std::uint32_t kernel, double t) {
+  const double u = 1.0 - t;
+  if (kernel == 0) return std::pow(u, 2);
+  if (kernel == 1) return std::pow(u, 4) * (4.0 * t + 1.0);
+  if (kernel == 2) return std::pow(u, 6) * (35.0 * t * t + 18.0 * t + 3.0) / 3.0;
+  REQUIRE(kernel == 3);
+  return std::pow(u, 8) * (32.0 * t * t * t + 25.0 * t * t + 8.0 * t + 1.0);
+}
+
 /// What FORMAT.md says of a field, for one point.
 Eigen::Vector3d moved(const nendo_publish_field& field, const nendo_publish_function* functions,
                       const Eigen::Vector3d& x) {
@@ -31,9 +40,8 @@ Eigen::Vector3d moved(const nendo_publish_field& field, const nendo_publish_func
     const double d = std::sqrt(std::pow(x[0] - f.centre[0], 2) + std::pow(x[1] - f.centre[1], 2) +
                                std::pow(x[2] - f.centre[2], 2));
     const double t = d / f.radius;
-    REQUIRE(field.kernel == 1);
     if (t >= 1.0) continue;
-    const double psi = std::pow(1.0 - t, 4) * (4.0 * t + 1.0);
+    const double psi = wendland(field.kernel, t);
     for (int axis = 0; axis < 3; ++axis)
       result[axis] += f.coefficient[axis] * psi;
   }
@@ -70,6 +78,8 @@ struct Follower {
     const bool undid = head.undos != undos;
     if (head.mode == 2) {
       step(!missed && !undid, record, shape, published);
+      rest = shape; // from which type-1 goes on, should the mode change
+      knows_rest = true;
     } else {
       if (missed && (committed || undid)) knows_rest = false;
       if (!missed && undid) {
@@ -109,7 +119,7 @@ TEST_SUITE("updates") {
       Follower follower{segment.rest(), segment.rest()};
       Player player(test);
       double furthest = 0.0;
-      for (std::uint64_t number = 1; number <= 300; ++number) {
+      for (std::uint64_t number = 1; number <= 400; ++number) {
         player.next();
         const Points published = segment.shape(number);
         follower.follow(segment.record(number), published);
@@ -119,6 +129,37 @@ TEST_SUITE("updates") {
       CHECK(furthest > 1e-2);
       CHECK(follower.undos > 2);
       CHECK(follower.commits > 2);
+    }
+  }
+
+  TEST_CASE(
+      "so they do while settings change from any to any, and not one record needs the shape for "
+      "it") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      LoopUnderTest test(mode, {.rings_of_ball = 10});
+      SegmentPublisher publisher(segment_name("change"), {});
+      test::attach(test, {&publisher});
+      publish::LoopOutline outline = test::outline_of(test);
+      outline.most_fields = 64;
+      outline.functions = 20;
+      REQUIRE(publisher.begin(outline));
+      const MappedSegment segment(segment_name("change"));
+      Follower follower{segment.rest(), segment.rest()};
+      std::mt19937 random(5);
+      const HostTime begin = HostClock::now();
+      int bent = 0;
+      for (std::uint64_t number = 1; number <= 400; ++number) {
+        bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 30);
+        test.bend(bent, begin + number * std::chrono::milliseconds(11));
+        if (random() % 6 == 0)
+          test.loop->change_settings(test::any_settings(test.loop->settings(), random));
+        test.frame_after_tick(number - 1);
+        const Points published = segment.shape(number);
+        follower.follow(segment.record(number), published);
+        REQUIRE((follower.shape - published).cwiseAbs().maxCoeff() < 1e-4);
+      }
+      CHECK(test.loop->stats().changes > 30);
+      CHECK(follower.taken == 0);
     }
   }
 

@@ -77,9 +77,12 @@ TEST_SUITE("loop_replay") {
     test::play(before, 600);
     RecordedLoop live(Mode::type1, FilterKind::off, true);
     auto& test = live.test;
-    const auto learned = before.test.loop->learned();
-    for (auto& input : test.inputs)
-      input.wearer.learned = learned[flow::Placement::index_of(input.side)];
+    before.test.loop->change_log(nullptr, before.test.loop->frames().front().shape);
+    before.test.frame_after_tick(600);
+    const auto state = before.test.loop->take_state();
+    REQUIRE(state);
+    for (std::size_t at = 0; at < test.inputs.size(); ++at)
+      test.inputs[at].wearer.learned = state->learned[at];
     test.loop =
         std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
     live.setup = test::setup_of(test);

@@ -69,7 +69,21 @@ def loop(b):
                   "most_bound", "most_links", "least_gap"), b.take("BBdBBQQBdId")))
     o["simd"] = b.text()
     o["undo_most_bytes"] = b.take("Q")
+    o["held"] = b.take("B")
     return o
+
+
+def rest(b):
+    blocks = []
+    while b.left():
+        blocks.append({axis: b.take("64f") for axis in "xyz"})
+    return {"blocks": blocks}
+
+
+def settings(b):
+    s = dict(zip(("mode", "kernel", "injective", "filter"), b.take("4B")))
+    s.update({"radii": b.take("5d"), "piece": b.take("d"), "cutoffs": b.take("3d")})
+    return s
 
 
 def head(b):
@@ -87,7 +101,7 @@ def sent(b):
 
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
-             3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             6: settings, 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")
@@ -107,10 +121,10 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 2, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 3, crc32c(data[:12])), "header"
     at = 16
     number = 0
-    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
+    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "REST": rest, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
     while at < len(data):
         magic, kind, size, found, check = struct.unpack_from("<4s4sIII", data, at)
         assert magic == b"NCHK" and check == crc32c(data[at:at + 16]) and found == number, f"chunk header at {at}"

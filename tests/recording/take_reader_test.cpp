@@ -106,6 +106,10 @@ Setup unusual_setup() {
   setup.gloves[1].facts = {{"serial", "42"}, {"firmware", "2.1"}};
   setup.gloves[1].counts = {1023, true};
   setup.gloves[1].abilities.light = true;
+  setup.loop->options.held = false;
+  setup.loop->rest.resize(2);
+  setup.loop->rest[1].y[2] = -0.5F;
+  setup.loop->rest[1].z[63] = 0.25F;
   return setup;
 }
 
@@ -117,6 +121,17 @@ Setup read_back(const std::vector<std::byte>& bytes) {
   return reader->setup();
 }
 
+bool is_settings(const json& line, const flow::LoopSettings& settings) {
+  const auto& filter = settings.filter;
+  return line["mode"] == static_cast<int>(settings.mode) &&
+         line["kernel"] == static_cast<int>(settings.kernel) &&
+         line["injective"] == static_cast<int>(settings.injective) &&
+         line["filter"] == static_cast<int>(filter.kind) && line["radii"] == settings.radius_m &&
+         line["piece"] == settings.piece_fraction &&
+         line["cutoffs"] == std::array{filter.min_cutoff_hz, filter.beta_hz_per_rad_s,
+                                       filter.derivative_cutoff_hz};
+}
+
 } // namespace
 
 TEST_SUITE("take_reader") {
@@ -124,7 +139,7 @@ TEST_SUITE("take_reader") {
     RecordedLoop live(Mode::type1);
     live.setup = unusual_setup();
     live.record();
-    test::play(live, 80);
+    test::play(live, 80, 1, true, [](const flow::Frame&) {});
     const auto recorded = live.end();
     REQUIRE(recorded);
     const auto lines = told_by_python(live.path);
@@ -176,21 +191,33 @@ TEST_SUITE("take_reader") {
     CHECK(lines[at]["kernel"] == 3);
     CHECK(lines[at]["merge"] == 0.07);
     CHECK(lines[at]["most_links"] == 33);
+    CHECK(lines[at]["held"] == 0);
     CHECK(lines[at++]["least_gap"] == 0.04);
+    REQUIRE(lines[at]["chunk"] == "REST");
+    REQUIRE(lines[at]["blocks"].size() == 2);
+    CHECK(lines[at]["blocks"][0]["x"][0] == 0.0F);
+    CHECK(lines[at]["blocks"][1]["y"][2] == -0.5F);
+    CHECK(lines[at++]["blocks"][1]["z"][63] == 0.25F);
     auto reader = TakeReader::open(live.path);
     REQUIRE(reader);
+    int changes = 0;
     for (; const auto entry = reader->next(); ++at) {
       REQUIRE(lines[at]["chunk"] == "TAPE");
       if (const auto* sample = std::get_if<driver::RecordedSample>(&*entry))
         CHECK(is_sample(lines[at], sample->glove, sample->sample));
       if (const auto* request = std::get_if<flow::Request>(&*entry))
         CHECK(lines[at]["request"] == static_cast<int>(*request));
+      if (const auto* settings = std::get_if<flow::LoopSettings>(&*entry)) {
+        ++changes;
+        CHECK(is_settings(lines[at], *settings));
+      }
       if (const auto* tick = std::get_if<flow::LoggedTick>(&*entry)) {
         CHECK(lines[at]["tick"] == tick->number);
         CHECK(lines[at]["scheduled"] == ns(tick->scheduled));
         CHECK(lines[at]["woke"] == ns(tick->woke));
       }
     }
+    CHECK(changes > 2);
     REQUIRE(at + 1 == lines.size());
     CHECK(lines[at]["chunk"] == "END ");
     CHECK(lines[at]["ticks"] == 80);
@@ -206,7 +233,7 @@ TEST_SUITE("take_reader") {
     std::uint32_t again = 0;
     CHECK(setup_bytes(read, again) == bytes);
     CHECK(again == chunks);
-    CHECK(chunks == 6);
+    CHECK(chunks == 7);
   }
 
   TEST_CASE("a hand of format 1.0, which ends before what was learned, is read") {

@@ -12,7 +12,6 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
-#include "session/loop_change.hpp"
 #include "session/open_hands.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
@@ -36,99 +35,58 @@ protected:
   static void wait() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
 };
 
-/// Has the loop made anew three times, in the other mode each time, after some frames.
-class Renewer final : public PacingObserver {
-public:
-  void loop_begins(const LoopStart& start) override {
-    begun.push_back(start.model.vertices);
-    modes.push_back(start.placed.setup.options.sculptor.mode);
-    wrists.push_back(start.placed.setup.placement.T_stage_wrist[0].matrix());
-    layout_ = &start.placed.loop->layout();
-    settings_ = settings_of(start.placed);
-    frames_ = 0;
-  }
-  void update(const RunStatus& status, flow::CommandRing& commands) override {
-    wait();
-    if (!status.fresh) return;
-    if (++frames_ == 1) {
-      layout_->unpack(status.frame.shape, shape_);
-      const double jump = (shape_ - begun.back()).colwise().norm().maxCoeff();
-      const auto pause = HostClock::now() - left_at_;
-      if (begun.size() > 1 && pause < std::chrono::milliseconds(250))
-        most_jump = std::max(most_jump, jump);
-    }
-    if (frames_ < 40) return;
-    if (begun.size() >= 4) {
-      commands.try_push(flow::EndRun{});
-      return;
-    }
-    flow::LoopSettings settings = settings_;
-    settings.mode = settings.mode == flow::Mode::type1 ? flow::Mode::type2 : flow::Mode::type1;
-    left_at_ = HostClock::now();
-    commands.try_push(flow::ChangeSettings{settings});
-    if (unrecorded) commands.try_push(flow::SetRecording{*unrecorded != begun.size()});
-  }
-
-  std::vector<deform::Points> begun;
-  std::vector<flow::Mode> modes;
-  std::vector<Eigen::Matrix4d> wrists;
-  double most_jump = 0.0;                ///< of the shape over a pause of a quarter second or less
-  std::optional<std::size_t> unrecorded; ///< this loop alone is not; nothing: none is
-
-private:
-  int frames_ = 0;
-  flow::LoopSettings settings_;
-  HostTime left_at_{};
-  const deform::BlockLayout* layout_ = nullptr;
-  deform::Points shape_;
-};
-
 /// What is asked for at the same time, one after another.
 using Changes = std::vector<std::vector<flow::Command>>;
 
-/// Asks for one change after another of loops that have run for a while, and moves a hand
-/// meanwhile.
+/// Asks for one change after another when the run has gone on for some frames, and then for its
+/// end. It is shown each frame in the tick.
 class Asker final : public Sink, public Observer {
 public:
   explicit Asker(Changes wanted) : changes(std::move(wanted)) {}
 
   Result<void> begin(const LoopStart& start) override {
-    const auto settings = settings_of(start.placed);
-    if (refused && settings.kernel == *refused) return Error{Errc::failed, "not with this kernel"};
-    begun.push_back(start.model.vertices);
-    in_force.push_back(settings);
-    recorded.push_back(start.placed.recorded);
-    wrists.push_back(start.placed.setup.placement.T_stage_wrist[0].translation());
-    frames_ = 0;
+    layout_ = &start.placed.loop->layout();
     return {};
   }
-  void show(const flow::Frame&) noexcept override { ++frames_; }
-  void update(const RunStatus&, flow::CommandRing& commands) override {
-    if (move) commands.try_push(*std::exchange(move, std::nullopt));
-    if (frames_ < least_frames || asked >= changes.size()) return;
+  void loop_begins(const LoopStart&) override { ++begun; }
+  void show(const flow::Frame& frame) noexcept override {
+    if (frame.ticks_run != ticks_ + 1) ++leaps; // another loop, or a tick that nobody was shown
+    ticks_ = frame.ticks_run;
+  }
+  void update(const RunStatus& status, flow::CommandRing& commands) override {
+    if (settings.empty() || settings.back() != status.frame.settings)
+      settings.push_back(status.frame.settings);
+    if (recorded.empty() || recorded.back() != status.recording)
+      recorded.push_back(status.recording);
+    wrist = status.frame.hands[0].T_stage_wrist.translation();
+    layout_->unpack(status.frame.shape, shape);
+    if (ticks_ < asked_at_ + least_ticks) return;
+    asked_at_ = ticks_;
+    if (asked == changes.size()) content_ = true;
+    if (content_) return;
     for (const auto& command : changes[asked])
       commands.try_push(command);
     ++asked;
-    begun_then_ = begun.size();
   }
-  /// Has asked for all, so long ago that it has it.
-  bool is_content() const {
-    return asked == changes.size() && begun.size() > begun_then_ && frames_ >= 60;
-  }
+  void report(const std::string& message) override { reports.push_back(message); }
+  bool is_content() const { return content_; }
 
   Changes changes;
-  std::optional<deform::Wendland> refused;
-  std::optional<flow::WristMove> move;
-  int least_frames = 30;
+  std::uint64_t least_ticks = 30; ///< between two changes, and before the end
   std::size_t asked = 0;
-  std::vector<deform::Points> begun;
-  std::vector<flow::LoopSettings> in_force;
-  std::vector<bool> recorded;
-  std::vector<Eigen::Vector3d> wrists;
+  int begun = 0;
+  std::atomic<int> leaps{0};
+  std::vector<flow::LoopSettings> settings; ///< one after another
+  std::vector<bool> recorded;               ///< to a file or not, one after another
+  Eigen::Vector3d wrist;                    ///< the latest, of the left hand
+  deform::Points shape;                     ///< the latest
+  std::vector<std::string> reports;
 
 private:
-  std::size_t begun_then_ = 0; ///< when it asked last
-  std::atomic<int> frames_{0};
+  const deform::BlockLayout* layout_ = nullptr;
+  std::atomic<std::uint64_t> ticks_{0};
+  std::uint64_t asked_at_ = 0;
+  bool content_ = false;
 };
 
 /// Asks for the shape to be saved, and ends the run at once.
@@ -189,7 +147,7 @@ struct Run {
   }
 };
 
-constexpr flow::Command reset = flow::ResetModel{};
+constexpr flow::Command reset = flow::Request::reset;
 constexpr flow::Command record(bool on) {
   return flow::SetRecording{on};
 }
@@ -198,13 +156,10 @@ constexpr flow::Command change(const flow::LoopSettings& settings) {
 }
 
 constexpr flow::LoopSettings other_settings{
-    flow::Mode::type2, deform::Wendland::c4, {0.1, 0.11, 0.12, 0.13, 0.14}};
+    flow::Mode::type2, deform::Wendland::c4, true, {0.1, 0.11, 0.12, 0.13, 0.14}};
 
-struct ReplayedLoop {
-  deform::Points begun, left;
-};
-
-ReplayedLoop replay(const std::filesystem::path& file) {
+/// Replays a recording, which tells its last shape itself. Returns how often its settings changed.
+std::uint64_t replay(const std::filesystem::path& file) {
   auto take = recording::TakeReader::open(file);
   REQUIRE(take);
   REQUIRE(take->setup().loop);
@@ -215,7 +170,9 @@ ReplayedLoop replay(const std::filesystem::path& file) {
   while (const auto entry = take->next())
     (*again)->feed(*entry);
   CHECK((*again)->is_exact());
-  return {model->vertices, (*again)->loop().final_shape()};
+  REQUIRE(take->ending());
+  CHECK(take->ending()->shape == recording::sum_of((*again)->loop().final_shape()));
+  return (*again)->loop().stats().changes;
 }
 
 /// Watches as a window or as a browser does, until it has seen enough.
@@ -272,35 +229,6 @@ TEST_SUITE("run_session") {
     }
   }
 
-  TEST_CASE("a loop that is made anew goes on from the shape as it was, with the hands where they "
-            "were, and what was shaped is in the file") {
-    const test::TemporaryFolder folder;
-    const auto mesh = test::sphere(24, 48, 1.0);
-    RunOptions options;
-    options.left = options.right = "sim:sculpt";
-    options.mesh = "ball";
-    options.out = (folder.path() / "out.ply").string();
-    EventCount event_count;
-    auto opened = open_hands(options, mesh, event_count);
-    REQUIRE(opened);
-    Renewer renewer;
-    const auto outcome =
-        run_session(options, opened->hands, mesh, {[](const auto&, double) {}, {&renewer}});
-    REQUIRE(outcome);
-    REQUIRE(renewer.begun.size() == 4);
-    CHECK(renewer.begun[0] == mesh.vertices);
-    for (std::size_t at = 0; at < 3; ++at) {
-      CHECK(renewer.begun[at + 1] != renewer.begun[at]); // something was shaped
-      CHECK(renewer.wrists[at + 1] == renewer.wrists[0]);
-      CHECK(renewer.modes[at + 1] != renewer.modes[at]);
-    }
-    const auto written = deform::read_mesh(options.out);
-    REQUIRE(written);
-    CHECK((written->vertices - mesh.vertices).cwiseAbs().maxCoeff() > 1e-3);
-    // The hands go on moving meanwhile, by less than a simulated one does in a quarter second.
-    CHECK(renewer.most_jump < 0.15);
-  }
-
   TEST_CASE("what is to be saved just before the end is saved, and who asked hears where") {
     Run run;
     auto opened = open_hands(run.options, run.mesh, run.event_count);
@@ -318,153 +246,160 @@ TEST_SUITE("run_session") {
     CHECK((kept->vertices - run.mesh.vertices).cwiseAbs().maxCoeff() > 1e-4);
   }
 
-  TEST_CASE("each loop that is recorded is a recording of its own, which replays by itself") {
-    const test::TemporaryFolder folder;
-    const auto mesh = test::sphere(24, 48, 1.0);
-    RunOptions options;
-    options.left = options.right = "sim:sculpt";
-    options.mesh = (folder.path() / "ball.obj").string();
-    REQUIRE(deform::write_mesh(options.mesh, mesh));
-    options.out = (folder.path() / "out.ply").string();
-    options.recording.file = (folder.path() / "take.nendo").string();
-    REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
-    const auto taken = folder.path() / "take-2.nendo"; // somebody else's
-    std::ofstream(taken) << "kept";
-    std::ofstream(folder.path() / "take.model.obj") << "of a take that is gone";
-    EventCount event_count;
-    auto opened = open_hands(options, mesh, event_count);
-    REQUIRE(opened);
-    Renewer renewer;
-    renewer.unrecorded = 1;
-    const auto outcome =
-        run_session(options, opened->hands, mesh, {[](const auto&, double) {}, {&renewer}});
-    REQUIRE(outcome);
-    REQUIRE(outcome->recordings.size() == 3);
-    CHECK(outcome->recordings[1].file == (folder.path() / "take-3.nendo").string());
-    CHECK(std::filesystem::file_size(taken) == 4);
-    const std::array<std::size_t, 3> loops{0, 2, 3};
-    for (std::size_t at = 0; at < 3; ++at) {
-      REQUIRE(outcome->recordings[at].recorded);
-      CHECK(outcome->recordings[at].recorded->lost == 0);
-      const auto replayed = replay(outcome->recordings[at].file);
-      CHECK(replayed.begun == renewer.begun[loops[at]]);
-      if (loops[at] < 3) CHECK(replayed.left == renewer.begun[loops[at] + 1]);
-    }
-  }
-
-  TEST_CASE("what --adapt has learned goes on in the next loop, and stands in its recording") {
+  TEST_CASE(
+      "settings change while one loop runs, and a recording of all of it ends with its shape") {
     Run run;
-    run.options.left = run.options.right = "sim:grasp";
-    run.options.calibration.adapt = true;
-    Asker asker(Changes{{record(true)}, {change(other_settings)}});
-    asker.least_frames = 270;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    flow::LoopSettings smaller = other_settings;
+    smaller.radius_m.fill(0.08);
+    flow::LoopSettings back = smaller;
+    back.mode = flow::Mode::type1;
+    back.filter.kind = hand::FilterKind::one_euro;
+    Asker asker(Changes{{change(other_settings)},
+                        {change(smaller)},
+                        {reset},
+                        {change(back)},
+                        {flow::Request::undo},
+                        {change(back)}}); // which is in force already
     const auto outcome = run.follow({&asker});
-    REQUIRE(outcome.recordings.size() == 2);
-    std::array<std::uint64_t, 2> turns{};
-    for (std::size_t at = 0; at < turns.size(); ++at) {
-      const auto& file = outcome.recordings[at].file;
-      replay(file); // exactly
-      const auto take = recording::TakeReader::open(file);
-      REQUIRE(take);
-      for (const auto& hand : take->setup().hands) {
-        REQUIRE(hand.wearer.learned);
-        CHECK(hand.wearer.learned->side == hand.side);
-        for (const auto& sensor : hand.wearer.learned->sensors)
-          turns[at] += std::uint64_t{sensor.bottoms} + sensor.tops;
-      }
-    }
-    CHECK(turns[0] > 0);
-    CHECK(turns[1] > turns[0]);
-  }
-
-  TEST_CASE("whoever watches a run has its settings changed, and only those that it names") {
-    Run run;
-    Asker asker(Changes{{change(other_settings)}, {reset}});
-    const auto outcome = run.follow({&asker});
-    CHECK(outcome.sculptor.mode == flow::Mode::type2); // which the summary tells
+    CHECK(asker.begun == 1);
+    CHECK(asker.leaps == 0);
+    REQUIRE(asker.settings.size() == 4);
+    CHECK(asker.settings[1] == other_settings);
+    CHECK(asker.settings[2] == smaller);
+    CHECK(asker.settings[3] == back);
+    CHECK(outcome.stats.changes == 3);
+    CHECK(outcome.stats.resets == 1);
+    CHECK(outcome.sculptor.mode == flow::Mode::type1); // which the summary tells
     CHECK(outcome.sculptor.deformer.csrbf.kernel == deform::Wendland::c4);
-    REQUIRE(asker.begun.size() == 3);
-    const auto& first = asker.in_force[0];
-    const auto& second = asker.in_force[1];
-    CHECK(first.mode == flow::Mode::type1);
-    CHECK(second.mode == flow::Mode::type2);
-    CHECK(second.kernel == deform::Wendland::c4);
-    for (std::size_t finger = 0; finger < 5; ++finger)
-      CHECK(second.radius_m[finger] == doctest::Approx(other_settings.radius_m[finger]));
-    const double moved = (asker.begun[1] - asker.begun[0]).cwiseAbs().maxCoeff();
-    CHECK(moved > 1e-4); // it goes on from what was shaped
-    CHECK(asker.in_force[2] == second);
+    REQUIRE(outcome.recordings.size() == 1);
+    CHECK(replay(outcome.recordings[0].file) == 3);
+    const auto written = deform::read_mesh(run.options.out);
+    REQUIRE(written);
+    CHECK((written->vertices - run.mesh.vertices).cwiseAbs().maxCoeff() > 1e-3);
   }
 
   TEST_CASE(
-      "a reset goes back to the model as it was loaded, to the last bit, with the radius that "
-      "its size made") {
+      "recordings begin and end by command while the loop runs, each with a number, beside the "
+      "shape, and each ends with the shape of its last tick") {
     Run run;
-    Asker asker(Changes{{record(false)}, {record(true)}, {reset}});
-    run.follow({&asker});
-    REQUIRE(asker.begun.size() == 3); // one that records nothing already is no change
-    CHECK(asker.begun[1] != run.mesh.vertices);
-    CHECK(asker.begun[2] == run.mesh.vertices);
-    CHECK(asker.in_force[1] == asker.in_force[0]); // though the model is another size now
-    CHECK(asker.in_force[2] == asker.in_force[0]);
-  }
-
-  TEST_CASE(
-      "recordings begin and end by an observer's command, each with a number, beside the shape") {
-    Run run;
-    Asker asker(Changes{{record(true)}, {record(false)}, {record(true)}});
+    run.options.calibration.adapt = true; // what it has learned stands in each recording
+    const auto taken = run.folder.path() / "out-2.nendo"; // somebody else's
+    std::ofstream(taken) << "kept";
+    Asker asker(Changes{{record(true)},
+                        {record(true)}, // which is so already
+                        {change(other_settings)},
+                        {record(false)},
+                        {reset},
+                        {record(true)}});
+    asker.least_ticks = 60;
     const auto outcome = run.follow({&asker});
+    CHECK(asker.begun == 1);
+    CHECK(asker.leaps == 0);
     CHECK(asker.recorded == std::vector<bool>{false, true, false, true});
     REQUIRE(outcome.recordings.size() == 2);
     CHECK(outcome.recordings[0].file == (run.folder.path() / "out.nendo").string());
-    CHECK(outcome.recordings[1].file == (run.folder.path() / "out-2.nendo").string());
-    const auto replayed = replay(outcome.recordings[0].file);
-    CHECK(replayed.begun == asker.begun[1]);
-    CHECK(replayed.left == asker.begun[2]);
+    CHECK(outcome.recordings[1].file == (run.folder.path() / "out-3.nendo").string());
+    CHECK(std::filesystem::file_size(taken) == 4);
+    CHECK(replay(outcome.recordings[0].file) == 1);
+    CHECK(replay(outcome.recordings[1].file) == 0);
+    for (const RecordingOutcome& recording : outcome.recordings) {
+      REQUIRE(recording.recorded);
+      CHECK(recording.recorded->lost == 0);
+      CHECK(recording.recorded->samples > 0);
+      for (const auto& counts : recording.recorded->sent)
+        CHECK(2 * counts.delivered >= recording.recorded->samples); // of two gloves alike
+      const auto take = recording::TakeReader::open(recording.file);
+      REQUIRE(take);
+      for (const auto& hand : take->setup().hands)
+        CHECK(hand.wearer.learned);
+    }
   }
 
-  TEST_CASE("what several want in the same moment is one new loop") {
+  TEST_CASE("what is kept in memory goes on in the next recording, and can be kept as a file") {
+    Run run;
+    run.options.recording.keep_last = "60s";
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    Asker asker(Changes{
+        {record(true)}, {change(other_settings)}, {record(false)}, {flow::SaveRecording{}}});
+    const auto outcome = run.follow({&asker});
+    REQUIRE(outcome.recordings.size() == 3);
+    CHECK(outcome.recordings[0].file.empty());
+    replay(outcome.recordings[1].file);
+    REQUIRE(outcome.recordings[2].recorded);
+    CHECK(outcome.recordings[2].recorded->kept == 1);
+    auto kept = recording::TakeReader::open(run.folder.path() / "out.kept-1.nendo");
+    REQUIRE(kept);
+    REQUIRE(kept->setup().loop);
+    CHECK(kept->setup().loop->options.sculptor.mode == flow::Mode::type2);
+    CHECK_FALSE(kept->setup().loop->rest.empty());
+  }
+
+  TEST_CASE("a recording that cannot be begun is told of, and the run goes on without it") {
+    Run run;
+    run.options.recording.file = "/nowhere/at/all.nendo"; // as if its folder had gone
+    Asker asker(Changes{{record(true)}, {change(other_settings)}});
+    const auto outcome = run.follow({&asker});
+    REQUIRE(asker.reports.size() == 1);
+    CHECK(asker.reports[0].find("/nowhere/at/all.nendo") != std::string::npos);
+    CHECK(asker.reports[0].find("the run goes on") != std::string::npos);
+    CHECK(outcome.recordings.empty());
+    CHECK(outcome.stats.changes == 1);
+    CHECK(asker.leaps == 0);
+  }
+
+  TEST_CASE("what several want in the same moment is done in one tick") {
     Run run;
     Asker one(Changes{{change(other_settings)}});
     Asker other(Changes{{reset, record(true)}});
-    one.least_frames = other.least_frames = 0; // that is before a new loop may be
-    run.follow({&one, &other});
-    REQUIRE(one.begun.size() == 2);
-    CHECK(one.begun[1] == run.mesh.vertices);
-    CHECK(one.in_force[1].mode == flow::Mode::type2);
-    CHECK(one.recorded[1]);
+    const auto outcome = run.follow({&one, &other});
+    CHECK(outcome.stats.changes == 1);
+    CHECK(outcome.stats.resets == 1);
+    REQUIRE(outcome.recordings.size() == 1);
+    replay(outcome.recordings[0].file);
   }
 
-  TEST_CASE("who wants a new loop all the time has a few a second") {
+  TEST_CASE("a brush whose size changes at each picture costs no tick") {
     Run run;
-    Asker asker(Changes(300, {reset}));
-    asker.least_frames = 0;
-    const HostTime start = HostClock::now();
-    run.follow({&asker});
-    const double elapsed_s = to_seconds(HostClock::now() - start);
-    CHECK(asker.begun.size() >= 2);
-    CHECK(static_cast<double>(asker.begun.size()) <= 2.0 + elapsed_s / 0.25);
+    Changes changes;
+    for (int at = 0; at < 200; ++at) {
+      flow::LoopSettings settings = other_settings;
+      settings.radius_m.fill(0.05 + 0.001 * at);
+      changes.push_back({change(settings)});
+    }
+    changes.insert(changes.end(), 30, {}); // so that the last is seen
+    Asker asker(changes);
+    asker.least_ticks = 1;
+    const auto outcome = run.follow({&asker});
+    CHECK(outcome.stats.changes > 50); // the newest counts, when the loop has the one before
+    CHECK(asker.leaps == 0);
+    CHECK(asker.settings.back().radius_m[0] == doctest::Approx(0.249));
   }
 
-  TEST_CASE("a change with which no loop begins leaves the run as it was") {
+  TEST_CASE("settings that nothing can be done with are told of, and the run goes on") {
     Run run;
-    Asker asker(Changes{{change(other_settings)}, {reset}});
-    asker.refused = deform::Wendland::c4;
-    run.follow({&asker});
-    REQUIRE(asker.begun.size() == 3);
-    CHECK(asker.in_force[1] == asker.in_force[0]);
-    CHECK(asker.begun[1] != run.mesh.vertices); // what was shaped is there
-    CHECK(asker.begun[2] == run.mesh.vertices); // and it goes on hearing
+    flow::LoopSettings wrong = other_settings;
+    wrong.radius_m[2] = -1.0;
+    Asker asker(Changes{{change(wrong)}, {change(other_settings)}});
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.reports.size() == 1);
+    REQUIRE(asker.settings.size() == 2);
+    CHECK(asker.settings[1] == other_settings);
+    CHECK(outcome.stats.changes == 1);
   }
 
-  TEST_CASE("an observer moves a hand, which stays there in the next loop") {
+  TEST_CASE("an observer moves a hand, which stays there through changes and recordings") {
     Run run;
-    Asker asker(Changes{{reset}});
-    asker.move = flow::WristMove{Side::left, {-0.5, 0.25, 0.125}, {0, 0, 0, 1}};
-    run.follow({&asker});
-    REQUIRE(asker.wrists.size() == 2);
-    CHECK(asker.wrists[1] == Eigen::Vector3d(-0.5, 0.25, 0.125));
-    CHECK(asker.wrists[0] != asker.wrists[1]);
+    Asker asker(Changes{{flow::WristMove{Side::left, {-0.5, 0.25, 0.125}, {0, 0, 0, 1}}},
+                        {change(other_settings)},
+                        {record(true)}});
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.wrist == Eigen::Vector3d(-0.5, 0.25, 0.125));
+    REQUIRE(outcome.recordings.size() == 1);
+    const auto take = recording::TakeReader::open(outcome.recordings[0].file);
+    REQUIRE(take);
+    CHECK(take->setup().loop->placement.T_stage_wrist[0].translation() == asker.wrist);
   }
 }
 

@@ -51,6 +51,22 @@ struct LoopFixture {
   std::optional<deform::InjectiveOptions> injective = std::nullopt;
 };
 
+/// Returns settings of which some, chosen at random, differ from these.
+template <class Random>
+flow::LoopSettings any_settings(const flow::LoopSettings& before, Random& random) {
+  flow::LoopSettings settings = before;
+  if (random() % 4 == 0) settings.mode = random() % 2 == 0 ? flow::Mode::type1 : flow::Mode::type2;
+  if (random() % 4 == 0) settings.kernel = static_cast<deform::Wendland>(random() % 4);
+  if (random() % 6 == 0) settings.injective = !settings.injective;
+  if (random() % 6 == 0) settings.piece_fraction = 0.02 + 0.01 * static_cast<double>(random() % 8);
+  if (random() % 6 == 0)
+    settings.filter.kind = random() % 2 == 0 ? hand::FilterKind::one_euro : hand::FilterKind::off;
+  const double radius_m = 0.1 + 0.01 * static_cast<double>(random() % 20);
+  if (random() % 2 == 0) settings.radius_m.fill(radius_m);
+  if (random() % 4 == 0) settings.radius_m[random() % 5] = radius_m;
+  return settings;
+}
+
 /// A loop over two hands whose rings the test fills itself.
 struct LoopUnderTest {
   std::vector<std::unique_ptr<SampleRing>> rings;

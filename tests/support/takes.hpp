@@ -39,8 +39,8 @@ inline recording::Setup setup_of(const LoopUnderTest& test) {
     setup.gloves.push_back(glove);
     setup.hands.push_back(input);
   }
-  setup.loop = recording::LoopSetup{"ball.obj", recording::sum_of(test.model.vertices),
-                                    test.placement, test.options, "AVX2"};
+  setup.loop = recording::LoopSetup{
+      "ball.obj", recording::sum_of(test.model.vertices), test.placement, test.options, "AVX2", {}};
   return setup;
 }
 
@@ -80,9 +80,12 @@ struct RecordedLoop {
 };
 
 /// Plays what people do: hands bend and move at random, requests are made, a switch is turned now
-/// and then, and ticks find several samples or none.
-inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
+/// and then, and ticks find several samples or none. With `changes`, settings are changed, too.
+/// `see` is called with each frame.
+template <class See>
+void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes, See see) {
   std::mt19937 random(seed);
+  std::mt19937 of_changes(seed + 1);
   HostTime now = HostClock::now();
   int bent = 0;
   std::uint64_t sequence = 0;
@@ -111,8 +114,13 @@ inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
           Eigen::AngleAxisd(1e-3 * static_cast<double>(random() % 20), Eigen::Vector3d::UnitX()));
       played.test.commands.try_push(flow::WristMove::to(side, wrist));
     }
-    played.test.frame_after_tick(tick);
+    if (changes && of_changes() % 10 == 0)
+      played.test.loop->change_settings(any_settings(played.test.loop->settings(), of_changes));
+    see(played.test.frame_after_tick(tick));
   }
+}
+inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {
+  play(played, ticks, seed, false, [](const flow::Frame&) {});
 }
 
 } // namespace nendo::test

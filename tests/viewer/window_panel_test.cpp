@@ -77,7 +77,6 @@ struct Person {
       for (const double x : {70.0, 190.0})
         for (const flow::Command& command : click(x, y))
           if (std::find(all.begin(), all.end(), command) == all.end()) all.push_back(command);
-    type(GLFW_KEY_ESCAPE); // the question about a reset
     return all;
   }
 };
@@ -119,8 +118,8 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     person.frame.redo_steps = 1;
     // The page's order, two in a line.
     const Commands order = person.click_all();
-    CHECK(order ==
-          Commands{Request::grab, Request::let_go, Request::undo, Request::redo, Request::commit});
+    CHECK(order == Commands{Request::grab, Request::let_go, Request::undo, Request::redo,
+                            Request::commit, Request::reset});
     CHECK(person.type(GLFW_KEY_U) == Commands{Request::undo});
     CHECK(person.type(GLFW_KEY_Z, true) == Commands{Request::undo});
     CHECK(person.type(GLFW_KEY_R) == Commands{Request::redo});

@@ -27,23 +27,30 @@ TEST_SUITE("client_commands") {
       CHECK(parsed_as<flow::Request>(flow::name_of(request)) == request);
   }
 
-  TEST_CASE("a reset, a recording's begin and end, and what is to be saved are commands") {
-    CHECK(parsed_as<flow::ResetModel>("reset"));
+  TEST_CASE("a recording's begin and end, and what is to be saved are commands") {
     CHECK(parsed_as<flow::SetRecording>("record") == flow::SetRecording{true});
     CHECK(parsed_as<flow::SetRecording>("end recording") == flow::SetRecording{false});
     CHECK(parsed_as<flow::SaveShape>("save"));
     CHECK(parsed_as<flow::SaveRecording>("keep"));
   }
 
-  TEST_CASE("settings are mode, kernel and five radii in metres") {
-    const auto change = parsed_as<flow::ChangeSettings>("settings type2 c4 0.1 0.125 0.08 1e-2 10");
+  TEST_CASE("settings are mode, kernel, whether it may fold, filter and five radii in metres") {
+    const auto change = parsed_as<flow::ChangeSettings>(
+        "settings type2 c4 injective one-euro 0.1 0.125 0.08 1e-2 10");
     REQUIRE(change);
     CHECK(change->settings.mode == flow::Mode::type2);
     CHECK(change->settings.kernel == deform::Wendland::c4);
+    CHECK(change->settings.injective);
+    CHECK(change->settings.filter.kind == hand::FilterKind::one_euro);
     CHECK(change->settings.radius_m == std::array{0.1, 0.125, 0.08, 0.01, 10.0});
-    for (const auto* kernel : {"c0", "c2", "c6"})
-      CHECK(
-          parsed_as<flow::ChangeSettings>("settings type1 " + std::string(kernel) + " 1 1 1 1 1"));
+    CHECK(change->settings.are_usable());
+    for (const auto* kernel : {"c0", "c2", "c6"}) {
+      const auto other = parsed_as<flow::ChangeSettings>("settings type1 " + std::string(kernel) +
+                                                         " free off 1 1 1 1 1");
+      REQUIRE(other);
+      CHECK_FALSE(other->settings.injective);
+      CHECK(other->settings.filter.kind == hand::FilterKind::off);
+    }
   }
 
   TEST_CASE("a wrist's place and turn are taken as they are, but for the quaternion's length") {
@@ -61,7 +68,7 @@ TEST_SUITE("client_commands") {
 
   TEST_CASE("whatever else is said is nothing: other words, spaces, numbers that are none or too "
             "large, too many of them and too few") {
-    const std::array<std::string, 44> wrong{
+    const std::array<std::string, 49> wrong{
         "",
         " ",
         "Grab",
@@ -73,27 +80,32 @@ TEST_SUITE("client_commands") {
         "format the disk",
         "settings",
         "settings ",
-        "settings type3 c2 1 1 1 1 1",
-        "settings type1 c8 1 1 1 1 1",
-        "settings type1 wendland-c2 1 1 1 1 1",
-        "settings type1 c2",
-        "settings type1 c2 1 1 1 1",
-        "settings type1 c2 1 1 1 1 1 1",
-        "settings type1 c2 1 1 1 1 1 ",
-        "settings type1 c2  1 1 1 1 1",
-        "settings  type1 c2 1 1 1 1 1",
-        "settings type1 c2 1 1 1 1 nan",
-        "settings type1 c2 1 1 1 1 inf",
-        "settings type1 c2 1 1 1 1 -1",
-        "settings type1 c2 1 1 1 1 0",
-        "settings type1 c2 1 1 1 1 0.0009",
-        "settings type1 c2 1 1 1 1 10.1",
-        "settings type1 c2 1 1 1 1 1e999",
-        "settings type1 c2 1 1 1 1 0x1",
-        "settings type1 c2 1 1 1 1 1,0",
-        "settings type1 c2 1 1 1 1 1m",
-        "settings type1 c2 1\t1 1 1 1",
-        std::string("settings type1 c2 1 1 1 1 1\0", 28),
+        "settings type3 c2 free off 1 1 1 1 1",
+        "settings type1 c8 free off 1 1 1 1 1",
+        "settings type1 wendland-c2 free off 1 1 1 1 1",
+        "settings type1 c2 free off",
+        "settings type1 c2 1 1 1 1 1",
+        "settings type1 c2 folds off 1 1 1 1 1",
+        "settings type1 c2 free kalman 1 1 1 1 1",
+        "settings type1 c2 off free 1 1 1 1 1",
+        "settings type1 c2 injective 1 1 1 1 1",
+        "settings type1 c2 free off 1 1 1 1",
+        "settings type1 c2 free off 1 1 1 1 1 1",
+        "settings type1 c2 free off 1 1 1 1 1 ",
+        "settings type1 c2 free off  1 1 1 1 1",
+        "settings  type1 c2 free off 1 1 1 1 1",
+        "settings type1 c2 free off 1 1 1 1 nan",
+        "settings type1 c2 free off 1 1 1 1 inf",
+        "settings type1 c2 free off 1 1 1 1 -1",
+        "settings type1 c2 free off 1 1 1 1 0",
+        "settings type1 c2 free off 1 1 1 1 0.0009",
+        "settings type1 c2 free off 1 1 1 1 10.1",
+        "settings type1 c2 free off 1 1 1 1 1e999",
+        "settings type1 c2 free off 1 1 1 1 0x1",
+        "settings type1 c2 free off 1 1 1 1 1,0",
+        "settings type1 c2 free off 1 1 1 1 1m",
+        "settings type1 c2 free off 1\t1 1 1 1",
+        std::string("settings type1 c2 free off 1 1 1 1 1\0", 37),
         "wrist",
         "wrist left",
         "wrist both 0 0 0 0 0 0 1",

@@ -20,7 +20,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 2;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 3;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
@@ -30,14 +30,9 @@ public:
       axis = in.take<double>();
     units_per_metre = in.take<double>();
     diagonal = in.take<double>();
-    for (double& radius : radius_m)
-      radius = in.take<double>();
-    mode = in.take<std::uint16_t>();
     loop = in.take<std::uint16_t>();
-    kernel = in.take<std::uint8_t>();
     const auto flags = in.take<std::uint8_t>();
-    in.at += 2;
-    recorded = (flags & 4U) != 0;
+    in.at += 5;
     for (unsigned slot = 0; slot < 2; ++slot)
       if ((flags >> slot & 1U) != 0)
         for (Skeleton& skeleton : bones_[slot])
@@ -56,7 +51,8 @@ public:
     if (type == 1) take_shape(in);
     if (type == 2) take_update(in);
     if (type == 3) take_report(in);
-    return type >= 1 && type <= 3 && in.at == message.size();
+    if (type == 4) take_settings(in);
+    return type >= 1 && type <= 4 && in.at == message.size();
   }
 
   /// The shape, in the mesh's order and units.
@@ -77,12 +73,15 @@ public:
   bool good = false;
   double rate_hz = 0.0, unit = 1.0, units_per_metre = 1.0, diagonal = 0.0;
   std::array<double, 3> origin{};
-  std::array<double, 5> radius_m{};
-  unsigned mode = 0, loop = 0, kernel = 0;
-  bool recorded = false;
+  unsigned loop = 0;
   std::vector<float> rest;
   std::vector<std::uint32_t> order, corners;
   std::string name;
+  // Of the latest settings message.
+  std::array<double, 5> radius_m{};
+  unsigned mode = 0, kernel = 0;
+  bool injective = false, filtered = false, recorded = false;
+  int settings = 0; ///< how many came
   // Of the latest messages.
   std::uint64_t number = 0; ///< the frame that vertices() is of; 0: none
   std::uint64_t newest = 0; ///< the frame of the last update
@@ -138,6 +137,19 @@ private:
     in.at += 3;
     report.assign(reinterpret_cast<const char*>(in.bytes.data()) + 4, in.bytes.size() - 4);
     in.at = in.bytes.size();
+  }
+
+  void take_settings(Bytes& in) {
+    ++settings;
+    mode = in.take<std::uint8_t>();
+    kernel = in.take<std::uint8_t>();
+    const auto flags = in.take<std::uint8_t>();
+    injective = (flags & 1U) != 0;
+    filtered = (flags & 2U) != 0;
+    recorded = (flags & 4U) != 0;
+    in.at += 4;
+    for (double& radius : radius_m)
+      radius = in.take<double>();
   }
 
   void take_shape(Bytes& in) {

@@ -163,7 +163,7 @@ TEST_SUITE("server") {
     server->present(streamed.stream, streamed.model);
     WebClient client(*server);
     REQUIRE(eventually([&] { return client.open_socket() == 101; }));
-    client.send_text("settings type2 c6 0.1 0.1 0.1 0.1 0.2");
+    client.send_text("settings type2 c6 injective off 0.1 0.1 0.1 0.1 0.2");
     client.send_text("record");
     client.send_text("wrist left 1 2 3 0 0 0 1");
     client.send_text("wrist right 0 0 0 0 0 0 1");
@@ -175,9 +175,10 @@ TEST_SUITE("server") {
       return commands.size() == 5;
     }));
     const std::vector<flow::Command> asked{
-        flow::ChangeSettings{{flow::Mode::type2, deform::Wendland::c6, {0.1, 0.1, 0.1, 0.1, 0.2}}},
+        flow::ChangeSettings{
+            {flow::Mode::type2, deform::Wendland::c6, true, {0.1, 0.1, 0.1, 0.1, 0.2}}},
         flow::SetRecording{true}, flow::WristMove{Side::left, {1, 2, 3}},
-        flow::WristMove{Side::right}, flow::ResetModel{}};
+        flow::WristMove{Side::right}, flow::Request::reset};
     CHECK(commands == asked);
     CHECK_FALSE(server->next_command());
   }
@@ -223,8 +224,37 @@ TEST_SUITE("server") {
     const FollowingClient second({bytes.begin(), bytes.end()});
     CHECK(second.good);
     CHECK(second.loop == 2);
-    CHECK(second.mode == 2);
-    CHECK(second.kernel == 1);
+  }
+
+  TEST_CASE(
+      "each client is told the settings when it comes, and each change once, before the frames") {
+    Served served(flow::Mode::type1);
+    flow::LoopSettings settings{.mode = flow::Mode::type2,
+                                .kernel = deform::Wendland::c6,
+                                .radius_m = {0.1, 0.2, 0.3, 0.4, 0.5}};
+    served.server->set_settings(settings, true);
+    served.begin();
+    Viewer first(served);
+    CHECK(first.follow_until([&] { return first.updates > 0; }));
+    CHECK(first.settings == 1);
+    CHECK(first.mode == 2);
+    CHECK(first.kernel == 3);
+    CHECK(first.radius_m == settings.radius_m);
+    CHECK(first.recorded);
+    served.server->set_settings(settings, true); // which is nothing new
+    const int updates = first.updates + 20;
+    CHECK(first.follow_until([&] { return first.updates > updates; }));
+    CHECK(first.settings == 1);
+    settings.injective = true;
+    settings.filter.kind = hand::FilterKind::one_euro;
+    served.server->set_settings(settings, false);
+    CHECK(first.follow_until([&] { return first.settings == 2; }));
+    CHECK(first.injective);
+    CHECK(first.filtered);
+    CHECK_FALSE(first.recorded);
+    Viewer second(served);
+    CHECK(second.follow_until([&] { return second.settings == 1; }));
+    CHECK(second.injective);
   }
 }
 

@@ -13,8 +13,9 @@ using deform::Points;
 
 namespace {
 
-Frame first_frame(const Sculptor& sculptor, double units_per_metre) {
+Frame first_frame(const Sculptor& sculptor, double units_per_metre, const LoopSettings& settings) {
   Frame frame;
+  frame.settings = settings;
   frame.units_per_metre = units_per_metre;
   frame.shape = sculptor.rest();
   frame.fields = sculptor.fields();
@@ -23,21 +24,26 @@ Frame first_frame(const Sculptor& sculptor, double units_per_metre) {
   return frame;
 }
 
-ShapingOptions shaping_options(const LoopOptions& options) {
+ShapingOptions shaping_options(const LoopOptions& options, const deform::BlockShape* first) {
   ShapingOptions shaping{options.sculptor, options.undo_most_bytes};
+  shaping.first = first;
   if (options.commands != nullptr) shaping.most_requests = options.commands->capacity();
-  shaping.held = options.switch_action != SwitchAction::grab;
+  shaping.held = options.begins_held();
   return shaping;
 }
 
 } // namespace
 
 DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
-                       std::vector<HandInput> hands, const LoopOptions& options)
+                       std::vector<HandInput> hands, const LoopOptions& options,
+                       const deform::BlockShape* first)
     : options_(options), units_per_metre_(placement.units_per_metre),
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
-      shaping_(model.vertices, tips_.cols(), shaping_options(options)),
-      frames_(first_frame(shaping_.sculptor(), placement.units_per_metre)) {
+      shaping_(model.vertices, tips_.cols(), shaping_options(options, first)),
+      settings_in_force_(
+          settings_of(options.sculptor, hands.front().filter, placement.units_per_metre)),
+      settings_(settings_in_force_), sculptor_options_(options.sculptor),
+      frames_(first_frame(shaping_.sculptor(), placement.units_per_metre, settings_)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.side);
@@ -57,11 +63,12 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   grab_status_ = shaping_.begin(tips_);
 }
 
+DeformLoop::~DeformLoop() = default;
+
 void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
   const hand::Calibration& active = calibration.follow(sample);
   latest = input.gated ? gate.pass(sample, active) : sample;
-  const HostTime time = latest.has_device_time ? latest.measured : latest.arrival;
-  angles = filter.pass(hand::joint_angles(latest, active), time);
+  angles = filter.pass(hand::joint_angles(latest, active), time());
 }
 
 void DeformLoop::take_samples(TickRecord& record) noexcept {
@@ -133,7 +140,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   for (const auto& hand : hands_) {
     HandFrame& shown = frame.hands[hand.slot];
     shown.angles = hand.angles;
-    shown.pose = hand.skeleton().pose(hand.angles, hand.T_stage_wrist);
+    shown.pose = hand.pose();
     shown.swapped = hand.latest.side != hand.input.first.side;
     shown.T_stage_wrist = hand.T_stage_wrist;
     shown.present = true;
@@ -150,6 +157,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   record.missed = due.missed;
   record.spun_ns = saturated_ns(due.spun);
   const auto now_ns = [&]() noexcept { return saturated_ns(HostClock::now() - record.woke); };
+  take_change();
   if (runs.input) {
     take_commands();
     take_samples(record);
@@ -158,7 +166,12 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   Frame& frame = frames_.back();
   if (runs.hands) compute_hands(frame);
   record.posed_ns = now_ns();
-  if (runs.deform) frame.status = shaping_.shape(tips_, frame, stats_);
+  frame.settings = settings_in_force_;
+  if (runs.deform) {
+    const bool completes = taken_ != nullptr && taken_->settings.has_value();
+    frame.status = shaping_.shape(tips_, frame, stats_, completes);
+  }
+  if (taken_ != nullptr) finish_change(record.scheduled, frame);
   record.solved_ns = now_ns();
   describe(record, frame);
   if (runs.publish) {
@@ -171,6 +184,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   if (options_.input_log != nullptr)
     options_.input_log->tick(record.tick, record.scheduled, record.woke);
   if (options_.records != nullptr) options_.records->try_push(record);
+  if (taken_ != nullptr) give_back_change();
 }
 
 void DeformLoop::describe(const TickRecord& record, Frame& frame) noexcept {
@@ -214,22 +228,6 @@ void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) no
     if (pacer.end_tick(HostClock::now())) ++stats_.overruns;
     stats_.missed += std::min(pacer.next(), most_ticks) - due.number - 1;
   }
-}
-
-Placement DeformLoop::placement() const {
-  Placement placement;
-  placement.units_per_metre = units_per_metre_;
-  for (const Hand& hand : hands_)
-    placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
-  return placement;
-}
-
-std::array<std::optional<hand::LearnedRanges>, 2> DeformLoop::learned() const {
-  std::array<std::optional<hand::LearnedRanges>, 2> learned;
-  for (const Hand& hand : hands_)
-    if (const auto* const adaptation = hand.calibration.adaptation())
-      learned[hand.slot] = adaptation->learned();
-  return learned;
 }
 
 Points DeformLoop::final_shape() {

@@ -7,17 +7,20 @@ namespace nendo::flow {
 using deform::BlockShape;
 using deform::FieldStatus;
 using deform::Points;
+using deform::SculptedShape;
 using deform::Type1Deformer;
 using deform::Type2Deformer;
 
 namespace {
 
-std::variant<Type1Deformer, Type2Deformer> make(Points rest, Eigen::Index control_points,
+/// shape: points, or a SculptedShape.
+template <class Shape>
+std::variant<Type1Deformer, Type2Deformer> make(Shape&& shape, Eigen::Index control_points,
                                                 const SculptorOptions& options) {
-  if (options.mode == Mode::type1) {
-    return Type1Deformer(std::move(rest), control_points, options.deformer);
-  }
-  return Type2Deformer(std::move(rest), control_points, options.piece_length, options.deformer);
+  if (options.mode == Mode::type1)
+    return Type1Deformer(std::forward<Shape>(shape), control_points, options.deformer);
+  return Type2Deformer(std::forward<Shape>(shape), control_points, options.piece_length,
+                       options.deformer);
 }
 
 } // namespace
@@ -34,6 +37,10 @@ std::optional<Mode> mode_named(std::string_view name) noexcept {
 
 Sculptor::Sculptor(Points rest, Eigen::Index control_points, const SculptorOptions& options)
     : deformer_(make(std::move(rest), control_points, options)) {}
+
+Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
+                   const SculptorOptions& options)
+    : deformer_(make(shape, control_points, options)) {}
 
 FieldStatus Sculptor::grab(const Points& tips) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->grab(tips);
@@ -59,6 +66,18 @@ FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->commit(tips);
   return std::get_if<Type2Deformer>(&deformer_)->begin(tips);
+}
+
+FieldStatus Sculptor::grab_on(const Points& tips) noexcept {
+  return std::visit([&](auto& deformer) { return deformer.grab(tips); }, deformer_);
+}
+
+void Sculptor::release(bool is_step) noexcept {
+  std::visit([&](auto& deformer) { deformer.release(is_step); }, deformer_);
+}
+
+FieldStatus Sculptor::reset(const Points& tips) noexcept {
+  return std::visit([&](auto& deformer) { return deformer.reset(tips); }, deformer_);
 }
 
 FieldStatus Sculptor::undo(const Points& tips) noexcept {

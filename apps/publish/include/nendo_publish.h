@@ -48,7 +48,7 @@ struct nendo_publish_header {
   uint64_t reserved3[5];
 };
 
-/* Of one loop; a loop that is made anew writes it, the triangles and the rest shape again. */
+/* Of one loop; another loop writes it, the triangles and the rest shape again. */
 struct nendo_publish_setup {
   uint64_t stage;      /* 2 * generation + 2: whole */
   uint64_t generation; /* from 1 */
@@ -56,7 +56,7 @@ struct nendo_publish_setup {
   double unit;
   double rate_hz;
   double units_per_metre; /* from the stage, on which the hands are, to the model */
-  uint32_t mode;          /* 1: type-1, 2: type-2 */
+  uint32_t mode;          /* at the beginning; 1: type-1, 2: type-2 */
   uint32_t reserved0;
   uint64_t reserved1[7];
 };

@@ -11,6 +11,11 @@ namespace {
 // As many as may wait for a live loop, or more.
 constexpr std::size_t ring_size = 4096;
 
+std::size_t block_count_of(const deform::Mesh& model) {
+  const auto vertices = static_cast<std::size_t>(model.vertices.cols());
+  return (vertices + deform::block_size - 1) / deform::block_size;
+}
+
 bool points_exist(const deform::Supports& supports, std::size_t hands) {
   return std::all_of(supports.own.begin(), supports.own.end(), [&](const auto& own) {
     return own.point < 5 * static_cast<Eigen::Index>(hands);
@@ -34,8 +39,12 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   flow::LoopOptions options = setup.loop->options;
   options.commands = &replay->commands_;
   options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
-  replay->loop_ =
-      std::make_unique<flow::DeformLoop>(model, setup.loop->placement, std::move(inputs), options);
+  const deform::BlockShape first(setup.loop->rest);
+  const bool has_first = first.block_count() > 0;
+  if (has_first && first.block_count() != block_count_of(model))
+    return Error{Errc::bad_input, "the shape at its beginning is not one of this model"};
+  replay->loop_ = std::make_unique<flow::DeformLoop>(
+      model, setup.loop->placement, std::move(inputs), options, has_first ? &first : nullptr);
   if (!is_solved(replay->loop_->grab_status()))
     return Error{Errc::bad_input, "the recorded hands cannot take hold of the model: " +
                                       std::string(describe(replay->loop_->grab_status()))};
@@ -53,6 +62,8 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     exact_ = commands_.try_push(*request) && exact_;
   } else if (const auto* move = std::get_if<flow::WristMove>(&entry)) {
     exact_ = commands_.try_push(*move) && exact_;
+  } else if (const auto* settings = std::get_if<flow::LoopSettings>(&entry)) {
+    exact_ = loop_->change_settings(*settings) && exact_;
   } else if (const auto* tick = std::get_if<flow::LoggedTick>(&entry)) {
     loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);

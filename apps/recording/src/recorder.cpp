@@ -111,6 +111,9 @@ private:
       ++recorded_.requests;
     } else if (const auto* move = std::get_if<flow::WristMove>(&command)) {
       put(*move);
+    } else if (const auto* change = std::get_if<flow::ChangeSettings>(&command)) {
+      put(change->settings);
+      settings_ = change->settings;
     }
   }
   void add(const flow::LoggedTick& tick) {
@@ -120,6 +123,7 @@ private:
   }
   void put(const Entry& entry) {
     ByteWriter writer(payload_);
+    if (std::exchange(settings_due_, false)) put_entry(writer, *settings_);
     put_entry(writer, entry);
     ++entries_;
   }
@@ -137,6 +141,8 @@ private:
     append(driver::log_chunk);
     payload_.clear();
     entries_ = 0;
+    // A chunk may be the first that is kept, so each tells the settings, if they have changed.
+    settings_due_ = settings_.has_value();
   }
   void write_sent() {
     if (!options_.sent) return;
@@ -200,7 +206,9 @@ private:
   std::unique_ptr<LastMinute> last_minute_;
   std::optional<CrashHandler> crash_handler_;
   std::vector<std::byte> payload_;
-  std::uint64_t entries_ = 0; ///< in the payload
+  std::uint64_t entries_ = 0;                  ///< in the payload
+  std::optional<flow::LoopSettings> settings_; ///< nothing: those of the setup
+  bool settings_due_ = false;                  ///< at the beginning of the next chunk
   std::array<flow::WristSwitchEdge, 2> switches_{};
   Recorded recorded_;
   std::optional<Error> failure_; ///< the first one

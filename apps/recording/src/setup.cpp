@@ -1,5 +1,6 @@
 #include <nendo/recording/setup.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -24,6 +25,25 @@ Setup begin_setup(std::string program) {
   return setup;
 }
 
+void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout, Setup& setup) {
+  for (std::size_t at = 0; at < setup.hands.size(); ++at) {
+    flow::HandInput& hand = setup.hands[at];
+    hand.first = state.latest[at];
+    hand.wearer.learned = state.learned[at];
+    hand.filter = state.settings.filter;
+  }
+  LoopSetup& loop = *setup.loop;
+  loop.placement = state.placement;
+  loop.options.sculptor = state.sculptor;
+  loop.options.held = state.held;
+  const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
+  const deform::BlockShape original = layout.pack();
+  const auto unchanged = std::as_bytes(std::span(original.data(), original.block_count()));
+  loop.rest.clear();
+  if (!std::equal(blocks.begin(), blocks.end(), unchanged.begin(), unchanged.end()))
+    loop.rest.assign(state.shape.data(), state.shape.data() + state.shape.block_count());
+}
+
 std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
   std::vector<std::byte> bytes;
   std::vector<std::byte> payload;
@@ -45,7 +65,14 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
       put_hand(writer, static_cast<std::uint8_t>(at), setup.hands[at]);
     });
   }
-  if (setup.loop) append(loop_chunk, [&](ByteWriter writer) { put_loop(writer, *setup.loop); });
+  if (!setup.loop) return bytes;
+  append(loop_chunk, [&](ByteWriter writer) { put_loop(writer, *setup.loop); });
+  std::span<const deform::VertexBlock> rest(setup.loop->rest);
+  while (!rest.empty()) {
+    const std::size_t count = std::min(rest.size(), most_blocks_of_chunk);
+    append(rest_chunk, [&](ByteWriter writer) { put_rest(writer, rest.first(count)); });
+    rest = rest.subspan(count);
+  }
   return bytes;
 }
 
@@ -54,6 +81,7 @@ bool read_setup_chunk(driver::ChunkType type, std::span<const std::byte> payload
   if (type == head_chunk) return read_head(reader, setup);
   if (type == hand_chunk) return read_hand(reader, setup.hands);
   if (type == loop_chunk) return read_loop(reader, setup.loop);
+  if (type == rest_chunk) return read_rest(payload, setup.loop);
   if (type != driver::glove_chunk) return true;
   auto glove = driver::glove_of(payload);
   if (!glove || glove->number != setup.gloves.size()) return false;

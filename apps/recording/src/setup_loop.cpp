@@ -1,5 +1,7 @@
 #include "setup_parts.hpp"
 
+#include <bit>
+#include <cmath>
 #include <utility>
 
 #include <nendo/driver/sample_record.hpp>
@@ -102,6 +104,11 @@ void read_deformer(ByteReader& reader, CheckedReader& checked, deform::DeformerO
   if (injects) options.injective = injective;
 }
 
+/// Of a block. False for NaN.
+bool is_usable(float coordinate) noexcept {
+  return std::abs(static_cast<double>(coordinate)) <= deform::most_units;
+}
+
 } // namespace
 
 void put_loop(ByteWriter& writer, const LoopSetup& loop) {
@@ -120,6 +127,32 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   put_deformer(writer, options.sculptor.deformer);
   writer.text(loop.simd);
   writer.u64_le(options.undo_most_bytes);
+  writer.u8(static_cast<std::uint8_t>(options.begins_held()));
+}
+
+void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks) {
+  for (const deform::VertexBlock& block : blocks)
+    for (const auto* axis : {&block.x, &block.y, &block.z})
+      for (const float coordinate : *axis)
+        writer.u32_le(std::bit_cast<std::uint32_t>(coordinate));
+}
+
+bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loop) {
+  constexpr std::size_t block_bytes = 3 * deform::block_size * sizeof(float);
+  if (!loop || payload.empty() || payload.size() % block_bytes != 0) return false;
+  std::vector<deform::VertexBlock> blocks(payload.size() / block_bytes);
+  ByteReader reader(payload);
+  bool usable = true;
+  for (deform::VertexBlock& block : blocks) {
+    for (auto* axis : {&block.x, &block.y, &block.z}) {
+      for (float& coordinate : *axis) {
+        coordinate = std::bit_cast<float>(reader.u32_le());
+        usable = usable && is_usable(coordinate);
+      }
+    }
+  }
+  if (usable) loop->rest.insert(loop->rest.end(), blocks.begin(), blocks.end());
+  return usable;
 }
 
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
@@ -144,6 +177,7 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   read_deformer(reader, checked, options.sculptor.deformer);
   read.simd = reader.text();
   if (reader.remaining() > 0) options.undo_most_bytes = reader.u64_le(); // 1.0 had none at first
+  if (reader.remaining() > 0) options.held = reader.u8() != 0;           // since 1.3
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

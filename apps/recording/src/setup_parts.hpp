@@ -2,6 +2,8 @@
 // Reads and writes the single chunks of a setup, which FORMAT.md describes. Enumerators are written
 // as their numbers, so new ones must be added at the ends of their lists, here and in the document.
 
+#include <span>
+
 #include <nendo/base/byte_reader.hpp>
 #include <nendo/base/byte_writer.hpp>
 #include <nendo/driver/sample_record.hpp>
@@ -12,9 +14,10 @@ namespace nendo::recording {
 inline constexpr driver::ChunkType head_chunk = driver::chunk_type("HEAD");
 inline constexpr driver::ChunkType hand_chunk = driver::chunk_type("HAND");
 inline constexpr driver::ChunkType loop_chunk = driver::chunk_type("LOOP");
+inline constexpr driver::ChunkType rest_chunk = driver::chunk_type("REST");
 
 constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
-  return type == head_chunk || type == hand_chunk || type == loop_chunk ||
+  return type == head_chunk || type == hand_chunk || type == loop_chunk || type == rest_chunk ||
          type == driver::glove_chunk;
 }
 
@@ -56,10 +59,14 @@ private:
 void put_head(ByteWriter& writer, const Setup& setup);
 void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand);
 void put_loop(ByteWriter& writer, const LoopSetup& loop);
+/// Writes some of the blocks of the shape at first. A chunk has at most most_blocks_of_chunk.
+void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks);
+inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
 
 // These return false if the payload is not usable. Then nothing has changed.
 bool read_head(ByteReader& reader, Setup& setup);
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands);
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop);
+bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loop);
 
 } // namespace nendo::recording

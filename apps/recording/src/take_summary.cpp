@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <nendo/recording/take_tools.hpp>
 
@@ -30,6 +32,10 @@ public:
   }
   void operator()(flow::Request request) { ++summary_.requests[static_cast<std::size_t>(request)]; }
   void operator()(const flow::WristMove&) { ++summary_.wrist_moves; }
+  void operator()(const flow::LoopSettings& settings) {
+    // The recorder repeats them.
+    if (std::exchange(settings_, settings) != settings) ++summary_.settings_changes;
+  }
   void operator()(const flow::LoggedTick& tick) {
     if (summary_.ticks > 0) {
       if (tick.number < next_tick_) ++summary_.ticks_out_of_order;
@@ -49,6 +55,7 @@ public:
 private:
   TakeSummary& summary_;
   std::vector<std::uint64_t> next_sequence_;
+  std::optional<flow::LoopSettings> settings_;
   std::uint64_t next_tick_ = 0;
   bool after_gap_ = false; ///< what is not in the recording was not missed by the loop
 };

@@ -171,9 +171,13 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
   const HostTime last = setup.begun_host + end;
   Groups groups(*reader);
   std::uint64_t left_out = 0;
+  std::optional<Entry> settings; // the last that are left out
   auto group = groups.next();
-  for (; group && (!group->time || *group->time < first); group = groups.next())
+  for (; group && (!group->time || *group->time < first); group = groups.next()) {
     left_out += group->entries.size();
+    for (const Entry& entry : group->entries)
+      if (std::holds_alternative<flow::LoopSettings>(entry)) settings = entry;
+  }
   if (!group || *group->time >= last)
     return bad_input(from, "nothing happened in that part of it; `nendo recording info` tells how "
                            "long it is");
@@ -185,6 +189,8 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
   if (!copy) return copy.error();
   if (left_out > 0) {
     if (const auto put = copy->put(Gap{left_out}); !put) return put.error();
+    if (settings)
+      if (const auto put = copy->put(*settings); !put) return put.error();
   }
   HostTime ended = first;
   for (; group && group->time && *group->time < last; group = groups.next()) {

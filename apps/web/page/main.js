@@ -1,7 +1,7 @@
 // Comes, looks, and comes again when the connection is lost.
 const token = location.hash.slice(1)
 const holds = new Holds()
-let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = '', notice = ''
+let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = ''
 const SERVICE_RESTART = 1012
 const counts = { updates: 0, updateBytes: 0, shapes: 0, bakes: 0, draws: 0 }
 
@@ -44,8 +44,7 @@ async function connect() {
   } catch (error) {
     return again('No answer from nendo; has the run ended?')
   }
-  notice = panel.setModel(model) ? '' : 'These are not the settings that you asked for. If nobody else has changed them, nendo could not ' +
-    'shape with yours, and says why in its terminal.'
+  panel.setModel(model)
   holds.begin()
   if (scene) {
     const first = !scene.shape
@@ -63,20 +62,26 @@ function open(model) {
   socket.binaryType = 'arraybuffer'
   socket.onopen = () => {
     panel.connected(true)
-    panel.say(notice || trouble)
+    panel.say(trouble)
     patience = 500
   }
   socket.onmessage = ({ data }) => {
     if (stale) return
     const type = new DataView(data).getUint8(0)
     if (type === 3) panel.tell(new TextDecoder().decode(data.slice(4)))
+    else if (type === 4) takeSettings(readSettings(data))
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
     dirty = true
   }
-  // A loop that was made anew waits with its model already.
+  // A loop that takes the place of another waits with its model already.
   socket.onclose = ({ code }) => stale || code === SERVICE_RESTART ? connect() : again('The connection is lost.')
+}
+
+function takeSettings(settings) {
+  panel.setSettings(settings)
+  if (scene) scene.radii = settings.radii
 }
 
 function takeShape(shape, model) {
@@ -103,6 +108,7 @@ function picture() {
   requestAnimationFrame(picture)
   const move = mover.next()
   if (move) ask(move)
+  panel.shaping.send()
   if (!dirty) return
   dirty = false
   if (scene) scene.draw(camera, latest, holds, panel.covered())
@@ -122,7 +128,7 @@ window.nendo = {
   ask, counts,
   vertices: () => Array.from(scene.shape.vertices()),
   state: () => latest && { number: Number(latest.number), held: latest.held, commits: latest.commits, undos: latest.undos,
-    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.model.recorded, settings: panel.model.settings,
+    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.settings.recorded, settings: panel.settings,
     wrists: latest.hands.map(hand => hand && { place: hand.joints[1].place, turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
     open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },
 }

@@ -13,7 +13,7 @@ const KEYS = [
   ['u', 'undo the last commit', panel => panel.step('undo')],
   ['r', 'redo what was undone', panel => panel.step('redo')],
   ['Ctrl Z', 'undo, too; with Shift, or Ctrl Y: redo'],
-  ['x', 'reset: back to the model as it was loaded', panel => panel.reset()],
+  ['x', 'reset: back to the model as it was loaded', panel => panel.ask('reset')],
   ['t', 'a take: record from this shape on, and end that', panel => panel.record()],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
   ['s', 'save the model as it is now', panel => panel.ask('save')],
@@ -21,7 +21,7 @@ const KEYS = [
   ['n', 'the next kernel', panel => panel.shaping.nextKernel()],
   ['[', 'smaller radii', panel => panel.shaping.scale(1 / 1.1)],
   [']', 'larger radii', panel => panel.shaping.scale(1.1)],
-  ['Enter', 'apply the mode, kernel and radii that are chosen', panel => panel.shaping.apply()],
+  ['i', 'the surface never folds, or may', panel => panel.toggle('injective', '')],
   ['h', 'hands on and off', panel => panel.toggle('skin')],
   ['b', 'bones on and off', panel => panel.toggle('bones')],
   ['v', 'control vectors on and off', panel => panel.toggle('vectors')],
@@ -42,7 +42,7 @@ class Panel {
       if (this.noted) this.tell('')
       ask(request)
     }
-    Object.assign(this, { camera: null, live: false, noted: false })
+    Object.assign(this, { camera: null, live: false, noted: false, settings: null })
     this.late = new Chart(element('chart-late'), 'late', 'ms')
     this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
@@ -50,13 +50,8 @@ class Panel {
     const requests = [...document.querySelectorAll('[data-request]')]
     for (const button of requests) button.addEventListener('click', () => this.ask(button.dataset.request))
     this.steps = requests.filter(button => ['undo', 'redo'].includes(button.dataset.request))
-    this.buttons = [...requests, element('reset'), element('record')]
+    this.buttons = [...requests, element('record')]
     element('record').addEventListener('click', () => this.record())
-    element('reset').addEventListener('click', () => this.reset())
-    element('reset-dialog').addEventListener('close', ({ target }) => {
-      if (target.returnValue === 'reset') this.ask('reset')
-      target.returnValue = ''
-    })
     for (const part of ['skin', 'bones', 'vectors', 'radii', 'facets'])
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
@@ -72,11 +67,9 @@ class Panel {
 
   press(event) {
     if (event.altKey || event.metaKey) return
-    // Which have keys of their own, or take Enter for a click.
-    if (event.target.matches('select') || element('reset-dialog').open) return
+    if (event.target.matches('select')) return // which has keys of its own
     if (event.ctrlKey) return this.pressWithCtrl(event)
     if (event.repeat) return
-    if (event.key === 'Enter' && event.target.matches('button, input')) return
     if (event.key === 'Home' && event.target.matches('input[type=range]')) return
     const key = KEYS.find(([name]) => name === event.key)
     if (key && key[2]) key[2](this)
@@ -108,12 +101,9 @@ class Panel {
     const panel = element('panel')
     return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
   }
-  toggle(part) { element('show-' + part).click() }
-  reset() {
-    if (!element('reset').disabled) element('reset-dialog').showModal()
-  }
+  toggle(part, kind = 'show-') { element(kind + part).click() }
   record() {
-    if (this.model) this.ask(this.model.recorded ? 'end recording' : 'record')
+    if (this.settings) this.ask(this.settings.recorded ? 'end recording' : 'record')
   }
   help() {
     const dialog = element('help')
@@ -139,9 +129,12 @@ class Panel {
     this.model = model
     element('model').textContent = model.name
     document.title = `${model.name} - Nendo`
-    element('record').textContent = model.recorded ? 'End the recording' : 'Record'
-    element('record').classList.toggle('on', model.recorded)
-    return this.shaping.setModel(model)
+  }
+  setSettings(settings) {
+    this.settings = settings
+    element('record').textContent = settings.recorded ? 'End the recording' : 'Record'
+    element('record').classList.toggle('on', settings.recorded)
+    this.shaping.follow(settings)
   }
 
   add(update) {
@@ -159,12 +152,12 @@ class Panel {
   }
 
   draw() {
-    const { update, model } = this
-    if (!update || !model) return
+    const { update, model, settings } = this
+    if (!update || !model || !settings) return
     element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
     this.showSteps()
     const lost = update.lost + update.skipped
-    element('timing').textContent = `${model.rate} Hz wanted, type ${model.settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
+    element('timing').textContent = `${model.rate} Hz wanted, type ${settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
       `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.commits} commits, ${update.undos} undone`
     for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
     update.hands.forEach((hand, slot) => this.drawGlove(hand, slot))

@@ -32,6 +32,7 @@ class Scene {
     if (!gl) throw new Error('this browser shows no WebGL2')
     this.gl = gl
     this.canvas = canvas
+    this.radii = [0, 0, 0, 0, 0]
     this.parts = { skin: true, bones: true, vectors: true, radii: false, facets: false }
     const light = glsl('light')
     this.model = makeProgram(gl, glsl('deform') + glsl('model'), light)
@@ -70,9 +71,8 @@ class Scene {
     if (this.shape) this.shape.dispose()
     this.shape = new Shape(this.gl, model)
     this.scale = model.unit / model.unitsPerMetre
-    if (!this.origin) this.findPlace(model) // a loop that is made anew does not move the picture
+    if (!this.origin) this.findPlace(model) // a connection that is made anew does not move the picture
     this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
-    this.radii = model.settings.radii
   }
   // The model stands on the ground about the middle, as large as on the stage.
   findPlace(model) {

@@ -1,24 +1,18 @@
-// What only a new loop can change: mode, kernel and radii. What is chosen is asked for by Apply.
+// Mode, kernel, radii and filter. What is chosen is asked for at once, once a picture at most.
 const LEAST_RADIUS = 0.01, MOST_RADIUS = 0.4
 const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
+const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
 
 // Radii to a micrometre: they have been in other units meanwhile.
-const isSame = (a, b) => a.mode === b.mode && a.kernel === b.kernel && a.radii.every((radius, at) => Math.abs(radius - b.radii[at]) < 1e-6)
+const isSame = (a, b) => ['mode', 'kernel', 'injective', 'filtered'].every(part => a[part] === b[part]) &&
+  a.radii.every((radius, at) => Math.abs(radius - b.radii[at]) < 1e-6)
 
 class Shaping {
   constructor(ask) {
-    Object.assign(this, { ask, live: false })
+    Object.assign(this, { ask, live: false, wanted: null, due: false, askedAt: -Infinity })
     this.sliders = FINGERS.map((finger, at) => this.makeSlider(finger, at))
     element('shaping').addEventListener('input', event => this.choose(event.target))
-    element('shaping').addEventListener('submit', event => {
-      event.preventDefault()
-      this.apply()
-    })
-  }
-  apply() {
-    if (element('apply').disabled) return
-    const { mode, kernel, radii } = this.asked = this.wanted
-    this.ask(`settings type${mode} ${kernel} ${radii.join(' ')}`)
+    element('shaping').addEventListener('submit', event => event.preventDefault())
   }
   makeSlider(finger, at) {
     const label = element('radii').appendChild(document.createElement('label'))
@@ -29,33 +23,46 @@ class Shaping {
     return { label, name, range, output, at }
   }
 
-  // What is in force; what was chosen and not applied is forgotten. False: it is not what was asked for.
-  setModel({ settings }) {
-    const refused = this.asked && !isSame(this.asked, settings)
-    this.inForce = settings
+  // What is in force, whoever has asked for it.
+  follow(settings) {
+    const first = !this.wanted
+    if (!first && (this.due || performance.now() - this.askedAt < PATIENCE) && !isSame(this.wanted, settings)) return
     this.wanted = { ...settings, radii: [...settings.radii] }
-    this.asked = null
-    element('one-radius').checked = settings.radii.every(radius => radius === settings.radii[0])
+    if (first) element('one-radius').checked = settings.radii.every(radius => radius === settings.radii[0])
+    else if (settings.radii.some(radius => radius !== settings.radii[0])) element('one-radius').checked = false
     document.querySelector(`[name=mode][value="${settings.mode}"]`).checked = true
     element('kernel').value = settings.kernel
+    element('injective').checked = settings.injective
+    element('filtered').checked = settings.filtered
     this.sliders.forEach(({ range, at }) => { range.value = 100 * settings.radii[at] })
     this.show()
-    return !refused
   }
   connected(yes) {
     this.live = yes
-    if (this.wanted) this.show()
+    element('settings').disabled = !yes
   }
 
+  change() {
+    this.due = true
+    this.show()
+  }
+  send() {
+    if (!this.due || !this.live) return
+    const { mode, kernel, injective, filtered, radii } = this.wanted
+    this.ask(`settings type${mode} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')}`)
+    Object.assign(this, { due: false, askedAt: performance.now() })
+  }
   choose(input) {
     const { wanted } = this
+    if (!wanted) return
     const slider = this.sliders.find(({ range }) => range === input)
     const one = element('one-radius').checked
     if (input.name === 'mode') wanted.mode = Number(input.value)
     if (input.id === 'kernel') wanted.kernel = input.value
+    if (input.id === 'injective' || input.id === 'filtered') wanted[input.id] = input.checked
     if (slider) wanted.radii[slider.at] = Number(input.value) / 100
     if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
-    this.show()
+    this.change()
   }
   otherMode() { document.querySelector('[name=mode]:not(:checked)').click() }
   nextKernel() {
@@ -66,18 +73,15 @@ class Shaping {
   scale(factor) {
     if (!this.wanted) return
     this.wanted.radii = this.wanted.radii.map(radius => Math.min(MOST_RADIUS, Math.max(LEAST_RADIUS, factor * radius)))
-    this.show()
+    this.change()
   }
   show() {
-    const { wanted, inForce } = this, one = element('one-radius').checked
+    const { wanted } = this, one = element('one-radius').checked
     for (const { label, name, range, output, at } of this.sliders) {
       label.hidden = one && at > 0
       name.textContent = one ? 'radius' : FINGERS[at]
       if (Math.abs(range.value / 100 - wanted.radii[at]) > 0.003) range.value = 100 * wanted.radii[at]
       output.textContent = `${(100 * wanted.radii[at]).toFixed(1)} cm`
     }
-    const same = isSame(wanted, inForce)
-    element('apply').disabled = same || !this.live
-    element('apply-note').textContent = same ? 'As in force.' : 'Restarts the loop from this shape; undo begins anew.'
   }
 }

@@ -1,6 +1,6 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
-const MODEL_HEAD = 128, BONE_BYTES = 28, UPDATE_HEAD = 112
+const MODEL_HEAD = 88, BONE_BYTES = 28, UPDATE_HEAD = 112
 const KERNELS = ['c0', 'c2', 'c4', 'c6']
 // Of each joint, whose place hangs on it; the wrist's on none.
 const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
@@ -12,9 +12,9 @@ function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
   if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (view.getUint32(8, true) !== 2) throw new Error('this server speaks another version; reload the page')
+  if (view.getUint32(8, true) !== 3) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
-  const flags = view.getUint8(125), bones = [null, null]
+  const flags = view.getUint8(82), bones = [null, null]
   let places = MODEL_HEAD
   for (const slot of [0, 1]) {
     if (!(flags & 1 << slot)) continue
@@ -27,11 +27,7 @@ function readModel(buffer) {
     rate: view.getFloat64(24, true), unit: view.getFloat64(32, true),
     origin: [40, 48, 56].map(at => view.getFloat64(at, true)),
     unitsPerMetre: view.getFloat64(64, true), diagonal: view.getFloat64(72, true),
-    settings: {
-      mode: view.getUint16(120, true), kernel: KERNELS[view.getUint8(124)],
-      radii: [80, 88, 96, 104, 112].map(at => view.getFloat64(at, true)),
-    },
-    loop: view.getUint16(122, true), recorded: (flags & 4) !== 0, bones,
+    loop: view.getUint16(80, true), bones,
     places: new Float32Array(buffer, places, 3 * vertices),
     order: new Uint32Array(buffer, order, vertices),
     corners: new Uint32Array(buffer, corners, 3 * triangles),
@@ -46,6 +42,14 @@ function readBones(view, at) {
     const seven = numbers(at + BONE_BYTES * joint)
     return { place: seven.slice(0, 3), turn: seven.slice(3) }
   })
+}
+
+function readSettings(buffer) {
+  const view = new DataView(buffer), flags = view.getUint8(3)
+  return {
+    mode: view.getUint8(1), kernel: KERNELS[view.getUint8(2)], injective: (flags & 1) !== 0, filtered: (flags & 2) !== 0,
+    recorded: (flags & 4) !== 0, radii: [8, 16, 24, 32, 40].map(at => view.getFloat64(at, true)),
+  }
 }
 
 function readShape(buffer) {

@@ -17,7 +17,14 @@ inline constexpr ChunkType glove_chunk = chunk_type("GLOV"); ///< one for each g
 inline constexpr ChunkType log_chunk = chunk_type("TAPE");   ///< what happened, in its order
 
 /// Kinds of entries; unknown ones are passed over.
-enum class EntryKind : std::uint8_t { sample = 1, request = 2, tick = 3, gap = 4, wrist = 5 };
+enum class EntryKind : std::uint8_t {
+  sample = 1,
+  request = 2,
+  tick = 3,
+  gap = 4,
+  wrist = 5,
+  settings = 6,
+};
 
 /// One entry of an input log: its kind and what it holds.
 struct LogEntry {

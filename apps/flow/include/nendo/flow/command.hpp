@@ -13,14 +13,10 @@
 
 namespace nendo::flow {
 
-/// Lets the loop go on with these settings.
+/// Lets the loop go on with these settings from its next tick on (DeformLoop::change_settings()).
 struct ChangeSettings {
   LoopSettings settings;
   friend bool operator==(const ChangeSettings&, const ChangeSettings&) = default;
-};
-/// Makes the model again what was loaded from its file.
-struct ResetModel {
-  friend bool operator==(const ResetModel&, const ResetModel&) = default;
 };
 /// Begins or ends a recording to a file.
 struct SetRecording {
@@ -42,8 +38,8 @@ struct EndRun {
 
 /// A loop obeys Request and WristMove at the beginning of its next tick. It ignores all others,
 /// which are obeyed by the code that runs the loop.
-using Command = std::variant<Request, WristMove, ChangeSettings, ResetModel, SetRecording,
-                             SaveShape, SaveRecording, EndRun>;
+using Command = std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape,
+                             SaveRecording, EndRun>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.

@@ -6,12 +6,15 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include <nendo/base/job_offer.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/frame_sink.hpp>
 #include <nendo/flow/input_log.hpp>
+#include <nendo/flow/loop_change.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
 #include <nendo/flow/shaping.hpp>
@@ -68,15 +71,24 @@ struct LoopOptions : PaceOptions {
   EventCount* event_count = nullptr;
   HostClock::duration silent_after = std::chrono::milliseconds(500);
   SwitchAction switch_action = SwitchAction::none;
+  /// Whether the hands hold the model at first; nothing: unless SwitchAction::grab waits for a
+  /// switch.
+  std::optional<bool> held{};
+
+  bool begins_held() const noexcept { return held.value_or(switch_action != SwitchAction::grab); }
 };
 
 class DeformLoop {
 public:
   /// `hands` are one or two, at most one of a side. Copies the model's vertices and allocates all
   /// that a tick needs. The hands take hold of the model at their first samples. With
-  /// SwitchAction::grab they hold it only while a switch is on.
+  /// SwitchAction::grab they hold it only while a switch is on. With `first`, the shape is at first
+  /// that one, in the blocks of the model's layout.
   DeformLoop(const deform::Mesh& model, const Placement& placement, std::vector<HandInput> hands,
-             const LoopOptions& options);
+             const LoopOptions& options, const deform::BlockShape* first = nullptr);
+  ~DeformLoop();
+  DeformLoop(const DeformLoop&) = delete;
+  DeformLoop& operator=(const DeformLoop&) = delete;
 
   /// Runs ticks on the calling thread until `stop` or for `most_ticks` deadlines of the grid, also
   /// skipped ones. A tick does not allocate or lock; its only system call is the sleep. Call
@@ -93,20 +105,38 @@ public:
     tick(Pacer::Due{number, scheduled, woke});
   }
 
+  // Changes, for one thread, which may be another than the loop's. The loop takes what was asked
+  // for at the beginning of its next tick. What comes before that is taken together.
+
+  /// Makes all that these settings need, and hands it to the loop: the stroke in hand then ends,
+  /// and the fingertips take hold of the same shape anew. What is shaped between changes that are
+  /// less than a second apart is one step for undo. Settings that were asked for last change
+  /// nothing. Allocates; the tick does not. Returns false, and changes nothing, if they are not
+  /// usable.
+  bool change_settings(const LoopSettings& settings);
+  /// Lets the input go to `log` from a tick on, or nowhere. That tick keeps what the hands have
+  /// shaped, and they take hold anew; a log gets no undo that leads back before it. Ask
+  /// take_state() when it has happened. Both logs must outlive that. `like` is a shape of the
+  /// latest frames: the tick copies only the blocks that differ from it.
+  void change_log(InputLog* log, const deform::BlockShape& like);
+  /// Returns the state with which the log began, or ended, once for each change_log() that the loop
+  /// has taken.
+  std::optional<LoopState> take_state();
+  /// Returns the settings that were asked for last, and their sculptor's options.
+  const LoopSettings& settings() const noexcept { return settings_; }
+  const SculptorOptions& sculptor_options() const noexcept { return sculptor_options_; }
+  /// Tells whether the loop has yet to take a change.
+  bool is_changing();
+
   /// Returns ok or merged if the hands could take hold of the model.
   deform::FieldStatus grab_status() const noexcept { return grab_status_; }
   /// One reader thread may poll it while the loop runs.
   FrameExchange& frames() noexcept { return frames_; }
   const LoopStats& stats() const noexcept { return stats_; }
-  /// Returns where the hands are. Must not be called while the loop runs.
-  Placement placement() const;
-  /// Returns what adaptation has learned of the gloves, by Placement::index_of(); nullopt without
-  /// adaptation. Must not be called while the loop runs.
-  std::array<std::optional<hand::LearnedRanges>, 2> learned() const;
   /// Makes room for more undos, up to LoopOptions::undo_most_bytes. See Shaping::refill_undo().
   bool refill_undo() { return shaping_.refill_undo(); }
   /// Returns the layout, which turns a frame's shape into points in the mesh's order. Any thread.
-  const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
+  const deform::BlockLayout& layout() const noexcept { return shaping_.layout(); }
   /// Completes the last stroke and returns the shape, 3 by #vertices. Call it when the loop has
   /// ended.
   deform::Points final_shape();
@@ -115,6 +145,13 @@ private:
   void tick(const Pacer::Due& due) noexcept;
   void take_commands() noexcept;
   void apply(const Command& command) noexcept;
+  void take_change() noexcept;
+  void finish_change(HostTime scheduled, Frame& frame) noexcept;
+  void change_filters(const hand::FilterOptions& filter) noexcept;
+  void begin_anew(LogChange& change, Frame& frame) noexcept;
+  void give_back_change() noexcept;
+  LoopChange& next_change();
+  void offer_change();
   void take_samples(TickRecord& record) noexcept;
   void follow_switches() noexcept;
   void compute_hands(Frame& frame) noexcept;
@@ -124,6 +161,13 @@ private:
   struct Hand {
     /// Updates `latest` and `angles` by the next sample.
     void follow(const GloveSample& sample) noexcept;
+    /// Returns when `latest` was measured, as exactly as it is known.
+    HostTime time() const noexcept {
+      return latest.has_device_time ? latest.measured : latest.arrival;
+    }
+    /// Forgets all that came before `latest` but what adaptation has learned.
+    void begin_anew() noexcept;
+    hand::HandPose pose() const noexcept { return skeleton().pose(angles, T_stage_wrist); }
     const hand::HandSkeleton& skeleton() const noexcept {
       return skeletons[Placement::index_of(latest.side)];
     }
@@ -149,7 +193,17 @@ private:
   Shaping shaping_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
   bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
-  HostTime last_woke_{};   ///< of the tick before; HostTime{} at first
+  JobOffer<LoopChange*> changes_;
+  LoopChange* taken_ = nullptr;        ///< by this tick
+  std::optional<HostTime> changed_at_; ///< the last tick that changed settings
+  LoopSettings settings_in_force_;
+  // For the thread that asks for changes:
+  LoopSettings settings_;
+  SculptorOptions sculptor_options_;
+  std::unique_ptr<LoopChange> change_; ///< that the loop has, or will have
+  bool is_offered_ = false;
+  std::vector<LoopState> states_; ///< not taken yet
+  HostTime last_woke_{};          ///< of the tick before; HostTime{} at first
   LoopStats stats_;
   FrameExchange frames_;
 };

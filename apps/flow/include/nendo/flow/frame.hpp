@@ -10,6 +10,7 @@
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/driver/sample.hpp>
+#include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/hand/skeleton.hpp>
 
@@ -30,11 +31,13 @@ struct Frame {
   std::uint64_t tick = 0;      ///< the number of the deadline on the grid; gaps were missed
   std::uint64_t ticks_run = 0; ///< how many ticks have run
   std::uint64_t missed = 0;    ///< how many deadlines were skipped
-  /// How often the shape became the rest shape. A commit in this frame comes after its fields.
+  LoopSettings settings;       ///< with which this frame was made
+  /// How often the shape became the rest shape: a commit, or a change of settings, which ends a
+  /// stroke. One in this frame comes after its fields.
   std::uint64_t commits = 0;
-  /// How often the shape became an earlier one (undo), or that one's successor again (redo). One in
-  /// this frame comes before its fields, so that they do not lead here from the frame before. A
-  /// reader that applies fields must then copy the whole shape.
+  /// How often the shape became an earlier one (undo), or that one's successor again (redo), or
+  /// what it was at first (reset). One in this frame comes before its fields, so that they do not
+  /// lead here from the frame before. A reader that applies fields must then copy the whole shape.
   std::uint64_t undos = 0;
   /// How often one can undo, and how often redo, after this frame. At 0 it changes nothing. What
   /// hands that hold the model have shaped since the last commit can be undone, too.

@@ -1,19 +1,40 @@
 #pragma once
-// The settings that a person may change while a run goes on.
+// The settings that a person may change while a run goes on, from one tick to the next.
 
 #include <array>
 
 #include <nendo/deform/wendland.hpp>
 #include <nendo/flow/sculptor.hpp>
+#include <nendo/hand/joint_filter.hpp>
 
 namespace nendo::flow {
 
 struct LoopSettings {
   Mode mode = Mode::type1;
   deform::Wendland kernel = deform::Wendland::c2;
+  bool injective = false;           ///< the surface never folds
   std::array<double, 5> radius_m{}; ///< of each finger, on the stage, thumb to little finger
+  double piece_fraction = 0.05;     ///< the length of a piece of type 2, in least radii
+  hand::FilterOptions filter{};     ///< of both hands
+
+  static constexpr double least_radius_m = 1e-9;
+  static constexpr double most_radius_m = 1e9;
+  static constexpr double least_piece_fraction = 1e-3;
+  static constexpr double most_piece_fraction = 1e3;
+
+  /// Tells whether all numbers are finite and within these bounds. A loop takes no others.
+  bool are_usable() const noexcept;
 
   friend bool operator==(const LoopSettings&, const LoopSettings&) = default;
 };
+
+/// Returns the settings of a sculptor. Where a finger has several radii, the largest is its radius.
+LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
+                         double units_per_metre);
+
+/// Returns the options of the sculptor that has `wanted` instead of settings_of(sculptor). What
+/// settings do not tell stays. Radii that do not change stay as they are, with all their weights.
+SculptorOptions with_settings(SculptorOptions sculptor, const LoopSettings& wanted, int hands,
+                              double units_per_metre);
 
 } // namespace nendo::flow

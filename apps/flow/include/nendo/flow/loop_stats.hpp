@@ -40,6 +40,8 @@ struct LoopStats {
   std::uint64_t commits = 0;                  ///< times the shape became the rest shape
   std::uint64_t undos = 0;                    ///< times it became an earlier one
   std::uint64_t redos = 0;                    ///< times it became what it had been before an undo
+  std::uint64_t resets = 0;                   ///< times it became what it was at first
+  std::uint64_t changes = 0;                  ///< of settings
   std::uint64_t undo_steps = 0;               ///< as many commits can be undone
   std::uint64_t forgotten_steps = 0;          ///< could not any more, for want of memory
   int most_links = 0;                         ///< of a tick; 0 unless the sculptor is injective

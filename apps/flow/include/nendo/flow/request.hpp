@@ -15,10 +15,11 @@ enum class Request : std::uint8_t {
   commit, ///< the shape so far becomes the rest shape, and the hands hold it anew
   undo,   ///< back to the rest shape before the last commit: Sculptor::undo()
   redo,   ///< forth again, if nothing was committed since: Sculptor::redo()
+  reset,  ///< back to the model as it was loaded, which undo() takes back
 };
 
-inline constexpr std::array requests{Request::grab, Request::let_go, Request::commit, Request::undo,
-                                     Request::redo};
+inline constexpr std::array requests{Request::grab, Request::let_go, Request::commit,
+                                     Request::undo, Request::redo,   Request::reset};
 
 std::string_view name_of(Request request) noexcept;
 std::optional<Request> request_named(std::string_view name) noexcept;

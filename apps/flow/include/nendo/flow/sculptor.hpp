@@ -28,6 +28,9 @@ struct SculptorOptions {
 class Sculptor {
 public:
   Sculptor(deform::Points rest, Eigen::Index control_points, const SculptorOptions& options);
+  /// Works on a shape that other sculptors work on before or after it. `shape` must outlive it.
+  Sculptor(deform::SculptedShape& shape, Eigen::Index control_points,
+           const SculptorOptions& options);
 
   Mode mode() const noexcept {
     return std::holds_alternative<deform::Type1Deformer>(deformer_) ? Mode::type1 : Mode::type2;
@@ -35,6 +38,8 @@ public:
 
   /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
   deform::FieldStatus grab(const deform::Points& tips) noexcept;
+  /// Does the same in the middle of a step, behind release(false).
+  deform::FieldStatus grab_on(const deform::Points& tips) noexcept;
   /// Writes the shape for the fingertips' present places into `out`; blocks that `out` already has
   /// are not written again. Wait-free, except that it may wait for a second thread to finish its
   /// part. It does not allocate if `out` has the right size.
@@ -46,6 +51,12 @@ public:
   /// nothing changes. It does not allocate.
   deform::FieldStatus commit(const deform::Points& tips) noexcept;
 
+  /// Ends the stroke and lets go of the shape, which stays as update() made it last, for another
+  /// sculptor to take hold of. With `is_step`, undo can go back before the stroke; without, it
+  /// becomes one step with the next. It does not allocate.
+  void release(bool is_step) noexcept;
+  /// Goes back to the shape as it was at first (Type1Deformer::reset, Type2Deformer::reset).
+  deform::FieldStatus reset(const deform::Points& tips) noexcept;
   /// Goes back to the rest shape before the last commit, or to the shape with which the last stroke
   /// began (Type1Deformer::undo, Type2Deformer::undo). The fingertips then hold it at `tips`. If
   /// the equations have no solution, nothing changes. It does not allocate.

@@ -2,9 +2,11 @@
 // Applies people's requests to a sculptor: the hands take hold and let go, shapes are committed,
 // undone and redone. The loop uses it, and so does code that shapes without a loop.
 
+#include <array>
 #include <memory>
 #include <vector>
 
+#include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/undo_memory.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/loop_stats.hpp>
@@ -20,6 +22,16 @@ struct ShapingOptions {
   std::size_t undo_most_bytes = 0;
   std::size_t most_requests = 64; ///< in one tick
   bool held = true;               ///< at first
+  /// The shape at first; null: the rest shape. It has the layout of the rest shape, to which a
+  /// reset goes back.
+  const deform::BlockShape* first = nullptr;
+};
+
+/// Another sculptor for the same shape, made before it is needed.
+struct ReadySculptor {
+  std::unique_ptr<Sculptor> sculptor;
+  /// Room for its fields in the three frames of a FrameExchange, which may have had too little.
+  std::array<deform::FieldSequence, 3> room;
 };
 
 class Shaping {
@@ -28,7 +40,7 @@ public:
   Shaping(const deform::Points& rest, Eigen::Index control_points, const ShapingOptions& options);
 
   /// Lets the fingertips take hold for the first time (3 by control_points, model units).
-  deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_.grab(tips); }
+  deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
   /// Makes the next shape() do it. Wait-free.
   void ask(Request request) noexcept;
   /// Asks for Request::grab if Request::let_go was asked for last, and the other way round.
@@ -37,29 +49,53 @@ public:
   void commit_when_held() noexcept { commit_due_ = true; }
 
   /// Does a tick's work: it does what was asked for, computes the frame's shape, fields, chain and
-  /// `held` from the fingertips' places, and counts in `stats`. Wait-free. It does not allocate if
-  /// the frame has the right size.
-  deform::FieldStatus shape(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
+  /// `held` from the fingertips' places, and counts in `stats`. With `completes`, a stroke leads
+  /// all the way to `tips`. Wait-free. It does not allocate if the frame has the right size.
+  deform::FieldStatus shape(const deform::Points& tips, Frame& frame, LoopStats& stats,
+                            bool completes = false) noexcept;
   /// Completes the stroke and returns the shape, 3 by #vertices. Allocates.
   deform::Points final_shape(const deform::Points& tips);
 
   bool is_held() const noexcept { return held_; }
-  const Sculptor& sculptor() const noexcept { return sculptor_; }
+  const Sculptor& sculptor() const noexcept { return *sculptor_; }
+  const deform::BlockLayout& layout() const noexcept { return shape_.layout(); }
+
+  /// Makes a sculptor with other options. Another thread may call it, at any time. Allocates.
+  ReadySculptor prepare(const SculptorOptions& options);
+  /// Lets that sculptor go on where the present one ends, which `ready` then has: after shape()
+  /// with `completes`, in the same tick. A stroke ends, as a step of its own if `is_step`, and the
+  /// fingertips take hold anew at `tips`. The shape does not change. Wait-free, without allocation.
+  void exchange(ReadySculptor& ready, const deform::Points& tips, bool is_step, Frame& frame,
+                LoopStats& stats) noexcept;
+  /// Ends the stroke, lets undo go back to here and no farther (`fences`), or as far as memory
+  /// goes, and lets the fingertips that hold the shape take hold anew, as begin() does. What was
+  /// asked for and could not be done is forgotten. Nothing that was before then matters to what
+  /// comes, but the shape, and whether it is held. Wait-free, without allocation.
+  void begin_anew(const deform::Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept;
+
   /// Allocates memory for further undo steps. One thread should call it now and then, at any time.
   /// Returns false if there is no more room, so that the oldest steps will be dropped.
   bool refill_undo() { return undo_memory_ == nullptr || undo_memory_->refill(); }
 
 private:
   void take_steps(const deform::Points& tips, LoopStats& stats) noexcept;
+  bool take_step(Request step, const deform::Points& tips, LoopStats& stats) noexcept;
   std::size_t undo_steps() const noexcept;
+  void make_room(deform::FieldSequence& fields) noexcept;
+  void tell(Frame& frame, LoopStats& stats) const noexcept;
 
-  std::unique_ptr<deform::UndoMemory> undo_memory_; ///< outlives the sculptor
-  Sculptor sculptor_;
-  bool held_;        ///< the fingertips shape the model
+  std::unique_ptr<deform::UndoMemory> undo_memory_; ///< outlives the shape
+  deform::SculptedShape shape_;
+  Eigen::Index control_points_;
+  std::unique_ptr<Sculptor> sculptor_;
+  std::array<deform::FieldSequence, 3> room_; ///< for frames that have too little
+  bool held_;                                 ///< the fingertips shape the model
   bool hold_wanted_; ///< what is asked for; follows at the next tick that can
   bool commit_due_ = false;
-  bool shaped_ = false;            ///< since the hands took hold, or since the last commit
-  std::vector<Request> steps_due_; ///< undos and redos, in their order
+  bool shaped_ = false;               ///< since the hands took hold, or since the last commit
+  std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
+  bool in_step_ = false;              ///< shaped before the last change, and not a step yet
+  std::vector<Request> steps_due_;    ///< undos, redos and resets, in their order
 };
 
 } // namespace nendo::flow

@@ -33,6 +33,8 @@ struct LoopSetup {
   flow::LoopOptions options;
   /// The vector instructions with which the field was evaluated. Others may round differently.
   std::string simd;
+  /// The shape at first, in the blocks of the model's layout; empty: the model.
+  std::vector<deform::VertexBlock> rest{};
 };
 
 struct Setup {
@@ -49,6 +51,10 @@ struct Setup {
 
 /// Returns a setup that begins now.
 Setup begin_setup(std::string program);
+
+/// Makes of a loop's setup the one of a loop that goes on from a later state. `layout` is the
+/// loop's.
+void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout, Setup& setup);
 
 /// Returns the file's header and the chunks of a setup, numbered from 0, and sets `chunks` to the
 /// number of these chunks.

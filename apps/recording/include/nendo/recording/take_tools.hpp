@@ -34,6 +34,7 @@ struct TakeSummary {
   std::vector<GloveSummary> gloves; ///< by their numbers
   std::array<std::uint64_t, flow::requests.size()> requests{};
   std::uint64_t wrist_moves = 0;
+  std::uint64_t settings_changes = 0;
   std::uint64_t shapes = 0;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0; ///< deadlines between ticks
@@ -75,7 +76,8 @@ Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesy
 
 /// Writes what happened from `begin` to before `end` to a new file, in whole ticks of a loop. Both
 /// times count from the beginning of the recording. If the part does not begin with the recording,
-/// it begins with a gap, because the shape at that moment is not in it. Errors: those of
+/// it begins with a gap, because the shape at that moment is not in it, and then with the settings
+/// of that moment. Errors: those of
 /// repair_take(), and bad_input if nothing happened then.
 Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesystem::path& to,
                          HostClock::duration begin, HostClock::duration end);

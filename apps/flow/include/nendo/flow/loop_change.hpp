@@ -1,0 +1,41 @@
+#pragma once
+// What another thread makes for a loop that runs, and hands to it ready. The loop's tick only swaps
+// pointers.
+
+#include <array>
+#include <optional>
+
+#include <nendo/flow/input_log.hpp>
+#include <nendo/flow/placement.hpp>
+#include <nendo/flow/shaping.hpp>
+#include <nendo/hand/range_adaptation.hpp>
+
+namespace nendo::flow {
+
+/// Where a loop is between two ticks, without the hands' grip, which ends there. A loop that is
+/// made of this (LoopOptions::held, and a first shape) does the same as the one that goes on.
+struct LoopState {
+  std::array<GloveSample, 2> latest{}; ///< of each hand, in the loop's order
+  std::array<std::optional<hand::LearnedRanges>, 2> learned{}; ///< of each hand
+  Placement placement{};                                       ///< without the gaps
+  bool held = true;
+  LoopSettings settings{};
+  SculptorOptions sculptor{};
+  deform::BlockShape shape;
+};
+
+/// Where the loop's input goes from a tick on.
+struct LogChange {
+  InputLog* log = nullptr; ///< null: nowhere
+  LoopState state;         ///< with which the log begins, or that it led to
+};
+
+struct LoopChange {
+  std::optional<LoopSettings> settings{}; ///< the loop goes on with them
+  LoopSettings settings_before{};
+  SculptorOptions sculptor_before{};
+  ReadySculptor ready{};
+  std::optional<LogChange> log{};
+};
+
+} // namespace nendo::flow

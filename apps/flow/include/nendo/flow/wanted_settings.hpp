@@ -1,0 +1,42 @@
+#pragma once
+// The settings that a person is choosing, with keys or with widgets. The window and the terminal
+// share it; the browser's page does the same.
+
+#include <array>
+#include <optional>
+
+#include <nendo/base/units.hpp>
+#include <nendo/flow/command.hpp>
+
+namespace nendo::flow {
+
+/// Shows what was asked for until a loop has had time to take it, and then what is in force,
+/// whoever has asked for it. For one thread; does not allocate.
+class WantedSettings {
+public:
+  static constexpr std::array kernels{deform::Wendland::c0, deform::Wendland::c2,
+                                      deform::Wendland::c4, deform::Wendland::c6};
+  /// The range of radii that keys and widgets choose from.
+  static constexpr double least_radius_m = 0.01;
+  static constexpr double most_radius_m = 0.4;
+  static constexpr HostClock::duration patience = std::chrono::seconds(1);
+
+  LoopSettings now; ///< what is chosen; widgets write here
+
+  /// To be called with each frame's settings. Returns true if other settings are chosen by that.
+  bool follow(const LoopSettings& in_force) noexcept;
+  /// Returns the command that asks for what is chosen, if nobody has asked for it yet.
+  std::optional<Command> ask() noexcept;
+
+  void other_mode() noexcept;
+  void next_kernel() noexcept;
+  /// Makes all radii larger or smaller by a factor, within the range.
+  void scale_radii(double factor) noexcept;
+  bool has_one_radius() const noexcept; ///< for all fingers
+
+private:
+  LoopSettings asked_;
+  HostTime asked_at_{};
+};
+
+} // namespace nendo::flow

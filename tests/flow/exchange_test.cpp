@@ -1,0 +1,346 @@
+// Settings change from one tick to the next: the shape does not, the history stays, and what
+// follows is what a loop of these settings makes of that shape.
+
+#include <atomic>
+#include <random>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "support/flow_fixtures.hpp"
+#include "support/restraint.hpp"
+
+namespace exchange_test {
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::flow;
+using nendo::test::LoopUnderTest;
+using nendo::test::Restraint;
+
+namespace {
+
+/// Ticks of a clock that a test sets itself.
+struct Clocked {
+  LoopUnderTest test;
+  HostTime now = HostClock::now();
+  std::uint64_t number = 0;
+
+  explicit Clocked(Mode mode, const test::LoopFixture& fixture = {.rings_of_ball = 12})
+      : test(mode, fixture) {}
+
+  deform::Points tick(HostClock::duration later = 1ms) {
+    now += later;
+    test.loop->tick(number++, now, now);
+    test.loop->frames().update();
+    return test.vertices_of(frame());
+  }
+  deform::Points bent(int counts, HostClock::duration later = 11ms) {
+    test.bend(counts, now + later);
+    return tick(later);
+  }
+  /// Bends the hands little by little, up to `counts`.
+  deform::Points stroke(int from, int counts) {
+    deform::Points shape;
+    for (int at = from; at != counts; at += from < counts ? 1 : -1)
+      shape = bent(at);
+    return shape;
+  }
+  const Frame& frame() { return test.loop->frames().front(); }
+  void change(const LoopSettings& settings) { REQUIRE(test.loop->change_settings(settings)); }
+};
+
+double gap(const deform::Points& a, const deform::Points& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+LoopSettings with_radius(LoopSettings settings, double radius_m) {
+  settings.radius_m.fill(radius_m);
+  return settings;
+}
+
+} // namespace
+
+TEST_SUITE("exchange") {
+  TEST_CASE("hands that rest do not move the shape, whatever is changed") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      CAPTURE(name_of(mode));
+      Clocked loop(mode, {.rings_of_ball = 12, .filter = hand::FilterKind::one_euro});
+      deform::Points shape = loop.stroke(0, 15);
+      for (int tick = 0; tick < 400; ++tick) // the filter lets the hands come to rest
+        shape = loop.bent(15);
+      loop.test.commands.try_push(Request::commit); // completes a stroke of type 2
+      shape = loop.bent(15);
+      CHECK(gap(shape, loop.test.model.vertices) > 1e-2);
+      std::mt19937 random(7);
+      for (int at = 0; at < 60; ++at) {
+        loop.change(test::any_settings(loop.test.loop->settings(), random));
+        for (int tick = 0; tick < 2; ++tick)
+          CHECK(gap(loop.bent(15), shape) < 1e-6);
+      }
+      CHECK(loop.test.loop->stats().changes > 30);
+    }
+  }
+
+  TEST_CASE("a change of the filter in mid-motion does not move the shape by itself") {
+    Clocked loop(Mode::type1, {.rings_of_ball = 12, .filter = hand::FilterKind::one_euro});
+    deform::Points shape = loop.stroke(0, 30); // the filter is late now
+    LoopSettings settings = loop.test.loop->settings();
+    settings.filter.kind = hand::FilterKind::off;
+    loop.change(settings);
+    shape = loop.tick();
+    for (int tick = 0; tick < 3; ++tick)
+      CHECK(gap(loop.tick(), shape) < 1e-6);
+    CHECK(loop.frame().settings.filter.kind == hand::FilterKind::off);
+  }
+
+  TEST_CASE("after a change the loop does what one does that begins there with those settings") {
+    for (unsigned seed = 0; seed < 12; ++seed) {
+      CAPTURE(seed);
+      std::mt19937 random(seed);
+      Clocked loop(seed % 2 == 0 ? Mode::type1 : Mode::type2);
+      loop.stroke(0, 15);
+      const LoopSettings before = loop.test.loop->settings();
+      LoopSettings settings = before;
+      while (settings == before)
+        settings = test::any_settings(before, random);
+      loop.change(settings);
+      loop.bent(16);
+      // Another loop, of the options that these settings mean, which begins with this shape.
+      LoopOptions options = loop.test.options;
+      options.sculptor = loop.test.loop->sculptor_options();
+      const LoopSettings of_sculptor =
+          settings_of(options.sculptor, settings.filter, loop.test.placement.units_per_metre);
+      CHECK(of_sculptor.mode == settings.mode);
+      CHECK(of_sculptor.kernel == settings.kernel);
+      CHECK(of_sculptor.injective == settings.injective);
+      CHECK(of_sculptor.piece_fraction == doctest::Approx(settings.piece_fraction));
+      for (std::size_t finger = 0; finger < 5; ++finger)
+        CHECK(of_sculptor.radius_m[finger] == doctest::Approx(settings.radius_m[finger]));
+      LoopUnderTest other(Mode::type1, {.rings_of_ball = 12});
+      for (auto& input : other.inputs) {
+        input.first = test::bent_sample(input.side, 16, loop.now);
+        input.filter = settings.filter;
+      }
+      options.commands = &other.commands;
+      other.loop = std::make_unique<DeformLoop>(loop.test.model, loop.test.placement, other.inputs,
+                                                options, &loop.frame().shape);
+      for (int counts = 17; counts < 30; ++counts) {
+        const deform::Points shape = loop.bent(counts);
+        other.bend(counts, loop.now);
+        CHECK(gap(other.vertices_of(other.frame_after_tick(loop.number)), shape) < 1e-6);
+      }
+    }
+  }
+
+  TEST_CASE("undo leads back over changes to the beginning, and redo forth again") {
+    for (const auto& [mode, other] : {std::pair{Mode::type1, Mode::type1},
+                                      {Mode::type1, Mode::type2},
+                                      {Mode::type2, Mode::type1},
+                                      {Mode::type2, Mode::type2}}) {
+      const Mode from = mode, to = other; // Clang 14 captures no structured bindings
+      CAPTURE(name_of(from));
+      CAPTURE(name_of(to));
+      Clocked loop(from);
+      std::vector<deform::Points> shapes{loop.test.model.vertices};
+      loop.stroke(0, 15);
+      LoopSettings settings = with_radius(loop.test.loop->settings(), 0.3);
+      settings.mode = to;
+      loop.change(settings);
+      shapes.push_back(loop.bent(15));
+      loop.stroke(15, 25);
+      REQUIRE(loop.test.commands.try_push(Request::commit));
+      shapes.push_back(loop.bent(25));
+      loop.stroke(25, 5);
+      loop.now += 2s; // a step of its own
+      settings = with_radius(settings, 0.15);
+      loop.change(settings);
+      shapes.push_back(loop.bent(5));
+      for (std::size_t at = 1; at < shapes.size(); ++at)
+        CHECK(gap(shapes[at], shapes[at - 1]) > 1e-3);
+      CHECK(loop.frame().undo_steps == 3);
+      for (std::size_t at = shapes.size() - 1; at > 0; --at) {
+        REQUIRE(loop.test.commands.try_push(Request::undo));
+        CHECK(gap(loop.tick(), shapes[at - 1]) < test::float_gap);
+      }
+      CHECK(loop.frame().undo_steps == 0);
+      CHECK(gap(loop.tick(), loop.test.model.vertices) == 0.0); // to the last bit
+      for (std::size_t at = 1; at < shapes.size(); ++at) {
+        REQUIRE(loop.test.commands.try_push(Request::redo));
+        CHECK(gap(loop.tick(), shapes[at]) < test::float_gap);
+      }
+      CHECK(loop.frame().redo_steps == 0);
+      CHECK(loop.frame().settings == settings); // which are no step yet
+    }
+  }
+
+  TEST_CASE("what is shaped between changes within a second is one step") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      Clocked loop(mode);
+      LoopSettings settings = loop.test.loop->settings();
+      loop.change(with_radius(settings, 0.31)); // nothing is shaped yet: no step
+      loop.bent(0);
+      CHECK(loop.frame().undo_steps == 0);
+      for (int at = 0; at < 10; ++at) {
+        loop.stroke(2 * at, 2 * at + 2);
+        loop.change(with_radius(settings, 0.3 - 0.01 * at));
+      }
+      const deform::Points shape = loop.bent(20);
+      CHECK(gap(shape, loop.test.model.vertices) > 1e-2);
+      CHECK(loop.frame().undo_steps == 1);
+      REQUIRE(loop.test.commands.try_push(Request::undo));
+      CHECK(gap(loop.bent(20), loop.test.model.vertices) == 0.0);
+      REQUIRE(loop.test.commands.try_push(Request::redo));
+      CHECK(gap(loop.bent(20), shape) < test::float_gap);
+    }
+  }
+
+  TEST_CASE("a reset goes back to the model to the last bit, and undo takes it back") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      CAPTURE(name_of(mode));
+      Clocked loop(mode);
+      loop.stroke(0, 15);
+      REQUIRE(loop.test.commands.try_push(Request::commit));
+      const deform::Points shape = loop.stroke(15, 22);
+      REQUIRE(loop.test.commands.try_push(Request::reset));
+      CHECK(gap(loop.bent(21), loop.test.model.vertices) == 0.0);
+      CHECK(loop.test.loop->stats().resets == 1);
+      REQUIRE(loop.test.commands.try_push(Request::undo));
+      CHECK(gap(loop.bent(21), shape) < test::float_gap);
+      REQUIRE(loop.test.commands.try_push(Request::reset));
+      REQUIRE(loop.test.commands.try_push(Request::reset)); // which changes nothing more
+      CHECK(gap(loop.bent(21), loop.test.model.vertices) == 0.0);
+      CHECK(gap(loop.stroke(21, 30), loop.test.model.vertices) > 1e-3); // the hands hold it
+    }
+  }
+
+  TEST_CASE("settings that nothing can be done with are refused, and change nothing") {
+    Clocked loop(Mode::type1);
+    const LoopSettings before = loop.test.loop->settings();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double radius : {0.0, -0.1, nan, 1e300, std::numeric_limits<double>::infinity()}) {
+      LoopSettings settings = before;
+      settings.radius_m[3] = radius;
+      CHECK_FALSE(loop.test.loop->change_settings(settings));
+    }
+    LoopSettings settings = before;
+    settings.piece_fraction = nan;
+    CHECK_FALSE(loop.test.loop->change_settings(settings));
+    settings = before;
+    settings.filter.min_cutoff_hz = nan;
+    CHECK_FALSE(loop.test.loop->change_settings(settings));
+    CHECK(loop.test.loop->settings() == before);
+    CHECK_FALSE(loop.test.loop->is_changing());
+    loop.tick();
+    CHECK(loop.test.loop->stats().changes == 0);
+  }
+
+  TEST_CASE(
+      "of changes that the loop has not taken only the last counts, and none if it leads back") {
+    Clocked loop(Mode::type1);
+    const LoopSettings before = loop.test.loop->settings();
+    loop.change(with_radius(before, 0.2));
+    loop.change(with_radius(before, 0.25));
+    CHECK(loop.test.loop->is_changing());
+    loop.bent(1);
+    CHECK_FALSE(loop.test.loop->is_changing());
+    CHECK(loop.test.loop->stats().changes == 1);
+    loop.bent(2);
+    CHECK(loop.frame().settings == with_radius(before, 0.25));
+    loop.change(before);
+    loop.change(with_radius(before, 0.25));
+    CHECK_FALSE(loop.test.loop->is_changing());
+    loop.bent(3);
+    CHECK(loop.test.loop->stats().changes == 1);
+    CHECK(loop.test.loop->sculptor_options().deformer.supports.shared.front().radius ==
+          doctest::Approx(0.25 * loop.test.placement.units_per_metre));
+  }
+
+  TEST_CASE(
+      "100,000 ticks with commands of all kinds allocate nothing, free nothing, lock nothing") {
+    constexpr std::uint64_t ticks = 25'000;
+    test::RestraintCounts sum;
+    std::uint64_t changes = 0;
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      InputLog log;
+      LoopUnderTest test(seed % 2 == 0 ? Mode::type1 : Mode::type2,
+                         {.rings_of_ball = 6, .adapt = CountScale{}, .input_log = &log});
+      std::mt19937 random(seed);
+      HostTime now = HostClock::now();
+      int counts = 0;
+      for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+        if (random() % 12 == 0)
+          test.loop->change_settings(test::any_settings(test.loop->settings(), random));
+        if (random() % 400 == 0)
+          test.loop->change_log(random() % 2 == 0 ? &log : nullptr,
+                                test.loop->frames().front().shape);
+        if (random() % 8 == 0) test.commands.try_push(requests[random() % requests.size()]);
+        if (random() % 8 == 0)
+          test.commands.try_push(WristMove::to(Side::left, test.placement.T_stage_wrist[0]));
+        counts = std::clamp(counts + static_cast<int>(random() % 5) - 2, 0, 40);
+        now += 1ms;
+        test.bend(counts, now);
+        {
+          const Restraint restraint;
+          test.loop->tick(tick, now, now);
+          const test::RestraintCounts of_tick = restraint.counts();
+          sum.allocations += of_tick.allocations;
+          sum.frees += of_tick.frees;
+          sum.locks += of_tick.locks;
+        }
+        if (random() % 2 == 0) test.loop->frames().update(); // a reader that comes when it likes
+        log.drain([](const auto&) noexcept {});
+        test.loop->take_state();
+        test.loop->refill_undo();
+      }
+      changes += test.loop->stats().changes;
+      CHECK(test.loop->stats().undos + test.loop->stats().resets > 100);
+    }
+    CHECK(sum.allocations == 0);
+    CHECK(sum.frees == 0);
+    CHECK(sum.locks == 0);
+    CHECK(changes > 5000);
+  }
+
+  TEST_CASE(
+      "a loop on its own thread takes what another thread asks for, all of it, in its order") {
+    InputLog log;
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 8, .rate_hz = 2000.0, .input_log = &log});
+    std::atomic<bool> over{false};
+    std::thread thread([&] { test.loop->run(over); });
+    std::mt19937 random(3);
+    LoopSettings last{};
+    std::uint64_t taken = 0;
+    int logs = 0;
+    const auto read = [&](const InputLogEntry& entry) noexcept {
+      const auto* const command = std::get_if<Command>(&entry);
+      if (command == nullptr || !std::holds_alternative<ChangeSettings>(*command)) return;
+      last = std::get<ChangeSettings>(*command).settings;
+      ++taken;
+    };
+    for (int turn = 0; turn < 200; ++turn) {
+      test.bend(turn % 30, HostClock::now());
+      test.loop->change_settings(test::any_settings(test.loop->settings(), random));
+      if (turn % 10 == 0) test.loop->change_log(&log, test.loop->frames().front().shape);
+      test.loop->frames().update();
+      if (turn % 3 == 0) std::this_thread::sleep_for(1ms);
+      if (test.loop->take_state()) ++logs;
+      log.drain(read);
+    }
+    const HostTime latest = HostClock::now() + 10s;
+    while (test.loop->is_changing() && HostClock::now() < latest)
+      std::this_thread::sleep_for(1ms);
+    over = true;
+    thread.join();
+    log.drain(read);
+    while (test.loop->take_state())
+      ++logs;
+    CHECK(last == test.loop->settings());
+    CHECK(taken == test.loop->stats().changes);
+    CHECK(taken > 20);
+    CHECK(logs > 5);
+    CHECK(log.lost() == 0);
+  }
+}
+
+} // namespace exchange_test

@@ -1,0 +1,146 @@
+// A loop whose settings change, and a recording that begins while it runs, are replayed bit for
+// bit.
+
+#include <memory>
+
+#include <doctest/doctest.h>
+
+#include <nendo/recording/loop_replay.hpp>
+
+#include "support/takes.hpp"
+
+namespace live_settings_test {
+
+using namespace nendo;
+using namespace nendo::recording;
+using flow::Mode;
+using flow::SwitchAction;
+using hand::FilterKind;
+using test::RecordedLoop;
+
+namespace {
+
+/// One of the ways in which a loop can begin.
+std::unique_ptr<RecordedLoop> loop_of(unsigned seed) {
+  constexpr std::array actions{SwitchAction::none, SwitchAction::toggle, SwitchAction::commit,
+                               SwitchAction::grab};
+  return std::make_unique<RecordedLoop>(seed % 2 == 0 ? Mode::type1 : Mode::type2,
+                                        seed % 3 == 0 ? FilterKind::one_euro : FilterKind::off,
+                                        seed % 5 == 0, seed % 4 >= 2,
+                                        actions[seed % actions.size()]);
+}
+
+using Shapes = std::vector<deform::Points>;
+
+struct Replayed {
+  Shapes shapes; ///< of each tick
+  deform::Points last;
+  std::uint64_t changes = 0;
+};
+
+Replayed replayed(const std::filesystem::path& path, const deform::Mesh& model) {
+  auto reader = TakeReader::open(path);
+  REQUIRE(reader);
+  auto replay = LoopReplay::make(reader->setup(), model);
+  REQUIRE(replay);
+  Replayed result;
+  flow::DeformLoop& loop = (*replay)->loop();
+  while (const auto entry = reader->next()) {
+    if (!(*replay)->feed(*entry)) continue;
+    loop.frames().update();
+    loop.layout().unpack(loop.frames().front().shape, result.shapes.emplace_back());
+  }
+  CHECK((*replay)->is_exact());
+  CHECK(reader->strange() == 0);
+  result.last = loop.final_shape();
+  result.changes = loop.stats().changes;
+  REQUIRE(reader->ending());
+  CHECK(reader->ending()->shape == sum_of(result.last));
+  return result;
+}
+
+} // namespace
+
+TEST_SUITE("live_settings") {
+  TEST_CASE(
+      "whatever is asked for and changed, each frame of a replay is the live one, bit for bit") {
+    for (unsigned seed = 0; seed < 16; ++seed) {
+      CAPTURE(seed);
+      const auto live = loop_of(seed);
+      live->record();
+      Shapes shapes;
+      test::play(*live, 200, seed, true, [&](const flow::Frame& frame) {
+        shapes.push_back(live->test.vertices_of(frame));
+      });
+      REQUIRE(live->end());
+      const auto again = replayed(live->path, live->test.model);
+      CHECK(again.shapes == shapes);
+      CHECK(again.last == live->test.loop->final_shape());
+      CHECK(again.changes == live->test.loop->stats().changes);
+      CHECK(again.changes > 5);
+    }
+  }
+
+  TEST_CASE(
+      "a recording that begins and ends while the loop runs has what is between, bit for bit") {
+    int shaped = 0;
+    for (unsigned seed = 0; seed < 16; ++seed) {
+      CAPTURE(seed);
+      const auto live = loop_of(seed);
+      flow::InputLog log;
+      flow::DeformLoop& loop = *live->test.loop;
+      std::uint64_t tick = 0;
+      const auto change_log = [&](flow::InputLog* to) {
+        loop.change_log(to, loop.frames().front().shape);
+        CHECK_FALSE(loop.take_state());
+        live->test.frame_after_tick(tick++);
+        auto state = loop.take_state();
+        REQUIRE(state);
+        CHECK_FALSE(loop.take_state());
+        return *std::move(state);
+      };
+      test::play(*live, 150, seed, true, [](const flow::Frame&) {});
+      tick = 1000;
+      const flow::LoopState begun = change_log(&log);
+      Setup setup = live->setup;
+      continue_from(begun, loop.layout(), setup);
+      const auto path = live->folder.path() / "part.nendo";
+      auto recorder = Recorder::begin(setup, log, {.file = path});
+      REQUIRE(recorder);
+      Shapes shapes;
+      test::play(*live, 150, seed + 100, true, [&](const flow::Frame& frame) {
+        shapes.push_back(live->test.vertices_of(frame));
+      });
+      tick = 2000;
+      const flow::LoopState ended = change_log(nullptr);
+      shapes.push_back(live->test.vertices_of(loop.frames().front()));
+      deform::Points last;
+      loop.layout().unpack(ended.shape, last);
+      CHECK(shapes.back() == last);
+      test::play(*live, 50, seed + 200, true, [](const flow::Frame&) {});
+      REQUIRE((*recorder)->end(sum_of(last)));
+      const auto again = replayed(path, live->test.model);
+      CHECK(again.shapes == shapes);
+      CHECK(again.last == last);
+      shaped += (last - live->test.model.vertices).cwiseAbs().maxCoeff() > 1e-3 ? 1 : 0;
+    }
+    CHECK(shaped >= 8); // the others end with an undo or a reset
+  }
+
+  TEST_CASE("a shape at the beginning that is no shape of the model is refused") {
+    RecordedLoop live(Mode::type1);
+    live.setup.loop->rest.resize(1);
+    const auto replay = LoopReplay::make(live.setup, live.test.model);
+    REQUIRE_FALSE(replay);
+    CHECK(replay.error().code == Errc::bad_input);
+    live.setup.loop->rest.front().x[3] = std::numeric_limits<float>::quiet_NaN();
+    live.record();
+    REQUIRE(live.end());
+    auto reader = TakeReader::open(live.path);
+    REQUIRE(reader);
+    CHECK(reader->setup().loop->rest.empty());
+    CHECK(reader->strange() == 1);
+  }
+}
+
+} // namespace live_settings_test
