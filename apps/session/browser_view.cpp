@@ -42,6 +42,7 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
     gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
   server_->set_gloves(gloves);
   server_->set_settings(status.frame.settings, status.recording);
+  server_->set_steps(status.frame.steps);
   while (auto command = server_->next_command()) {
     if (auto* const change = std::get_if<flow::ChangeSettings>(&*command))
       keep_numbers(status.frame.settings, change->settings);

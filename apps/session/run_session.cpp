@@ -115,12 +115,14 @@ private:
       refusal_reported_ = true;
       report("the loop does not answer, so it was not asked to " + std::string(name_of(*refused)));
     }
-    change_loop();
+    change_loop(fresh);
   }
 
   // Passes on the newest settings when the loop has those before, and begins or ends a recording.
-  void change_loop() {
+  void change_loop(bool fresh) {
     flow::DeformLoop& loop = *placed_.loop;
+    const auto& awaited = loop.frames().front().awaited; // by an undo or a redo
+    if (fresh && awaited && !settings_) settings_ = awaited;
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
       report("settings that nothing can be done with; the run goes on as it was");
     if (record_ && !recorder_.is_changing())
@@ -147,15 +149,20 @@ private:
 
   // Commands that came just before the end are still obeyed, if the loop ticks at all.
   void wait_until_taken() {
-    const HostTime latest = HostClock::now() + std::chrono::seconds(1);
     const auto is_due = [this] {
       return loop_commands_.size() > 0 || settings_ || record_ || recorder_.is_changing() ||
              placed_.loop->is_changing();
     };
-    while (is_due() && HostClock::now() < latest) {
+    auto& frames = placed_.loop->frames();
+    const HostTime begin = HostClock::now();
+    const auto waits_for = [&](milliseconds most) { return HostClock::now() - begin < most; };
+    // Only a further frame tells that an undo waits for settings.
+    for (bool is_news = false; waits_for(milliseconds(is_due() ? 1000 : 100));) {
       std::this_thread::sleep_for(milliseconds(1));
-      placed_.loop->frames().update();
-      change_loop();
+      const bool fresh = frames.update();
+      change_loop(fresh);
+      is_news = is_news || fresh;
+      if (is_news && !is_due() && !frames.front().awaited) return;
     }
   }
 
@@ -237,7 +244,7 @@ private:
   std::vector<Observer*> observers_;
   std::vector<flow::Grant> grants_;
   flow::CommandRing commands_{2048}; ///< of all observers
-  flow::CommandRing loop_commands_{64};
+  flow::CommandRing loop_commands_{256};
   std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
   std::optional<flow::Request> refused_;                 ///< the loop had no room for it
   bool refusal_reported_ = false;                        ///< and no request was accepted since

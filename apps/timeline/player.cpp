@@ -12,7 +12,9 @@ namespace {
 constexpr double a_hair = 1e-6; // of a frame
 
 flow::ShapingOptions shaping_options(const Timeline& timeline) {
-  flow::ShapingOptions options{timeline.sculptor, deform::half_of_memory()};
+  flow::ShapingOptions options{timeline.sculptor,
+                               flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre),
+                               deform::half_of_memory()};
   options.sculptor.deformer.undo_bytes = 0;
   options.most_requests = timeline.events.size() + 1;
   options.held = timeline.held;
@@ -95,6 +97,7 @@ bool Player::next() {
   const double time_s = time_of(made_);
   pose_hands(time_s);
   shaping_.refill_undo();
+  shaping_.set_time(time_s);
   const bool asked = ask_what_is_due(time_s);
   // The hands have just taken hold here: without a wish there is nothing to do.
   if (made_ > 0 || asked) frame_.status = shaping_.shape(tips_, frame_, stats_);

@@ -65,6 +65,14 @@ bool tipped_button(const char* words, const char* what, float width, bool possib
   return chosen && possible;
 }
 
+/// Undoes, or does again, all steps up to the one with that number; 0: also the first of the list.
+void go_to_step(const flow::StepList& list, std::size_t at, Commands& commands) {
+  for (std::size_t step = list.undoable + (list.in_hand ? 1 : 0); step > at; --step)
+    commands.emplace_back(Request::undo);
+  for (std::size_t step = list.undoable; step < at; ++step)
+    commands.emplace_back(Request::redo);
+}
+
 } // namespace
 
 float Strip::most() const noexcept {
@@ -163,6 +171,35 @@ void LiveWindow::Panel::settings() {
   ImGui::PopItemWidth();
 }
 
+void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
+  const flow::StepList& list = frame.steps;
+  const std::size_t hidden =
+      frame.undo_steps - std::min<std::uint64_t>(frame.undo_steps, list.undoable);
+  ImGui::BeginChild("steps", ImVec2(0.0F, 96.0F), true);
+  for (std::size_t at = 0; at <= list.count; ++at) {
+    char words[48];
+    if (at == 0) {
+      std::snprintf(words, sizeof words, "%s", hidden > 1 ? "earlier" : "the beginning");
+    } else {
+      const flow::Step& step = list.steps[at - 1];
+      const auto seconds = static_cast<int>(step.at_s);
+      std::snprintf(words, sizeof words, "%d:%02d  %s", seconds / 60, seconds % 60,
+                    std::string(name_of(step.kind)).c_str());
+    }
+    ImGui::PushID(static_cast<int>(at));
+    const bool is_undone = at > list.undoable;
+    if (is_undone)
+      ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    const bool is_present = at == list.undoable;
+    if (ImGui::Selectable(words, is_present)) go_to_step(list, at, commands);
+    if (is_present && std::exchange(history_shown, list.version) != list.version)
+      ImGui::SetScrollHereY(0.5F);
+    if (is_undone) ImGui::PopStyleColor();
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+}
+
 void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) const {
   ImGui::Text("%g Hz wanted, type %d", gauges.rate_hz,
               frame.settings.mode == flow::Mode::type1 ? 1 : 2);
@@ -210,6 +247,8 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
     panel_->buttons(frame, gauges, commands);
     panel_->parts(*window_);
     if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings();
+    if (ImGui::CollapsingHeader("History", ImGuiTreeNodeFlags_DefaultOpen))
+      panel_->history(frame, commands);
     if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->timing(frame, gauges);
     if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))

@@ -18,6 +18,10 @@ namespace nendo::web {
 using SharedBytes = std::shared_ptr<const std::vector<std::byte>>;
 SharedBytes shared_bytes(std::string_view text);
 
+/// The messages that each client gets when it comes and whenever they change: the settings, the
+/// steps.
+using Facts = std::array<SharedBytes, 2>;
+
 class Connection {
 public:
   enum class Stage {
@@ -68,7 +72,7 @@ public:
 
   ClientReader reader;
   Feed feed;
-  SharedBytes settings; ///< the settings message that it was sent last
+  Facts told; ///< the messages that it was sent last
 
 private:
   struct Part {

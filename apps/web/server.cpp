@@ -56,6 +56,10 @@ void Server::set_settings(const flow::LoopSettings& settings, bool recorded) {
   work_->set_settings(settings, recorded);
 }
 
+void Server::set_steps(const flow::StepList& steps) {
+  work_->set_steps(steps);
+}
+
 void Server::set_gloves(const GloveStates& gloves) noexcept {
   for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
     Work::SharedGloveState& shared = work_->gloves[slot];

@@ -89,6 +89,9 @@ public:
   /// Sets what the loop runs with and whether it is recorded to a file. Clients are told when they
   /// come and when it changes. Any thread may call it; does not wait for the network.
   void set_settings(const flow::LoopSettings& settings, bool recorded);
+  /// Sets the steps of the history. Clients are told when they come and when it changes. Any thread
+  /// may call it; does not wait for the network.
+  void set_steps(const flow::StepList& steps);
   /// Sets what the page shows of each glove. Any thread may call it; wait-free.
   void set_gloves(const GloveStates& gloves) noexcept;
   /// Returns the counters. Each number is right by itself, but they are not all of the same moment.

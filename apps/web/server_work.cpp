@@ -69,12 +69,22 @@ void Server::Work::report(std::string message) {
 void Server::Work::set_settings(const flow::LoopSettings& settings, bool recorded) {
   {
     const std::scoped_lock lock(mutex_);
-    if (settings_message_ && settings == settings_ && recorded == recorded_) return;
+    if (facts_[0] && settings == settings_ && recorded == recorded_) return;
     settings_ = settings;
     recorded_ = recorded;
     std::vector<std::byte> message(sizeof(SettingsMessage));
     WireWriter(message).put(message_of(settings, recorded));
-    settings_message_ = std::make_shared<const std::vector<std::byte>>(std::move(message));
+    facts_[0] = std::make_shared<const std::vector<std::byte>>(std::move(message));
+  }
+  wake();
+}
+
+void Server::Work::set_steps(const flow::StepList& steps) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (facts_[1] && steps.version == steps_version_) return;
+    steps_version_ = steps.version;
+    facts_[1] = std::make_shared<const std::vector<std::byte>>(message_of(steps));
   }
   wake();
 }
@@ -92,7 +102,7 @@ void Server::Work::run() {
     const HostTime now = HostClock::now();
     take_presented();
     send_report(now);
-    send_settings(now);
+    send_facts(now);
     std::size_t at = 2; // behind the listener and the waker
     for (Connection& connection : connections_)
       serve(connection, polled_[at++].revents, now);
@@ -164,19 +174,21 @@ void Server::Work::send_report(HostTime now) {
       client.send(Opcode::binary, message, false, now);
 }
 
-// Each client gets each message once, before the updates that follow it. It is small, so that also
-// a client whose queue is long gets it.
-void Server::Work::send_settings(HostTime now) {
-  SharedBytes message;
+// Each client gets each message once, before the updates that follow it. They are small, so that
+// also a client whose queue is long gets them.
+void Server::Work::send_facts(HostTime now) {
+  Facts facts;
   {
     const std::scoped_lock lock(mutex_);
-    message = settings_message_;
+    facts = facts_;
   }
-  if (!message) return;
   for (Connection& client : connections_) {
-    if (client.stage() != Connection::Stage::socket || client.settings == message) continue;
-    client.settings = message;
-    client.send(Opcode::binary, message, false, now);
+    if (client.stage() != Connection::Stage::socket) continue;
+    for (std::size_t at = 0; at < facts.size(); ++at) {
+      if (!facts[at] || client.told[at] == facts[at]) continue;
+      client.told[at] = facts[at];
+      client.send(Opcode::binary, facts[at], false, now);
+    }
   }
 }
 

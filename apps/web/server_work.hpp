@@ -26,6 +26,7 @@ public:
   void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model);
   void report(std::string message);
   void set_settings(const flow::LoopSettings& settings, bool recorded);
+  void set_steps(const flow::StepList& steps);
 
   const Endpoint endpoint;
   const std::string token;
@@ -57,7 +58,7 @@ private:
   void wake() noexcept;
   void take_presented();
   void send_report(HostTime now);
-  void send_settings(HostTime now);
+  void send_facts(HostTime now);
   void end();
   void accept_all(HostTime now);
   void make_room();
@@ -75,12 +76,13 @@ private:
 
   const ServerLimits limits_;
   Descriptor listener_, waker_;
-  std::mutex mutex_;              ///< guards the next six
+  std::mutex mutex_;              ///< guards the next seven
   std::optional<Presented> next_; ///< set by present() and not taken yet
   std::uint16_t loops_ = 0;
   std::string report_; ///< the newest one; empty if it has been sent
   flow::LoopSettings settings_;
-  SharedBytes settings_message_; ///< null before they are known
+  std::uint64_t steps_version_ = 0;
+  Facts facts_; ///< as messages; null before they are known
   bool recorded_ = false;
   Presented presented_;
   std::list<Connection> connections_; ///< the oldest first

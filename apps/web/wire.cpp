@@ -112,7 +112,7 @@ void write_turn(const Eigen::Isometry3d& pose, WireWriter& out) noexcept {
 
 UpdateHead head_of(const flow::Frame& frame) noexcept {
   UpdateHead head;
-  head.state = frame.held ? 1 : 0;
+  head.state = static_cast<std::uint8_t>((frame.held ? 1U : 0U) | (frame.steps.in_hand ? 8U : 0U));
   head.status = static_cast<std::uint8_t>(frame.status);
   head.tick = frame.tick;
   head.ticks = frame.ticks_run;
@@ -142,6 +142,21 @@ SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) no
   message.flags = static_cast<std::uint8_t>((settings.injective ? 1U : 0U) | (filtered ? 2U : 0U) |
                                             (recorded ? 4U : 0U));
   std::copy(settings.radius_m.begin(), settings.radius_m.end(), message.radius_m);
+  return message;
+}
+
+std::vector<std::byte> message_of(const flow::StepList& steps) {
+  std::vector<std::byte> message(steps_head_bytes + step_bytes * steps.count);
+  WireWriter out(message);
+  out.put(static_cast<std::uint8_t>(MessageType::steps));
+  out.put(static_cast<std::uint8_t>(steps.count));
+  out.put(static_cast<std::uint8_t>(steps.undoable));
+  out.put(std::uint8_t{0});
+  out.put(std::uint32_t{0});
+  for (const flow::Step& step : steps.all()) {
+    out.put(static_cast<std::uint32_t>(step.kind));
+    out.put(step.at_s);
+  }
   return message;
 }
 

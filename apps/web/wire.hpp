@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <vector>
 
 #include <nendo/deform/field_sequence.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
@@ -16,13 +17,20 @@ namespace nendo::web {
 
 static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
 
-enum class MessageType : std::uint8_t { shape = 1, update = 2, report = 3, settings = 4 };
+enum class MessageType : std::uint8_t {
+  shape = 1,
+  update = 2,
+  report = 3,
+  settings = 4,
+  steps = 5
+};
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 
 /// The head of an update message, in PROTOCOL.md's order and without gaps.
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
-  std::uint8_t state = 0; ///< bit 0: the hands hold the model; 1, 2: left, right is uncalibrated
+  /// Bit 0: the hands hold the model; 1, 2: left, right is uncalibrated; 3: StepList::in_hand.
+  std::uint8_t state = 0;
   /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones. And of the history: 6, 7:
   /// there is something to undo, to redo.
   std::uint8_t hands = 0;
@@ -86,6 +94,9 @@ struct SettingsMessage {
 };
 static_assert(sizeof(SettingsMessage) == 48);
 
+inline constexpr std::size_t steps_head_bytes = 8;
+inline constexpr std::size_t step_bytes = 8;
+
 /// Tells whether a joint's rotation is sent with each frame. The other joints do not move relative
 /// to their parents.
 constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
@@ -129,6 +140,8 @@ private:
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
 SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept;
+/// Returns the message with the steps of the history. Allocates.
+std::vector<std::byte> message_of(const flow::StepList& steps);
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
 /// Writes a step. `origin` and `unit` are those of the loop's BlockLayout. Functions whose
 /// coefficient is zero are left out, and so are centres that follow from the previous field.

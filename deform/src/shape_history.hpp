@@ -1,15 +1,19 @@
 #pragma once
 // The shapes before the last steps, and after the steps that were undone. It keeps only the blocks
-// that each step changed. When memory ends, the oldest steps make room for new ones.
+// that each step changed, and a note of each step. When memory ends, the oldest steps make room for
+// new ones.
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include <nendo/deform/step_note.hpp>
 #include <nendo/deform/undo_memory.hpp>
 
 #include "block_evaluator.hpp"
+#include "saved_block.hpp"
 
 namespace nendo::deform {
 
@@ -26,6 +30,12 @@ public:
   /// nothing changed, there is no step. A step for which there is no room is not kept, and neither
   /// are those before it.
   void keep(const BlockShape& now) noexcept;
+  /// Sets what is noted of the steps that keep() ends from now on.
+  void set_note(const StepNote& note) noexcept { note_ = note; }
+  /// Adds a step that does not change the shape, and forgets undone steps.
+  void mark(const StepNote& note) noexcept;
+  /// Makes `shape` again the shape that was kept last.
+  void revert(BoundedShape& shape) const noexcept;
   /// Undoes the last step. `shape` must be the shape that was kept last. Returns false if there is
   /// no step, or none behind the fence.
   bool undo(BoundedShape& shape) noexcept;
@@ -37,8 +47,33 @@ public:
   void fence() noexcept {
     forget_undone();
     fence_ = steps_;
+    ++version_;
   }
-  void unfence() noexcept { fence_ = 0; }
+  void unfence() noexcept {
+    fence_ = 0;
+    ++version_;
+  }
+
+  /// Returns the note of the step that undo() or redo() would do next; null if there is none.
+  const StepNote* to_undo() const noexcept { return steps() > 0 ? &head_->of_step.note : nullptr; }
+  const StepNote* to_redo() const noexcept {
+    return undone_ > 0 ? &next_head()->of_step.note : nullptr;
+  }
+  /// Changes that note. There must be such a step.
+  void note_to_undo(const StepNote& note) noexcept {
+    head_->of_step.note = note;
+    ++version_;
+  }
+  void note_to_redo(const StepNote& note) noexcept {
+    next_head()->of_step.note = note;
+    ++version_;
+  }
+  /// Copies the notes of the last steps that can be undone, the last one first, and of the first of
+  /// those that were undone, the first one first. Returns how many there were to copy.
+  std::size_t copy_undoable(std::span<StepNote> notes) const noexcept;
+  std::size_t copy_undone(std::span<StepNote> notes) const noexcept;
+  /// Returns a number that changes whenever these lists do.
+  std::uint64_t version() const noexcept { return version_; }
 
   std::size_t steps() const noexcept { return steps_ - fence_; } ///< that undo() may undo
   std::size_t undone() const noexcept { return undone_; }
@@ -47,7 +82,11 @@ public:
 private:
   bool is_kept() const noexcept { return kept_.block_count() > 0; }
   std::size_t count_changed(const BlockShape& now) const noexcept;
+  bool make_room(std::size_t blocks) noexcept;
+  SavedBlock& take() noexcept;
+  void begin_step(const StepNote& note) noexcept;
   void save(std::size_t block) noexcept;
+  SavedBlock* next_head() const noexcept;
   void exchange(SavedBlock& saved, BoundedShape& shape) noexcept;
   void own(std::size_t count);
   void add_free(const SavedChain& chain) noexcept;
@@ -68,6 +107,10 @@ private:
   std::size_t undone_ = 0;
   std::size_t forgotten_ = 0;
   std::uint64_t next_step_ = 0;
+  std::uint64_t version_ = 0;
+  SavedBlock* head_ = nullptr;       ///< of the last step that is not undone; null: there is none
+  SavedBlock* first_head_ = nullptr; ///< of the oldest step
+  StepNote note_{};
 };
 
 } // namespace nendo::deform

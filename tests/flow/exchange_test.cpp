@@ -35,6 +35,26 @@ struct Clocked {
     test.loop->frames().update();
     return test.vertices_of(frame());
   }
+  /// Asks for it, and ticks until it is done, as who runs the loop does.
+  deform::Points step(Request request) {
+    const std::uint64_t before = frame().undos;
+    REQUIRE(test.commands.try_push(request));
+    deform::Points shape = tick();
+    if (frame().awaited) {
+      CHECK(frame().undos == before);
+      change(*frame().awaited);
+      shape = tick();
+      CHECK_FALSE(frame().awaited);
+    }
+    CHECK(frame().undos == before + 1);
+    return shape;
+  }
+  std::vector<StepKind> kinds() {
+    std::vector<StepKind> all;
+    for (const Step& step : frame().steps.all())
+      all.push_back(step.kind);
+    return all;
+  }
   deform::Points bent(int counts, HostClock::duration later = 11ms) {
     test.bend(counts, now + later);
     return tick(later);
@@ -144,8 +164,10 @@ TEST_SUITE("exchange") {
       Clocked loop(from);
       std::vector<deform::Points> shapes{loop.test.model.vertices};
       loop.stroke(0, 15);
-      LoopSettings settings = with_radius(loop.test.loop->settings(), 0.3);
+      const LoopSettings first = loop.test.loop->settings();
+      LoopSettings settings = with_radius(first, 0.3);
       settings.mode = to;
+      const LoopSettings second = settings;
       loop.change(settings);
       shapes.push_back(loop.bent(15));
       loop.stroke(15, 25);
@@ -158,40 +180,142 @@ TEST_SUITE("exchange") {
       shapes.push_back(loop.bent(5));
       for (std::size_t at = 1; at < shapes.size(); ++at)
         CHECK(gap(shapes[at], shapes[at - 1]) > 1e-3);
-      CHECK(loop.frame().undo_steps == 3);
-      for (std::size_t at = shapes.size() - 1; at > 0; --at) {
-        REQUIRE(loop.test.commands.try_push(Request::undo));
-        CHECK(gap(loop.tick(), shapes[at - 1]) < test::float_gap);
-      }
-      CHECK(loop.frame().undo_steps == 0);
-      CHECK(gap(loop.tick(), loop.test.model.vertices) == 0.0); // to the last bit
-      for (std::size_t at = 1; at < shapes.size(); ++at) {
-        REQUIRE(loop.test.commands.try_push(Request::redo));
-        CHECK(gap(loop.tick(), shapes[at]) < test::float_gap);
-      }
+      // A stroke, a change of radius and perhaps mode, a stroke; a stroke, a change of radius.
+      const auto change = from == to ? StepKind::radius : StepKind::settings;
+      CHECK(loop.kinds() == std::vector{StepKind::stroke, change, StepKind::stroke,
+                                        StepKind::stroke, StepKind::radius});
+      CHECK(loop.frame().undo_steps == 5);
+      CHECK(gap(loop.step(Request::undo), shapes[3]) < test::float_gap);
+      CHECK(loop.frame().settings == settings); // that frame was still made with them
+      CHECK(gap(loop.tick(), shapes[3]) < test::float_gap);
+      CHECK(loop.frame().settings == second);
+      CHECK(gap(loop.step(Request::undo), shapes[2]) < test::float_gap);
+      CHECK(gap(loop.step(Request::undo), shapes[1]) < test::float_gap);
+      CHECK(gap(loop.step(Request::undo), shapes[1]) < test::float_gap);
+      loop.tick();
+      CHECK(loop.frame().settings == first);
+      CHECK(loop.frame().undo_steps == 1);
+      CHECK(loop.frame().redo_steps == 4);
+      CHECK(loop.frame().steps.undoable == 1);
+      CHECK(loop.kinds() == std::vector{StepKind::stroke, change, StepKind::stroke,
+                                        StepKind::stroke, StepKind::radius});
+      CHECK(gap(loop.step(Request::undo), loop.test.model.vertices) == 0.0); // to the last bit
+      for (const std::size_t at : {1U, 1U, 2U, 3U, 3U})
+        CHECK(gap(loop.step(Request::redo), shapes[at]) < test::float_gap);
+      loop.tick();
       CHECK(loop.frame().redo_steps == 0);
-      CHECK(loop.frame().settings == settings); // which are no step yet
+      CHECK(loop.frame().settings == settings);
     }
+  }
+
+  TEST_CASE(
+      "whatever was shaped and changed, undo leads to the model, and redo to the last shape") {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      CAPTURE(seed);
+      std::mt19937 random(seed);
+      Clocked loop(seed % 2 == 0 ? Mode::type1 : Mode::type2);
+      int counts = 0;
+      for (int at = 0; at < 12; ++at) {
+        const int next = static_cast<int>(random() % 30);
+        loop.stroke(counts, next);
+        counts = next;
+        if (random() % 2 == 0) loop.change(test::any_settings(loop.test.loop->settings(), random));
+        if (random() % 3 == 0) loop.test.commands.try_push(Request::commit);
+        if (random() % 8 == 0) loop.test.commands.try_push(Request::reset);
+        loop.bent(counts, random() % 2 == 0 ? 11ms : 2000ms);
+      }
+      loop.test.commands.try_push(Request::let_go);
+      loop.bent(counts);
+      const deform::Points shape = loop.bent(counts);
+      const LoopSettings settings = loop.frame().settings;
+      const std::uint64_t steps = loop.frame().undo_steps;
+      CHECK(steps > 5);
+      while (loop.frame().undo_steps > 0)
+        loop.step(Request::undo);
+      CHECK(loop.frame().redo_steps == steps);
+      CHECK(gap(loop.bent(counts), loop.test.model.vertices) == 0.0);
+      while (loop.frame().redo_steps > 0)
+        loop.step(Request::redo);
+      CHECK(loop.frame().undo_steps == steps);
+      CHECK(gap(loop.bent(counts), shape) == 0.0);
+      CHECK(loop.frame().settings == settings);
+    }
+  }
+
+  TEST_CASE("a change that led nowhere is undone at once, and a new one forgets what was undone") {
+    Clocked loop(Mode::type1);
+    loop.stroke(0, 10);
+    const LoopSettings first = loop.test.loop->settings();
+    loop.change(with_radius(first, 0.3));
+    loop.bent(10);
+    loop.change(first); // within a second
+    loop.bent(10);
+    CHECK(loop.frame().undo_steps == 2);
+    REQUIRE(loop.test.commands.try_push(Request::undo));
+    loop.tick();
+    CHECK_FALSE(loop.frame().awaited);
+    CHECK(loop.frame().undo_steps == 1);
+    CHECK(loop.frame().redo_steps == 1);
+    loop.now += 2s;
+    loop.change(with_radius(first, 0.25));
+    loop.bent(10);
+    CHECK(loop.frame().redo_steps == 0);
+    CHECK(loop.kinds() == std::vector{StepKind::stroke, StepKind::radius});
+  }
+
+  TEST_CASE("an undo that waits for settings holds back what comes after it, and not for ever") {
+    Clocked loop(Mode::type1);
+    const LoopSettings first = loop.test.loop->settings();
+    loop.stroke(0, 10);
+    loop.change(with_radius(first, 0.3));
+    loop.bent(10);
+    REQUIRE(loop.test.commands.try_push(Request::undo));
+    REQUIRE(loop.test.commands.try_push(Request::undo));
+    for (int tick = 0; tick < 5; ++tick) {
+      loop.tick();
+      CHECK(loop.frame().awaited == first);
+      CHECK(loop.frame().undos == 0);
+    }
+    loop.change(first);
+    loop.tick();
+    CHECK(loop.frame().undos == 1);
+    CHECK(gap(loop.tick(), loop.test.model.vertices) == 0.0);
+    CHECK(loop.frame().undos == 2);
+    // Somebody else's change while an undo waits is a step of its own, which the undo then means.
+    loop.now += 2s;
+    loop.change(with_radius(first, 0.25));
+    loop.tick();
+    REQUIRE(loop.test.commands.try_push(Request::undo));
+    loop.tick();
+    loop.now += 2s;
+    loop.change(with_radius(first, 0.15));
+    loop.tick();
+    CHECK(loop.frame().undos == 2);
+    loop.tick();
+    CHECK(loop.frame().awaited == with_radius(first, 0.25));
   }
 
   TEST_CASE("what is shaped between changes within a second is one step") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       Clocked loop(mode);
       LoopSettings settings = loop.test.loop->settings();
-      loop.change(with_radius(settings, 0.31)); // nothing is shaped yet: no step
+      loop.change(with_radius(settings, 0.31)); // nothing is shaped yet: the change alone
       loop.bent(0);
-      CHECK(loop.frame().undo_steps == 0);
+      CHECK(loop.kinds() == std::vector{StepKind::radius});
       for (int at = 0; at < 10; ++at) {
         loop.stroke(2 * at, 2 * at + 2);
         loop.change(with_radius(settings, 0.3 - 0.01 * at));
       }
       const deform::Points shape = loop.bent(20);
       CHECK(gap(shape, loop.test.model.vertices) > 1e-2);
-      CHECK(loop.frame().undo_steps == 1);
-      REQUIRE(loop.test.commands.try_push(Request::undo));
-      CHECK(gap(loop.bent(20), loop.test.model.vertices) == 0.0);
-      REQUIRE(loop.test.commands.try_push(Request::redo));
-      CHECK(gap(loop.bent(20), shape) < test::float_gap);
+      CHECK(loop.kinds() == std::vector{StepKind::radius});
+      CHECK(loop.frame().undo_steps == 2);
+      CHECK(gap(loop.step(Request::undo), loop.test.model.vertices) == 0.0);
+      loop.step(Request::undo);
+      loop.tick();
+      CHECK(loop.frame().settings == settings);
+      loop.step(Request::redo);
+      CHECK(gap(loop.step(Request::redo), shape) < test::float_gap);
     }
   }
 
@@ -288,7 +412,9 @@ TEST_SUITE("exchange") {
           sum.frees += of_tick.frees;
           sum.locks += of_tick.locks;
         }
-        if (random() % 2 == 0) test.loop->frames().update(); // a reader that comes when it likes
+        if (random() % 2 == 0 && test.loop->frames().update()) // a reader that comes when it likes
+          if (const auto& awaited = test.loop->frames().front().awaited)
+            test.loop->change_settings(*awaited);
         log.drain([](const auto&) noexcept {});
         test.loop->take_state();
         test.loop->refill_undo();

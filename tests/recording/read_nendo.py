@@ -70,6 +70,8 @@ def loop(b):
     o["simd"] = b.text()
     o["undo_most_bytes"] = b.take("Q")
     o["held"] = b.take("B")
+    if b.take("B"):
+        o["settings"] = settings(b)
     return o
 
 

@@ -107,6 +107,8 @@ Setup unusual_setup() {
   setup.gloves[1].counts = {1023, true};
   setup.gloves[1].abilities.light = true;
   setup.loop->options.held = false;
+  setup.loop->options.settings = flow::LoopSettings{
+      .mode = flow::Mode::type2, .radius_m = {0.1, 0.2, 0.3, 0.4, 0.5}, .piece_fraction = 0.07};
   setup.loop->rest.resize(2);
   setup.loop->rest[1].y[2] = -0.5F;
   setup.loop->rest[1].z[63] = 0.25F;
@@ -192,6 +194,7 @@ TEST_SUITE("take_reader") {
     CHECK(lines[at]["merge"] == 0.07);
     CHECK(lines[at]["most_links"] == 33);
     CHECK(lines[at]["held"] == 0);
+    CHECK(is_settings(lines[at]["settings"], *options.settings));
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");
     REQUIRE(lines[at]["blocks"].size() == 2);

@@ -116,7 +116,10 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
     }
     if (changes && of_changes() % 10 == 0)
       played.test.loop->change_settings(any_settings(played.test.loop->settings(), of_changes));
-    see(played.test.frame_after_tick(tick));
+    const flow::Frame& frame = played.test.frame_after_tick(tick);
+    see(frame);
+    if (frame.awaited)
+      played.test.loop->change_settings(*frame.awaited); // as who runs the loop does
   }
 }
 inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {

@@ -88,6 +88,40 @@ bool has(const Commands& commands, const flow::Command& command) {
 } // namespace
 
 TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
+  TEST_CASE("a click on a step of the history goes there: as many undos or redos as are between") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    flow::StepList& list = person.frame.steps;
+    list.steps[0] = {flow::StepKind::stroke, 1.0F};
+    list.steps[1] = {flow::StepKind::radius, 2.0F};
+    list.steps[2] = {flow::StepKind::stroke, 65.0F};
+    list.count = 3;
+    list.undoable = 1;
+    for (const bool in_hand : {false, true}) {
+      list.in_hand = in_hand;
+      person.frame.undo_steps = in_hand ? 2 : 1;
+      person.frame.redo_steps = 2;
+      std::vector<std::size_t> undos, redos; // that single clicks asked for
+      for (double y = 440.0; y < 528.0; y += 6.0) { // of the list
+        const Commands asked = person.click(110.0, y);
+        if (asked.empty()) continue;
+        const auto count = [&](Request request) {
+          return static_cast<std::size_t>(
+              std::count(asked.begin(), asked.end(), flow::Command(request)));
+        };
+        if (count(Request::undo) == asked.size()) undos.push_back(asked.size());
+        if (count(Request::redo) == asked.size()) redos.push_back(asked.size());
+      }
+      const auto has_asked = [](const std::vector<std::size_t>& counts, std::size_t wanted) {
+        return std::find(counts.begin(), counts.end(), wanted) != counts.end();
+      };
+      CHECK(has_asked(undos, in_hand ? 2 : 1)); // to the beginning
+      CHECK(has_asked(redos, 1));
+      CHECK(has_asked(redos, 2));
+    }
+  }
+
   TEST_CASE("where there is nothing to undo or redo, their buttons are grey, and keys say so") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;

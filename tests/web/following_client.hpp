@@ -52,7 +52,8 @@ public:
     if (type == 2) take_update(in);
     if (type == 3) take_report(in);
     if (type == 4) take_settings(in);
-    return type >= 1 && type <= 4 && in.at == message.size();
+    if (type == 5) take_steps(in);
+    return type >= 1 && type <= 5 && in.at == message.size();
   }
 
   /// The shape, in the mesh's order and units.
@@ -82,6 +83,9 @@ public:
   unsigned mode = 0, kernel = 0;
   bool injective = false, filtered = false, recorded = false;
   int settings = 0; ///< how many came
+  // Of the latest message of steps.
+  std::vector<std::pair<std::uint32_t, float>> steps; ///< kind, and seconds
+  std::size_t undoable = 0;
   // Of the latest messages.
   std::uint64_t number = 0; ///< the frame that vertices() is of; 0: none
   std::uint64_t newest = 0; ///< the frame of the last update
@@ -150,6 +154,16 @@ private:
     in.at += 4;
     for (double& radius : radius_m)
       radius = in.take<double>();
+  }
+
+  void take_steps(Bytes& in) {
+    steps.resize(in.take<std::uint8_t>());
+    undoable = in.take<std::uint8_t>();
+    in.at += 5;
+    for (auto& [kind, at_s] : steps) {
+      kind = in.take<std::uint32_t>();
+      at_s = in.take<float>();
+    }
   }
 
   void take_shape(Bytes& in) {

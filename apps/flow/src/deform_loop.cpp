@@ -24,8 +24,15 @@ Frame first_frame(const Sculptor& sculptor, double units_per_metre, const LoopSe
   return frame;
 }
 
-ShapingOptions shaping_options(const LoopOptions& options, const deform::BlockShape* first) {
-  ShapingOptions shaping{options.sculptor, options.undo_most_bytes};
+LoopSettings first_settings(const LoopOptions& options, const HandInput& hand,
+                            double units_per_metre) {
+  if (options.settings) return *options.settings;
+  return settings_of(options.sculptor, hand.filter, units_per_metre);
+}
+
+ShapingOptions shaping_options(const LoopOptions& options, const LoopSettings& settings,
+                               const deform::BlockShape* first) {
+  ShapingOptions shaping{options.sculptor, settings, options.undo_most_bytes};
   shaping.first = first;
   if (options.commands != nullptr) shaping.most_requests = options.commands->capacity();
   shaping.held = options.begins_held();
@@ -39,9 +46,8 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        const deform::BlockShape* first)
     : options_(options), units_per_metre_(placement.units_per_metre),
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
-      shaping_(model.vertices, tips_.cols(), shaping_options(options, first)),
-      settings_in_force_(
-          settings_of(options.sculptor, hands.front().filter, placement.units_per_metre)),
+      settings_in_force_(first_settings(options, hands.front(), placement.units_per_metre)),
+      shaping_(model.vertices, tips_.cols(), shaping_options(options, settings_in_force_, first)),
       settings_(settings_in_force_), sculptor_options_(options.sculptor),
       frames_(first_frame(shaping_.sculptor(), placement.units_per_metre, settings_)) {
   assert(!hands.empty() && hands.size() <= 2);
@@ -167,6 +173,8 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   if (runs.hands) compute_hands(frame);
   record.posed_ns = now_ns();
   frame.settings = settings_in_force_;
+  if (stats_.ticks == 0) first_due_ = record.scheduled;
+  shaping_.set_time(to_seconds(record.scheduled - first_due_));
   if (runs.deform) {
     const bool completes = taken_ != nullptr && taken_->settings.has_value();
     frame.status = shaping_.shape(tips_, frame, stats_, completes);

@@ -33,7 +33,7 @@ void DeformLoop::finish_change(HostTime scheduled, Frame& frame) noexcept {
     const bool is_step = !changed_at_ || scheduled - *changed_at_ >= one_step;
     settings_in_force_ = *taken_->settings;
     change_filters(settings_in_force_.filter);
-    shaping_.exchange(taken_->ready, tips_, is_step, frame, stats_);
+    shaping_.exchange(taken_->ready, settings_in_force_, tips_, is_step, frame, stats_);
     changed_at_ = scheduled;
   }
   if (taken_->log) begin_anew(*taken_->log, frame);

@@ -36,6 +36,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.placement = state.placement;
   loop.options.sculptor = state.sculptor;
   loop.options.held = state.held;
+  loop.options.settings = state.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
   const deform::BlockShape original = layout.pack();
   const auto unchanged = std::as_bytes(std::span(original.data(), original.block_count()));

@@ -128,6 +128,38 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   writer.text(loop.simd);
   writer.u64_le(options.undo_most_bytes);
   writer.u8(static_cast<std::uint8_t>(options.begins_held()));
+  writer.u8(static_cast<std::uint8_t>(options.settings.has_value()));
+  if (options.settings) put_settings(writer, *options.settings);
+}
+
+void put_settings(ByteWriter& writer, const flow::LoopSettings& settings) {
+  writer.u8(static_cast<std::uint8_t>(settings.mode));
+  writer.u8(static_cast<std::uint8_t>(settings.kernel));
+  writer.u8(static_cast<std::uint8_t>(settings.injective));
+  writer.u8(static_cast<std::uint8_t>(settings.filter.kind));
+  for (const double radius : settings.radius_m)
+    writer.f64_le(radius);
+  writer.f64_le(settings.piece_fraction);
+  writer.f64_le(settings.filter.min_cutoff_hz);
+  writer.f64_le(settings.filter.beta_hz_per_rad_s);
+  writer.f64_le(settings.filter.derivative_cutoff_hz);
+}
+
+std::optional<flow::LoopSettings> read_settings(ByteReader& reader) {
+  CheckedReader checked(reader);
+  flow::LoopSettings settings;
+  settings.mode = checked.one_of(flow::Mode::type2);
+  settings.kernel = checked.one_of(deform::Wendland::c6);
+  settings.injective = reader.u8() != 0;
+  settings.filter.kind = checked.one_of(hand::FilterKind::one_euro);
+  for (double& radius : settings.radius_m)
+    radius = reader.f64_le();
+  settings.piece_fraction = reader.f64_le();
+  settings.filter.min_cutoff_hz = reader.f64_le();
+  settings.filter.beta_hz_per_rad_s = reader.f64_le();
+  settings.filter.derivative_cutoff_hz = reader.f64_le();
+  if (!checked.fine() || !settings.are_usable()) return std::nullopt;
+  return settings;
 }
 
 void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks) {
@@ -177,7 +209,13 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   read_deformer(reader, checked, options.sculptor.deformer);
   read.simd = reader.text();
   if (reader.remaining() > 0) options.undo_most_bytes = reader.u64_le(); // 1.0 had none at first
-  if (reader.remaining() > 0) options.held = reader.u8() != 0;           // since 1.3
+  if (reader.remaining() > 0) {                                          // since 1.3
+    options.held = reader.u8() != 0;
+    if (reader.u8() != 0) {
+      options.settings = read_settings(reader);
+      checked.require(options.settings.has_value());
+    }
+  }
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

@@ -2,6 +2,7 @@
 // Reads and writes the single chunks of a setup, which FORMAT.md describes. Enumerators are written
 // as their numbers, so new ones must be added at the ends of their lists, here and in the document.
 
+#include <optional>
 #include <span>
 
 #include <nendo/base/byte_reader.hpp>
@@ -62,6 +63,12 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop);
 /// Writes some of the blocks of the shape at first. A chunk has at most most_blocks_of_chunk.
 void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks);
 inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
+
+/// Writes settings, as they stand in a loop's chunk and in entries.
+void put_settings(ByteWriter& writer, const flow::LoopSettings& settings);
+inline constexpr std::size_t settings_bytes = 76;
+/// Returns nothing if they are not usable.
+std::optional<flow::LoopSettings> read_settings(ByteReader& reader);
 
 // These return false if the payload is not usable. Then nothing has changed.
 bool read_head(ByteReader& reader, Setup& setup);

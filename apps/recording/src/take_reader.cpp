@@ -14,7 +14,6 @@ constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
 constexpr std::size_t wrist_bytes = 57;
-constexpr std::size_t settings_bytes = 76;
 
 struct EntryWriter {
   ByteWriter& writer;
@@ -42,16 +41,7 @@ struct EntryWriter {
   }
   void operator()(const flow::LoopSettings& settings) const {
     driver::put_entry_head(writer, EntryKind::settings, settings_bytes);
-    writer.u8(static_cast<std::uint8_t>(settings.mode));
-    writer.u8(static_cast<std::uint8_t>(settings.kernel));
-    writer.u8(static_cast<std::uint8_t>(settings.injective));
-    writer.u8(static_cast<std::uint8_t>(settings.filter.kind));
-    for (const double radius : settings.radius_m)
-      writer.f64_le(radius);
-    writer.f64_le(settings.piece_fraction);
-    writer.f64_le(settings.filter.min_cutoff_hz);
-    writer.f64_le(settings.filter.beta_hz_per_rad_s);
-    writer.f64_le(settings.filter.derivative_cutoff_hz);
+    put_settings(writer, settings);
   }
   void operator()(const Gap& gap) const {
     driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
@@ -90,23 +80,6 @@ std::optional<Entry> wrist_of(ByteReader& reader) {
     return std::nullopt;
   move.side = static_cast<Side>(side);
   return move;
-}
-
-std::optional<Entry> settings_entry_of(ByteReader& reader) {
-  CheckedReader checked(reader);
-  flow::LoopSettings settings;
-  settings.mode = checked.one_of(flow::Mode::type2);
-  settings.kernel = checked.one_of(deform::Wendland::c6);
-  settings.injective = reader.u8() != 0;
-  settings.filter.kind = checked.one_of(hand::FilterKind::one_euro);
-  for (double& radius : settings.radius_m)
-    radius = reader.f64_le();
-  settings.piece_fraction = reader.f64_le();
-  settings.filter.min_cutoff_hz = reader.f64_le();
-  settings.filter.beta_hz_per_rad_s = reader.f64_le();
-  settings.filter.derivative_cutoff_hz = reader.f64_le();
-  if (!checked.fine() || !settings.are_usable()) return std::nullopt;
-  return settings;
 }
 
 std::optional<Ending> ending_of(std::span<const std::byte> payload) {
@@ -238,7 +211,7 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
   } else if (record.is(EntryKind::wrist)) {
     entry = wrist_of(reader);
   } else if (record.is(EntryKind::settings)) {
-    entry = settings_entry_of(reader);
+    if (const auto settings = read_settings(reader)) entry = *settings;
   } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

@@ -42,7 +42,7 @@ class Panel {
       if (this.noted) this.tell('')
       ask(request)
     }
-    Object.assign(this, { camera: null, live: false, noted: false, settings: null })
+    Object.assign(this, { camera: null, live: false, noted: false, settings: null, history: null })
     this.late = new Chart(element('chart-late'), 'late', 'ms')
     this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
@@ -129,6 +129,26 @@ class Panel {
     this.model = model
     element('model').textContent = model.name
     document.title = `${model.name} - Nendo`
+  }
+  // A line a step, and one for the beginning. A click on one goes there.
+  setHistory(history) {
+    this.history = history
+    const words = history.steps.map(({ kind, at }) => `${Math.floor(at / 60)}:${String(Math.floor(at % 60)).padStart(2, '0')}  ${kind}`)
+    const lines = ['the beginning', ...words].map((text, at) => {
+      const line = document.createElement('button')
+      line.textContent = text
+      line.className = at > history.undoable ? 'undone' : ''
+      line.setAttribute('aria-current', at === history.undoable ? 'step' : 'false')
+      line.addEventListener('click', () => this.goTo(at))
+      return line
+    })
+    element('history').replaceChildren(...lines)
+    lines[history.undoable].scrollIntoView({ block: 'nearest' })
+  }
+  goTo(at) {
+    const { undoable } = this.history
+    for (let step = undoable + (this.update && this.update.inHand ? 1 : 0); step > at; --step) this.ask('undo')
+    for (let step = undoable; step < at; ++step) this.ask('redo')
   }
   setSettings(settings) {
     this.settings = settings

@@ -52,6 +52,13 @@ function readSettings(buffer) {
   }
 }
 
+const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings']
+function readSteps(buffer) {
+  const view = new DataView(buffer), count = view.getUint8(1)
+  const steps = Array.from({ length: count }, (_, n) => ({ kind: STEPS[view.getUint32(8 + 8 * n, true)] || 'step', at: view.getFloat32(12 + 8 * n, true) }))
+  return { steps, undoable: view.getUint8(2) }
+}
+
 function readShape(buffer) {
   const view = new DataView(buffer)
   return {
@@ -137,7 +144,7 @@ function readUpdate(buffer, model) {
   const state = view.getUint8(1), bits = view.getUint8(2)
   const update = {
     canUndo: (bits & 64) !== 0, canRedo: (bits & 128) !== 0,
-    held: (state & 1) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
+    held: (state & 1) !== 0, inHand: (state & 8) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
     tick: u64(16), ticks: u64(24), missed: u64(32), commits: u32(40), undos: u32(44),
     late: view.getFloat32(48, true), mostLate: view.getFloat32(52, true), sinceLast: view.getFloat32(56, true),
     lost: u32(60), skipped: u32(64), links: u32(68), bytes: buffer.byteLength, hands: [null, null], steps: [],

@@ -27,8 +27,9 @@ struct DeformerOptions {
   EvaluationOptions evaluation{};
   /// If set, the model never folds: each step is made in links that are injective.
   std::optional<InjectiveOptions> injective{};
-  /// Bytes of memory for undo(), of which a step takes 832 for each block of 64 vertices that it
-  /// changed. 0 means that nothing can be undone. The memory of one more shape comes on top.
+  /// Bytes of memory for undo(), of which a step takes 832, and 832 for each block of 64 vertices
+  /// that it changed. 0 means that nothing can be undone. The memory of one more shape comes on
+  /// top.
   std::size_t undo_bytes = 0;
   /// Further memory for undo(), or null. Each deformer needs its own, which must outlive it.
   UndoMemory* undo_memory = nullptr;

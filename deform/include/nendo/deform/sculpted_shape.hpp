@@ -3,8 +3,11 @@
 // shape, one after another, so that their settings can change and the shape and its history stay.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 
+#include <nendo/deform/step_note.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {
@@ -31,6 +34,30 @@ public:
   std::size_t redo_steps() const noexcept;
   /// Returns how many steps can no longer be undone because memory ended.
   std::size_t forgotten_steps() const noexcept;
+  /// Sets what is noted of the steps that deformers make from now on, and of those that reset()
+  /// makes.
+  void set_notes(const StepNote& note, const StepNote& of_reset) noexcept;
+  /// Adds a step that does not change the shape, for something else that can be undone in its
+  /// order.
+  void mark(const StepNote& note) noexcept;
+  /// Undoes, or does again, the next step, which is one that mark() added. What a deformer has made
+  /// since the step before is dropped; call its release() first. Wait-free.
+  void undo_mark() noexcept;
+  void redo_mark() noexcept;
+  /// Drops what a deformer has made since the last step. Call its release() first. Wait-free.
+  void revert() noexcept;
+  /// Returns the note of the step that would be undone, or done again, next; null if there is none.
+  const StepNote* to_undo() const noexcept;
+  const StepNote* to_redo() const noexcept;
+  /// Changes that note. There must be such a step.
+  void note_to_undo(const StepNote& note) noexcept;
+  void note_to_redo(const StepNote& note) noexcept;
+  /// Copies the notes of the last steps that can be undone, the last one first, and of the first of
+  /// those that were undone, the first one first. Returns how many there were to copy.
+  std::size_t copy_undoable(std::span<StepNote> notes) const noexcept;
+  std::size_t copy_undone(std::span<StepNote> notes) const noexcept;
+  /// Returns a number that changes whenever these lists do.
+  std::uint64_t history_version() const noexcept;
   /// Lets undo go back to the present shape and no farther, and forgets what can be redone. A
   /// recording that begins here then has all that an undo needs. Wait-free, like unfence().
   void fence() noexcept;

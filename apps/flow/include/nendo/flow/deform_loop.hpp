@@ -74,6 +74,9 @@ struct LoopOptions : PaceOptions {
   /// Whether the hands hold the model at first; nothing: unless SwitchAction::grab waits for a
   /// switch.
   std::optional<bool> held{};
+  /// The settings at first, if settings_of() the sculptor and the filter would tell them less
+  /// exactly.
+  std::optional<LoopSettings> settings{};
 
   bool begins_held() const noexcept { return held.value_or(switch_action != SwitchAction::grab); }
 };
@@ -190,19 +193,20 @@ private:
   double units_per_metre_;
   std::vector<Hand> hands_;
   deform::Points tips_; ///< 3 by 5 a hand, model units
+  LoopSettings settings_in_force_;
   Shaping shaping_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
   bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
   JobOffer<LoopChange*> changes_;
   LoopChange* taken_ = nullptr;        ///< by this tick
   std::optional<HostTime> changed_at_; ///< the last tick that changed settings
-  LoopSettings settings_in_force_;
   // For the thread that asks for changes:
   LoopSettings settings_;
   SculptorOptions sculptor_options_;
   std::unique_ptr<LoopChange> change_; ///< that the loop has, or will have
   bool is_offered_ = false;
   std::vector<LoopState> states_; ///< not taken yet
+  HostTime first_due_{};          ///< of the first tick
   HostTime last_woke_{};          ///< of the tick before; HostTime{} at first
   LoopStats stats_;
   FrameExchange frames_;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <nendo/base/triple_buffer.hpp>
 #include <nendo/deform/field_sequence.hpp>
@@ -12,6 +13,7 @@
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/placement.hpp>
+#include <nendo/flow/step.hpp>
 #include <nendo/hand/skeleton.hpp>
 
 namespace nendo::flow {
@@ -43,6 +45,10 @@ struct Frame {
   /// hands that hold the model have shaped since the last commit can be undone, too.
   std::uint64_t undo_steps = 0;
   std::uint64_t redo_steps = 0;
+  StepList steps; ///< the names of the last of them
+  /// The settings that an undo or a redo waits for: whoever runs the loop must ask for them
+  /// (DeformLoop::change_settings()).
+  std::optional<LoopSettings> awaited;
   bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};

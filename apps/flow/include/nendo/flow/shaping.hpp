@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <nendo/deform/sculpted_shape.hpp>
@@ -17,6 +18,7 @@ namespace nendo::flow {
 
 struct ShapingOptions {
   SculptorOptions sculptor;
+  LoopSettings settings{}; ///< those of the sculptor
   /// The most bytes by which refill_undo() may enlarge the memory for undo beyond
   /// SculptorOptions::deformer.undo_bytes; 0 if it is not enlarged.
   std::size_t undo_most_bytes = 0;
@@ -41,6 +43,8 @@ public:
 
   /// Lets the fingertips take hold for the first time (3 by control_points, model units).
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
+  /// Tells the time of the next calls, in seconds since the beginning, for the list of steps.
+  void set_time(double time_s) noexcept { time_s_ = static_cast<float>(time_s); }
   /// Makes the next shape() do it. Wait-free.
   void ask(Request request) noexcept;
   /// Asks for Request::grab if Request::let_go was asked for last, and the other way round.
@@ -62,11 +66,14 @@ public:
 
   /// Makes a sculptor with other options. Another thread may call it, at any time. Allocates.
   ReadySculptor prepare(const SculptorOptions& options);
-  /// Lets that sculptor go on where the present one ends, which `ready` then has: after shape()
-  /// with `completes`, in the same tick. A stroke ends, as a step of its own if `is_step`, and the
-  /// fingertips take hold anew at `tips`. The shape does not change. Wait-free, without allocation.
-  void exchange(ReadySculptor& ready, const deform::Points& tips, bool is_step, Frame& frame,
-                LoopStats& stats) noexcept;
+  /// Lets that sculptor, which has these settings, go on where the present one ends, which `ready`
+  /// then has: after shape() with `completes`, in the same tick. A stroke ends, and the fingertips
+  /// take hold anew at `tips`. Stroke and change are steps of their own if `is_step`; otherwise
+  /// they belong to those before and behind. If an undo or a redo has waited for these settings
+  /// (Frame::awaited), this is it. The shape does not change, but for what the hands have shaped
+  /// since the last step, which an undo drops. Wait-free, without allocation.
+  void exchange(ReadySculptor& ready, const LoopSettings& settings, const deform::Points& tips,
+                bool is_step, Frame& frame, LoopStats& stats) noexcept;
   /// Ends the stroke, lets undo go back to here and no farther (`fences`), or as far as memory
   /// goes, and lets the fingertips that hold the shape take hold anew, as begin() does. What was
   /// asked for and could not be done is forgotten. Nothing that was before then matters to what
@@ -78,9 +85,18 @@ public:
   bool refill_undo() { return undo_memory_ == nullptr || undo_memory_->refill(); }
 
 private:
+  struct NotedStep;
   void take_steps(const deform::Points& tips, LoopStats& stats) noexcept;
   bool take_step(Request step, const deform::Points& tips, LoopStats& stats) noexcept;
+  bool take_change(Request step, const deform::Points& tips, LoopStats& stats) noexcept;
+  void count(Request step, LoopStats& stats) noexcept;
+  void step_over_change(Request step, const LoopSettings& before) noexcept;
+  bool is_change_next(Request step) const noexcept;
+  std::optional<LoopSettings> other_of(Request step) const noexcept;
+  void note_change(const LoopSettings& before, bool is_step) noexcept;
+  void list_steps(StepList& list) const noexcept;
   std::size_t undo_steps() const noexcept;
+  bool is_in_hand() const noexcept;
   void make_room(deform::FieldSequence& fields) noexcept;
   void tell(Frame& frame, LoopStats& stats) const noexcept;
 
@@ -92,10 +108,13 @@ private:
   bool held_;                                 ///< the fingertips shape the model
   bool hold_wanted_; ///< what is asked for; follows at the next tick that can
   bool commit_due_ = false;
-  bool shaped_ = false;               ///< since the hands took hold, or since the last commit
-  std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
-  bool in_step_ = false;              ///< shaped before the last change, and not a step yet
-  std::vector<Request> steps_due_;    ///< undos, redos and resets, in their order
+  bool shaped_ = false;                 ///< since the hands took hold, or since the last commit
+  std::uint64_t otherwise_ended_ = 0;   ///< strokes, by a change, without a commit
+  bool in_step_ = false;                ///< shaped before the last change, and not a step yet
+  LoopSettings settings_;               ///< in force
+  std::optional<LoopSettings> awaited_; ///< by the first step that is due
+  float time_s_ = 0.0F;
+  std::vector<Request> steps_due_; ///< undos, redos and resets, in their order
 };
 
 } // namespace nendo::flow

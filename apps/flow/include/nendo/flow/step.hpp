@@ -1,0 +1,54 @@
+#pragma once
+// The steps that can be undone and redone, in one list: what the hands have shaped, and what was
+// set meanwhile.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace nendo::flow {
+
+struct LoopSettings;
+
+/// Clients of the browser's protocol know the numbers, so new values are added at the end.
+enum class StepKind : std::uint8_t {
+  stroke, ///< of the hands, up to a commit, to letting go, or to a change
+  reset,  ///< back to the model as it was loaded
+  mode,   ///< these five: a change of this setting alone
+  kernel,
+  radius,  ///< of one finger or more
+  folding, ///< LoopSettings::injective
+  filter,
+  settings, ///< a change of several settings at once, or within a second
+};
+
+std::string_view name_of(StepKind kind) noexcept;
+/// Returns the kind of a step that leads from one of these to the other.
+StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) noexcept;
+constexpr bool is_change(StepKind kind) noexcept {
+  return kind >= StepKind::mode;
+}
+
+struct Step {
+  StepKind kind = StepKind::stroke;
+  float at_s = 0.0F; ///< when it ended, in seconds since the loop began
+};
+
+/// The last steps that can be undone, the oldest first, and then the first of those that were
+/// undone.
+struct StepList {
+  static constexpr std::size_t most_undoable = 48;
+  static constexpr std::size_t most_undone = 16;
+
+  std::array<Step, most_undoable + most_undone> steps;
+  std::uint32_t count = 0;
+  std::uint32_t undoable = 0; ///< as many of them, at the beginning
+  /// The hands have shaped something that is no step yet, which an undo would undo first.
+  bool in_hand = false;
+  std::uint64_t version = 0; ///< differs between lists that differ, but for in_hand
+
+  std::span<const Step> all() const noexcept { return {steps.data(), count}; }
+};
+
+} // namespace nendo::flow

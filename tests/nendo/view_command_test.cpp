@@ -1,0 +1,121 @@
+// A person before `nendo view`: real keys in a real window, on a screen that exists in memory
+// alone.
+
+#include <filesystem>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <nendo/deform/mesh_file.hpp>
+
+#include "support/eventually.hpp"
+#include "support/memory_screen.hpp"
+#include "support/program.hpp"
+#include "support/restraint.hpp"
+#include "support/shell.hpp"
+#include "support/test_meshes.hpp"
+
+namespace view_command_test {
+
+using namespace nendo;
+
+#ifdef NENDO_WINDOW
+
+namespace {
+
+/// Writes a ball to a file, and returns it as it stands there.
+deform::Mesh with_file(const std::string& path) {
+  REQUIRE(deform::write_mesh(path, test::sphere(24, 48, 1.0)));
+  const auto read = deform::read_mesh(path);
+  REQUIRE(read);
+  return *read;
+}
+
+/// Presses keys in the window of a run, by xdotool, and has the shape saved to see what they did.
+struct Person {
+  test::TemporaryFolder folder;
+  deform::Mesh ball = with_file(at("ball.ply"));
+  test::Program program{{"view", at("ball.ply"), "--left", "sim:sculpt?seed=3", "--right",
+                         "sim:sculpt?seed=3", "--record", at("take.nendo"), "--out", at("clay.ply"),
+                         "--json"}};
+  int saved = 0;
+
+  std::string at(const std::string& name) const { return (folder.path() / name).string(); }
+  static bool does(const std::string& words) {
+    return test::shell("xdotool " + words).exit_code == 0;
+  }
+  void come() const {
+    CAPTURE(program.err_so_far());
+    // A small window is drawn soon, also without a graphics card.
+    REQUIRE(test::eventually([] { return does("search --name Nendo windowsize 420 320"); }));
+    REQUIRE(does("mousemove 340 160")); // keys go to the window under the mouse
+  }
+  /// Waits until it has had an effect: commands are obeyed in their order.
+  deform::Points press(const std::string& keys) {
+    REQUIRE(does("key --delay 30 " + keys + " s"));
+    const std::string file = at("clay-" + std::to_string(++saved) + ".ply");
+    deform::Points shape;
+    REQUIRE(test::eventually([&] {
+      const auto read = deform::read_mesh(file);
+      if (read) shape = read->vertices;
+      return bool(read);
+    }));
+    return shape;
+  }
+};
+
+double gap(const deform::Points& a, const deform::Points& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+} // namespace
+
+TEST_SUITE("view_command") {
+  TEST_CASE("a person shapes, changes radius, kernel and mode, shapes on, undoes all of it and "
+            "redoes it, "
+            "and the recording replays to the same bytes") {
+    const test::MemoryScreen screen;
+    // Mesa's own memory is not for our sanitizers, in a child either.
+    if (!screen.is_there() || !test::restraint_is_counted) return;
+    if (!Person::does("version")) {
+      MESSAGE("no xdotool here, so nobody presses keys; tools/setup test installs it");
+      return;
+    }
+    Person person;
+    person.come();
+    const deform::Points& loaded = person.ball.vertices;
+    person.press("c");
+    person.press("bracketright bracketright");
+    person.press("c");
+    person.press("n");
+    person.press("m");
+    person.press("bracketleft c");
+    person.press("l");
+    const deform::Points shaped = person.press("c"); // nothing is held: it stays as it is
+    CHECK(gap(shaped, loaded) > 1e-2);
+    const std::string far = "u u u u u u u u u u u u u u u u";
+    person.press(far);
+    // An undo of settings takes a picture or two until the next is done.
+    CHECK(test::eventually([&] { return gap(person.press("u"), loaded) == 0.0; }));
+    person.press("r r r r r r r r r r r r r r r r");
+    CHECK(test::eventually([&] { return gap(person.press("r"), shaped) < 1e-5; }));
+    REQUIRE(Person::does("key q"));
+    const auto finished = person.program.wait();
+    REQUIRE(finished.exit_code == 0);
+    const std::string last = finished.out.substr(finished.out.rfind("{\"event\":\"summary\""));
+    const auto summary = nlohmann::json::parse(last);
+    CHECK(summary["mode"] == "type2");
+    CHECK(summary["kernel"] == "wendland-c4");
+    CHECK(summary["undos"].get<int>() >= 5); // changes within a second are one step
+    CHECK(summary["redos"].get<int>() >= 5);
+    const auto replayed =
+        test::nendo({"replay", person.at("take.nendo"), "--out", person.at("again.ply")});
+    REQUIRE(replayed.exit_code == 0);
+    CHECK(test::contents(person.at("again.ply")) == test::contents(person.at("clay.ply")));
+  }
+}
+
+#endif
+
+} // namespace view_command_test
