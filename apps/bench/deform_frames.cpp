@@ -27,9 +27,9 @@ deform::DeformerOptions undoable(const deform::Points& mesh, double radius, int 
   deform::DeformerOptions options;
   options.supports = deform::one_radius(radius);
   options.evaluation.threads = threads;
-  constexpr std::size_t bytes_a_block = 832;
+  constexpr std::size_t bytes_a_block = 832; // and as many for the step
   options.undo_bytes =
-      bytes_a_block * (static_cast<std::size_t>(mesh.cols()) / deform::block_size + 1);
+      bytes_a_block * (static_cast<std::size_t>(mesh.cols()) / deform::block_size + 2);
   return options;
 }
 

@@ -153,6 +153,9 @@ void add(cli::Command& program) {
   command.add_option("MODEL,--mesh", arguments->run.mesh,
                      "OBJ or PLY file; without it, the shipped Moai");
   command.add_option("--mode", arguments->mode, "type1 or type2");
+  command.add_option("--changes", arguments->changes_a_minute,
+                     "Changes the radius so many times a minute, in every other second, and counts "
+                     "the seconds with and without apart");
   command.add_option("--radius", arguments->radius, "As of nendo run");
   command.add_flag("--view", arguments->view,
                    "Looks on with the live window, to see what that costs the loop");

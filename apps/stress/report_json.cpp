@@ -101,6 +101,19 @@ ordered_json floor_json(const PlatformFloor& floor) {
   return line;
 }
 
+ordered_json changes_json(const StressOptions& options, const StressOutcome& outcome) {
+  if (!outcome.by_changes) return nullptr;
+  ordered_json line{{"a_minute", options.changes_a_minute}, {"taken", outcome.changes}};
+  for (const bool with : {false, true}) {
+    const ChangeTally& tally = (*outcome.by_changes)[with ? 1 : 0];
+    line[with ? "with" : "without"] = {{"ticks", tally.ticks},
+                                       {"missed", tally.missed},
+                                       {"lateness_us", figures_json(tally.lateness)},
+                                       {"work_us", figures_json(tally.work)}};
+  }
+  return line;
+}
+
 } // namespace
 
 std::optional<Figures> figures_of(const flow::Histogram& histogram) {
@@ -160,6 +173,7 @@ ordered_json stress_json(const StressOptions& options, const StressOutcome& outc
     stages[std::string(phase_names[k])] = figures_json(tally.stage(static_cast<Phase>(k)));
   line["stages_us"] = stages;
   line["spun_us"] = outcome.spins ? figures_json(tally.stage(Phase::wake)) : nullptr;
+  line["changes"] = changes_json(options, outcome);
   line["incidents"] = causes_json(tally);
   line["worst"] = worst_json(outcome);
   line["page_faults"] = outcome.costs.minor_faults + outcome.costs.major_faults;

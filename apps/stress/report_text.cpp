@@ -139,6 +139,27 @@ void print_counts(std::FILE* out, const StressOutcome& outcome) {
                  number(outcome.records_refused));
 }
 
+void print_changes(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
+  if (!outcome.by_changes) return;
+  std::fprintf(out, "\n  %llu changes of the radius, %g a minute in every other second:\n",
+               static_cast<unsigned long long>(outcome.changes), options.changes_a_minute);
+  for (const bool with : {false, true}) {
+    const ChangeTally& tally = (*outcome.by_changes)[with ? 1 : 0];
+    const auto figure = [](const flow::Histogram& of, double fraction) {
+      return shown(to_microseconds(of.percentile(fraction)));
+    };
+    std::fprintf(out,
+                 "  %-10s %llu ticks, %llu deadlines missed; late p50 %s, p99 %s, max %s us; work "
+                 "p50 %s, p99 %s, max %s us\n",
+                 with ? "with" : "without", static_cast<unsigned long long>(tally.ticks),
+                 static_cast<unsigned long long>(tally.missed), figure(tally.lateness, 0.5).c_str(),
+                 figure(tally.lateness, 0.99).c_str(),
+                 shown(to_microseconds(tally.lateness.max())).c_str(),
+                 figure(tally.work, 0.5).c_str(), figure(tally.work, 0.99).c_str(),
+                 shown(to_microseconds(tally.work.max())).c_str());
+  }
+}
+
 void print_incidents(std::FILE* out, const StressOutcome& outcome) {
   const TickTally& tally = outcome.tally;
   std::string line;
@@ -169,6 +190,7 @@ void print_stress(std::FILE* out, const StressOptions& options, const StressOutc
   print_environment(out, options, outcome);
   print_counts(out, outcome);
   print_table(out, outcome, earlier);
+  print_changes(out, options, outcome);
   print_incidents(out, outcome);
   std::fflush(out);
 }

@@ -55,8 +55,10 @@ public:
     batch_.clear();
     ring_.drain([&](const flow::TickRecord& record) noexcept { batch_.push_back(record); });
     delay_.sample();
-    for (const auto& record : batch_)
+    for (const auto& record : batch_) {
       outcome_.tally.add(record, &delay_);
+      if (outcome_.by_changes) count(record, outcome_.start, *outcome_.by_changes);
+    }
   }
 
 private:
@@ -84,10 +86,15 @@ struct Watch {
     const bool fresh = loop.frames().update();
     observer->update({loop.frames().front(), fresh, gloves}, commands);
     bool ends = false;
+    std::optional<flow::LoopSettings> wanted;
     commands.drain([&](const flow::Command& command) noexcept {
       ends = ends || std::holds_alternative<flow::EndRun>(command);
       if (is_for_loop(command)) for_loop.try_push(command);
+      if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
+        wanted = change->settings;
     });
+    if (!wanted) wanted = fresh ? loop.frames().front().awaited : std::nullopt;
+    if (wanted) loop.change_settings(*wanted);
     return ends;
   }
 };
@@ -96,8 +103,10 @@ void watch(const StressOptions& options, Collector& collector, const std::atomic
            StressOutcome& outcome, const StressProgress& progress, Watch& watched,
            flow::DeformLoop& loop) {
   HostTime next_report = outcome.start;
+  SettingsChanger changer(options.changes_a_minute);
   while (!ended && !session::is_over(options.run, outcome.start)) {
     const bool enough = watched.update(loop, outcome.pictures);
+    changer.update(loop, outcome.start);
     collector.collect();
     const auto& worst = outcome.tally.worst();
     outcome.broke =
@@ -164,6 +173,7 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
     if (!run.loop.stages.input) hand.glove->stop();
   }
   outcome->grants.insert(outcome->grants.end(), opened->grants.begin(), opened->grants.end());
+  if (options.changes_a_minute > 0.0) outcome->by_changes.emplace();
   flow::TickRing ring(records_kept);
   run.loop.records = &ring;
   Watch watched{observer, session::status_of(hands)};
@@ -179,6 +189,7 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   outcome->overruns = stats.overruns;
   outcome->missed = stats.missed;
   outcome->failed = stats.failed;
+  outcome->changes = stats.changes;
   outcome->records_refused = ring.counters().refused;
   outcome->vertices = model.vertices.cols();
   return outcome;

@@ -10,6 +10,7 @@
 #include <nendo/driver/record_counts.hpp>
 
 #include "session/run_session.hpp"
+#include "stress/changes.hpp"
 #include "stress/environment.hpp"
 #include "stress/stress_options.hpp"
 #include "stress/tick_tally.hpp"
@@ -37,6 +38,8 @@ struct StressOutcome {
   std::uint64_t failed = 0;          ///< ticks without a usable field
   std::uint64_t records_refused = 0; ///< ticks whose record found the ring full: not in `tally`
   ThreadCosts costs;
+  std::optional<ChangeTallies> by_changes; ///< if settings were changed
+  std::uint64_t changes = 0;               ///< of settings, that the loop has taken
   std::optional<double> stolen_s;
   double elapsed_s = 0.0;
   Eigen::Index vertices = 0;
@@ -55,8 +58,8 @@ using StressProgress = std::function<void(const TickTally& tally, double elapsed
 
 /// Measures the floor, starts the load, and runs the loop for its time, until a stop signal, or
 /// until a tick is later than `break_at`. An observer watches as it does in a run, but only
-/// commands to the loop and the end are obeyed. Blocks. Errors: those of open_hands(), place_loop()
-/// and Load::start().
+/// commands to the loop, settings and the end are obeyed. Blocks. Errors: those of open_hands(),
+/// place_loop() and Load::start().
 Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const deform::Mesh& model,
                                                   const StressProgress& progress,
                                                   session::Observer* observer = nullptr);

@@ -155,6 +155,23 @@ TEST_SUITE("stress") {
     }
   }
 
+  TEST_CASE("--changes counts the ticks of seconds with and without changes apart") {
+    const json report = report_of(nendo::test::nendo(
+        {"stress", "-D", "3", "-p", "0", "--floor", "0", "--changes", "600", "--json"}));
+    const json& changes = report["changes"];
+    CHECK(changes["a_minute"] == 600.0);
+    CHECK(changes["taken"].get<int>() >= 3); // of ten in the second second
+    CHECK(changes["taken"].get<int>() <= 12);
+    for (const auto* half : {"with", "without"})
+      CHECK(changes[half]["work_us"]["count"] == changes[half]["ticks"]);
+    CHECK(changes["with"]["ticks"].get<int>() > 100);
+    CHECK(changes["with"]["ticks"].get<int>() + changes["without"]["ticks"].get<int>() ==
+          report["ticks"].get<int>());
+    const json without =
+        report_of(nendo::test::nendo({"stress", "-D", "0.2", "-p", "0", "--floor", "0", "--json"}));
+    CHECK(without["changes"].is_null());
+  }
+
   TEST_CASE("--break ends at the first tick that is too late") {
     const auto done = nendo::test::nendo(
         {"stress", "-D", "60", "--floor", "0", "-p", "0", "-b", "0.001", "--json"});
@@ -207,6 +224,8 @@ TEST_SUITE("stress") {
     for (const Wrong& wrong :
          {Wrong{{"-i", "1"}, 2, "--interval"}, Wrong{{"-D", "never"}, 2, "--duration"},
           Wrong{{"--stages", "dance"}, 2, "--stages"}, Wrong{{"-p", "99"}, 2, "--priority"},
+          Wrong{{"--changes", "1e9"}, 2, "--changes"},
+          Wrong{{"--changes", "9", "--stages", "sleep,input"}, 2, "--changes"},
           Wrong{{"-a", "4096"}, 2, "--affinity"}, Wrong{{"--fail-if", "p42>1"}, 2, "--fail-if"},
           Wrong{{"--mesh", "/no/such.obj"}, 5, "/no/such.obj"},
           Wrong{{"--picture", "/no/such/folder/x.svg"}, 1, "--picture"},
