@@ -42,6 +42,20 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
   return line;
 }
 
+nlohmann::ordered_json event_json(const Event& event) {
+  nlohmann::ordered_json line{{"time_s", event.time_s}};
+  if (!event.settings) {
+    line["request"] = name_of(event.request);
+    return line;
+  }
+  line["settings"] = {{"mode", name_of(event.settings->mode)},
+                      {"kernel", deform::name_of(event.settings->kernel)},
+                      {"injective", event.settings->injective},
+                      {"radius_m", event.settings->radius_m},
+                      {"piece_fraction", event.settings->piece_fraction}};
+  return line;
+}
+
 void print_json(const ShowOptions& options, const Timeline& timeline) {
   nlohmann::ordered_json all{
       {"file", options.file},        {"take", timeline.take},
@@ -50,7 +64,7 @@ void print_json(const ShowOptions& options, const Timeline& timeline) {
       {"held", timeline.held}};
   all["events"] = nlohmann::ordered_json::array();
   for (const auto& event : timeline.events)
-    all["events"].push_back({{"time_s", event.time_s}, {"request", name_of(event.request)}});
+    all["events"].push_back(event_json(event));
   for (const HandTrack& hand : timeline.hands) {
     auto keys = nlohmann::ordered_json::array();
     for (const Key& key : hand.keys)
@@ -114,7 +128,7 @@ int show_timeline(const ShowOptions& options) {
   for (const HandTrack& hand : timeline->hands)
     print_hand(*timeline, hand, finger);
   for (const auto& event : timeline->events)
-    std::printf("at %9.3f s: %s\n", event.time_s, std::string(name_of(event.request)).c_str());
+    std::printf("at %9.3f s: %s\n", event.time_s, in_words(event).c_str());
   std::fflush(stdout);
   return 0;
 }

@@ -62,8 +62,18 @@ public:
       steps_.push_back(request);
   }
 
-  /// A tick has run.
-  void see(const flow::LoggedTick& tick, const flow::Frame& frame) {
+  /// Returns false if a timeline has no such settings.
+  bool hear(const flow::LoopSettings& settings, const flow::LoopSettings& in_force) {
+    if (settings.filter != in_force.filter) return false;
+    const bool is_undo = awaited_ == settings; // which the timeline's player makes of the request
+    if (is_undo || settings == in_force) return true;
+    settings_ = settings;
+    settings_->filter = {};
+    return true;
+  }
+
+  /// A tick has run. `commits`: how many there were.
+  void see(const flow::LoggedTick& tick, const flow::Frame& frame, std::uint64_t commits) {
     if (!first_) first_ = tick;
     const double before_s = timeline_.duration_s;
     const double time_s = std::max(before_s, time_of(tick));
@@ -73,7 +83,8 @@ public:
       if (time_s > hand.keys.back().time_s) hand.keys.push_back(key);
     }
     timeline_.duration_s = time_s;
-    see_events(time_s, frame);
+    see_events(time_s, frame, commits);
+    awaited_ = frame.awaited;
   }
   bool has_seen() const noexcept { return first_.has_value(); }
 
@@ -88,15 +99,23 @@ private:
 
   void add(double time_s, flow::Request request) { timeline_.events.push_back({time_s, request}); }
 
-  void see_events(double time_s, const flow::Frame& frame) {
-    for (const flow::Request step : steps_)
-      add(time_s, step);
-    steps_.clear();
-    const bool committed = frame.commits > commits_;
+  // One that waits for settings, and those behind it, have not happened yet.
+  void add_steps(double time_s, const flow::Frame& frame) {
+    std::uint64_t done = frame.undos - std::exchange(undos_, frame.undos);
+    auto step = steps_.begin();
+    for (; step != steps_.end() && (!frame.awaited || done > 0); ++step, done -= done > 0 ? 1 : 0)
+      add(time_s, *step);
+    steps_.erase(steps_.begin(), step);
+  }
+
+  void see_events(double time_s, const flow::Frame& frame, std::uint64_t commits) {
+    add_steps(time_s, frame);
+    const bool committed = commits > commits_;
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
     if (committed && !frame.held) add(time_s, flow::Request::let_go);
-    commits_ = frame.commits;
+    if (settings_) timeline_.events.push_back({time_s, {}, std::exchange(settings_, {})});
+    commits_ = commits;
     held_ = frame.held;
   }
 
@@ -104,7 +123,10 @@ private:
   bool held_;
   bool on_grid_;
   std::uint64_t commits_ = 0;
-  std::vector<flow::Request> steps_; ///< undos, redos and resets since the last tick
+  std::uint64_t undos_ = 0;
+  std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
+  std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
+  std::optional<flow::LoopSettings> awaited_;  ///< after the last tick, by an undo or a redo
   std::optional<flow::LoggedTick> first_;
 };
 
@@ -138,14 +160,14 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   while (const auto entry = reader->next()) {
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
-    if (settings != nullptr && *settings != (*replay)->loop().settings())
-      return bad(
-          "changes its settings on the way, which a timeline cannot; cut out the part before "
-          "that with `nendo recording cut`");
+    if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
+      return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "
+                 "part before that with `nendo recording cut`");
     if (!(*replay)->feed(*entry)) continue;
     auto& frames = (*replay)->loop().frames();
     frames.update();
-    follower.see(std::get<flow::LoggedTick>(*entry), frames.front());
+    follower.see(std::get<flow::LoggedTick>(*entry), frames.front(),
+                 (*replay)->loop().stats().commits);
     if (const std::string many = what_exceeds(made.timeline, most); !many.empty())
       return bad("has more than " + many + "; cut a part with `nendo recording cut`");
   }

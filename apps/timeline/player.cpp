@@ -45,7 +45,10 @@ Player::Player(Timeline timeline, const deform::Mesh& model)
         {track.skeleton(), HandCurve(track.keys), flow::Placement::index_of(track.side)});
   frame_.units_per_metre = timeline_.units_per_metre;
   frame_.held = timeline_.held;
-  frame_.settings = flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre);
+  settings_ = first_settings_ =
+      flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre);
+  sculptor_ = timeline_.sculptor;
+  frame_.settings = settings_;
   frame_.shape = shaping_.sculptor().rest();
   frame_.fields = shaping_.sculptor().fields();
   for (auto& hand : frame_.hands)
@@ -79,12 +82,33 @@ void Player::pose_hands(double time_s) {
   }
 }
 
+void Player::ask(const Event& event) {
+  if (event.settings)
+    settings_due_ = event.settings; // of several in a frame the last counts, as in the loop
+  else
+    shaping_.ask(event.request);
+}
+
+/// As the loop does at the end of a tick.
+void Player::change(const flow::LoopSettings& settings, double time_s) {
+  constexpr double one_step_s = 1.0;
+  sculptor_ = settings == first_settings_
+                  ? timeline_.sculptor
+                  : flow::with_settings(sculptor_, settings, static_cast<int>(hands_.size()),
+                                        timeline_.units_per_metre);
+  flow::ReadySculptor ready = shaping_.prepare(sculptor_);
+  const bool is_step = !changed_at_s_ || time_s - *changed_at_s_ >= one_step_s;
+  shaping_.exchange(ready, settings, tips_, is_step, frame_, stats_);
+  changed_at_s_ = time_s;
+  settings_ = settings;
+}
+
 bool Player::ask_what_is_due(double time_s) {
   const std::size_t first = next_event_;
   const double until_s = time_s + a_hair / timeline_.rate_hz;
   while (next_event_ < timeline_.events.size() &&
          (timeline_.events[next_event_].time_s <= until_s || made_ + 1 == frames_))
-    shaping_.ask(timeline_.events[next_event_++].request);
+    ask(timeline_.events[next_event_++]);
   return next_event_ > first;
 }
 
@@ -99,8 +123,12 @@ bool Player::next() {
   shaping_.refill_undo();
   shaping_.set_time(time_s);
   const bool asked = ask_what_is_due(time_s);
+  frame_.settings = settings_;
   // The hands have just taken hold here: without a wish there is nothing to do.
-  if (made_ > 0 || asked) frame_.status = shaping_.shape(tips_, frame_, stats_);
+  if (made_ > 0 || asked)
+    frame_.status = shaping_.shape(tips_, frame_, stats_, settings_due_.has_value());
+  if (settings_due_) change(*std::exchange(settings_due_, {}), time_s);
+  if (frame_.awaited) change(*frame_.awaited, time_s); // by an undo or a redo
   describe(made_++);
   return true;
 }

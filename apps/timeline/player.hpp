@@ -3,6 +3,7 @@
 // poses, and the shape from the fingertips, as in the loop.
 
 #include <memory>
+#include <optional>
 
 #include <nendo/base/result.hpp>
 
@@ -44,6 +45,8 @@ private:
   double time_of(std::uint64_t frame) const noexcept;
   void pose_hands(double time_s);
   bool ask_what_is_due(double time_s);
+  void ask(const Event& event);
+  void change(const flow::LoopSettings& settings, double time_s);
   void describe(std::uint64_t number);
 
   Timeline timeline_;
@@ -53,8 +56,12 @@ private:
   flow::Frame frame_;
   flow::LoopStats stats_;
   std::size_t next_event_ = 0;
-  std::uint64_t made_ = 0;   ///< frames
-  std::uint64_t frames_ = 0; ///< in all
+  std::optional<flow::LoopSettings> settings_due_;
+  flow::LoopSettings first_settings_, settings_; ///< of the timeline, and in force
+  flow::SculptorOptions sculptor_;               ///< with those in force
+  std::optional<double> changed_at_s_;           ///< last
+  std::uint64_t made_ = 0;                       ///< frames
+  std::uint64_t frames_ = 0;                     ///< in all
 };
 
 } // namespace nendo::timeline

@@ -3,6 +3,7 @@
 // thread of its own plays the timeline frame by frame and keeps every k-th shape, as memory allows,
 // and the last one.
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -20,7 +21,8 @@ struct CachedShape {
   std::uint64_t frame = 0;
   double time_s = 0.0;
   bool held = false;
-  double held_since_s = 0.0; ///< where the fingertips took hold, if held
+  double held_since_s = 0.0;        ///< where the fingertips took hold, if held
+  std::array<double, 5> radius_m{}; ///< of each finger then
   deform::BlockShape shape;
 };
 

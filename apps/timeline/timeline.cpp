@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <numbers>
 
 #include <nendo/flow/tick_grid.hpp>
@@ -73,6 +74,9 @@ std::string complaint_about(const std::vector<Event>& events) {
     if (!within(events[at].time_s, 0.0, longest_s) ||
         (at > 0 && events[at].time_s < events[at - 1].time_s))
       return "event " + std::to_string(at) + ": times must lie within 0 and 1000000 s and not fall";
+    if (events[at].settings && !events[at].settings->are_usable())
+      return "event " + std::to_string(at) +
+             ": radii must lie within 1e-9 and 1e9 m, piece_fraction within 0.001 and 1000";
   }
   return {};
 }
@@ -102,7 +106,23 @@ bool same_bits(const Key& one, const Key& other) noexcept {
 }
 
 bool same_bits(const Event& one, const Event& other) noexcept {
-  return same_bits(one.time_s, other.time_s) && one.request == other.request;
+  return same_bits(one.time_s, other.time_s) && one.request == other.request &&
+         one.settings == other.settings;
+}
+
+std::string in_words(const Event& event) {
+  if (!event.settings) return std::string(name_of(event.request));
+  const flow::LoopSettings& settings = *event.settings;
+  std::string words = std::string(name_of(settings.mode)) + ", " +
+                      std::string(deform::name_of(settings.kernel)) +
+                      (settings.injective ? ", never folds, radius" : ", radius");
+  const auto [least, most] =
+      std::minmax_element(settings.radius_m.begin(), settings.radius_m.end());
+  char radius[64];
+  std::snprintf(radius, sizeof radius, " %.3g", 100.0 * *least);
+  words += radius;
+  std::snprintf(radius, sizeof radius, " to %.3g", 100.0 * *most);
+  return words + (*least == *most ? "" : radius) + " cm";
 }
 
 HandTrack* Timeline::track(Side side) noexcept {

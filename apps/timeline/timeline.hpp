@@ -1,6 +1,7 @@
 #pragma once
 // A take as key poses. For each hand, it has joint angles and the place of the wrist at some times.
-// It also has the requests to the model, and all options on which the shape depends.
+// It also has the requests to the model, the changes of settings, and all options on which the
+// shape depends.
 
 #include <optional>
 #include <string>
@@ -38,9 +39,14 @@ struct HandTrack {
 struct Event {
   double time_s = 0.0;
   flow::Request request = flow::Request::grab;
+  /// The event is a change to these, and `request` means nothing. They have no filter, because keys
+  /// are poses that were filtered.
+  std::optional<flow::LoopSettings> settings{};
 };
 
 bool same_bits(const Event& one, const Event& other) noexcept;
+/// Returns what the event does, in words: "commit", "type2, wendland-c4, radius 12 cm".
+std::string in_words(const Event& event);
 
 /// Times begin at 0, when the hands take hold of the unchanged model.
 struct Timeline {

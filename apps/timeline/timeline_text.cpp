@@ -69,6 +69,14 @@ std::string sculptor_text(const flow::SculptorOptions& sculptor) {
   return text;
 }
 
+std::string settings_text(const flow::LoopSettings& settings) {
+  return "{ mode = " + toml_string(name_of(settings.mode)) +
+         ", kernel = " + toml_string(name_of(settings.kernel)) +
+         ", injective = " + (settings.injective ? "true" : "false") +
+         ", radius_m = " + list(settings.radius_m) +
+         ", piece_fraction = " + decimal_text(settings.piece_fraction) + " }";
+}
+
 std::string key_text(const Key& key) {
   std::string angles;
   for (std::size_t at = 0; at < hand::angle_count; ++at)
@@ -84,8 +92,10 @@ std::string key_text(const Key& key) {
 std::string head_text(const Timeline& timeline) {
   std::string events;
   for (const Event& event : timeline.events)
-    events += "  { time_s = " + decimal_text(event.time_s) +
-              ", request = " + toml_string(name_of(event.request)) + " },\n";
+    events += "  { time_s = " + decimal_text(event.time_s) + ", " +
+              (event.settings ? "settings = " + settings_text(*event.settings)
+                              : "request = " + toml_string(name_of(event.request))) +
+              " },\n";
   return "# Key poses of hands over a model; `nendo edit` works on it, and so does a text "
          "editor.\n" +
          line("version", "1") + line("take", toml_string(timeline.take)) +

@@ -107,15 +107,35 @@ HandTrack read_hand(TomlReader& reader, const toml::table& table) {
   return hand;
 }
 
+flow::LoopSettings read_settings(TomlReader& reader, const toml::table& event) {
+  flow::LoopSettings settings;
+  if (event.get("request") != nullptr)
+    reader.complain(event, "an event has a request or settings; make two events of it");
+  const toml::table* const table = reader.table(event, "settings");
+  if (table == nullptr) return settings;
+  reader.allow_only(*table, {"mode", "kernel", "injective", "radius_m", "piece_fraction"});
+  settings.mode = reader.named(*table, "mode", flow::mode_named);
+  settings.kernel = reader.named(*table, "kernel", deform::wendland_named);
+  settings.injective = reader.truth(*table, "injective");
+  if (const toml::node* const radii = reader.find(*table, "radius_m"))
+    settings.radius_m = reader.numbers<5>(*radii, "radius_m");
+  settings.piece_fraction = reader.number(*table, "piece_fraction");
+  return settings;
+}
+
 void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline) {
   const toml::array* const events = reader.array(root, "events");
   if (events == nullptr) return;
   for (const toml::node& node : *events) {
     const toml::table* const event = reader.as_table(node, "an event");
     if (event == nullptr || reader.error()) return;
-    reader.allow_only(*event, {"time_s", "request"});
-    const double time_s = reader.number(*event, "time_s");
-    timeline.events.push_back({time_s, reader.named(*event, "request", flow::request_named)});
+    reader.allow_only(*event, {"time_s", "request", "settings"});
+    Event& read = timeline.events.emplace_back();
+    read.time_s = reader.number(*event, "time_s");
+    if (event->get("settings") == nullptr)
+      read.request = reader.named(*event, "request", flow::request_named);
+    else
+      read.settings = read_settings(reader, *event);
   }
 }
 

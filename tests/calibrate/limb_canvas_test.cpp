@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/rounds.hpp"
+
 namespace limb_canvas_test {
 
 using namespace nendo::calibrate;
@@ -49,7 +51,7 @@ TEST_SUITE("limb_canvas") {
   TEST_CASE("a limb covers the dots within its radius, wherever it lies, and no others") {
     std::mt19937 random(1);
     std::size_t covered = 0;
-    for (int turn = 0; turn < 30; ++turn) {
+    for (int turn = 0; turn < nendo::test::rounds(30); ++turn) {
       const auto columns = static_cast<int>(1 + random() % 10);
       const auto rows = static_cast<int>(1 + random() % 6);
       LimbCanvas canvas(columns, rows);
@@ -71,12 +73,12 @@ TEST_SUITE("limb_canvas") {
           if (nearly.part != 3) REQUIRE_FALSE(drawn);
         }
     }
-    CHECK(covered > 200);
+    CHECK(covered > static_cast<std::size_t>(nendo::test::rounds(200)));
   }
 
   TEST_CASE("of limbs that overlap the nearest is seen, in whatever order they are drawn") {
     std::mt19937 random(2);
-    for (int turn = 0; turn < 4; ++turn) {
+    for (int turn = 0; turn < nendo::test::rounds(4); ++turn) {
       std::vector<Limb> limbs;
       for (std::uint8_t part = 0; part < 5; ++part) {
         limbs.push_back(random_limb(random, part, true));

@@ -85,10 +85,8 @@ TEST_SUITE("view_command") {
     Person person;
     person.come();
     const deform::Points& loaded = person.ball.vertices;
-    person.press("c");
-    person.press("bracketright bracketright");
-    person.press("c");
-    person.press("n");
+    person.press("c bracketright bracketright");
+    person.press("c n");
     person.press("m");
     person.press("bracketleft c");
     person.press("l");

@@ -7,6 +7,7 @@
 
 #include <nendo/recording/loop_replay.hpp>
 
+#include "support/rounds.hpp"
 #include "support/takes.hpp"
 
 namespace live_settings_test {
@@ -64,7 +65,7 @@ Replayed replayed(const std::filesystem::path& path, const deform::Mesh& model) 
 TEST_SUITE("live_settings") {
   TEST_CASE(
       "whatever is asked for and changed, each frame of a replay is the live one, bit for bit") {
-    for (unsigned seed = 0; seed < 16; ++seed) {
+    for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(16); ++seed) {
       CAPTURE(seed);
       const auto live = loop_of(seed);
       live->record();
@@ -84,7 +85,7 @@ TEST_SUITE("live_settings") {
   TEST_CASE(
       "a recording that begins and ends while the loop runs has what is between, bit for bit") {
     int shaped = 0;
-    for (unsigned seed = 0; seed < 16; ++seed) {
+    for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(16); ++seed) {
       CAPTURE(seed);
       const auto live = loop_of(seed);
       flow::InputLog log;
@@ -124,7 +125,7 @@ TEST_SUITE("live_settings") {
       CHECK(again.last == last);
       shaped += (last - live->test.model.vertices).cwiseAbs().maxCoeff() > 1e-3 ? 1 : 0;
     }
-    CHECK(shaped >= 8); // the others end with an undo or a reset
+    CHECK(shaped >= test::rounds(8)); // the others end with an undo or a reset
   }
 
   TEST_CASE("a shape at the beginning that is no shape of the model is refused") {

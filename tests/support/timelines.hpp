@@ -44,6 +44,12 @@ inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys
   }
   for (const flow::Request request : flow::requests)
     made.events.push_back({0.1 * static_cast<double>(made.events.size()), request});
+  made.events.push_back({2.5,
+                         {},
+                         flow::LoopSettings{.mode = flow::Mode::type2,
+                                            .injective = true,
+                                            .radius_m = {0.1, 0.2, 0.3, step(random), 0.5},
+                                            .piece_fraction = 0.07}});
   return made;
 }
 
@@ -57,8 +63,7 @@ inline bool same_bits(const timeline::Timeline& one, const timeline::Timeline& o
       same = timeline::same_bits(keys[key], other.hands[at].keys[key]);
   }
   for (std::size_t at = 0; same && at < one.events.size(); ++at)
-    same = one.events[at].time_s == other.events[at].time_s &&
-           one.events[at].request == other.events[at].request;
+    same = timeline::same_bits(one.events[at], other.events[at]);
   return same;
 }
 

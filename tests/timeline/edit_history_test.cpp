@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "support/rounds.hpp"
 #include "support/timelines.hpp"
 #include "timeline/edit.hpp"
 #include "timeline/edit_history.hpp"
@@ -70,7 +71,7 @@ TEST_SUITE("edit_history") {
       EditHistory history(some_timeline(seed));
       std::vector<std::string> texts{text_of(history.timeline())};
       std::vector<Selection> selections{history.selected()};
-      for (int edit = 0; edit < 300; ++edit) {
+      for (int edit = 0; edit < test::rounds(300); ++edit) {
         const std::string before = texts.back();
         const bool done = static_cast<bool>(history.apply(random_edit(random)));
         const std::string now = text_of(history.timeline());
@@ -80,7 +81,7 @@ TEST_SUITE("edit_history") {
         texts.push_back(now);
         selections.push_back(history.selected());
       }
-      CHECK(texts.size() > 100);
+      CHECK(texts.size() > static_cast<std::size_t>(test::rounds(100)));
       for (int round = 0; round < 2; ++round) {
         for (std::size_t at = texts.size() - 1; at > 0; --at) {
           CHECK(history.can_undo());

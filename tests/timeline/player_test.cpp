@@ -1,7 +1,10 @@
+#include <random>
+
 #include <doctest/doctest.h>
 
 #include <nendo/recording/loop_replay.hpp>
 
+#include "support/rounds.hpp"
 #include "support/takes.hpp"
 #include "timeline/edit.hpp"
 #include "timeline/from_take.hpp"
@@ -110,6 +113,73 @@ TEST_SUITE("player") {
       CHECK(farthest(player->final_shape(), (*replay)->loop().final_shape()) < test::float_gap);
       CHECK(player->last_time_s() == doctest::Approx(made.timeline.duration_s));
     }
+  }
+
+  TEST_CASE("so it does where settings change on the way, and changes are undone and redone") {
+    for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(8); ++seed) {
+      CAPTURE(seed);
+      Taken taken(seed % 2 == 0 ? Mode::type1 : Mode::type2, seed % 4 == 3);
+      auto& loop = *taken.live.test.loop;
+      std::mt19937 random(seed);
+      const HostTime begin = HostClock::now();
+      int bent = 0;
+      std::vector<Points> shapes;
+      for (std::uint64_t tick = 0; tick < 300; ++tick) {
+        bent = std::clamp(bent + static_cast<int>(random() % 5) - 2, 0, 30);
+        taken.live.test.bend(bent, begin + tick * std::chrono::milliseconds(11));
+        flow::LoopSettings settings = test::any_settings(loop.settings(), random);
+        settings.filter = loop.settings().filter;
+        if (random() % 15 == 0) loop.change_settings(settings);
+        if (random() % 10 == 0)
+          taken.live.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
+        const flow::Frame& frame = taken.live.test.frame_after_tick(tick);
+        shapes.push_back(taken.live.test.vertices_of(frame));
+        if (frame.awaited) loop.change_settings(*frame.awaited);
+      }
+      const std::uint64_t changes = loop.stats().changes;
+      CHECK(changes > 5);
+      const MadeTimeline made = taken.made(none);
+      // Also after it has been a file.
+      const auto text = timeline_text(made.timeline);
+      REQUIRE(text);
+      const auto read = parse_timeline(*text, "test");
+      CAPTURE((read ? std::string() : read.error().message));
+      REQUIRE(read);
+      const auto player = playing(*read, taken.live.test.model);
+      REQUIRE(player->next());
+      Points shape;
+      double worst = 0.0;
+      for (const Points& wanted : shapes) {
+        REQUIRE(player->next());
+        player->layout().unpack(player->frame().shape, shape);
+        worst = std::max(worst, farthest(shape, wanted));
+      }
+      CHECK(worst < 1e-5);
+      CHECK(player->stats().changes == changes);
+    }
+  }
+
+  TEST_CASE(
+      "a take in which the filter changes, or which begins in the middle of a run, becomes no "
+      "timeline") {
+    Taken filtered(Mode::type1);
+    flow::LoopSettings settings = filtered.live.test.loop->settings();
+    settings.filter.kind = hand::FilterKind::one_euro;
+    filtered.live.test.loop->change_settings(settings);
+    filtered.bend(3);
+    REQUIRE(filtered.live.end());
+    const auto refused = timeline_of_take(filtered.live.path, filtered.live.test.model, none);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == Errc::bad_input);
+    CHECK(refused.error().message.find("filter") != std::string::npos);
+    Taken part(Mode::type1);
+    part.bend(3);
+    REQUIRE(part.live.end());
+    test::RecordedLoop middle(Mode::type1);
+    middle.setup.loop->rest.resize(middle.test.loop->layout().block_count());
+    middle.record();
+    REQUIRE(middle.end());
+    CHECK_FALSE(timeline_of_take(middle.path, middle.test.model, none));
   }
 
   TEST_CASE("whatever the rate, the frames are all those up to the end, with what is due there") {

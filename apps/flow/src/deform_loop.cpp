@@ -48,6 +48,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
       settings_in_force_(first_settings(options, hands.front(), placement.units_per_metre)),
       shaping_(model.vertices, tips_.cols(), shaping_options(options, settings_in_force_, first)),
+      first_settings_(settings_in_force_), first_sculptor_(options.sculptor),
       settings_(settings_in_force_), sculptor_options_(options.sculptor),
       frames_(first_frame(shaping_.sculptor(), placement.units_per_metre, settings_)) {
   assert(!hands.empty() && hands.size() <= 2);

@@ -42,10 +42,11 @@ std::array<double, 5> radii_on_stage(const deform::Supports& supports, double un
     auto& radius = radii[static_cast<std::size_t>(own.point) % radii.size()];
     radius = std::max(radius, own.support.radius / units_per_metre);
   }
-  if (!supports.own.empty()) return radii; // the shared one then but joins them
+  double largest_shared = 0.0;
   for (const auto& shared : supports.shared)
-    for (auto& radius : radii)
-      radius = std::max(radius, shared.radius / units_per_metre);
+    largest_shared = std::max(largest_shared, shared.radius / units_per_metre);
+  for (auto& radius : radii)
+    if (radius == 0.0) radius = largest_shared; // beside own ones the shared one but joins them
   return radii;
 }
 

@@ -106,8 +106,10 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
     change.settings.reset();
     change.ready = {};
   } else {
-    sculptor_options_ = with_settings(change.sculptor_before, settings,
-                                      static_cast<int>(hands_.size()), units_per_metre_);
+    sculptor_options_ = settings == first_settings_
+                            ? first_sculptor_
+                            : with_settings(change.sculptor_before, settings,
+                                            static_cast<int>(hands_.size()), units_per_metre_);
     change.ready = shaping_.prepare(sculptor_options_);
     change.settings = settings;
   }
@@ -147,6 +149,9 @@ bool DeformLoop::is_changing() {
       states_.push_back(std::move(change_->log->state));
       states_.back().settings = settings_; // nobody has asked for others since
       states_.back().sculptor = sculptor_options_;
+      // From here on, as a replay that begins here.
+      first_settings_ = settings_;
+      first_sculptor_ = sculptor_options_;
     }
     change_.reset();
   }

@@ -201,6 +201,8 @@ private:
   LoopChange* taken_ = nullptr;        ///< by this tick
   std::optional<HostTime> changed_at_; ///< the last tick that changed settings
   // For the thread that asks for changes:
+  LoopSettings first_settings_; ///< which mean these options, with all weights of their radii
+  SculptorOptions first_sculptor_;
   LoopSettings settings_;
   SculptorOptions sculptor_options_;
   std::unique_ptr<LoopChange> change_; ///< that the loop has, or will have

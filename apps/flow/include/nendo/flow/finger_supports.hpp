@@ -23,7 +23,7 @@ std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two
 deform::Supports supports_on_model(const std::array<double, 5>& radius_m, double units_per_metre);
 
 /// The radii of five fingers on the stage, in metres. supports: a loop's; the largest radius of
-/// each finger counts.
+/// each finger's own counts, or of the shared ones if it has none.
 std::array<double, 5> radii_on_stage(const deform::Supports& supports, double units_per_metre);
 
 } // namespace nendo::flow
