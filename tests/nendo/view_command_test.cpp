@@ -10,6 +10,7 @@
 #include <nendo/deform/mesh_file.hpp>
 
 #include "support/eventually.hpp"
+#include "support/give_way.hpp"
 #include "support/memory_screen.hpp"
 #include "support/program.hpp"
 #include "support/restraint.hpp"
@@ -75,6 +76,7 @@ TEST_SUITE("view_command") {
   TEST_CASE("a person shapes, changes radius, kernel and mode, shapes on, undoes all of it and "
             "redoes it, "
             "and the recording replays to the same bytes") {
+    test::give_way();
     const test::MemoryScreen screen;
     // Mesa's own memory is not for our sanitizers, in a child either.
     if (!screen.is_there() || !test::restraint_is_counted) return;
