@@ -9,10 +9,6 @@ namespace {
 
 constexpr std::size_t shape_head_words = sizeof(nendo_publish_shape) / 8;
 
-std::size_t blocks_for(std::size_t vertices) noexcept {
-  return (vertices + deform::block_size - 1) / deform::block_size;
-}
-
 } // namespace
 
 std::size_t shape_slot_words(std::size_t vertices) noexcept {
@@ -22,7 +18,7 @@ std::size_t shape_slot_words(std::size_t vertices) noexcept {
 ShapeRing::ShapeRing(AtomicWord* memory, std::size_t slots, std::size_t slot_words,
                      std::size_t vertices)
     : memory_(memory), slot_words_(slot_words), vertices_(vertices),
-      stamps_(slots, Stamps(blocks_for(vertices), 0)) {
+      stamps_(slots, Stamps(deform::block_count_of(vertices), 0)) {
   assert(slots > 1 && slot_words >= shape_slot_words(vertices));
 }
 

@@ -37,12 +37,11 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
 
 void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::CommandRing& commands) {
   wanted_.follow(in_force);
-  constexpr double larger = 1.1;
-  if (key == '[') wanted_.scale_radii(1.0 / larger);
-  if (key == ']') wanted_.scale_radii(larger);
+  if (key == '[') wanted_.reduce_radii();
+  if (key == ']') wanted_.enlarge_radii();
   if (key == 'm') wanted_.other_mode();
   if (key == 'n') wanted_.next_kernel();
-  if (key == 'i') wanted_.now.injective = !wanted_.now.injective;
+  if (key == 'i') wanted_.toggle_folding();
   const auto command = wanted_.ask();
   if (!command) return;
   commands.try_push(*command);

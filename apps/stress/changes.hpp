@@ -33,7 +33,6 @@ public:
   /// Asks for those that are due. To be called some hundred times a second, not by the loop's
   /// thread.
   void update(flow::DeformLoop& loop, HostTime start);
-  std::uint64_t asked() const noexcept { return asked_; }
 
 private:
   double per_minute_;

@@ -57,9 +57,7 @@ public:
                  options.policy == flow::OverrunPolicy::catch_up) {}
 
   void hear(flow::Request request) {
-    if (request == flow::Request::undo || request == flow::Request::redo ||
-        request == flow::Request::reset)
-      steps_.push_back(request);
+    if (flow::goes_through_history(request)) steps_.push_back(request);
   }
 
   /// Returns false if a timeline has no such settings.

@@ -11,11 +11,10 @@ namespace {
 // Times in files are decimals, and a frame's is a quotient: what is so near belongs to it.
 constexpr double a_hair = 1e-6; // of a frame
 
-flow::ShapingOptions shaping_options(const Timeline& timeline) {
-  flow::ShapingOptions options{timeline.sculptor,
-                               flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre),
-                               deform::half_of_memory()};
-  options.sculptor.deformer.undo_bytes = 0;
+flow::ShapingOptions shaping_options(const Timeline& timeline,
+                                     const flow::SculptorSetup& sculptor) {
+  flow::ShapingOptions options{sculptor, deform::half_of_memory()};
+  options.sculptor.options.deformer.undo_bytes = 0;
   options.most_requests = timeline.events.size() + 1;
   options.held = timeline.held;
   return options;
@@ -38,17 +37,16 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
 Player::Player(Timeline timeline, const deform::Mesh& model)
     : timeline_(std::move(timeline)),
       tips_(deform::Points::Zero(3, 5 * static_cast<Eigen::Index>(timeline_.hands.size()))),
-      shaping_(model.vertices, tips_.cols(), shaping_options(timeline_)),
+      first_{timeline_.sculptor,
+             flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre)},
+      now_(first_), shaping_(model.vertices, tips_.cols(), shaping_options(timeline_, first_)),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
   for (const auto& track : timeline_.hands)
     hands_.push_back(
         {track.skeleton(), HandCurve(track.keys), flow::Placement::index_of(track.side)});
   frame_.units_per_metre = timeline_.units_per_metre;
   frame_.held = timeline_.held;
-  settings_ = first_settings_ =
-      flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre);
-  sculptor_ = timeline_.sculptor;
-  frame_.settings = settings_;
+  frame_.settings = shaping_.settings();
   frame_.shape = shaping_.sculptor().rest();
   frame_.fields = shaping_.sculptor().fields();
   for (auto& hand : frame_.hands)
@@ -90,17 +88,11 @@ void Player::ask(const Event& event) {
 }
 
 /// As the loop does at the end of a tick.
-void Player::change(const flow::LoopSettings& settings, double time_s) {
-  constexpr double one_step_s = 1.0;
-  sculptor_ = settings == first_settings_
-                  ? timeline_.sculptor
-                  : flow::with_settings(sculptor_, settings, static_cast<int>(hands_.size()),
-                                        timeline_.units_per_metre);
-  flow::ReadySculptor ready = shaping_.prepare(sculptor_);
-  const bool is_step = !changed_at_s_ || time_s - *changed_at_s_ >= one_step_s;
-  shaping_.exchange(ready, settings, tips_, is_step, frame_, stats_);
-  changed_at_s_ = time_s;
-  settings_ = settings;
+void Player::change(const flow::LoopSettings& settings) {
+  now_ = flow::with_settings(now_, first_, settings, static_cast<int>(hands_.size()),
+                             timeline_.units_per_metre);
+  flow::ReadySculptor ready = shaping_.prepare(now_);
+  shaping_.exchange(ready, tips_, frame_, stats_);
 }
 
 bool Player::ask_what_is_due(double time_s) {
@@ -121,14 +113,14 @@ bool Player::next() {
   const double time_s = time_of(made_);
   pose_hands(time_s);
   shaping_.refill_undo();
-  shaping_.set_time(time_s);
+  shaping_.set_time(from_seconds(time_s));
   const bool asked = ask_what_is_due(time_s);
-  frame_.settings = settings_;
+  frame_.settings = shaping_.settings();
   // The hands have just taken hold here: without a wish there is nothing to do.
   if (made_ > 0 || asked)
     frame_.status = shaping_.shape(tips_, frame_, stats_, settings_due_.has_value());
-  if (settings_due_) change(*std::exchange(settings_due_, {}), time_s);
-  if (frame_.awaited) change(*frame_.awaited, time_s); // by an undo or a redo
+  if (settings_due_) change(*std::exchange(settings_due_, {}));
+  if (frame_.awaited) change(*frame_.awaited); // by an undo or a redo
   describe(made_++);
   return true;
 }

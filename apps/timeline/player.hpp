@@ -46,22 +46,20 @@ private:
   void pose_hands(double time_s);
   bool ask_what_is_due(double time_s);
   void ask(const Event& event);
-  void change(const flow::LoopSettings& settings, double time_s);
+  void change(const flow::LoopSettings& settings);
   void describe(std::uint64_t number);
 
   Timeline timeline_;
   std::vector<Hand> hands_;
   deform::Points tips_;
+  flow::SculptorSetup first_, now_; ///< of the timeline, and in force
   flow::Shaping shaping_;
   flow::Frame frame_;
   flow::LoopStats stats_;
   std::size_t next_event_ = 0;
   std::optional<flow::LoopSettings> settings_due_;
-  flow::LoopSettings first_settings_, settings_; ///< of the timeline, and in force
-  flow::SculptorOptions sculptor_;               ///< with those in force
-  std::optional<double> changed_at_s_;           ///< last
-  std::uint64_t made_ = 0;                       ///< frames
-  std::uint64_t frames_ = 0;                     ///< in all
+  std::uint64_t made_ = 0;   ///< frames
+  std::uint64_t frames_ = 0; ///< in all
 };
 
 } // namespace nendo::timeline

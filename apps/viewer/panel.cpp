@@ -106,7 +106,7 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
   };
   ask("Grab", "The hands take hold (g)", Request::grab);
   ask("Let go", "What is shaped stays (l)", Request::let_go);
-  ask("Undo", "Undo the last commit (u, ctrl z)", Request::undo, frame.undo_steps > 0);
+  ask("Undo", "Undo the last step (u, ctrl z)", Request::undo, frame.undo_steps > 0);
   ask("Redo", "Redo what was undone (r, ctrl y)", Request::redo, frame.redo_steps > 0);
   ask("Commit", "This shape becomes the rest shape (c)", Request::commit);
   ask("Reset", "Back to the model as it was loaded; undo takes it back (x)", Request::reset);

@@ -15,7 +15,7 @@ constexpr std::array key_table{
     KeyLine{"g", "grab: the hands take hold"},
     KeyLine{"l", "let go; what is shaped stays"},
     KeyLine{"c", "commit: this shape becomes the rest shape"},
-    KeyLine{"u, ctrl z", "undo the last commit"},
+    KeyLine{"u, ctrl z", "undo the last step"},
     KeyLine{"r, ctrl y", "redo what was undone; ctrl shift z, too"},
     KeyLine{"x", "reset: back to the model as it was loaded"},
     KeyLine{"t", "a take: record from here on, and end that"},
@@ -34,10 +34,9 @@ constexpr std::array key_table{
 void LiveWindow::Panel::settings_keys() {
   if (pressed(GLFW_KEY_M)) wanted.other_mode();
   if (pressed(GLFW_KEY_N)) wanted.next_kernel();
-  constexpr double larger = 1.1;
-  if (pressed(GLFW_KEY_LEFT_BRACKET, true)) wanted.scale_radii(1.0 / larger);
-  if (pressed(GLFW_KEY_RIGHT_BRACKET, true)) wanted.scale_radii(larger);
-  if (pressed(GLFW_KEY_I)) wanted.now.injective = !wanted.now.injective;
+  if (pressed(GLFW_KEY_LEFT_BRACKET, true)) wanted.reduce_radii();
+  if (pressed(GLFW_KEY_RIGHT_BRACKET, true)) wanted.enlarge_radii();
+  if (pressed(GLFW_KEY_I)) wanted.toggle_folding();
 }
 
 // The page's button is grey then, too; a key says why nothing happens.

@@ -20,7 +20,8 @@ SharedBytes shared_bytes(std::string_view text);
 
 /// The messages that each client gets when it comes and whenever they change: the settings, the
 /// steps.
-using Facts = std::array<SharedBytes, 2>;
+enum Fact : std::size_t { settings_fact, history_fact, fact_count };
+using Facts = std::array<SharedBytes, fact_count>;
 
 class Connection {
 public:

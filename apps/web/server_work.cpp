@@ -69,12 +69,12 @@ void Server::Work::report(std::string message) {
 void Server::Work::set_settings(const flow::LoopSettings& settings, bool recorded) {
   {
     const std::scoped_lock lock(mutex_);
-    if (facts_[0] && settings == settings_ && recorded == recorded_) return;
+    if (facts_[settings_fact] && settings == settings_ && recorded == recorded_) return;
     settings_ = settings;
     recorded_ = recorded;
     std::vector<std::byte> message(sizeof(SettingsMessage));
     WireWriter(message).put(message_of(settings, recorded));
-    facts_[0] = std::make_shared<const std::vector<std::byte>>(std::move(message));
+    facts_[settings_fact] = std::make_shared<const std::vector<std::byte>>(std::move(message));
   }
   wake();
 }
@@ -82,9 +82,9 @@ void Server::Work::set_settings(const flow::LoopSettings& settings, bool recorde
 void Server::Work::set_steps(const flow::StepList& steps) {
   {
     const std::scoped_lock lock(mutex_);
-    if (facts_[1] && steps.version == steps_version_) return;
+    if (facts_[history_fact] && steps.version == steps_version_) return;
     steps_version_ = steps.version;
-    facts_[1] = std::make_shared<const std::vector<std::byte>>(message_of(steps));
+    facts_[history_fact] = std::make_shared<const std::vector<std::byte>>(message_of(steps));
   }
   wake();
 }

@@ -146,9 +146,9 @@ SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) no
 }
 
 std::vector<std::byte> message_of(const flow::StepList& steps) {
-  std::vector<std::byte> message(steps_head_bytes + step_bytes * steps.count);
+  std::vector<std::byte> message(history_head_bytes + history_step_bytes * steps.count);
   WireWriter out(message);
-  out.put(static_cast<std::uint8_t>(MessageType::steps));
+  out.put(static_cast<std::uint8_t>(MessageType::history));
   out.put(static_cast<std::uint8_t>(steps.count));
   out.put(static_cast<std::uint8_t>(steps.undoable));
   out.put(std::uint8_t{0});

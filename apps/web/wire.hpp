@@ -22,7 +22,7 @@ enum class MessageType : std::uint8_t {
   update = 2,
   report = 3,
   settings = 4,
-  steps = 5
+  history = 5
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 
@@ -94,8 +94,9 @@ struct SettingsMessage {
 };
 static_assert(sizeof(SettingsMessage) == 48);
 
-inline constexpr std::size_t steps_head_bytes = 8;
-inline constexpr std::size_t step_bytes = 8;
+/// Of the history's message.
+inline constexpr std::size_t history_head_bytes = 8;
+inline constexpr std::size_t history_step_bytes = 8;
 
 /// Tells whether a joint's rotation is sent with each frame. The other joints do not move relative
 /// to their parents.

@@ -58,7 +58,7 @@ void halve(Places begin, Places end) {
     return;
   }
   const Eigen::Index axis = longest_side(begin, end);
-  const std::size_t left = left_blocks((count + block_size - 1) / block_size) * block_size;
+  const std::size_t left = left_blocks(block_count_of(count)) * block_size;
   const Places middle = begin + static_cast<std::ptrdiff_t>(left);
   // Equal coordinates by their indices: so the order is the same with every library.
   std::nth_element(begin, middle, end, [axis](const Place& a, const Place& b) {

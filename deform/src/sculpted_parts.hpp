@@ -12,16 +12,16 @@ struct SculptedShape::Parts {
   BoundedShape original;
   BoundedShape now;
   ShapeHistory history;
-  StepNote note;
-  StepNote note_of_reset;
+  StepNote note{}; ///< of the next step
+  StepNote note_of_reset{};
 
+  /// Ends a step, which led to the present shape.
+  void keep() noexcept { history.keep(now.shape, note); }
   /// Makes the original shape the present one. Both ways are steps in the history.
   void reset() noexcept {
-    history.keep(now.shape);
+    keep();
     now.follow(original);
-    history.set_note(note_of_reset);
-    history.keep(now.shape);
-    history.set_note(note);
+    history.keep(now.shape, note_of_reset);
   }
 };
 

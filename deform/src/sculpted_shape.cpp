@@ -16,8 +16,7 @@ SculptedShape::SculptedShape(Points original, const DeformerOptions& options,
   BoundedShape now = first != nullptr ? BoundedShape(*first) : loaded;
   assert(now.shape.block_count() == layout_.block_count());
   ShapeHistory history(now.shape, options.undo_bytes, options.undo_memory);
-  parts_ =
-      std::make_unique<Parts>(Parts{std::move(loaded), std::move(now), std::move(history), {}, {}});
+  parts_ = std::make_unique<Parts>(Parts{std::move(loaded), std::move(now), std::move(history)});
 }
 
 SculptedShape::~SculptedShape() = default;
@@ -39,7 +38,6 @@ std::size_t SculptedShape::forgotten_steps() const noexcept {
 }
 
 void SculptedShape::set_notes(const StepNote& note, const StepNote& of_reset) noexcept {
-  parts_->history.set_note(note);
   parts_->note = note;
   parts_->note_of_reset = of_reset;
 }
@@ -49,16 +47,12 @@ void SculptedShape::mark(const StepNote& note) noexcept {
 }
 
 void SculptedShape::undo_mark() noexcept {
-  revert();
+  parts_->history.revert(parts_->now);
   parts_->history.undo(parts_->now);
 }
 
 void SculptedShape::redo_mark() noexcept {
   parts_->history.redo(parts_->now);
-}
-
-void SculptedShape::revert() noexcept {
-  parts_->history.revert(parts_->now);
 }
 
 const StepNote* SculptedShape::to_undo() const noexcept {

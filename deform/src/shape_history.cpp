@@ -49,12 +49,12 @@ bool ShapeHistory::make_room(std::size_t blocks) noexcept {
   return blocks <= free_count_;
 }
 
-void ShapeHistory::keep(const BlockShape& now) noexcept {
+void ShapeHistory::keep(const BlockShape& now, const StepNote& note) noexcept {
   const std::size_t changed = count_changed(now);
   if (changed == 0) return;
   forget_undone();
   const bool fits = make_room(changed + 1);
-  if (fits) begin_step(note_);
+  if (fits) begin_step(note);
   for (std::size_t block = 0; block < kept_.block_count(); ++block) {
     if (now.stamp(block) == kept_.stamp(block)) continue;
     if (fits) save(block);

@@ -29,9 +29,7 @@ public:
   /// Ends a step, which leads from the shape kept last to this one, and forgets undone steps. If
   /// nothing changed, there is no step. A step for which there is no room is not kept, and neither
   /// are those before it.
-  void keep(const BlockShape& now) noexcept;
-  /// Sets what is noted of the steps that keep() ends from now on.
-  void set_note(const StepNote& note) noexcept { note_ = note; }
+  void keep(const BlockShape& now, const StepNote& note) noexcept;
   /// Adds a step that does not change the shape, and forgets undone steps.
   void mark(const StepNote& note) noexcept;
   /// Makes `shape` again the shape that was kept last.
@@ -110,7 +108,6 @@ private:
   std::uint64_t version_ = 0;
   SavedBlock* head_ = nullptr;       ///< of the last step that is not undone; null: there is none
   SavedBlock* first_head_ = nullptr; ///< of the oldest step
-  StepNote note_{};
 };
 
 } // namespace nendo::deform

@@ -20,6 +20,17 @@ bool is_valid(const Support& support) noexcept {
   return is_positive(support.radius) && is_positive(support.weight);
 }
 
+/// Returns the radius that `choose` prefers to each of the others.
+template <class Choose>
+double chosen_radius(const Supports& supports, Choose choose) noexcept {
+  double chosen = supports.shared.front().radius;
+  for (const Support& support : supports.shared)
+    chosen = choose(chosen, support.radius);
+  for (const OwnSupport& own : supports.own)
+    chosen = choose(chosen, own.support.radius);
+  return chosen;
+}
+
 /// Expects `own` in its place. Own functions of the shared radius alone change nothing: with A the
 /// shared matrix, A (w a + W A a) = M a = g, so their sum is A^-1 g whatever W is.
 void share(Supports& supports, std::optional<Support> common) {
@@ -39,21 +50,11 @@ void share(Supports& supports, std::optional<Support> common) {
 } // namespace
 
 double least_radius(const Supports& supports) noexcept {
-  double least = supports.shared.front().radius;
-  for (const Support& support : supports.shared)
-    least = std::min(least, support.radius);
-  for (const OwnSupport& own : supports.own)
-    least = std::min(least, own.support.radius);
-  return least;
+  return chosen_radius(supports, [](double a, double b) { return std::min(a, b); });
 }
 
 double largest_radius(const Supports& supports) noexcept {
-  double largest = supports.shared.front().radius;
-  for (const Support& support : supports.shared)
-    largest = std::max(largest, support.radius);
-  for (const OwnSupport& own : supports.own)
-    largest = std::max(largest, own.support.radius);
-  return largest;
+  return chosen_radius(supports, [](double a, double b) { return std::max(a, b); });
 }
 
 Eigen::Index Supports::functions(Eigen::Index points) const noexcept {

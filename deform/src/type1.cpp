@@ -179,7 +179,7 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
   const FieldStatus status = build(ends);
   if (!is_solved(status)) return status;
   absorb();
-  shape_->parts().history.keep(rest());
+  shape_->parts().keep();
   take_hold();
   return status;
 }
@@ -187,7 +187,7 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
 void Type1Deformer::release(bool is_step) noexcept {
   const bool is_moved = in_links_ || !displacements_.isZero(0.0);
   if (grabbed_ && is_moved) absorb();
-  if (is_step) shape_->parts().history.keep(rest());
+  if (is_step) shape_->parts().keep();
   grabbed_ = false;
   in_links_ = false;
   displacements_.setZero();
@@ -211,7 +211,7 @@ FieldStatus Type1Deformer::undo(const Points& tips) {
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
   SculptedShape::Parts& parts = shape_->parts();
-  parts.history.keep(parts.now.shape); // what release() left out
+  parts.keep(); // what release() left out
   parts.history.undo(parts.now);
   take_hold();
   return status;

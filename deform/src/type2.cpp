@@ -55,12 +55,12 @@ Type2Deformer::Type2Deformer(Type2Deformer&&) noexcept = default;
 Type2Deformer& Type2Deformer::operator=(Type2Deformer&&) noexcept = default;
 
 FieldStatus Type2Deformer::begin(const Points& tips) {
-  shape_->parts().history.keep(shape());
+  shape_->parts().keep();
   return take_hold(tips);
 }
 
 void Type2Deformer::release(bool is_step) noexcept {
-  if (is_step) shape_->parts().history.keep(shape());
+  if (is_step) shape_->parts().keep();
   begun_ = false;
   fields_.clear();
 }
@@ -96,7 +96,7 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
 FieldStatus Type2Deformer::undo(const Points& tips) {
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  shape_->parts().history.keep(shape());
+  shape_->parts().keep();
   shape_->parts().history.undo(shape_->parts().now);
   fields_.clear();
   return status;

@@ -13,26 +13,27 @@ using deform::Points;
 
 namespace {
 
-Frame first_frame(const Sculptor& sculptor, double units_per_metre, const LoopSettings& settings) {
+Frame first_frame(const Shaping& shaping, double units_per_metre) {
   Frame frame;
-  frame.settings = settings;
+  frame.settings = shaping.settings();
   frame.units_per_metre = units_per_metre;
-  frame.shape = sculptor.rest();
-  frame.fields = sculptor.fields();
+  frame.shape = shaping.sculptor().rest();
+  frame.fields = shaping.sculptor().fields();
   for (auto& hand : frame.hands)
     hand.pose.joints.fill(Eigen::Isometry3d::Identity());
   return frame;
 }
 
-LoopSettings first_settings(const LoopOptions& options, const HandInput& hand,
-                            double units_per_metre) {
-  if (options.settings) return *options.settings;
-  return settings_of(options.sculptor, hand.filter, units_per_metre);
+SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
+                          double units_per_metre) {
+  return {options.sculptor, options.settings
+                                ? *options.settings
+                                : settings_of(options.sculptor, hand.filter, units_per_metre)};
 }
 
-ShapingOptions shaping_options(const LoopOptions& options, const LoopSettings& settings,
+ShapingOptions shaping_options(const LoopOptions& options, const SculptorSetup& sculptor,
                                const deform::BlockShape* first) {
-  ShapingOptions shaping{options.sculptor, settings, options.undo_most_bytes};
+  ShapingOptions shaping{sculptor, options.undo_most_bytes};
   shaping.first = first;
   if (options.commands != nullptr) shaping.most_requests = options.commands->capacity();
   shaping.held = options.begins_held();
@@ -46,11 +47,9 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        const deform::BlockShape* first)
     : options_(options), units_per_metre_(placement.units_per_metre),
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
-      settings_in_force_(first_settings(options, hands.front(), placement.units_per_metre)),
-      shaping_(model.vertices, tips_.cols(), shaping_options(options, settings_in_force_, first)),
-      first_settings_(settings_in_force_), first_sculptor_(options.sculptor),
-      settings_(settings_in_force_), sculptor_options_(options.sculptor),
-      frames_(first_frame(shaping_.sculptor(), placement.units_per_metre, settings_)) {
+      first_(first_setup(options, hands.front(), placement.units_per_metre)),
+      shaping_(model.vertices, tips_.cols(), shaping_options(options, first_, first)),
+      asked_(first_), frames_(first_frame(shaping_, placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.side);
@@ -173,14 +172,14 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   Frame& frame = frames_.back();
   if (runs.hands) compute_hands(frame);
   record.posed_ns = now_ns();
-  frame.settings = settings_in_force_;
+  frame.settings = shaping_.settings();
   if (stats_.ticks == 0) first_due_ = record.scheduled;
-  shaping_.set_time(to_seconds(record.scheduled - first_due_));
+  shaping_.set_time(record.scheduled - first_due_);
   if (runs.deform) {
     const bool completes = taken_ != nullptr && taken_->settings.has_value();
     frame.status = shaping_.shape(tips_, frame, stats_, completes);
   }
-  if (taken_ != nullptr) finish_change(record.scheduled, frame);
+  if (taken_ != nullptr) finish_change(frame);
   record.solved_ns = now_ns();
   describe(record, frame);
   if (runs.publish) {

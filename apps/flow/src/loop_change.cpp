@@ -9,11 +9,6 @@
 #include <nendo/flow/deform_loop.hpp>
 
 namespace nendo::flow {
-namespace {
-
-constexpr HostClock::duration one_step = std::chrono::seconds(1);
-
-} // namespace
 
 // The loop's side.
 
@@ -28,26 +23,28 @@ void DeformLoop::take_change() noexcept {
 }
 
 /// After the tick has made its shape.
-void DeformLoop::finish_change(HostTime scheduled, Frame& frame) noexcept {
+void DeformLoop::finish_change(Frame& frame) noexcept {
   if (taken_->settings) {
-    const bool is_step = !changed_at_ || scheduled - *changed_at_ >= one_step;
-    settings_in_force_ = *taken_->settings;
-    change_filters(settings_in_force_.filter);
-    shaping_.exchange(taken_->ready, settings_in_force_, tips_, is_step, frame, stats_);
-    changed_at_ = scheduled;
+    change_filters(taken_->settings->filter);
+    shaping_.exchange(taken_->ready, tips_, frame, stats_);
   }
   if (taken_->log) begin_anew(*taken_->log, frame);
 }
 
 /// The angles, and so the fingertips, may jump; the shape does not, since they take hold anew.
 void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
-  Eigen::Index column = 0;
   for (Hand& hand : hands_) {
-    if (hand.filter.options() != filter) {
-      hand.filter = hand::JointFilter(filter);
-      const auto& calibration = hand.calibration.of(hand.latest.side);
-      hand.angles = hand.filter.pass(hand::joint_angles(hand.latest, calibration), hand.time());
-    }
+    if (hand.filter.options() == filter) continue;
+    hand.filter = hand::JointFilter(filter);
+    const auto& calibration = hand.calibration.of(hand.latest.side);
+    hand.angles = hand.filter.pass(hand::joint_angles(hand.latest, calibration), hand.time());
+  }
+  place_tips();
+}
+
+void DeformLoop::place_tips() noexcept {
+  Eigen::Index column = 0;
+  for (const Hand& hand : hands_) {
     tips_.middleCols<5>(column) = units_per_metre_ * hand.pose().fingertip_positions();
     column += 5;
   }
@@ -66,18 +63,15 @@ void DeformLoop::Hand::begin_anew() noexcept {
 
 void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   LoopState& state = change.state;
-  Eigen::Index column = 0;
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     Hand& hand = hands_[at];
     hand.begin_anew();
     state.latest[at] = hand.input.first;
     state.learned[at] = hand.input.wearer.learned;
     state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
-    tips_.middleCols<5>(column) = units_per_metre_ * hand.pose().fingertip_positions();
-    column += 5;
   }
+  place_tips();
   switch_on_ = false;
-  changed_at_.reset();
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
   state.held = shaping_.is_held();
   state.shape.follow(shaping_.sculptor().rest());
@@ -93,24 +87,18 @@ void DeformLoop::give_back_change() noexcept {
 
 bool DeformLoop::change_settings(const LoopSettings& settings) {
   if (!settings.are_usable()) return false;
-  if (settings == settings_) return true;
+  if (settings == asked_.settings) return true;
   LoopChange& change = next_change();
-  if (!change.settings) {
-    change.settings_before = settings_;
-    change.sculptor_before = sculptor_options_;
-  }
+  if (!change.settings) change.before = asked_;
   // Settings that the loop has not taken are as if nobody had asked for them.
-  settings_ = settings;
-  if (settings == change.settings_before) {
-    sculptor_options_ = change.sculptor_before;
+  if (settings == change.before.settings) {
+    asked_ = change.before;
     change.settings.reset();
     change.ready = {};
   } else {
-    sculptor_options_ = settings == first_settings_
-                            ? first_sculptor_
-                            : with_settings(change.sculptor_before, settings,
-                                            static_cast<int>(hands_.size()), units_per_metre_);
-    change.ready = shaping_.prepare(sculptor_options_);
+    asked_ = with_settings(change.before, first_, settings, static_cast<int>(hands_.size()),
+                           units_per_metre_);
+    change.ready = shaping_.prepare(asked_);
     change.settings = settings;
   }
   offer_change();
@@ -147,11 +135,8 @@ bool DeformLoop::is_changing() {
     is_offered_ = false;
     if (change_->log) {
       states_.push_back(std::move(change_->log->state));
-      states_.back().settings = settings_; // nobody has asked for others since
-      states_.back().sculptor = sculptor_options_;
-      // From here on, as a replay that begins here.
-      first_settings_ = settings_;
-      first_sculptor_ = sculptor_options_;
+      states_.back().sculptor = asked_; // nobody has asked for others since
+      first_ = asked_;                  // from here on, as a replay that begins here
     }
     change_.reset();
   }

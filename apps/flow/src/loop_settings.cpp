@@ -28,24 +28,26 @@ LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOpti
           .filter = filter};
 }
 
-SculptorOptions with_settings(SculptorOptions sculptor, const LoopSettings& wanted, int hands,
-                              double units_per_metre) {
-  const LoopSettings before = settings_of(sculptor, wanted.filter, units_per_metre);
+SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
+                            const LoopSettings& wanted, int hands, double units_per_metre) {
+  if (wanted == first.settings) return first;
+  SculptorOptions sculptor = now.options;
   deform::DeformerOptions& deformer = sculptor.deformer;
   sculptor.mode = wanted.mode;
   deformer.csrbf.kernel = wanted.kernel;
-  if (wanted.injective != before.injective) {
+  if (wanted.injective != now.settings.injective) {
     deformer.injective.reset();
     if (wanted.injective) deformer.injective.emplace();
   }
-  if (wanted.radius_m != before.radius_m) {
+  const bool other_radii = wanted.radius_m != now.settings.radius_m;
+  if (other_radii) {
     // Both hands are alike, so that one hand has what two have.
     auto of_hands = supports_of_hands(supports_on_model(wanted.radius_m, units_per_metre), hands);
     if (of_hands) deformer.supports = *std::move(of_hands);
   }
-  if (wanted.radius_m != before.radius_m || wanted.piece_fraction != before.piece_fraction)
+  if (other_radii || wanted.piece_fraction != now.settings.piece_fraction)
     sculptor.piece_length = wanted.piece_fraction * deform::least_radius(deformer.supports);
-  return sculptor;
+  return {std::move(sculptor), wanted};
 }
 
 } // namespace nendo::flow

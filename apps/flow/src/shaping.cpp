@@ -10,6 +10,9 @@ using deform::Points;
 
 namespace {
 
+// What is shaped between changes that are less than this apart is one step for undo.
+constexpr HostClock::duration one_step = std::chrono::seconds(1);
+
 // Some whole shapes ahead, so that refill_undo() may be seldom.
 std::unique_ptr<deform::UndoMemory> undo_memory_for(const Points& rest,
                                                     const ShapingOptions& options) {
@@ -19,8 +22,8 @@ std::unique_ptr<deform::UndoMemory> undo_memory_for(const Points& rest,
   return std::make_unique<deform::UndoMemory>(shapes_ahead * blocks, options.undo_most_bytes);
 }
 
-SculptorOptions with_memory(SculptorOptions options, deform::UndoMemory* memory) {
-  options.deformer.undo_memory = memory;
+deform::DeformerOptions with_memory(deform::DeformerOptions options, deform::UndoMemory* memory) {
+  options.undo_memory = memory;
   return options;
 }
 
@@ -55,10 +58,11 @@ struct Shaping::NotedStep {
 
 Shaping::Shaping(const Points& rest, Eigen::Index control_points, const ShapingOptions& options)
     : undo_memory_(undo_memory_for(rest, options)),
-      shape_(rest, with_memory(options.sculptor, undo_memory_.get()).deformer, options.first),
+      shape_(rest, with_memory(options.sculptor.options.deformer, undo_memory_.get()),
+             options.first),
       control_points_(control_points),
-      sculptor_(std::make_unique<Sculptor>(shape_, control_points, options.sculptor)),
-      held_(options.held), hold_wanted_(held_), settings_(options.settings) {
+      sculptor_(std::make_unique<Sculptor>(shape_, control_points, options.sculptor.options)),
+      held_(options.held), hold_wanted_(held_), settings_(options.sculptor.settings) {
   steps_due_.reserve(options.most_requests);
   refill_undo();
 }
@@ -67,9 +71,12 @@ void Shaping::ask(Request request) noexcept {
   if (request == Request::grab) hold_wanted_ = true;
   if (request == Request::let_go) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
-  const bool steps =
-      request == Request::undo || request == Request::redo || request == Request::reset;
-  if (steps && steps_due_.size() < steps_due_.capacity()) steps_due_.push_back(request);
+  if (goes_through_history(request) && steps_due_.size() < steps_due_.capacity())
+    steps_due_.push_back(request);
+}
+
+Step Shaping::step_now(StepKind kind) const noexcept {
+  return {kind, static_cast<float>(to_seconds(time_))};
 }
 
 void Shaping::count(Request step, LoopStats& stats) noexcept {
@@ -128,8 +135,8 @@ void Shaping::step_over_change(Request step, const LoopSettings& before) noexcep
 }
 
 void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
-  shape_.set_notes(NotedStep{{StepKind::stroke, time_s_}, {}}.note(),
-                   NotedStep{{StepKind::reset, time_s_}, {}}.note());
+  shape_.set_notes(NotedStep{step_now(StepKind::stroke), {}}.note(),
+                   NotedStep{step_now(StepKind::reset), {}}.note());
   awaited_.reset();
   auto due = steps_due_.begin();
   // What cannot be done now has changed nothing, and is tried again at the next tick.
@@ -221,18 +228,22 @@ void Shaping::make_room(deform::FieldSequence& fields) noexcept {
   }
 }
 
-ReadySculptor Shaping::prepare(const SculptorOptions& options) {
+ReadySculptor Shaping::prepare(const SculptorSetup& setup) {
   ReadySculptor ready;
-  ready.sculptor = std::make_unique<Sculptor>(shape_, control_points_, options);
+  ready.sculptor = std::make_unique<Sculptor>(shape_, control_points_, setup.options);
+  ready.settings = setup.settings;
   ready.room.fill(ready.sculptor->fields());
   return ready;
 }
 
-void Shaping::exchange(ReadySculptor& ready, const LoopSettings& settings, const Points& tips,
-                       bool is_step, Frame& frame, LoopStats& stats) noexcept {
-  const LoopSettings before = std::exchange(settings_, settings);
+void Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
+                       LoopStats& stats) noexcept {
+  const bool is_step = !exchanged_at_ || time_ - *exchanged_at_ >= one_step;
+  exchanged_at_ = time_;
+  std::swap(settings_, ready.settings);
+  const LoopSettings& before = ready.settings;
   // A commit in this tick may have come before it, and then something else is to be undone next.
-  if (awaited_ == settings && other_of(steps_due_.front()) == settings) {
+  if (awaited_ == settings_ && other_of(steps_due_.front()) == settings_) {
     const Request step = steps_due_.front();
     sculptor_->release(false);
     step_over_change(step, before);
@@ -258,7 +269,7 @@ void Shaping::exchange(ReadySculptor& ready, const LoopSettings& settings, const
 /// not `is_step`, lead here.
 void Shaping::note_change(const LoopSettings& before, bool is_step) noexcept {
   const deform::StepNote* const last = is_step ? nullptr : shape_.to_undo();
-  NotedStep noted{{StepKind::settings, time_s_}, before};
+  NotedStep noted{step_now(StepKind::settings), before};
   const bool goes_on =
       last != nullptr && is_change(NotedStep::of(*last).step.kind) && shape_.redo_steps() == 0;
   if (goes_on) noted.other = NotedStep::of(*last).other;
@@ -272,6 +283,7 @@ void Shaping::note_change(const LoopSettings& before, bool is_step) noexcept {
 void Shaping::begin_anew(const Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept {
   sculptor_->release(true);
   shaped_ = in_step_ = commit_due_ = false;
+  exchanged_at_.reset();
   steps_due_.clear();
   awaited_.reset();
   fences ? shape_.fence() : shape_.unfence();

@@ -11,11 +11,6 @@ namespace {
 // As many as may wait for a live loop, or more.
 constexpr std::size_t ring_size = 4096;
 
-std::size_t block_count_of(const deform::Mesh& model) {
-  const auto vertices = static_cast<std::size_t>(model.vertices.cols());
-  return (vertices + deform::block_size - 1) / deform::block_size;
-}
-
 bool points_exist(const deform::Supports& supports, std::size_t hands) {
   return std::all_of(supports.own.begin(), supports.own.end(), [&](const auto& own) {
     return own.point < 5 * static_cast<Eigen::Index>(hands);
@@ -41,7 +36,8 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
   const deform::BlockShape first(setup.loop->rest);
   const bool has_first = first.block_count() > 0;
-  if (has_first && first.block_count() != block_count_of(model))
+  if (has_first && first.block_count() !=
+                       deform::block_count_of(static_cast<std::size_t>(model.vertices.cols())))
     return Error{Errc::bad_input, "the shape at its beginning is not one of this model"};
   replay->loop_ = std::make_unique<flow::DeformLoop>(
       model, setup.loop->placement, std::move(inputs), options, has_first ? &first : nullptr);

@@ -30,13 +30,13 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
     flow::HandInput& hand = setup.hands[at];
     hand.first = state.latest[at];
     hand.wearer.learned = state.learned[at];
-    hand.filter = state.settings.filter;
+    hand.filter = state.sculptor.settings.filter;
   }
   LoopSetup& loop = *setup.loop;
   loop.placement = state.placement;
-  loop.options.sculptor = state.sculptor;
+  loop.options.sculptor = state.sculptor.options;
   loop.options.held = state.held;
-  loop.options.settings = state.settings;
+  loop.options.settings = state.sculptor.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
   const deform::BlockShape original = layout.pack();
   const auto unchanged = std::as_bytes(std::span(original.data(), original.block_count()));

@@ -10,11 +10,11 @@ const KEYS = [
   ['g', 'grab: the hands take hold', panel => panel.ask('grab')],
   ['l', 'let go; what is shaped stays', panel => panel.ask('let go')],
   ['c', 'commit: this shape becomes the rest shape', panel => panel.ask('commit')],
-  ['u', 'undo the last commit', panel => panel.step('undo')],
+  ['u', 'undo the last step', panel => panel.step('undo')],
   ['r', 'redo what was undone', panel => panel.step('redo')],
   ['Ctrl Z', 'undo, too; with Shift, or Ctrl Y: redo'],
   ['x', 'reset: back to the model as it was loaded', panel => panel.ask('reset')],
-  ['t', 'a take: record from this shape on, and end that', panel => panel.record()],
+  ['t', 'a take: record from here on, and end that', panel => panel.record()],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
   ['s', 'save the model as it is now', panel => panel.ask('save')],
   ['m', 'the other mode', panel => panel.shaping.otherMode()],
@@ -34,6 +34,7 @@ const KEYS = [
   ['p', 'the panel folded and unfolded', panel => panel.fold()],
   ['?', 'this list', panel => panel.help()],
 ]
+const MOST_UNDOABLE = 48 // that the server tells
 const element = id => document.getElementById(id)
 
 class Panel {
@@ -134,7 +135,7 @@ class Panel {
   setHistory(history) {
     this.history = history
     const words = history.steps.map(({ kind, at }) => `${Math.floor(at / 60)}:${String(Math.floor(at % 60)).padStart(2, '0')}  ${kind}`)
-    const lines = ['the beginning', ...words].map((text, at) => {
+    const lines = [history.undoable < MOST_UNDOABLE ? 'the beginning' : 'earlier', ...words].map((text, at) => {
       const line = document.createElement('button')
       line.textContent = text
       line.className = at > history.undoable ? 'undone' : ''

@@ -44,8 +44,6 @@ public:
   /// since the step before is dropped; call its release() first. Wait-free.
   void undo_mark() noexcept;
   void redo_mark() noexcept;
-  /// Drops what a deformer has made since the last step. Call its release() first. Wait-free.
-  void revert() noexcept;
   /// Returns the note of the step that would be undone, or done again, next; null if there is none.
   const StepNote* to_undo() const noexcept;
   const StepNote* to_redo() const noexcept;

@@ -13,6 +13,11 @@ namespace nendo::deform {
 
 inline constexpr std::size_t block_size = 64;
 
+/// Returns how many blocks so many vertices fill; the last one may be filled in part.
+constexpr std::size_t block_count_of(std::size_t vertices) noexcept {
+  return (vertices + block_size - 1) / block_size;
+}
+
 struct alignas(64) VertexBlock {
   std::array<float, block_size> x, y, z;
 };
@@ -69,7 +74,7 @@ public:
   double unit() const noexcept { return unit_; }
   double diagonal() const noexcept { return diagonal_; } ///< of the original, in model units
   std::size_t vertex_count() const noexcept { return order_.size(); }
-  std::size_t block_count() const noexcept { return (order_.size() + block_size - 1) / block_size; }
+  std::size_t block_count() const noexcept { return block_count_of(order_.size()); }
   /// The k-th vertex in block order is vertex order()[k] of the mesh.
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
 

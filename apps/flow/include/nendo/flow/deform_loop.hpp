@@ -126,8 +126,8 @@ public:
   /// has taken.
   std::optional<LoopState> take_state();
   /// Returns the settings that were asked for last, and their sculptor's options.
-  const LoopSettings& settings() const noexcept { return settings_; }
-  const SculptorOptions& sculptor_options() const noexcept { return sculptor_options_; }
+  const LoopSettings& settings() const noexcept { return asked_.settings; }
+  const SculptorOptions& sculptor_options() const noexcept { return asked_.options; }
   /// Tells whether the loop has yet to take a change.
   bool is_changing();
 
@@ -149,10 +149,11 @@ private:
   void take_commands() noexcept;
   void apply(const Command& command) noexcept;
   void take_change() noexcept;
-  void finish_change(HostTime scheduled, Frame& frame) noexcept;
+  void finish_change(Frame& frame) noexcept;
   void change_filters(const hand::FilterOptions& filter) noexcept;
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
+  void place_tips() noexcept;
   LoopChange& next_change();
   void offer_change();
   void take_samples(TickRecord& record) noexcept;
@@ -193,18 +194,14 @@ private:
   double units_per_metre_;
   std::vector<Hand> hands_;
   deform::Points tips_; ///< 3 by 5 a hand, model units
-  LoopSettings settings_in_force_;
+  SculptorSetup first_; ///< for the thread that asks for changes, like asked_
   Shaping shaping_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
   bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
   JobOffer<LoopChange*> changes_;
-  LoopChange* taken_ = nullptr;        ///< by this tick
-  std::optional<HostTime> changed_at_; ///< the last tick that changed settings
+  LoopChange* taken_ = nullptr; ///< by this tick
   // For the thread that asks for changes:
-  LoopSettings first_settings_; ///< which mean these options, with all weights of their radii
-  SculptorOptions first_sculptor_;
-  LoopSettings settings_;
-  SculptorOptions sculptor_options_;
+  SculptorSetup asked_;                ///< for last
   std::unique_ptr<LoopChange> change_; ///< that the loop has, or will have
   bool is_offered_ = false;
   std::vector<LoopState> states_; ///< not taken yet

@@ -19,8 +19,7 @@ struct LoopState {
   std::array<std::optional<hand::LearnedRanges>, 2> learned{}; ///< of each hand
   Placement placement{};                                       ///< without the gaps
   bool held = true;
-  LoopSettings settings{};
-  SculptorOptions sculptor{};
+  SculptorSetup sculptor{};
   deform::BlockShape shape;
 };
 
@@ -32,8 +31,7 @@ struct LogChange {
 
 struct LoopChange {
   std::optional<LoopSettings> settings{}; ///< the loop goes on with them
-  LoopSettings settings_before{};
-  SculptorOptions sculptor_before{};
+  SculptorSetup before{};                 ///< which this change of settings replaces
   ReadySculptor ready{};
   std::optional<LogChange> log{};
 };

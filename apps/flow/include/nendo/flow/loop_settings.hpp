@@ -32,9 +32,16 @@ struct LoopSettings {
 LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
                          double units_per_metre);
 
-/// Returns the options of the sculptor that has `wanted` instead of settings_of(sculptor). What
-/// settings do not tell stays. Radii that do not change stay as they are, with all their weights.
-SculptorOptions with_settings(SculptorOptions sculptor, const LoopSettings& wanted, int hands,
-                              double units_per_metre);
+/// The options of a sculptor, and the settings that they mean.
+struct SculptorSetup {
+  SculptorOptions options{};
+  LoopSettings settings{};
+};
+
+/// Returns `now` with other settings. What settings do not tell stays. Radii that do not change
+/// stay as they are, with all their weights; these come back with the settings of `first`, with
+/// which it began.
+SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
+                            const LoopSettings& wanted, int hands, double units_per_metre);
 
 } // namespace nendo::flow

@@ -21,6 +21,11 @@ enum class Request : std::uint8_t {
 inline constexpr std::array requests{Request::grab, Request::let_go, Request::commit,
                                      Request::undo, Request::redo,   Request::reset};
 
+/// Tells whether a request goes back or forth: Shaping does these one after another.
+constexpr bool goes_through_history(Request request) noexcept {
+  return request == Request::undo || request == Request::redo || request == Request::reset;
+}
+
 std::string_view name_of(Request request) noexcept;
 std::optional<Request> request_named(std::string_view name) noexcept;
 

@@ -17,10 +17,9 @@
 namespace nendo::flow {
 
 struct ShapingOptions {
-  SculptorOptions sculptor;
-  LoopSettings settings{}; ///< those of the sculptor
+  SculptorSetup sculptor;
   /// The most bytes by which refill_undo() may enlarge the memory for undo beyond
-  /// SculptorOptions::deformer.undo_bytes; 0 if it is not enlarged.
+  /// DeformerOptions::undo_bytes; 0 if it is not enlarged.
   std::size_t undo_most_bytes = 0;
   std::size_t most_requests = 64; ///< in one tick
   bool held = true;               ///< at first
@@ -32,6 +31,7 @@ struct ShapingOptions {
 /// Another sculptor for the same shape, made before it is needed.
 struct ReadySculptor {
   std::unique_ptr<Sculptor> sculptor;
+  LoopSettings settings{};
   /// Room for its fields in the three frames of a FrameExchange, which may have had too little.
   std::array<deform::FieldSequence, 3> room;
 };
@@ -43,8 +43,8 @@ public:
 
   /// Lets the fingertips take hold for the first time (3 by control_points, model units).
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
-  /// Tells the time of the next calls, in seconds since the beginning, for the list of steps.
-  void set_time(double time_s) noexcept { time_s_ = static_cast<float>(time_s); }
+  /// Tells the time of the next calls, since the beginning.
+  void set_time(HostClock::duration time) noexcept { time_ = time; }
   /// Makes the next shape() do it. Wait-free.
   void ask(Request request) noexcept;
   /// Asks for Request::grab if Request::let_go was asked for last, and the other way round.
@@ -61,19 +61,20 @@ public:
   deform::Points final_shape(const deform::Points& tips);
 
   bool is_held() const noexcept { return held_; }
+  const LoopSettings& settings() const noexcept { return settings_; } ///< in force
   const Sculptor& sculptor() const noexcept { return *sculptor_; }
   const deform::BlockLayout& layout() const noexcept { return shape_.layout(); }
 
-  /// Makes a sculptor with other options. Another thread may call it, at any time. Allocates.
-  ReadySculptor prepare(const SculptorOptions& options);
-  /// Lets that sculptor, which has these settings, go on where the present one ends, which `ready`
-  /// then has: after shape() with `completes`, in the same tick. A stroke ends, and the fingertips
-  /// take hold anew at `tips`. Stroke and change are steps of their own if `is_step`; otherwise
-  /// they belong to those before and behind. If an undo or a redo has waited for these settings
+  /// Makes another sculptor. Another thread may call it, at any time. Allocates.
+  ReadySculptor prepare(const SculptorSetup& setup);
+  /// Lets that sculptor go on where the present one ends, which `ready` then has: after shape()
+  /// with `completes`, in the same tick. A stroke ends, and the fingertips take hold anew at
+  /// `tips`. Stroke and change are steps of their own; less than a second after the exchange before
+  /// they belong to the steps before and behind. If an undo or a redo has waited for these settings
   /// (Frame::awaited), this is it. The shape does not change, but for what the hands have shaped
   /// since the last step, which an undo drops. Wait-free, without allocation.
-  void exchange(ReadySculptor& ready, const LoopSettings& settings, const deform::Points& tips,
-                bool is_step, Frame& frame, LoopStats& stats) noexcept;
+  void exchange(ReadySculptor& ready, const deform::Points& tips, Frame& frame,
+                LoopStats& stats) noexcept;
   /// Ends the stroke, lets undo go back to here and no farther (`fences`), or as far as memory
   /// goes, and lets the fingertips that hold the shape take hold anew, as begin() does. What was
   /// asked for and could not be done is forgotten. Nothing that was before then matters to what
@@ -94,6 +95,7 @@ private:
   bool is_change_next(Request step) const noexcept;
   std::optional<LoopSettings> other_of(Request step) const noexcept;
   void note_change(const LoopSettings& before, bool is_step) noexcept;
+  Step step_now(StepKind kind) const noexcept;
   void list_steps(StepList& list) const noexcept;
   std::size_t undo_steps() const noexcept;
   bool is_in_hand() const noexcept;
@@ -113,8 +115,9 @@ private:
   bool in_step_ = false;                ///< shaped before the last change, and not a step yet
   LoopSettings settings_;               ///< in force
   std::optional<LoopSettings> awaited_; ///< by the first step that is due
-  float time_s_ = 0.0F;
-  std::vector<Request> steps_due_; ///< undos, redos and resets, in their order
+  HostClock::duration time_{};
+  std::optional<HostClock::duration> exchanged_at_; ///< last
+  std::vector<Request> steps_due_;                  ///< undos, redos and resets, in their order
 };
 
 } // namespace nendo::flow

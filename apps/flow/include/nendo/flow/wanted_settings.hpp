@@ -30,11 +30,15 @@ public:
 
   void other_mode() noexcept;
   void next_kernel() noexcept;
-  /// Makes all radii larger or smaller by a factor, within the range.
-  void scale_radii(double factor) noexcept;
+  void toggle_folding() noexcept { now.injective = !now.injective; }
+  /// Make all radii larger, or smaller, by a tenth, within the range.
+  void enlarge_radii() noexcept { scale_radii(1.1); }
+  void reduce_radii() noexcept { scale_radii(1.0 / 1.1); }
   bool has_one_radius() const noexcept; ///< for all fingers
 
 private:
+  void scale_radii(double factor) noexcept;
+
   LoopSettings asked_;
   HostTime asked_at_{};
 };

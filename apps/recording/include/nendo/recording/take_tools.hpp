@@ -77,8 +77,7 @@ Result<NewTake> repair_take(const std::filesystem::path& from, const std::filesy
 /// Writes what happened from `begin` to before `end` to a new file, in whole ticks of a loop. Both
 /// times count from the beginning of the recording. If the part does not begin with the recording,
 /// it begins with a gap, because the shape at that moment is not in it, and then with the settings
-/// of that moment. Errors: those of
-/// repair_take(), and bad_input if nothing happened then.
+/// of that moment. Errors: those of repair_take(), and bad_input if nothing happened then.
 Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesystem::path& to,
                          HostClock::duration begin, HostClock::duration end);
 
