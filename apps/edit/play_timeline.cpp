@@ -55,7 +55,7 @@ int play_timeline(const PlayOptions& options) {
     (*frames)->next();
     wait_for((*frames)->time_s(), options.speed, start);
   }
-  deform::Mesh shape = (*frames)->model();
+  deform::Mesh shape = (*frames)->model((*frames)->frame().model);
   shape.vertices = (*frames)->player().final_shape();
   if (!options.out.empty())
     if (const auto written = deform::write_mesh(options.out, shape); !written)

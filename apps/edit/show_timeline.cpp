@@ -45,7 +45,7 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
 nlohmann::ordered_json event_json(const Event& event) {
   nlohmann::ordered_json line{{"time_s", event.time_s}};
   if (!event.settings) {
-    line["request"] = name_of(event.request);
+    line["request"] = in_words(event);
     return line;
   }
   line["settings"] = {{"mode", name_of(event.settings->mode)},

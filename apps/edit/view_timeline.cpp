@@ -67,11 +67,17 @@ Result<void> begin_at(const Options& options, EditSession& session) {
 Result<void> edit_in(viewer::TimelineWindow& window, EditSession& session, const Options& options) {
   HostTime before = HostClock::now();
   std::uint32_t shown = 0;
+  std::shared_ptr<const flow::ModelVersion> model; // that the window has
+  const double units_per_metre = session.history().timeline().units_per_metre;
   do {
     const HostTime now = HostClock::now();
     session.advance(to_seconds(now - before));
     before = now;
     const auto found = session.shape();
+    if (found.shape && found.shape->model != model) {
+      model = found.shape->model;
+      window.set_model(model->layout(), render::SceneBuilder(model->mesh, units_per_metre));
+    }
     if (found.shape) window.follow(found.shape->shape);
     const viewer::TimelineView& view = session.view();
     const bool is_settled = found.fresh && !view.computing;
@@ -92,7 +98,7 @@ int view_timeline(const Options& options) {
   if (!frames) return cli::report(frames.error());
   cli::install_stop_signals();
   const timeline::Timeline& timeline = (*frames)->player().timeline();
-  const deform::Mesh& model = (*frames)->model();
+  const deform::Mesh& model = (*frames)->model(0);
   EditSession session(timeline, model, *out);
   if (const auto begun = begin_at(options, session); !begun) return cli::report(begun.error());
   auto window = viewer::TimelineWindow::open(
@@ -100,7 +106,7 @@ int view_timeline(const Options& options) {
       "on a box without a screen `nendo picture` draws a timeline, `nendo export` animates it, and "
       "the other commands of `nendo edit` change it");
   if (!window) return cli::report(window.error());
-  (*window)->set_model((*frames)->layout(), render::SceneBuilder(model, timeline.units_per_metre));
+  (*window)->set_model((*frames)->layout(0), render::SceneBuilder(model, timeline.units_per_metre));
   const auto done = edit_in(**window, session, options);
   if (session.history().is_modified()) cli::note(*out + ": not saved; the changes are lost");
   return done ? 0 : cli::report(done.error());

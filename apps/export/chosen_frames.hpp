@@ -52,7 +52,9 @@ public:
   const takes::FrameSource& source() const noexcept { return *source_; }
   /// Writes the latest frame's shape to `out`, 3 by #vertices, in the mesh's order and in model
   /// units.
-  void vertices(deform::Points& out) const { source_->layout().unpack(frame().shape, out); }
+  void vertices(deform::Points& out) const {
+    source_->layout(frame().model).unpack(frame().shape, out);
+  }
 
 private:
   ChosenFrames(takes::FrameSource& source, const Choice& choice)

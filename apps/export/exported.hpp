@@ -18,6 +18,7 @@ namespace nendo::exporting {
 struct MorphReport {
   bool by_control_vectors = false; ///< otherwise by key shapes
   std::size_t targets = 0;
+  std::size_t models = 1;  ///< one after another, where the model became another one
   std::size_t keys = 0;    ///< moments between which weights are interpolated
   double tolerance = 0.0;  ///< of key shapes, as a fraction of the model's diagonal; otherwise 0
   double diagonal_m = 0.0; ///< of the model, on the stage
@@ -35,6 +36,7 @@ struct Exported {
   std::optional<MorphReport> morphs{}; ///< glTF with a model
   std::optional<double> rate_hz{};     ///< nothing means that each frame is at its own time
   bool exact = true;                   ///< nothing was missing in the take up to the last frame
+  std::vector<double> begin_s{};       ///< of each file, if the model differs from file to file
 };
 
 /// Opens the same frames again from the beginning. An export may have to read them twice.

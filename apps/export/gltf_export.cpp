@@ -1,8 +1,10 @@
 #include "export/gltf_export.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "export/control_morphs.hpp"
 #include "export/gltf_model.hpp"
@@ -76,11 +78,12 @@ struct Document {
       : file(options.generator),
         animation{{"name", "take"}, {"samplers", Json::array()}, {"channels", Json::array()}} {}
 
-  void animate(GlbFile::Index node, GlbFile::Index times, GlbFile::Index weights) {
+  void animate(GlbFile::Index node, const char* path, const char* interpolation,
+               GlbFile::Index times, GlbFile::Index values) {
     animation["samplers"].push_back(
-        {{"input", times}, {"output", weights}, {"interpolation", "LINEAR"}});
+        {{"input", times}, {"output", values}, {"interpolation", interpolation}});
     animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1},
-                                     {"target", {{"node", node}, {"path", "weights"}}}});
+                                     {"target", {{"node", node}, {"path", path}}}});
   }
 
   GlbFile file;
@@ -109,17 +112,6 @@ Result<Exported> finish(Document& document, Json roots, const Played& played,
   return done;
 }
 
-/// Finishes a document that has the model.
-Result<Exported> finish(Document& document, const GltfModel& model, const Played& played,
-                        MorphReport report, const ChosenFrames& frames,
-                        const std::optional<double>& rate_hz, const std::filesystem::path& path) {
-  report.diagonal_m = frames.source().layout().diagonal() / played.units_per_metre;
-  model.add_to(document.file, played.units_per_metre, report);
-  auto done = finish(document, Json::array({GltfModel::node}), played, frames, rate_hz, path);
-  if (done) done->morphs = report;
-  return done;
-}
-
 /// A take without a model.
 Result<Exported> hands_alone(takes::FrameSource& source, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path) {
@@ -141,7 +133,8 @@ Result<std::optional<Exported>> by_control_vectors(takes::FrameSource& source, c
                                                    const std::filesystem::path& path) {
   auto frames = ChosenFrames::make(source, choice);
   if (!frames) return frames.error();
-  ControlMorphs morphs(source.layout());
+  const std::uint32_t version = source.frame().model;
+  ControlMorphs morphs(source.layout(version));
   const auto played = play(*frames, options.hands,
                            [&](const flow::Frame& frame, float, const deform::Points& vertices) {
                              return morphs.add(frame, vertices);
@@ -149,59 +142,156 @@ Result<std::optional<Exported>> by_control_vectors(takes::FrameSource& source, c
   if (!played) return played.error();
   if (!played->to_the_end) return std::optional<Exported>();
   Document document(options);
-  GltfModel model(source.model(), document.file);
+  GltfModel model(source.model(version), document.file);
   const auto weights = model.add_control_targets(morphs, document.file);
   if (!weights.empty()) {
     const auto times = document.file.add_scalars(played->times_s, true);
-    document.animate(GltfModel::node, times, document.file.add_scalars(weights, false));
+    document.animate(model.node(), "weights", "LINEAR", times,
+                     document.file.add_scalars(weights, false));
   }
   MorphReport report;
   report.by_control_vectors = true;
   report.targets = model.target_count();
   report.keys = weights.empty() ? 0 : played->times_s.size();
-  report.greatest_error = morphs.greatest_error() / source.layout().diagonal();
-  auto done = finish(document, model, *played, report, *frames, choice.rate_hz, path);
+  report.greatest_error = morphs.greatest_error() / source.layout(version).diagonal();
+  report.diagonal_m = source.layout(version).diagonal() / played->units_per_metre;
+  model.add_to(document.file, GltfModel::add_material(document.file), played->units_per_metre,
+               report);
+  auto done = finish(document, Json::array({model.node()}), *played, *frames, choice.rate_hz, path);
   if (!done) return done.error();
+  done->morphs = report;
   return std::optional<Exported>(*std::move(done));
+}
+
+/// Consecutive frames of one version of the model, which have a mesh of their own.
+class Segment {
+public:
+  Segment(const takes::FrameSource& source, std::uint32_t version, float begin_s, double tolerance,
+          GlbFile& file)
+      : version_(version), begin_s_(begin_s), rest_(source.layout(version).original()), file_(file),
+        model_(source.model(version), file),
+        keys_(tolerance, [this](float time_s, const KeyShapes::Shape& way) {
+          key_times_s_.push_back(time_s);
+          model_.add_key_target(way, file_);
+        }) {}
+  Segment(const Segment&) = delete; // keys_ refers to it
+  Segment& operator=(const Segment&) = delete;
+
+  std::uint32_t version() const noexcept { return version_; }
+  float begin_s() const noexcept { return begin_s_; }
+  const GltfModel& model() const noexcept { return model_; }
+  std::size_t key_count() const noexcept { return key_times_s_.size(); }
+
+  void add(float time_s, const deform::Points& vertices) {
+    keys_.add(time_s, (vertices - rest_).cast<float>());
+  }
+  void finish() { keys_.finish(); }
+  /// Returns the greatest error, in model units. A reader adds targets to a rest shape that is
+  /// rounded to floats, too.
+  double greatest_error() const {
+    return keys_.greatest_error() +
+           (rest_.cast<float>().cast<double>() - rest_).colwise().norm().maxCoeff();
+  }
+  void animate(Document& document) const {
+    if (model_.target_count() == 0) return;
+    const auto times = document.file.add_scalars(key_times_s_, true);
+    document.animate(model_.node(), "weights", "LINEAR", times,
+                     model_.add_key_weights(document.file));
+  }
+
+private:
+  std::uint32_t version_;
+  float begin_s_;
+  deform::Points rest_;
+  GlbFile& file_;
+  GltfModel model_;
+  std::vector<float> key_times_s_;
+  KeyShapes keys_;
+};
+
+using Segments = std::vector<std::unique_ptr<Segment>>;
+
+/// Shows each segment in its time only. A node whose scale is 0 is hidden (glTF 2.0, 3.5.3).
+void show_one_by_one(const Segments& segments, double units_per_metre, Document& document) {
+  if (segments.size() < 2) return;
+  const auto scale = static_cast<float>(1.0 / units_per_metre);
+  for (std::size_t at = 0; at < segments.size(); ++at) {
+    std::vector<float> times_s{0.0F};
+    std::vector<float> scales{at == 0 ? scale : 0.0F};
+    const auto change = [&](float time_s, float to) {
+      times_s.push_back(time_s);
+      scales.push_back(to);
+    };
+    if (at > 0) change(segments[at]->begin_s(), scale);
+    if (at + 1 < segments.size()) change(segments[at + 1]->begin_s(), 0.0F);
+    Eigen::Matrix3Xf vectors(3, static_cast<Eigen::Index>(scales.size()));
+    for (std::size_t key = 0; key < scales.size(); ++key)
+      vectors.col(static_cast<Eigen::Index>(key)).setConstant(scales[key]);
+    document.animate(segments[at]->model().node(), "scale", "STEP",
+                     document.file.add_scalars(times_s, true),
+                     document.file.add_vectors(vectors, GlbFile::Use::animation, false));
+  }
+}
+
+std::uint64_t weight_count(const Segments& segments) {
+  std::uint64_t count = 0;
+  for (const auto& segment : segments)
+    count += segment->model().key_weight_count();
+  return count;
+}
+
+/// Adds the models of all segments, and tells what became of them.
+MorphReport add_models(const Segments& segments, const Played& played, double diagonal,
+                       Document& document) {
+  MorphReport report;
+  const auto material = GltfModel::add_material(document.file);
+  for (const auto& segment : segments) {
+    segment->animate(document);
+    MorphReport own;
+    own.greatest_error = segment->greatest_error() / diagonal;
+    segment->model().add_to(document.file, material, played.units_per_metre, own);
+    report.targets += segment->model().target_count();
+    report.keys += segment->key_count();
+    report.greatest_error = std::max(report.greatest_error, own.greatest_error);
+  }
+  report.models = segments.size();
+  show_one_by_one(segments, played.units_per_metre, document);
+  return report;
 }
 
 Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
                                const GltfOptions& options, const std::filesystem::path& path) {
   auto frames = ChosenFrames::make(source, choice);
   if (!frames) return frames.error();
-  const double diagonal = source.layout().diagonal();
-  const deform::Points& rest = source.layout().original();
-  Document document(options);
-  GltfModel model(source.model(), document.file);
-  std::vector<float> key_times_s;
   // The source is at the first frame, which tells the scale.
+  const double diagonal = source.layout(source.frame().model).diagonal();
   const double tolerance = options.tolerance_m
                                ? *options.tolerance_m * source.frame().units_per_metre
                                : options.tolerance * diagonal;
-  KeyShapes keys(tolerance, [&](float time_s, const KeyShapes::Shape& way) {
-    key_times_s.push_back(time_s);
-    model.add_key_target(way, document.file);
-  });
-  const auto played = play(*frames, options.hands,
-                           [&](const flow::Frame&, float time_s, const deform::Points& vertices) {
-                             keys.add(time_s, (vertices - rest).cast<float>());
-                             return model.key_weight_count() <= options.most_weights;
-                           });
+  Document document(options);
+  Segments segments;
+  const auto see = [&](const flow::Frame& frame, float time_s, const deform::Points& vertices) {
+    if (segments.empty() || segments.back()->version() != frame.model) {
+      if (!segments.empty()) segments.back()->finish();
+      segments.push_back(
+          std::make_unique<Segment>(source, frame.model, time_s, tolerance, document.file));
+    }
+    segments.back()->add(time_s, vertices);
+    return weight_count(segments) <= options.most_weights;
+  };
+  const auto played = play(*frames, options.hands, see);
   if (!played) return played.error();
-  keys.finish();
-  if (model.key_weight_count() > options.most_weights) return too_many_keys(path);
-  if (model.target_count() > 0) {
-    const auto times = document.file.add_scalars(key_times_s, true);
-    document.animate(GltfModel::node, times, model.add_key_weights(document.file));
-  }
-  // A reader adds targets to a rest shape that is rounded to floats, too.
-  const double rounding = (rest.cast<float>().cast<double>() - rest).colwise().norm().maxCoeff();
-  MorphReport report;
-  report.targets = model.target_count();
-  report.keys = key_times_s.size();
+  segments.back()->finish();
+  if (weight_count(segments) > options.most_weights) return too_many_keys(path);
+  MorphReport report = add_models(segments, *played, diagonal, document);
   report.tolerance = tolerance / diagonal;
-  report.greatest_error = (keys.greatest_error() + rounding) / diagonal;
-  return finish(document, model, *played, report, *frames, choice.rate_hz, path);
+  report.diagonal_m = diagonal / played->units_per_metre;
+  Json roots = Json::array();
+  for (const auto& segment : segments)
+    roots.push_back(segment->model().node());
+  auto done = finish(document, std::move(roots), *played, *frames, choice.rate_hz, path);
+  if (done) done->morphs = report;
+  return done;
 }
 
 } // namespace
@@ -210,12 +300,14 @@ Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path) {
   auto source = open();
   if (!source) return source.error();
-  if ((*source)->model().vertices.cols() == 0) return hands_alone(**source, choice, options, path);
-  auto exact = by_control_vectors(**source, choice, options, path);
-  if (!exact) return exact.error();
-  if (*exact) return *std::move(*exact);
-  source = open();
-  if (!source) return source.error();
+  if ((*source)->model(0).vertices.cols() == 0) return hands_alone(**source, choice, options, path);
+  if ((*source)->has_one_model()) {
+    auto exact = by_control_vectors(**source, choice, options, path);
+    if (!exact) return exact.error();
+    if (*exact) return *std::move(*exact);
+    source = open();
+    if (!source) return source.error();
+  }
   return by_key_shapes(**source, choice, options, path);
 }
 

@@ -51,7 +51,7 @@ GltfModel::GltfModel(const deform::Mesh& mesh, GlbFile& file) {
     primitive_["attributes"]["NORMAL"] = file.add_vectors(unit_normals(mesh), Use::vertices, false);
     primitive_["indices"] = file.add_indices(triangles, Use::indices);
   }
-  file.add("nodes", Json::object()); // its place; add_to() fills it
+  node_ = file.add("nodes", Json::object()); // its place; add_to() fills it
 }
 
 void GltfModel::add_target(const Eigen::Matrix3Xf& way, std::string name, GlbFile& file) {
@@ -112,14 +112,19 @@ GlbFile::Index GltfModel::add_key_weights(GlbFile& file) const {
   return file.add_ones(key_weight_count(), ones);
 }
 
-void GltfModel::add_to(GlbFile& file, double units_per_metre, const MorphReport& report) const {
+GlbFile::Index GltfModel::add_material(GlbFile& file) {
+  return file.add("materials", {{"name", "clay"},
+                                {"doubleSided", true},
+                                {"pbrMetallicRoughness",
+                                 {{"baseColorFactor", {0.72, 0.56, 0.44, 1.0}},
+                                  {"metallicFactor", 0.0},
+                                  {"roughnessFactor", 0.8}}}});
+}
+
+void GltfModel::add_to(GlbFile& file, GlbFile::Index material, double units_per_metre,
+                       const MorphReport& report) const {
   Json primitive = primitive_;
-  primitive["material"] = file.add("materials", {{"name", "clay"},
-                                                 {"doubleSided", true},
-                                                 {"pbrMetallicRoughness",
-                                                  {{"baseColorFactor", {0.72, 0.56, 0.44, 1.0}},
-                                                   {"metallicFactor", 0.0},
-                                                   {"roughnessFactor", 0.8}}}});
+  primitive["material"] = material;
   Json mesh{{"name", "model"}};
   if (target_count() > 0) {
     primitive["targets"] = targets_;
@@ -130,9 +135,9 @@ void GltfModel::add_to(GlbFile& file, double units_per_metre, const MorphReport&
                     {"greatestError", report.greatest_error}};
   mesh["primitives"] = Json::array({std::move(primitive)});
   const double scale = 1.0 / units_per_metre;
-  file["nodes"][node] = {{"name", "model"},
-                         {"mesh", file.add("meshes", std::move(mesh))},
-                         {"scale", {scale, scale, scale}}};
+  file["nodes"][node_] = {{"name", "model"},
+                          {"mesh", file.add("meshes", std::move(mesh))},
+                          {"scale", {scale, scale, scale}}};
 }
 
 } // namespace nendo::exporting

@@ -15,8 +15,6 @@ namespace nendo::exporting {
 
 class GltfModel {
 public:
-  static constexpr GlbFile::Index node = 0; ///< the index of the model's node, which is the first
-
   /// Puts the rest shape into `file`. The mesh must have a vertex, and its vertices must fit in
   /// floats.
   GltfModel(const deform::Mesh& mesh, GlbFile& file);
@@ -38,12 +36,18 @@ public:
   GlbFile::Index add_key_weights(GlbFile& file) const;
 
   std::size_t target_count() const noexcept { return targets_.size(); }
-  /// Adds node, mesh and material to the document. Call it once, after everything else.
-  void add_to(GlbFile& file, double units_per_metre, const MorphReport& report) const;
+  /// Returns the index of the model's node.
+  GlbFile::Index node() const noexcept { return node_; }
+  /// Adds node and mesh to the document. Call it once, after everything else.
+  void add_to(GlbFile& file, GlbFile::Index material, double units_per_metre,
+              const MorphReport& report) const;
+  /// Adds the material of all models, and returns its index.
+  static GlbFile::Index add_material(GlbFile& file);
 
 private:
   void add_target(const Eigen::Matrix3Xf& way, std::string name, GlbFile& file);
 
+  GlbFile::Index node_ = 0;
   GlbFile::Json primitive_;
   GlbFile::Json targets_ = GlbFile::Json::array();
   GlbFile::Json names_ = GlbFile::Json::array();

@@ -1,6 +1,7 @@
 #include "export/mesh_sequence.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include <nendo/deform/mesh_file.hpp>
@@ -49,7 +50,8 @@ std::string NumberedName::of(std::uint64_t number) const {
 Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& pattern) {
   const auto name = NumberedName::parse(pattern);
   if (!name) return name.error();
-  deform::Mesh mesh = frames.source().model();
+  deform::Mesh mesh;
+  std::optional<std::uint32_t> version; // that it is of
   Exported done{{}, 0, frames.first_s(), frames.first_s()};
   const auto so_far = [&](const Error& error) {
     const std::string count = std::to_string(done.frames);
@@ -61,6 +63,10 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
     const auto more = frames.next();
     if (!more) return so_far(more.error());
     if (!*more) break;
+    if (version != frames.frame().model) {
+      version = frames.frame().model;
+      mesh = frames.source().model(*version);
+    }
     frames.vertices(mesh.vertices);
     const std::string file = name->of(frames.made());
     if (const auto written = deform::write_mesh(file, mesh); !written)

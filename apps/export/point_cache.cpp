@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "export/one_file.hpp"
 
@@ -37,8 +39,35 @@ private:
   std::vector<std::byte> bytes_;
 };
 
-void put_head(PointCache format, const ChosenFrames& frames, std::uint32_t points, Words& words) {
-  const auto count = static_cast<std::uint32_t>(*frames.count());
+/// Consecutive frames of one version of the model, by their numbers from 1.
+struct Part {
+  std::uint64_t first = 1;
+  std::uint32_t count = 0;
+  std::uint32_t version = 0;
+  double begin_s = 0.0;
+};
+
+Result<std::vector<Part>> parts_of(const OpenFrames& open, const Choice& choice) {
+  auto source = open();
+  if (!source) return source.error();
+  auto frames = ChosenFrames::make(**source, choice);
+  if (!frames) return frames.error();
+  if ((*source)->has_one_model())
+    return std::vector<Part>{{1, static_cast<std::uint32_t>(*frames->count()), 0, 0.0}};
+  std::vector<Part> parts;
+  for (;;) {
+    const auto more = frames->next();
+    if (!more) return more.error();
+    if (!*more) return parts;
+    const std::uint32_t version = frames->frame().model;
+    if (parts.empty() || parts.back().version != version)
+      parts.push_back({frames->made(), 0, version, frames->time_s()});
+    ++parts.back().count;
+  }
+}
+
+void put_head(PointCache format, const ChosenFrames& frames, std::uint32_t count,
+              std::uint32_t points, Words& words) {
   if (format == PointCache::mdd) {
     words.put(count);
     words.put(points);
@@ -54,20 +83,22 @@ void put_head(PointCache format, const ChosenFrames& frames, std::uint32_t point
   words.put(count);
 }
 
-} // namespace
-
-Result<Exported> export_point_cache(ChosenFrames& frames, PointCache format,
-                                    const std::filesystem::path& path) {
-  assert(frames.count());
-  const std::size_t points = frames.source().layout().vertex_count();
-  if (points > std::numeric_limits<std::int32_t>::max() / 3)
-    return Error{Errc::bad_input, path.string() + ": too many vertices for a point cache"};
+/// The frames before and behind the part are made and left out.
+Result<Exported> export_part(takes::FrameSource& source, const Choice& choice, const Part& part,
+                             PointCache format, const std::filesystem::path& path) {
+  auto frames = ChosenFrames::make(source, choice);
+  if (!frames) return frames.error();
   Words words(format == PointCache::mdd);
   deform::Points vertices;
-  return export_to_one_file(frames, path, [&](FileReplacement& file) -> Result<void> {
+  auto done = export_to_one_file(*frames, path, [&](FileReplacement& file) -> Result<void> {
+    const std::uint64_t number = frames->made();
+    if (number < part.first || number >= part.first + part.count) return {};
+    frames->vertices(vertices);
+    if (vertices.cols() > std::numeric_limits<std::int32_t>::max() / 3)
+      return Error{Errc::bad_input, path.string() + ": too many vertices for a point cache"};
     words.clear();
-    if (frames.made() == 1) put_head(format, frames, static_cast<std::uint32_t>(points), words);
-    frames.vertices(vertices);
+    if (number == part.first)
+      put_head(format, *frames, part.count, static_cast<std::uint32_t>(vertices.cols()), words);
     if (!vertices.cast<float>().allFinite())
       return Error{Errc::bad_input, path.string() + ": a vertex is too far out for 32-bit floats; "
                                                     "scale the model down"};
@@ -75,6 +106,39 @@ Result<Exported> export_point_cache(ChosenFrames& frames, PointCache format,
       words.put(coordinate);
     return file.write(words.bytes());
   });
+  return done;
+}
+
+std::filesystem::path numbered(const std::filesystem::path& path, std::size_t number) {
+  if (number == 1) return path;
+  std::filesystem::path name = path.parent_path() / path.stem();
+  name += "-" + std::to_string(number);
+  name += path.extension();
+  return name;
+}
+
+} // namespace
+
+Result<Exported> export_point_caches(const OpenFrames& open, const Choice& choice,
+                                     PointCache format, const std::filesystem::path& path) {
+  assert(choice.rate_hz);
+  const auto parts = parts_of(open, choice);
+  if (!parts) return parts.error();
+  Exported all;
+  for (std::size_t at = 0; at < parts->size(); ++at) {
+    auto source = open();
+    if (!source) return source.error();
+    const auto part = export_part(**source, choice, (*parts)[at], format, numbered(path, at + 1));
+    if (!part) return part;
+    if (at == 0) {
+      all = *part;
+    } else {
+      all.files.push_back(part->files.front());
+      all.bytes += part->bytes;
+    }
+    if (parts->size() > 1) all.begin_s.push_back((*parts)[at].begin_s);
+  }
+  return all;
 }
 
 } // namespace nendo::exporting

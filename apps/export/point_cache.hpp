@@ -17,9 +17,12 @@ namespace nendo::exporting {
 
 enum class PointCache { pc2, mdd };
 
-/// `frames` must be at an even rate. Blocks. Errors: those of ChosenFrames::next(); failed (cannot
-/// be written), bad_input (a vertex that 32-bit floats cannot hold).
-Result<Exported> export_point_cache(ChosenFrames& frames, PointCache format,
-                                    const std::filesystem::path& path);
+/// `choice` must be at an even rate. A point cache has one number of points. So where the model
+/// becomes another one, as when it is subdivided, another file begins: NAME-2.pc2 and so on
+/// (Exported::files, Exported::begin_s). Reads the frames once for each file, and once more if
+/// there are several. Blocks. Errors: those of `open` and ChosenFrames; failed (cannot be written),
+/// bad_input (a vertex that 32-bit floats cannot hold).
+Result<Exported> export_point_caches(const OpenFrames& open, const Choice& choice,
+                                     PointCache format, const std::filesystem::path& path);
 
 } // namespace nendo::exporting

@@ -208,12 +208,12 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
     gltf->generator = "Nendo " NENDO_VERSION;
     return exporting::export_gltf(take.open, choice, *gltf, options.out);
   }
+  using exporting::PointCache;
+  if (format == "pc2" || format == "mdd")
+    return exporting::export_point_caches(
+        take.open, choice, format == "pc2" ? PointCache::pc2 : PointCache::mdd, options.out);
   auto frames = exporting::ChosenFrames::make(**source, choice);
   if (!frames) return frames.error();
-  if (format == "pc2")
-    return exporting::export_point_cache(*frames, exporting::PointCache::pc2, options.out);
-  if (format == "mdd")
-    return exporting::export_point_cache(*frames, exporting::PointCache::mdd, options.out);
   if (format == "bvh") return exporting::export_hands_bvh(*frames, take.skeletons, options.out);
   if (format == "csv") return exporting::export_motion_csv(*frames, options.out);
   return exporting::export_mesh_sequence(*frames, options.out);
@@ -225,9 +225,11 @@ void print_json(const std::string& format, const exporting::Exported& done) {
                               {"last_s", done.last_s},      {"bytes", done.bytes},
                               {"files", done.files.size()}, {"exact", done.exact}};
   if (done.rate_hz) line["rate_hz"] = *done.rate_hz;
+  if (!done.begin_s.empty()) line["begin_s"] = done.begin_s;
   line["result"] = done.files.empty() ? std::string() : done.files.front();
   if (done.morphs) {
     line["morphs"] = {{"by", done.morphs->by_control_vectors ? "control vectors" : "key shapes"},
+                      {"models", done.morphs->models},
                       {"targets", done.morphs->targets},
                       {"keys", done.morphs->keys},
                       {"greatest_error", done.morphs->greatest_error}};
@@ -237,6 +239,10 @@ void print_json(const std::string& format, const exporting::Exported& done) {
 }
 
 void print_morphs(const exporting::MorphReport& morphs) {
+  if (morphs.models > 1)
+    std::cout << fmt::format("{} meshes, one after another: each is shown in its time, where the "
+                             "model became another one\n",
+                             morphs.models);
   if (morphs.by_control_vectors) {
     std::cout << fmt::format("{} morph targets of the control vectors; no vertex of any frame is "
                              "off by more than {:.1e} of the model's diagonal\n",
@@ -258,6 +264,11 @@ void print(const exporting::Exported& done, bool samples) {
                            done.frames, samples ? "samples" : "frames", rate,
                            done.last_s - done.first_s, static_cast<double>(done.bytes) / 1e6);
   if (done.morphs) print_morphs(*done.morphs);
+  for (std::size_t at = 1; at < done.begin_s.size(); ++at)
+    std::cout << fmt::format("the model becomes another one at {0:.2f} s, and {1} begins there; "
+                             "for its mesh, export --from {0:.2f} --to {2:.2f} as NAME-%d.obj\n",
+                             done.begin_s[at], done.files[at],
+                             done.begin_s[at] + 1.0 / done.rate_hz.value_or(1.0));
   std::cout << std::flush;
 }
 

@@ -164,7 +164,11 @@ Result<void> make_picture(const Options& options) {
   for (const double time : *times) {
     const auto scene_frame = take->frame_at(time);
     if (!scene_frame) return scene_frame.error();
-    builder.build(*scene_frame, {}, scenes.emplace_back());
+    if (scene_frame->mesh == nullptr)
+      builder.build(*scene_frame, {}, scenes.emplace_back());
+    else // the model has become finer; it fills the same box
+      SceneBuilder(*scene_frame->mesh, builder.units_per_metre())
+          .build(*scene_frame, {}, scenes.emplace_back());
   }
   return write_panels(options, options.turntable > 0
                                    ? draw_turntable(scenes, options.turntable, *wanted)

@@ -44,7 +44,7 @@ struct Replayed {
   std::uint64_t shapes = 0;       ///< recorded shapes that were compared
   double farthest = 0.0;          ///< distance of a vertex from where they have it, model units
   double elapsed_s = 0.0;
-  deform::Points shape;
+  deform::Mesh shape;
 };
 
 Result<void> check(const Options& options) {
@@ -91,8 +91,10 @@ void compare_shapes(recording::TakeReader& reader, flow::DeformLoop& loop, Repla
   const auto recorded = reader.take_shape();
   if (!recorded) return;
   loop.frames().update();
-  loop.layout().unpack(loop.frames().front().shape, done.shape);
-  const auto distance = recording::distance_between(*recorded, done.shape);
+  const flow::Frame& frame = loop.frames().front();
+  deform::Points shape;
+  loop.layout(frame.model).unpack(frame.shape, shape);
+  const auto distance = recording::distance_between(*recorded, shape);
   if (!distance) return;
   ++done.shapes;
   done.farthest = std::max(done.farthest, *distance);
@@ -122,16 +124,20 @@ Result<Replayed> replay_once(const Options& options, const deform::Mesh& model) 
   if (done.to_the_end) compare_shapes(*reader, (*replay)->loop(), done);
   done.exact = (*replay)->is_exact() && reader->chunks().damage_count() == 0;
   done.elapsed_s = to_seconds(HostClock::now() - start);
-  done.shape = (*replay)->loop().final_shape();
+  done.shape = (*replay)->loop().final_mesh();
   const auto& ending = reader->ending();
-  const bool of_this_model = recording::sum_of(model.vertices) == reader->setup().loop->mesh_sum;
+  // A model that was subdivided begins with the vertices of the file's.
+  const recording::ShapeSum& recorded = reader->setup().loop->mesh_sum;
+  const auto of_file =
+      std::min<Eigen::Index>(model.vertices.cols(), static_cast<Eigen::Index>(recorded.vertices));
+  const bool of_this_model = recording::sum_of(model.vertices.leftCols(of_file)) == recorded;
   if (done.to_the_end && done.exact && of_this_model && ending && ending->shape)
-    done.same_shape = *ending->shape == recording::sum_of(done.shape);
+    done.same_shape = *ending->shape == recording::sum_of(done.shape.vertices);
   return done;
 }
 
 void print(const Options& options, const Replayed& done) {
-  const auto sum = recording::sum_of(done.shape);
+  const auto sum = recording::sum_of(done.shape.vertices);
   if (options.json) {
     nlohmann::ordered_json line{
         {"event", "replayed"},           {"ticks", done.ticks}, {"elapsed_s", done.elapsed_s},
@@ -189,8 +195,7 @@ int replay(const Options& options) {
     print(options, *done);
     if (options.loops && !cli::stop_requested()) continue;
     if (!options.out.empty()) {
-      model->vertices = std::move(done->shape);
-      if (const auto written = deform::write_mesh(options.out, *model); !written)
+      if (const auto written = deform::write_mesh(options.out, done->shape); !written)
         return cli::report(written.error());
     }
     return done->same_shape.value_or(true) ? 0 : static_cast<int>(Errc::failed);

@@ -81,31 +81,44 @@ SegmentPlan plan_segment(const LoopOutline& outline) noexcept {
 }
 
 Result<void> SegmentPublisher::begin(const LoopOutline& outline) {
-  const SegmentPlan plan = plan_segment(outline);
-  const bool is_new = !memory_ || plan != plan_;
-  if (is_new) {
-    end();
-    auto memory = SharedMemory::create(name_, plan.segment_bytes, group_);
-    if (!memory) return memory.error();
-    memory_.emplace(*std::move(memory));
-    plan_ = plan;
-    number_ = 0;
-    records_ = RecordRing(memory_->words() + plan.records_offset / 8, plan.record_slots,
-                          plan.record_stride / 8);
-    shapes_ = ShapeRing(memory_->words() + plan.shapes_offset / 8, plan.shape_slots,
-                        plan.shape_stride / 8, plan.vertices);
-    counts_.bytes = plan.segment_bytes;
-    counts_.is_locked = memory_->is_locked();
-    write_header();
+  if (!memory_ || plan_segment(outline) != plan_) {
+    if (auto laid = lay_out(outline); !laid) return laid;
+    return announce();
   }
+  describe(outline);
+  return {};
+}
+
+Result<void> SegmentPublisher::lay_out(const LoopOutline& outline) {
+  end();
+  plan_ = plan_segment(outline);
+  auto memory = SharedMemory::create(name_, plan_.segment_bytes, group_);
+  if (!memory) return memory.error();
+  memory_.emplace(*std::move(memory));
+  number_ = 0;
+  records_ = RecordRing(memory_->words() + plan_.records_offset / 8, plan_.record_slots,
+                        plan_.record_stride / 8);
+  shapes_ = ShapeRing(memory_->words() + plan_.shapes_offset / 8, plan_.shape_slots,
+                      plan_.shape_stride / 8, plan_.vertices);
+  counts_.bytes = plan_.segment_bytes;
+  counts_.is_locked = memory_->is_locked();
+  write_header();
+  describe(outline);
+  memory_->words()[state_word].store(state_words(NENDO_PUBLISH_LIVE), std::memory_order_release);
+  return {};
+}
+
+Result<void> SegmentPublisher::announce() {
+  auto announced = memory_->announce();
+  if (!announced) memory_.reset();
+  return announced;
+}
+
+/// What the records from now on are of.
+void SegmentPublisher::describe(const LoopOutline& outline) {
   record_ = FrameRecord(outline, ++generation_);
   shapes_.begin(*outline.layout);
   write_setup(outline);
-  if (!is_new) return {};
-  memory_->words()[state_word].store(state_words(NENDO_PUBLISH_LIVE), std::memory_order_release);
-  const auto announced = memory_->announce();
-  if (!announced) memory_.reset();
-  return announced;
 }
 
 void SegmentPublisher::write_header() noexcept {

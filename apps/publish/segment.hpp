@@ -46,6 +46,10 @@ public:
   /// it has room for this loop at the same offsets, as after a change of settings. Otherwise the
   /// old segment is ended, and a new one takes its name. Errors: those of SharedMemory.
   Result<void> begin(const LoopOutline& outline);
+  /// Does what begin() does for the first loop, but gives the segment no name yet.
+  Result<void> lay_out(const LoopOutline& outline);
+  /// Gives it the name. Errors: those of SharedMemory::announce().
+  Result<void> announce();
   /// Writes a frame. Wait-free: no allocation, lock or system call.
   void show(const flow::Frame& frame) noexcept override;
   /// Tells the readers that the segment has ended, and removes its name. To be called while no loop
@@ -56,6 +60,7 @@ public:
   SegmentCounts counts() const noexcept;
 
 private:
+  void describe(const LoopOutline& outline);
   void write_header() noexcept;
   void write_setup(const LoopOutline& outline);
 

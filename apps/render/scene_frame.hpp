@@ -3,6 +3,7 @@
 // from a recording. The renderers need not know from which.
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct SceneHand {
 struct SceneFrame {
   double time_s = 0.0;
   deform::Points vertices;                       ///< 3 by #vertices, model units
+  std::shared_ptr<const deform::Mesh> mesh;      ///< whose faces it has; null: the model's at first
   std::array<std::optional<SceneHand>, 2> hands; ///< by flow::Placement::index_of(side)
   bool held = false; ///< the hands hold the model; otherwise there are no control vectors
   /// The radius of each fingertip's support, on the stage; 0 means not shown.

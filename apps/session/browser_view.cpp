@@ -19,21 +19,45 @@ void keep_numbers(const flow::LoopSettings& in_force, flow::LoopSettings& asked)
 } // namespace
 
 Result<void> BrowserView::begin(const LoopStart& start) {
-  const PlacedLoop& placed = start.placed;
-  const auto& options = placed.setup.options;
-  const auto& layout = placed.loop->layout();
-  if (layout.vertex_count() > web::max_vertices)
-    return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
-                                      " vertices, and a browser takes " +
-                                      std::to_string(web::max_vertices) +
-                                      " at most; run it without --web, or thin it out"};
-  const FrameCapacity most = frame_capacity(placed);
-  stream_ = std::make_shared<web::FrameStream>(layout, most.fields, most.functions);
-  server_->set_settings(placed.loop->settings(), false);
-  server_->present(stream_, web::model_message(layout, start.model, placed.setup.inputs,
-                                               {model_name_, options.rate_hz,
-                                                placed.setup.placement.units_per_metre}));
+  placed_ = &start.placed;
+  const deform::BlockLayout& layout = placed_->loop->layout();
+  if (auto fine = check(layout); !fine) return fine;
+  streams_.begin(stream_for(layout));
+  server_->set_settings(placed_->loop->settings(), false);
+  server_->present(streams_.now(), message_for(layout, start.model));
   return {};
+}
+
+Result<void> BrowserView::prepare(const flow::ModelVersion& version) {
+  if (auto fine = check(version.layout()); !fine) return fine;
+  streams_.prepare(stream_for(version.layout()));
+  next_model_ = message_for(version.layout(), version.mesh);
+  return {};
+}
+
+Result<void> BrowserView::settle() {
+  if (streams_.settle()) server_->present(streams_.now(), std::move(next_model_));
+  return {};
+}
+
+Result<void> BrowserView::check(const deform::BlockLayout& layout) const {
+  if (layout.vertex_count() <= web::max_vertices) return {};
+  return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
+                                    " vertices, and a browser takes " +
+                                    std::to_string(web::max_vertices) +
+                                    " at most; run it without --web, or thin it out"};
+}
+
+std::shared_ptr<web::FrameStream> BrowserView::stream_for(const deform::BlockLayout& layout) const {
+  const FrameCapacity most = frame_capacity(*placed_);
+  return std::make_shared<web::FrameStream>(layout, most.fields, most.functions);
+}
+
+std::vector<std::byte> BrowserView::message_for(const deform::BlockLayout& layout,
+                                                const deform::Mesh& mesh) const {
+  const PlacedSetup& setup = placed_->setup;
+  return web::model_message(layout, mesh, setup.inputs,
+                            {model_name_, setup.options.rate_hz, setup.placement.units_per_metre});
 }
 
 void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {

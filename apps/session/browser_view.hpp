@@ -6,6 +6,7 @@
 
 #include "session/observer.hpp"
 #include "session/sink.hpp"
+#include "session/version_target.hpp"
 #include "web/server.hpp"
 
 namespace nendo::session {
@@ -18,13 +19,24 @@ public:
 
   /// Begins with a loop. Error: bad_input (a model with more vertices than browsers take).
   Result<void> begin(const LoopStart& start) override;
-  void show(const flow::Frame& frame) noexcept override { stream_->show(frame); }
+  void show(const flow::Frame& frame) noexcept override { streams_.of(frame).show(frame); }
+  /// Error: as begin().
+  Result<void> prepare(const flow::ModelVersion& version) override;
+  /// Browsers then get the new model.
+  Result<void> settle() override;
   void update(const RunStatus& status, flow::CommandRing& commands) override;
   void report(const std::string& message) override { server_->report(message); }
 
 private:
   std::unique_ptr<web::Server> server_;
-  std::shared_ptr<web::FrameStream> stream_;
+  Result<void> check(const deform::BlockLayout& layout) const;
+  std::shared_ptr<web::FrameStream> stream_for(const deform::BlockLayout& layout) const;
+  std::vector<std::byte> message_for(const deform::BlockLayout& layout,
+                                     const deform::Mesh& mesh) const;
+
+  VersionTarget<web::FrameStream> streams_;
+  std::vector<std::byte> next_model_; ///< message of the version that was prepared last
+  const PlacedLoop* placed_ = nullptr;
   std::string model_name_;
 };
 

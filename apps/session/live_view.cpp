@@ -37,6 +37,9 @@ public:
       gauges_.counts[slot] = status.gloves[slot].counts;
     }
     gauges_.recording = status.recording;
+    if (std::exchange(model_, status.frame.model) != status.frame.model)
+      window_->set_model(status.model.layout(),
+                         SceneBuilder(status.model.mesh, status.frame.units_per_metre));
     for (const flow::Command& command : window_->show(status.frame, status.fresh, gauges_))
       commands.try_push(command);
     if (status.fresh) ++shown_;
@@ -61,6 +64,7 @@ private:
   ViewOptions options_;
   Gauges gauges_;
   std::uint32_t shown_ = 0;
+  std::uint32_t model_ = 0; ///< that the window has
 };
 
 } // namespace

@@ -9,6 +9,7 @@
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
+#include <nendo/flow/model_version.hpp>
 
 #include "session/place_loop.hpp"
 
@@ -25,8 +26,9 @@ using GloveStatuses = std::array<GloveStatus, 2>;
 GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands);
 
 struct RunStatus {
-  const flow::Frame& frame; ///< the latest
-  bool fresh = false;       ///< it is another one than at the call before
+  const flow::Frame& frame;        ///< the latest
+  const flow::ModelVersion& model; ///< that it is of
+  bool fresh = false;              ///< it is another one than at the call before
   const GloveStatuses& gloves;
   bool recording = false; ///< to a file
 };

@@ -31,15 +31,15 @@ void RunPicture::add(const flow::Frame& frame) {
   first_.radius_m = frame.settings.radius_m;
 }
 
-Result<void> RunPicture::write(const deform::Points& final_shape) {
+Result<void> RunPicture::write(const deform::Mesh& final_shape) {
   if (path_.empty()) return {};
   const SceneBuilder builder(before_, units_per_metre_);
   first_.vertices = before_.vertices;
-  last_.vertices = final_shape;
+  last_.vertices = final_shape.vertices;
   Scene before;
   Scene after;
   builder.build(first_, {}, before);
-  builder.build(last_, {}, after);
+  SceneBuilder(final_shape, units_per_metre_).build(last_, {}, after);
   auto points = before.outline();
   const auto more = after.outline();
   points.insert(points.end(), more.begin(), more.end());

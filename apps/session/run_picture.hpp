@@ -19,7 +19,7 @@ public:
   void add(const flow::Frame& frame);
   /// Draws and writes the picture. Call it after the last frame, with the final shape. Blocks for
   /// some seconds. Error: failed.
-  Result<void> write(const deform::Points& final_shape);
+  Result<void> write(const deform::Mesh& final_shape);
 
 private:
   std::filesystem::path path_;

@@ -6,17 +6,18 @@
 #include "publish/datagrams.hpp"
 #include "publish/segment.hpp"
 #include "publish/target.hpp"
+#include "session/version_target.hpp"
 
 namespace nendo::session {
 namespace {
 
-publish::LoopOutline outline_of(const LoopStart& start) {
-  const PlacedLoop& placed = start.placed;
+publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& model,
+                                const deform::BlockLayout& layout) {
   const auto& options = placed.setup.options;
   const FrameCapacity most = frame_capacity(placed);
   publish::LoopOutline outline;
-  outline.model = &start.model;
-  outline.layout = &placed.loop->layout();
+  outline.model = &model;
+  outline.layout = &layout;
   outline.mode = options.sculptor.mode;
   outline.rate_hz = options.rate_hz;
   outline.units_per_metre = placed.setup.placement.units_per_metre;
@@ -25,27 +26,60 @@ publish::LoopOutline outline_of(const LoopStart& start) {
   return outline;
 }
 
+publish::LoopOutline outline_of(const LoopStart& start) {
+  return outline_of(start.placed, start.model, start.placed.loop->layout());
+}
+
+// Each version of the model has a segment, and the name goes from one to the next.
 class SegmentSink final : public PublishingSink {
 public:
-  SegmentSink(std::string text, const publish::SegmentTarget& target)
-      : text_(std::move(text)), segment_(target.name, target.group) {}
+  SegmentSink(std::string text, publish::SegmentTarget target)
+      : text_(std::move(text)), target_(std::move(target)) {}
 
-  Result<void> begin(const LoopStart& start) override { return segment_.begin(outline_of(start)); }
-  void show(const flow::Frame& frame) noexcept override { segment_.show(frame); }
+  Result<void> begin(const LoopStart& start) override {
+    placed_ = &start.placed;
+    segments_.begin(new_segment());
+    return segments_.now()->begin(outline_of(start));
+  }
+  Result<void> prepare(const flow::ModelVersion& version) override {
+    auto next = new_segment();
+    const auto laid = next->lay_out(outline_of(*placed_, version.mesh, version.layout()));
+    if (laid) segments_.prepare(std::move(next));
+    return laid;
+  }
+  Result<void> settle() override {
+    const auto before = segments_.settle();
+    if (!before) return {};
+    end(*before);
+    return segments_.now()->announce();
+  }
+  void show(const flow::Frame& frame) noexcept override { segments_.of(frame).show(frame); }
   PublishedTo end() override {
-    segment_.end();
-    const auto counts = segment_.counts();
-    PublishedTo result{.target = text_, .records = counts.records};
-    result.shape_changes = counts.shape_changes;
-    result.bytes = counts.bytes;
-    result.is_segment = true;
-    result.is_locked = counts.is_locked;
-    return result;
+    if (segments_.now()) end(*segments_.now());
+    segments_.begin(nullptr);
+    return done_;
   }
 
 private:
+  std::shared_ptr<publish::SegmentPublisher> new_segment() const {
+    return std::make_shared<publish::SegmentPublisher>(target_.name, target_.group);
+  }
+  void end(publish::SegmentPublisher& segment) {
+    segment.end();
+    const auto counts = segment.counts();
+    done_.target = text_;
+    done_.records += counts.records;
+    done_.shape_changes += counts.shape_changes;
+    done_.bytes = counts.bytes;
+    done_.is_segment = true;
+    done_.is_locked = counts.is_locked;
+  }
+
   std::string text_;
-  publish::SegmentPublisher segment_;
+  publish::SegmentTarget target_;
+  const PlacedLoop* placed_ = nullptr;
+  VersionTarget<publish::SegmentPublisher> segments_;
+  PublishedTo done_;
 };
 
 class DatagramSink final : public PublishingSink {
@@ -56,6 +90,7 @@ public:
   Result<void> begin(const LoopStart& start) override {
     return datagrams_.begin(outline_of(start));
   }
+  Result<void> prepare(const flow::ModelVersion&) override { return {}; } // it has no vertices
   void show(const flow::Frame& frame) noexcept override { datagrams_.show(frame); }
   PublishedTo end() override {
     datagrams_.end();

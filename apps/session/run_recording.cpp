@@ -135,14 +135,15 @@ std::optional<std::string> RunRecorder::follow() {
   const auto state = placed_.loop->take_state();
   if (!state) return std::nullopt;
   is_changing_ = false;
+  const deform::BlockLayout& layout = placed_.loop->newest_model().layout();
   deform::Points vertices;
-  placed_.loop->layout().unpack(state->shape, vertices);
+  layout.unpack(state->shape, vertices);
   end_with(recording::sum_of(vertices));
   log_ = std::move(next_log_);
   to_file_ = next_to_file_;
   if (!log_) return std::nullopt;
   recording::Setup setup = setup_now();
-  recording::continue_from(*state, placed_.loop->layout(), setup);
+  recording::continue_from(*state, layout, setup);
   const auto begun = begin(setup, counts_);
   if (begun) return std::nullopt;
   outcomes_.pop_back();

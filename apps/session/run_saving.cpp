@@ -28,8 +28,8 @@ Result<void> write_shape(const std::string& out, const deform::Mesh& shape) {
                written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
 }
 
-RunSaving::RunSaving(std::string out, const deform::Mesh& model, RunRecorder& recorder)
-    : out_(std::move(out)), model_(model), recorder_(recorder) {}
+RunSaving::RunSaving(std::string out, RunRecorder& recorder)
+    : out_(std::move(out)), recorder_(recorder) {}
 
 void RunSaving::add(const flow::Command& command) noexcept {
   shape_ = shape_ || std::holds_alternative<flow::SaveShape>(command);
@@ -52,8 +52,9 @@ std::string RunSaving::save_recording() {
 
 std::string RunSaving::save_shape(flow::DeformLoop& loop) {
   const std::string file = cli::next_free_name(out_, saved_);
-  deform::Mesh shape = model_;
-  loop.layout().unpack(loop.frames().front().shape, shape.vertices);
+  const flow::Frame& frame = loop.frames().front();
+  deform::Mesh shape = loop.model(frame.model)->mesh;
+  loop.layout(frame.model).unpack(frame.shape, shape.vertices);
   const auto written = deform::write_mesh(file, shape);
   return written ? "saved as " + file : written.error().message;
 }

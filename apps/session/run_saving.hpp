@@ -18,8 +18,8 @@ Result<void> write_shape(const std::string& out, const deform::Mesh& shape);
 /// Saves a few times a second at most, even if it is asked more often.
 class RunSaving {
 public:
-  /// Saved shapes are named after `out` and numbered. `model` and `recorder` must outlive this.
-  RunSaving(std::string out, const deform::Mesh& model, RunRecorder& recorder);
+  /// Saved shapes are named after `out` and numbered. `recorder` must outlive this.
+  RunSaving(std::string out, RunRecorder& recorder);
 
   /// Takes note of flow::SaveShape and flow::SaveRecording for save(). Other commands change
   /// nothing.
@@ -37,7 +37,6 @@ private:
   std::string save_recording();
 
   std::string out_;
-  const deform::Mesh& model_;
   RunRecorder& recorder_;
   int saved_ = 0;
   bool shape_ = false;

@@ -13,6 +13,7 @@
 #include "gloves/glove_light.hpp"
 #include "session/loop_thread.hpp"
 #include "session/run_keys.hpp"
+#include "session/run_models.hpp"
 #include "session/run_picture.hpp"
 #include "session/run_saving.hpp"
 
@@ -42,7 +43,8 @@ public:
           const RunParticipants& participants, std::vector<flow::Grant> grants)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
         participants_(participants), grants_(std::move(grants)),
-        recorder_(options_, placed_, hands_, model_), saving_(options_.out, model_, recorder_) {
+        recorder_(options_, placed_, hands_, model_), models_(placed_, participants_.sinks),
+        saving_(options_.out, recorder_) {
     for (const auto& hand : hands_)
       if (options_.loop.switch_action != flow::SwitchAction::none)
         lights_.emplace_back(*hand.glove);
@@ -73,7 +75,7 @@ public:
     for (const auto& hand : hands_)
       hand.glove->stop();
     if (const auto written = write_shape(options_.out, model_); !written) return written.error();
-    if (const auto drawn = picture.write(model_.vertices); !drawn) return drawn.error();
+    if (const auto drawn = picture.write(model_); !drawn) return drawn.error();
     for (Observer* observer : observers_)
       if (const auto ended = observer->end(); !ended) return ended.error();
     const flow::SculptorOptions& sculptor = placed_.loop->sculptor_options();
@@ -104,7 +106,10 @@ private:
   void save() { report(saving_.save(*placed_.loop)); }
 
   void update_observers(bool fresh) {
-    const RunStatus status{placed_.loop->frames().front(), fresh, gloves_, recorder_.is_to_file()};
+    const flow::Frame& frame = placed_.loop->frames().front();
+    const flow::ModelVersion& model = *placed_.loop->model(frame.model);
+    settle_sinks();
+    const RunStatus status{frame, model, fresh, gloves_, recorder_.is_to_file()};
     for (Observer* observer : observers_)
       observer->update(status, commands_);
     commands_.drain([this](const flow::Command& command) noexcept { dispatch(command); });
@@ -118,16 +123,28 @@ private:
     change_loop(fresh);
   }
 
-  // Passes on the newest settings when the loop has those before, and begins or ends a recording.
+  // Passes on the newest settings when the loop has those before, begins or ends a recording, and
+  // goes on with making a model.
   void change_loop(bool fresh) {
     flow::DeformLoop& loop = *placed_.loop;
-    const auto& awaited = loop.frames().front().awaited; // by an undo or a redo
-    if (fresh && awaited && !settings_) settings_ = awaited;
+    const flow::Frame& frame = loop.frames().front();
+    const bool awaits = frame.awaited.has_value(); // by an undo or a redo
+    if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
       report("settings that nothing can be done with; the run goes on as it was");
-    if (record_ && !recorder_.is_changing())
-      recorder_.set_file(*std::exchange(record_, {}), loop.frames().front());
-    if (const auto message = recorder_.follow()) report(*message);
+    if (record_ && !recorder_.is_changing() && !models_.is_handing_over())
+      recorder_.set_file(*std::exchange(record_, {}), frame);
+    tell(recorder_.follow());
+    tell(models_.follow(!awaits && !recorder_.is_changing()));
+  }
+  void tell(const std::optional<std::string>& message) {
+    if (message) report(*message);
+  }
+  void settle_sinks() {
+    const std::uint32_t model = placed_.loop->frames().front().model;
+    if (std::exchange(shown_model_, model) == model) return;
+    for (Sink* sink : participants_.sinks)
+      if (const auto settled = sink->settle(); !settled) report(settled.error().message);
   }
 
   void dispatch(const flow::Command& command) noexcept {
@@ -143,6 +160,7 @@ private:
     if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
       settings_ = change->settings; // only the newest count
     if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
+    if (std::holds_alternative<flow::Subdivide>(command)) models_.subdivide();
     ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
     saving_.add(command);
   }
@@ -151,7 +169,7 @@ private:
   void wait_until_taken() {
     const auto is_due = [this] {
       return loop_commands_.size() > 0 || settings_ || record_ || recorder_.is_changing() ||
-             placed_.loop->is_changing();
+             models_.is_due() || models_.is_handing_over() || placed_.loop->is_changing();
     };
     auto& frames = placed_.loop->frames();
     const HostTime begin = HostClock::now();
@@ -160,6 +178,7 @@ private:
     for (bool is_news = false; waits_for(milliseconds(is_due() ? 1000 : 100));) {
       std::this_thread::sleep_for(milliseconds(1));
       const bool fresh = frames.update();
+      settle_sinks();
       change_loop(fresh);
       is_news = is_news || fresh;
       if (is_news && !is_due() && !frames.front().awaited) return;
@@ -179,9 +198,9 @@ private:
     if (saving_.is_due()) save(); // asked for just before the end
     thread.stop();
     elapsed_s_ = to_seconds(HostClock::now() - thread.start);
-    deform::Points shape = loop.final_shape();
-    recorder_.end(shape); // which compares with the model as it was loaded
-    model_.vertices = std::move(shape);
+    deform::Mesh shape = loop.final_mesh();
+    recorder_.end(shape.vertices); // which compares with the model as it was loaded
+    model_ = std::move(shape);
     if (loop.frames().update()) picture.add(loop.frames().front());
   }
 
@@ -252,6 +271,8 @@ private:
   std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
   std::optional<bool> record_;                           ///< to a file, or not; not done yet
   RunRecorder recorder_;
+  RunModels models_;
+  std::uint32_t shown_model_ = 0; ///< of the latest frame
   RunSaving saving_;
   std::vector<gloves::GloveLight> lights_; ///< of all gloves, if their switches do something
   PlacedLoop placed_;

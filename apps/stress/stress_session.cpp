@@ -84,7 +84,8 @@ struct Watch {
     }
     ++pictures;
     const bool fresh = loop.frames().update();
-    observer->update({loop.frames().front(), fresh, gloves}, commands);
+    const flow::Frame& frame = loop.frames().front();
+    observer->update({frame, *loop.model(frame.model), fresh, gloves}, commands);
     bool ends = false;
     std::optional<flow::LoopSettings> wanted;
     commands.drain([&](const flow::Command& command) noexcept {
@@ -93,7 +94,8 @@ struct Watch {
       if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
         wanted = change->settings;
     });
-    if (!wanted) wanted = fresh ? loop.frames().front().awaited : std::nullopt;
+    if (!wanted && fresh && loop.frames().front().awaited)
+      wanted = loop.frames().front().awaited->settings;
     if (wanted) loop.change_settings(*wanted);
     return ends;
   }

@@ -9,11 +9,14 @@ namespace nendo::takes {
 class FrameSource {
 public:
   virtual ~FrameSource() = default;
-  /// Returns the model before the first frame: 3 by #vertices, in model units.
-  virtual const deform::Mesh& model() const = 0;
-  virtual const deform::BlockLayout& layout() const = 0; ///< of the frames' shapes
-  virtual double rate_hz() const = 0;                    ///< of the frames, as far as it is even
-  virtual double duration_s() const = 0;                 ///< time_s() of the last frame
+  /// Returns the model before the hands, in model units: the first one, or that of a version that
+  /// the latest frame, or one before it, has (Frame::model).
+  virtual const deform::Mesh& model(std::uint32_t version) const = 0;
+  virtual const deform::BlockLayout& layout(std::uint32_t version) const = 0; ///< of its shapes
+  /// Tells whether all frames are of the first version.
+  virtual bool has_one_model() const { return true; }
+  virtual double rate_hz() const = 0;    ///< of the frames, as far as it is even
+  virtual double duration_s() const = 0; ///< time_s() of the last frame
   /// Makes the next frame. Returns false if there is none. May block and allocate.
   virtual bool next() = 0;
   virtual const flow::Frame& frame() const = 0; ///< the latest; not before next()

@@ -28,8 +28,8 @@ public:
   /// TakeReader::open(); bad_input (no glove, or no sample).
   static Result<std::unique_ptr<GloveFrames>> open(const std::filesystem::path& path);
 
-  const deform::Mesh& model() const override { return model_; }
-  const deform::BlockLayout& layout() const override { return layout_; }
+  const deform::Mesh& model(std::uint32_t) const override { return model_; }
+  const deform::BlockLayout& layout(std::uint32_t) const override { return layout_; }
   /// Returns the rate of the fastest glove.
   double rate_hz() const override { return rate_hz_; }
   double duration_s() const override { return duration_s_; }

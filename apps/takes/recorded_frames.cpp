@@ -15,11 +15,13 @@ struct Extent {
   std::uint64_t ticks = 0;
   double first_s = 0.0;
   double last_s = 0.0;
+  bool has_one_model = true;
 };
 
 Extent extent_of(recording::TakeReader reader) {
   Extent extent;
   while (const auto entry = reader.next()) {
+    if (std::holds_alternative<flow::ChangeModel>(*entry)) extent.has_one_model = false;
     const auto* const tick = std::get_if<flow::LoggedTick>(&*entry);
     if (tick == nullptr) continue;
     extent.last_s = time_after(extent.last_s, reader.setup(), *tick);
@@ -51,6 +53,7 @@ Result<std::unique_ptr<RecordedFrames>> RecordedFrames::open(const std::filesyst
   frames->replay_ = *std::move(replay);
   frames->rate_hz_ = rate_of(frames->setup().loop->options, extent);
   frames->duration_s_ = extent.last_s;
+  frames->has_one_model_ = extent.has_one_model;
   return frames;
 }
 

@@ -19,8 +19,13 @@ public:
   static Result<std::unique_ptr<RecordedFrames>> open(const std::filesystem::path& path,
                                                       deform::Mesh model);
 
-  const deform::Mesh& model() const override { return model_; }
-  const deform::BlockLayout& layout() const override { return replay_->loop().layout(); }
+  const deform::Mesh& model(std::uint32_t version) const override {
+    return replay_->loop().model(version)->mesh;
+  }
+  const deform::BlockLayout& layout(std::uint32_t version) const override {
+    return replay_->loop().layout(version);
+  }
+  bool has_one_model() const override { return has_one_model_; }
   double rate_hz() const override { return rate_hz_; }
   double duration_s() const override { return duration_s_; }
   bool next() override;
@@ -42,6 +47,7 @@ private:
   double rate_hz_ = 0.0;
   double duration_s_ = 0.0;
   double time_s_ = 0.0;
+  bool has_one_model_ = true;
 };
 
 } // namespace nendo::takes

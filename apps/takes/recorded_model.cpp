@@ -7,8 +7,9 @@
 #include "cli/cli.hpp"
 
 namespace nendo::takes {
+namespace {
 
-Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
+Result<deform::Mesh> model_of_file(const recording::LoopSetup& loop, const std::string& named) {
   auto model = deform::read_mesh(named.empty() ? loop.mesh : named);
   if (!model) {
     if (!named.empty()) return model.error();
@@ -22,6 +23,20 @@ Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std:
                                       "then with --mesh, or another"};
   }
   cli::note(named + ": another model than was recorded; its shape will be another, too");
+  return model;
+}
+
+} // namespace
+
+Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
+  auto model = model_of_file(loop, named);
+  for (std::uint32_t done = 0; model && done < loop.subdivisions; ++done) {
+    if (model->face_corners.size() > flow::FinerModel::most_corners)
+      return Error{Errc::bad_input, printable(named.empty() ? loop.mesh : named) +
+                                        ": is too large to be subdivided as often as was recorded; "
+                                        "name the model of then with --mesh"};
+    model = deform::subdivide(*model).mesh;
+  }
   return model;
 }
 

@@ -54,6 +54,8 @@ void print_loop(const TakeSummary& summary) {
   if (summary.wrist_moves > 0) std::printf(", %llu wrist moves", number(summary.wrist_moves));
   if (summary.settings_changes > 0)
     std::printf(", %llu changes of settings", number(summary.settings_changes));
+  if (summary.model_changes > 0)
+    std::printf(", %llu changes of the model", number(summary.model_changes));
   if (summary.shapes > 0) std::printf(", %llu shapes", number(summary.shapes));
   std::printf("\n");
 }
@@ -91,6 +93,7 @@ ordered_json loop_json(const TakeSummary& summary) {
         summary.requests[static_cast<std::size_t>(request)];
   line["wrist_moves"] = summary.wrist_moves;
   line["settings_changes"] = summary.settings_changes;
+  line["model_changes"] = summary.model_changes;
   line["shapes"] = summary.shapes;
   return line;
 }

@@ -55,6 +55,8 @@ private:
     }
     source_ = std::move(opened_);
     holds_ = {};
+    model_ = 0;
+    mesh_ = nullptr;
     has_next_ = read_next();
     advance();
     return {};
@@ -71,7 +73,12 @@ private:
     const flow::Frame& frame = source_->frame();
     holds_.follow(frame);
     render::set_hands(frame, holds_, next_);
-    source_->layout().unpack(frame.shape, next_.vertices);
+    source_->layout(frame.model).unpack(frame.shape, next_.vertices);
+    if (frame.model != model_) {
+      model_ = frame.model;
+      mesh_ = std::make_shared<const deform::Mesh>(source_->model(model_));
+    }
+    next_.mesh = mesh_;
     next_.radius_m = frame.settings.radius_m;
     next_.time_s = source_->time_s();
     return true;
@@ -84,6 +91,8 @@ private:
   render::SceneFrame scene_;
   render::SceneFrame next_; ///< if has_next_
   bool has_next_ = false;
+  std::uint32_t model_ = 0;                  ///< of the latest frame
+  std::shared_ptr<const deform::Mesh> mesh_; ///< of that version; null: Take::rest
 };
 
 Result<Take> read_recording(const std::filesystem::path& path) {
@@ -111,7 +120,7 @@ Result<Take> read_edited(const std::filesystem::path& path) {
   if (!frames) return frames.error();
   const timeline::Timeline& timeline = (*frames)->player().timeline();
   Take take;
-  take.rest = (*frames)->model();
+  take.rest = (*frames)->model(0);
   take.units_per_metre = timeline.units_per_metre;
   take.duration_s = (*frames)->duration_s();
   const auto open = [path]() -> Result<std::unique_ptr<FrameSource>> {

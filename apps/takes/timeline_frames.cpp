@@ -20,16 +20,16 @@ Result<std::unique_ptr<TimelineFrames>> TimelineFrames::open(const std::filesyst
   if (!timeline) return timeline.error();
   auto model = timeline_model(*timeline, mesh);
   if (!model) return model.error();
-  auto frames = make(*std::move(timeline), *std::move(model));
+  auto frames = make(*std::move(timeline), *model);
   if (!frames) return Error{frames.error().code, path.string() + ": " + frames.error().message};
   return frames;
 }
 
 Result<std::unique_ptr<TimelineFrames>> TimelineFrames::make(timeline::Timeline timeline,
-                                                             deform::Mesh model) {
+                                                             const deform::Mesh& model) {
   auto player = timeline::Player::make(std::move(timeline), model);
   if (!player) return player.error();
-  return std::unique_ptr<TimelineFrames>(new TimelineFrames(std::move(model), *std::move(player)));
+  return std::unique_ptr<TimelineFrames>(new TimelineFrames(*std::move(player)));
 }
 
 double middle_plane_m(const timeline::Timeline& timeline, const deform::Mesh& model) {

@@ -1,6 +1,7 @@
 #pragma once
 // The frames of a timeline, and the model that it shapes.
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -22,10 +23,19 @@ public:
 
   /// Plays a timeline that is in memory. Errors: those of timeline::Player::make().
   static Result<std::unique_ptr<TimelineFrames>> make(timeline::Timeline timeline,
-                                                      deform::Mesh model);
+                                                      const deform::Mesh& model);
 
-  const deform::Mesh& model() const override { return model_; }
-  const deform::BlockLayout& layout() const override { return player_->layout(); }
+  const deform::Mesh& model(std::uint32_t version) const override {
+    return player_->model(version)->mesh;
+  }
+  const deform::BlockLayout& layout(std::uint32_t version) const override {
+    return player_->layout(version);
+  }
+  bool has_one_model() const override {
+    const auto& events = player_->timeline().events;
+    return std::none_of(events.begin(), events.end(),
+                        [](const timeline::Event& event) { return event.subdivides; });
+  }
   double rate_hz() const override { return player_->timeline().rate_hz; }
   double duration_s() const override { return player_->last_time_s(); }
   bool next() override { return player_->next(); }
@@ -35,10 +45,8 @@ public:
   timeline::Player& player() noexcept { return *player_; }
 
 private:
-  TimelineFrames(deform::Mesh model, std::unique_ptr<timeline::Player> player)
-      : model_(std::move(model)), player_(std::move(player)) {}
+  explicit TimelineFrames(std::unique_ptr<timeline::Player> player) : player_(std::move(player)) {}
 
-  deform::Mesh model_;
   std::unique_ptr<timeline::Player> player_;
 };
 

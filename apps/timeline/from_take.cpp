@@ -60,10 +60,16 @@ public:
     if (flow::goes_through_history(request)) steps_.push_back(request);
   }
 
+  void hear(const flow::ChangeModel& change) {
+    subdivides_ = subdivides_ || change.source == flow::ModelSource::subdivided;
+  }
+
   /// Returns false if a timeline has no such settings.
   bool hear(const flow::LoopSettings& settings, const flow::LoopSettings& in_force) {
     if (settings.filter != in_force.filter) return false;
-    const bool is_undo = awaited_ == settings; // which the timeline's player makes of the request
+    const bool is_undo =
+        awaited_ &&
+        awaited_->settings == settings; // which the timeline's player makes of the request
     if (is_undo || settings == in_force) return true;
     settings_ = settings;
     settings_->filter = {};
@@ -112,6 +118,7 @@ private:
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
     if (committed && !frame.held) add(time_s, flow::Request::let_go);
+    if (std::exchange(subdivides_, false)) timeline_.events.push_back({time_s, {}, {}, true});
     if (settings_) timeline_.events.push_back({time_s, {}, std::exchange(settings_, {})});
     commits_ = commits;
     held_ = frame.held;
@@ -124,7 +131,8 @@ private:
   std::uint64_t undos_ = 0;
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
-  std::optional<flow::LoopSettings> awaited_;  ///< after the last tick, by an undo or a redo
+  bool subdivides_ = false;                    ///< the model, since the last tick
+  std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
   std::optional<flow::LoggedTick> first_;
 };
 
@@ -148,7 +156,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   auto replay = LoopReplay::make(reader->setup(), model);
   if (!replay) return bad(replay.error().message);
   const Setup& setup = reader->setup();
-  if (!setup.loop->rest.empty())
+  if (!setup.loop->rest.empty() || setup.loop->subdivisions > 0)
     return bad(
         "begins in the middle of a run, with a shape that is no file's; a timeline begins with "
         "its model. Record from the beginning of the run, with --record");
@@ -157,6 +165,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   Follower follower(made.timeline, setup.loop->options);
   while (const auto entry = reader->next()) {
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
+    if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) follower.hear(*change);
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
     if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "

@@ -13,11 +13,30 @@ constexpr double a_hair = 1e-6; // of a frame
 
 flow::ShapingOptions shaping_options(const Timeline& timeline,
                                      const flow::SculptorSetup& sculptor) {
-  flow::ShapingOptions options{sculptor, deform::half_of_memory()};
-  options.sculptor.options.deformer.undo_bytes = 0;
+  flow::ShapingOptions options{sculptor};
   options.most_requests = timeline.events.size() + 1;
   options.held = timeline.held;
   return options;
+}
+
+flow::UndoRoom undo_room() {
+  return {0, deform::half_of_memory()};
+}
+
+std::shared_ptr<flow::ModelVersion> first_version(const deform::Mesh& model) {
+  return std::make_shared<flow::ModelVersion>(0, model, deform::BlockLayout(model.vertices),
+                                              undo_room(), nullptr);
+}
+
+/// Each subdivision makes at most four corners of one.
+bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
+  std::size_t corners = model.face_corners.size();
+  for (const Event& event : events) {
+    if (!event.subdivides) continue;
+    if (corners > flow::FinerModel::most_corners) return true;
+    corners *= 4;
+  }
+  return false;
 }
 
 } // namespace
@@ -25,6 +44,9 @@ flow::ShapingOptions shaping_options(const Timeline& timeline,
 Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Mesh& model) {
   if (std::string wrong = complaint_about(timeline); !wrong.empty())
     return Error{Errc::bad_input, std::move(wrong)};
+  if (are_too_many(timeline.events, model))
+    return Error{Errc::bad_input, "the model would be too large when it is subdivided so often; "
+                                  "take out a subdivide event"};
   std::unique_ptr<Player> player(new Player(std::move(timeline), model));
   player->pose_hands(0.0);
   const deform::FieldStatus status = player->shaping_.begin(player->tips_);
@@ -39,7 +61,8 @@ Player::Player(Timeline timeline, const deform::Mesh& model)
       tips_(deform::Points::Zero(3, 5 * static_cast<Eigen::Index>(timeline_.hands.size()))),
       first_{timeline_.sculptor,
              flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre)},
-      now_(first_), shaping_(model.vertices, tips_.cols(), shaping_options(timeline_, first_)),
+      now_(first_), versions_{first_version(model)},
+      shaping_(*versions_.front(), tips_.cols(), shaping_options(timeline_, first_)),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
   for (const auto& track : timeline_.hands)
     hands_.push_back(
@@ -83,16 +106,32 @@ void Player::pose_hands(double time_s) {
 void Player::ask(const Event& event) {
   if (event.settings)
     settings_due_ = event.settings; // of several in a frame the last counts, as in the loop
+  else if (event.subdivides)
+    subdivides_ = true;
   else
     shaping_.ask(event.request);
 }
 
+std::shared_ptr<const flow::ModelVersion> Player::model(std::uint32_t number) const noexcept {
+  return number < versions_.size() ? versions_[number] : nullptr;
+}
+
 /// As the loop does at the end of a tick.
-void Player::change(const flow::LoopSettings& settings) {
-  now_ = flow::with_settings(now_, first_, settings, static_cast<int>(hands_.size()),
+void Player::change_to(const flow::Awaited& awaited) {
+  now_ = flow::with_settings(now_, first_, awaited.settings, static_cast<int>(hands_.size()),
                              timeline_.units_per_metre);
-  flow::ReadySculptor ready = shaping_.prepare(now_);
+  flow::ModelVersion& model = *versions_[awaited.model];
+  flow::ReadySculptor ready = shaping_.prepare(now_, model);
+  if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
   shaping_.exchange(ready, tips_, frame_, stats_);
+}
+
+void Player::subdivide() {
+  shaping_.hold_still(tips_, frame_, stats_);
+  const auto number = static_cast<std::uint32_t>(versions_.size());
+  flow::FinerModel finer(shaping_.model());
+  versions_.push_back(finer.finish(number, undo_room()));
+  change_to({shaping_.settings(), number});
 }
 
 bool Player::ask_what_is_due(double time_s) {
@@ -112,15 +151,16 @@ bool Player::next() {
   if (made_ == frames_) return false;
   const double time_s = time_of(made_);
   pose_hands(time_s);
-  shaping_.refill_undo();
+  if (auto* const memory = versions_[shaping_.model().number]->undo_memory.get()) memory->refill();
   shaping_.set_time(from_seconds(time_s));
   const bool asked = ask_what_is_due(time_s);
   frame_.settings = shaping_.settings();
   // The hands have just taken hold here: without a wish there is nothing to do.
   if (made_ > 0 || asked)
-    frame_.status = shaping_.shape(tips_, frame_, stats_, settings_due_.has_value());
-  if (settings_due_) change(*std::exchange(settings_due_, {}));
-  if (frame_.awaited) change(*frame_.awaited); // by an undo or a redo
+    frame_.status = shaping_.shape(tips_, frame_, stats_, settings_due_ || subdivides_);
+  if (std::exchange(subdivides_, false)) subdivide();
+  if (settings_due_) change_to({*std::exchange(settings_due_, {}), shaping_.model().number});
+  if (frame_.awaited) change_to(flow::Awaited(*frame_.awaited)); // by an undo or a redo
   describe(made_++);
   return true;
 }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <nendo/base/result.hpp>
 
@@ -29,7 +30,11 @@ public:
   double last_time_s() const noexcept;
   std::uint64_t frame_count() const noexcept { return frames_; } ///< in all
   const flow::LoopStats& stats() const noexcept { return stats_; }
-  const deform::BlockLayout& layout() const noexcept { return shaping_.sculptor().layout(); }
+  /// Returns a version of the model (Frame::model), or null.
+  std::shared_ptr<const flow::ModelVersion> model(std::uint32_t number) const noexcept;
+  const deform::BlockLayout& layout(std::uint32_t version = 0) const noexcept {
+    return model(version)->layout();
+  }
   const Timeline& timeline() const noexcept { return timeline_; }
   /// Returns the present shape, 3 by #vertices. It includes a stroke that has not ended.
   deform::Points final_shape() { return shaping_.final_shape(tips_); }
@@ -46,18 +51,21 @@ private:
   void pose_hands(double time_s);
   bool ask_what_is_due(double time_s);
   void ask(const Event& event);
-  void change(const flow::LoopSettings& settings);
+  void change_to(const flow::Awaited& awaited);
+  void subdivide();
   void describe(std::uint64_t number);
 
   Timeline timeline_;
   std::vector<Hand> hands_;
   deform::Points tips_;
   flow::SculptorSetup first_, now_; ///< of the timeline, and in force
+  std::vector<std::shared_ptr<flow::ModelVersion>> versions_;
   flow::Shaping shaping_;
   flow::Frame frame_;
   flow::LoopStats stats_;
   std::size_t next_event_ = 0;
   std::optional<flow::LoopSettings> settings_due_;
+  bool subdivides_ = false;  ///< in this frame
   std::uint64_t made_ = 0;   ///< frames
   std::uint64_t frames_ = 0; ///< in all
 };

@@ -24,6 +24,7 @@ struct CachedShape {
   double held_since_s = 0.0;        ///< where the fingertips took hold, if held
   std::array<double, 5> radius_m{}; ///< of each finger then
   deform::BlockShape shape;
+  std::shared_ptr<const flow::ModelVersion> model; ///< that the shape is of
 };
 
 class ShapeCache {

@@ -107,10 +107,11 @@ bool same_bits(const Key& one, const Key& other) noexcept {
 
 bool same_bits(const Event& one, const Event& other) noexcept {
   return same_bits(one.time_s, other.time_s) && one.request == other.request &&
-         one.settings == other.settings;
+         one.settings == other.settings && one.subdivides == other.subdivides;
 }
 
 std::string in_words(const Event& event) {
+  if (event.subdivides) return "subdivide";
   if (!event.settings) return std::string(name_of(event.request));
   const flow::LoopSettings& settings = *event.settings;
   std::string words = std::string(name_of(settings.mode)) + ", " +

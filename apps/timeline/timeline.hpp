@@ -42,6 +42,7 @@ struct Event {
   /// The event is a change to these, and `request` means nothing. They have no filter, because keys
   /// are poses that were filtered.
   std::optional<flow::LoopSettings> settings{};
+  bool subdivides = false; ///< the event makes the model finer, and `request` means nothing
 };
 
 bool same_bits(const Event& one, const Event& other) noexcept;

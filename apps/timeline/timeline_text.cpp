@@ -94,7 +94,7 @@ std::string head_text(const Timeline& timeline) {
   for (const Event& event : timeline.events)
     events += "  { time_s = " + decimal_text(event.time_s) + ", " +
               (event.settings ? "settings = " + settings_text(*event.settings)
-                              : "request = " + toml_string(name_of(event.request))) +
+                              : "request = " + toml_string(in_words(event))) +
               " },\n";
   return "# Key poses of hands over a model; `nendo edit` works on it, and so does a text "
          "editor.\n" +

@@ -132,10 +132,13 @@ void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline
     reader.allow_only(*event, {"time_s", "request", "settings"});
     Event& read = timeline.events.emplace_back();
     read.time_s = reader.number(*event, "time_s");
-    if (event->get("settings") == nullptr)
-      read.request = reader.named(*event, "request", flow::request_named);
-    else
+    if (event->get("settings") != nullptr)
       read.settings = read_settings(reader, *event);
+    else if (event->get("request") != nullptr &&
+             event->at("request").value<std::string_view>() == "subdivide")
+      read.subdivides = true;
+    else
+      read.request = reader.named(*event, "request", flow::request_named);
   }
 }
 

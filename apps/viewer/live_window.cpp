@@ -27,12 +27,16 @@ Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, r
 
 void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
                        const flow::LoopSettings& settings) {
-  window_->set_model(layout, builder);
+  set_model(layout, builder);
   panel_->wanted.follow(settings);
   panel_->one_radius = panel_->wanted.has_one_radius();
   scene_frame_.radius_m = settings.radius_m;
-  scene_frame_.vertices = layout.original();
   holds_ = {};
+}
+
+void LiveWindow::set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder) {
+  window_->set_model(layout, builder);
+  scene_frame_.vertices = layout.original();
 }
 
 Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gauges) {

@@ -41,6 +41,8 @@ public:
   /// Begins to show a loop over this model, with the settings that it begins with.
   void begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
              const flow::LoopSettings& settings);
+  /// Shows another version of that model, which the frames from now on are of. The camera stays.
+  void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
   /// Draws one picture of the latest frame and waits for the screen, or for at most 8 ms if there
   /// is none. fresh: the frame differs from that of the previous call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);

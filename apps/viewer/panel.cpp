@@ -114,8 +114,9 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
     commands.emplace_back(flow::SaveShape{});
   if (button("Keep", "The recording of what was just done (k)"))
     commands.emplace_back(flow::SaveRecording{});
-  if (tipped_button(gauges.recording ? "End the recording" : "Record",
-                    "A recording from here on (t)", all))
+  if (button("Subdivide", "More vertices for finer strokes; undo takes it back (e)"))
+    commands.emplace_back(flow::Subdivide{});
+  if (button(gauges.recording ? "End recording" : "Record", "A recording from here on (t)"))
     commands.emplace_back(flow::SetRecording{!gauges.recording});
   told = note.empty() ? gauges.report : note;
   if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());

@@ -24,6 +24,7 @@ constexpr std::array key_table{
     KeyLine{"m, n", "the other mode, the next kernel"},
     KeyLine{"[, ]", "smaller radii, larger ones"},
     KeyLine{"i", "the surface never folds, or may"},
+    KeyLine{"e", "subdivide: the model gets more vertices for finer strokes"},
     KeyLine{"Home", "all of the model and the hands in the picture"},
     KeyLine{"p", "the panel folded and unfolded"},
     KeyLine{"q", "quit; the shape is written"},
@@ -87,6 +88,7 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
   if (pressed(GLFW_KEY_R)) step(Request::redo, frame, commands);
   if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
+  if (pressed(GLFW_KEY_E)) commands.emplace_back(flow::Subdivide{});
   if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});
   settings_keys();
   if (pressed(GLFW_KEY_Q)) commands.emplace_back(flow::EndRun{});

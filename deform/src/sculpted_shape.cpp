@@ -9,9 +9,9 @@
 
 namespace nendo::deform {
 
-SculptedShape::SculptedShape(Points original, const DeformerOptions& options,
+SculptedShape::SculptedShape(BlockLayout layout, const DeformerOptions& options,
                              const BlockShape* first)
-    : layout_(std::move(original)) {
+    : layout_(std::move(layout)) {
   BoundedShape loaded(layout_.pack());
   BoundedShape now = first != nullptr ? BoundedShape(*first) : loaded;
   assert(now.shape.block_count() == layout_.block_count());

@@ -146,6 +146,46 @@ struct Jobs {
   }
 };
 
+/// A loop changes a shape at each tick until it is asked to hold still. Who asked then makes a
+/// model of the shape and hands that over.
+struct HandOver {
+  JobOffer<Value, Explored> offer;
+  Explored::Plain<Value> shape{0};
+  Explored::Plain<Value> model{0};
+  Value ticks = 0; ///< that changed the shape
+  Value taken = 0; ///< the model that the loop has
+  bool is_still = false;
+  bool is_late = false; ///< the maker gave up waiting, or has not handed anything over
+
+  static constexpr Value hold_still = 1;
+  static constexpr Value change_model = 2;
+
+  void tick() {
+    Value job = 0;
+    const bool any = offer.take(job);
+    if (any && job == change_model) {
+      require(is_still, "a model comes to a loop that holds still");
+      require(model == shape, "it is made of all that was shaped");
+      taken = model;
+      is_still = false;
+    }
+    if (!is_still) shape = ++ticks;
+    if (any && job == hold_still) is_still = true;
+    if (any) offer.done();
+  }
+  void make() {
+    offer.offer(hold_still);
+    is_late = !offer.is_done() && !offer.is_done();
+    if (is_late) return;
+    model = shape;
+    offer.offer(change_model);
+  }
+  void check() {
+    tick();
+    require(is_late || taken > 0, "a model that was handed over is taken");
+  }
+};
+
 } // namespace
 
 std::vector<Scenario> spsc_ring_scenarios() {
@@ -248,7 +288,8 @@ std::vector<Scenario> seq_lock_scenarios() {
 }
 
 std::vector<Scenario> job_offer_scenarios() {
-  return {{"three jobs, three looks", [] {
+  return {{"three jobs, three looks",
+           [] {
              const auto shared = std::make_shared<Jobs>();
              return Program{{[=] {
                                for (Value number = 1; number <= 3 && shared->give(number);)
@@ -257,6 +298,15 @@ std::vector<Scenario> job_offer_scenarios() {
                              [=] {
                                for (int n = 0; n < 3; ++n)
                                  shared->look();
+                             }},
+                            [=] { shared->check(); }};
+           }},
+          {"a loop holds still until it gets the model that is made of its shape", [] {
+             const auto shared = std::make_shared<HandOver>();
+             return Program{{[=] { shared->make(); },
+                             [=] {
+                               for (int n = 0; n < 3; ++n)
+                                 shared->tick();
                              }},
                             [=] { shared->check(); }};
            }}};

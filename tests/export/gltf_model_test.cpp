@@ -20,18 +20,18 @@ TEST_SUITE("gltf_model") {
     const auto source = motion.frames();
     auto frames = ChosenFrames::make(*source, {});
     REQUIRE(frames);
-    ControlMorphs morphs(source->layout());
+    ControlMorphs morphs(source->layout(0));
     deform::Points vertices;
     for (auto more = frames->next(); more && *more; more = frames->next()) {
       frames->vertices(vertices);
       REQUIRE(morphs.add(frames->frame(), vertices));
     }
     GlbFile file("test");
-    GltfModel model(source->model(), file);
+    GltfModel model(source->model(0), file);
     const auto weights = model.add_control_targets(morphs, file);
     const auto targets = static_cast<Eigen::Index>(model.target_count());
     REQUIRE(targets > 10);
-    model.add_to(file, 1.0, {});
+    model.add_to(file, GltfModel::add_material(file), 1.0, {});
     REQUIRE(file.write(motion.path("model.glb")));
     const Glb glb(test::file_bytes(motion.path("model.glb")));
     const auto& mesh = glb.json["meshes"][0];

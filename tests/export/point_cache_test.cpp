@@ -36,11 +36,12 @@ struct Words {
   }
 };
 
+OpenFrames frames_of(const RecordedMotion& motion) {
+  return [&motion]() -> Result<std::unique_ptr<takes::FrameSource>> { return motion.frames(); };
+}
+
 Exported export_it(const RecordedMotion& motion, PointCache format, const Choice& choice) {
-  const auto source = motion.frames();
-  auto frames = ChosenFrames::make(*source, choice);
-  REQUIRE(frames);
-  auto done = export_point_cache(*frames, format, motion.path("cache"));
+  auto done = export_point_caches(frames_of(motion), choice, format, motion.path("cache"));
   REQUIRE(done);
   return *done;
 }
@@ -91,14 +92,12 @@ TEST_SUITE("point_cache") {
 
   TEST_CASE("where it cannot be written is told, and nothing is left there") {
     const RecordedMotion motion(Motion{.ticks = 3});
-    const auto source = motion.frames();
-    auto frames = ChosenFrames::make(*source, {.rate_hz = 100.0});
-    const auto done = export_point_cache(*frames, PointCache::pc2, "/proc/nobody/a.pc2");
+    const auto done = export_point_caches(frames_of(motion), {.rate_hz = 100.0}, PointCache::pc2,
+                                          "/proc/nobody/a.pc2");
     REQUIRE_FALSE(done);
     CHECK(done.error().code == Errc::failed);
-    const auto again = motion.frames();
-    auto full = ChosenFrames::make(*again, {.rate_hz = 100.0});
-    const auto device = export_point_cache(*full, PointCache::pc2, "/dev/full");
+    const auto device =
+        export_point_caches(frames_of(motion), {.rate_hz = 100.0}, PointCache::pc2, "/dev/full");
     REQUIRE_FALSE(device);
     CHECK(device.error().message.find("regular file") != std::string::npos);
   }

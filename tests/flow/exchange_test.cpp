@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "support/flow_fixtures.hpp"
+#include "support/late_maker.hpp"
 #include "support/restraint.hpp"
 #include "support/rounds.hpp"
 
@@ -43,7 +44,7 @@ struct Clocked {
     deform::Points shape = tick();
     if (frame().awaited) {
       CHECK(frame().undos == before);
-      change(*frame().awaited);
+      REQUIRE(test.loop->change_to(*frame().awaited));
       shape = tick();
       CHECK_FALSE(frame().awaited);
     }
@@ -274,7 +275,7 @@ TEST_SUITE("exchange") {
     REQUIRE(loop.test.commands.try_push(Request::undo));
     for (int tick = 0; tick < 5; ++tick) {
       loop.tick();
-      CHECK(loop.frame().awaited == first);
+      CHECK(loop.frame().awaited == Awaited{first, 0});
       CHECK(loop.frame().undos == 0);
     }
     loop.change(first);
@@ -293,7 +294,7 @@ TEST_SUITE("exchange") {
     loop.tick();
     CHECK(loop.frame().undos == 2);
     loop.tick();
-    CHECK(loop.frame().awaited == with_radius(first, 0.25));
+    CHECK(loop.frame().awaited == Awaited{with_radius(first, 0.25), 0});
   }
 
   TEST_CASE("what is shaped between changes within a second is one step") {
@@ -403,17 +404,23 @@ TEST_SUITE("exchange") {
     constexpr std::uint64_t ticks = test::rounds(25'000);
     test::RestraintCounts sum;
     std::uint64_t changes = 0;
+    int models = 0;
     for (unsigned seed = 0; seed < 4; ++seed) {
       InputLog log;
       LoopUnderTest test(seed % 2 == 0 ? Mode::type1 : Mode::type2,
                          {.rings_of_ball = 6, .adapt = CountScale{}, .input_log = &log});
       std::mt19937 random(seed);
+      test::LateMaker maker(seed, 1000);
       HostTime now = HostClock::now();
       int counts = 0;
       for (std::uint64_t tick = 0; tick < ticks; ++tick) {
         if (random() % 12 == 0)
           test.loop->change_settings(test::any_settings(test.loop->settings(), random));
-        if (random() % 400 == 0)
+        maker.turn(*test.loop);
+        if (tick % 300 == 299) // back to coarser models, from which finer ones can be made
+          for (int undo = 0; undo < 25; ++undo)
+            test.commands.try_push(Request::undo);
+        if (random() % 400 == 0 && maker.is_idle(*test.loop))
           test.loop->change_log(random() % 2 == 0 ? &log : nullptr,
                                 test.loop->frames().front().shape);
         if (random() % 8 == 0) test.commands.try_push(requests[random() % requests.size()]);
@@ -432,18 +439,20 @@ TEST_SUITE("exchange") {
         }
         if (random() % 2 == 0 && test.loop->frames().update()) // a reader that comes when it likes
           if (const auto& awaited = test.loop->frames().front().awaited)
-            test.loop->change_settings(*awaited);
+            test.loop->change_to(*awaited);
         log.drain([](const auto&) noexcept {});
         test.loop->take_state();
         test.loop->refill_undo();
       }
       changes += test.loop->stats().changes;
+      models += maker.made();
       CHECK(test.loop->stats().undos + test.loop->stats().resets > 25);
     }
     CHECK(sum.allocations == 0);
     CHECK(sum.frees == 0);
     CHECK(sum.locks == 0);
     CHECK(changes > static_cast<std::uint64_t>(test::rounds(5000)));
+    CHECK(models > test::rounds(25));
   }
 
   TEST_CASE(

@@ -37,11 +37,14 @@ struct Replayed {
   Shapes shapes; ///< of each tick
   deform::Points last;
   std::uint64_t changes = 0;
+  std::uint32_t models = 0; ///< the highest number of a version
 };
 
-Replayed replayed(const std::filesystem::path& path, const deform::Mesh& model) {
+Replayed replayed(const std::filesystem::path& path, deform::Mesh model) {
   auto reader = TakeReader::open(path);
   REQUIRE(reader);
+  for (std::uint32_t done = 0; done < reader->setup().loop->subdivisions; ++done)
+    model = deform::subdivide(model).mesh;
   auto replay = LoopReplay::make(reader->setup(), model);
   REQUIRE(replay);
   Replayed result;
@@ -49,7 +52,9 @@ Replayed replayed(const std::filesystem::path& path, const deform::Mesh& model) 
   while (const auto entry = reader->next()) {
     if (!(*replay)->feed(*entry)) continue;
     loop.frames().update();
-    loop.layout().unpack(loop.frames().front().shape, result.shapes.emplace_back());
+    const flow::Frame& frame = loop.frames().front();
+    result.models = std::max(result.models, frame.model);
+    loop.layout(frame.model).unpack(frame.shape, result.shapes.emplace_back());
   }
   CHECK((*replay)->is_exact());
   CHECK(reader->strange() == 0);
@@ -65,6 +70,7 @@ Replayed replayed(const std::filesystem::path& path, const deform::Mesh& model) 
 TEST_SUITE("live_settings") {
   TEST_CASE(
       "whatever is asked for and changed, each frame of a replay is the live one, bit for bit") {
+    std::uint32_t models = 0;
     for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(16); ++seed) {
       CAPTURE(seed);
       const auto live = loop_of(seed);
@@ -79,12 +85,14 @@ TEST_SUITE("live_settings") {
       CHECK(again.last == live->test.loop->final_shape());
       CHECK(again.changes == live->test.loop->stats().changes);
       CHECK(again.changes > 5);
+      models += again.models;
     }
+    CHECK(models > static_cast<std::uint32_t>(test::rounds(16)));
   }
 
   TEST_CASE(
       "a recording that begins and ends while the loop runs has what is between, bit for bit") {
-    int shaped = 0;
+    int shaped = 0, subdivided = 0;
     for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(16); ++seed) {
       CAPTURE(seed);
       const auto live = loop_of(seed);
@@ -104,7 +112,8 @@ TEST_SUITE("live_settings") {
       tick = 1000;
       const flow::LoopState begun = change_log(&log);
       Setup setup = live->setup;
-      continue_from(begun, loop.layout(), setup);
+      continue_from(begun, loop.newest_model().layout(), setup);
+      subdivided += begun.subdivisions > 0 ? 1 : 0;
       const auto path = live->folder.path() / "part.nendo";
       auto recorder = Recorder::begin(setup, log, {.file = path});
       REQUIRE(recorder);
@@ -116,16 +125,18 @@ TEST_SUITE("live_settings") {
       const flow::LoopState ended = change_log(nullptr);
       shapes.push_back(live->test.vertices_of(loop.frames().front()));
       deform::Points last;
-      loop.layout().unpack(ended.shape, last);
+      loop.newest_model().layout().unpack(ended.shape, last);
       CHECK(shapes.back() == last);
       test::play(*live, 50, seed + 200, true, [](const flow::Frame&) {});
       REQUIRE((*recorder)->end(sum_of(last)));
       const auto again = replayed(path, live->test.model);
       CHECK(again.shapes == shapes);
       CHECK(again.last == last);
-      shaped += (last - live->test.model.vertices).cwiseAbs().maxCoeff() > 1e-3 ? 1 : 0;
+      const auto& rest = loop.newest_model().mesh.vertices;
+      shaped += (last - rest).cwiseAbs().maxCoeff() > 1e-3 ? 1 : 0;
     }
     CHECK(shaped >= test::rounds(8)); // the others end with an undo or a reset
+    CHECK(subdivided > 0);
   }
 
   TEST_CASE("a shape at the beginning that is no shape of the model is refused") {

@@ -44,8 +44,14 @@ class Asker final : public Sink, public Observer {
 public:
   explicit Asker(Changes wanted) : changes(std::move(wanted)) {}
 
-  Result<void> begin(const LoopStart& start) override {
-    layout_ = &start.placed.loop->layout();
+  Result<void> begin(const LoopStart&) override { return {}; }
+  Result<void> prepare(const flow::ModelVersion& version) override {
+    if (refuses) return Error{Errc::failed, "no other model here"};
+    prepared.push_back(version.number);
+    return {};
+  }
+  Result<void> settle() override {
+    ++settled;
     return {};
   }
   void loop_begins(const LoopStart&) override { ++begun; }
@@ -59,7 +65,8 @@ public:
     if (recorded.empty() || recorded.back() != status.recording)
       recorded.push_back(status.recording);
     wrist = status.frame.hands[0].T_stage_wrist.translation();
-    layout_->unpack(status.frame.shape, shape);
+    CHECK(status.model.number == status.frame.model);
+    status.model.layout().unpack(status.frame.shape, shape);
     if (ticks_ < asked_at_ + least_ticks) return;
     asked_at_ = ticks_;
     if (asked == changes.size()) content_ = true;
@@ -81,9 +88,11 @@ public:
   Eigen::Vector3d wrist;                    ///< the latest, of the left hand
   deform::Points shape;                     ///< the latest
   std::vector<std::string> reports;
+  bool refuses = false;                ///< other models
+  std::vector<std::uint32_t> prepared; ///< versions
+  int settled = 0;
 
 private:
-  const deform::BlockLayout* layout_ = nullptr;
   std::atomic<std::uint64_t> ticks_{0};
   std::uint64_t asked_at_ = 0;
   bool content_ = false;
@@ -278,6 +287,44 @@ TEST_SUITE("run_session") {
     const auto written = deform::read_mesh(run.options.out);
     REQUIRE(written);
     CHECK((written->vertices - run.mesh.vertices).cwiseAbs().maxCoeff() > 1e-3);
+  }
+
+  TEST_CASE("the model becomes finer while the loop runs, and undo and redo go back and forth") {
+    Run run;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    Asker asker(Changes{{flow::Request::let_go},
+                        {flow::Subdivide{}},
+                        {flow::SaveShape{}, change(other_settings)},
+                        {flow::Request::undo, flow::Request::undo},
+                        {flow::Request::redo, flow::Request::redo},
+                        {record(false), flow::Request::grab},
+                        {record(true), flow::Subdivide{}}});
+    asker.least_ticks = 60;
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.leaps == 0);
+    CHECK(asker.prepared == std::vector<std::uint32_t>{1, 0, 1, 2});
+    CHECK(asker.settled == 4);
+    const auto written = deform::read_mesh(run.options.out);
+    REQUIRE(written);
+    CHECK(written->face_count() == 16 * run.mesh.face_count());
+    const auto saved = deform::read_mesh(run.folder.path() / "out-1.ply");
+    REQUIRE(saved);
+    CHECK(saved->face_count() == 4 * run.mesh.face_count());
+    CHECK(outcome.recordings.size() == 2);
+    for (const auto& recording : outcome.recordings)
+      CHECK(replay(recording.file) >= 0);
+  }
+
+  TEST_CASE("a model that a sink cannot take is not taken, and the reason is told") {
+    Run run;
+    Asker asker(Changes{{flow::Subdivide{}}});
+    asker.refuses = true;
+    asker.least_ticks = 60;
+    run.follow({&asker});
+    REQUIRE(asker.reports.size() == 1);
+    CHECK(asker.reports[0] == "no other model here; the model stays as it is");
+    CHECK(deform::read_mesh(run.options.out)->face_count() == run.mesh.face_count());
   }
 
   TEST_CASE(

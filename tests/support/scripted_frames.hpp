@@ -17,8 +17,8 @@ public:
       : model_(ball(3)), layout_(model_.vertices), times_s_(std::move(times_s)), rate_hz_(rate_hz) {
     frame_.shape = layout_.pack();
   }
-  const deform::Mesh& model() const override { return model_; }
-  const deform::BlockLayout& layout() const override { return layout_; }
+  const deform::Mesh& model(std::uint32_t) const override { return model_; }
+  const deform::BlockLayout& layout(std::uint32_t) const override { return layout_; }
   double rate_hz() const override { return rate_hz_; }
   double duration_s() const override { return times_s_.empty() ? 0.0 : times_s_.back(); }
   bool next() override {

@@ -11,6 +11,7 @@
 #include <nendo/recording/recorder.hpp>
 
 #include "support/flow_fixtures.hpp"
+#include "support/late_maker.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace nendo::test {
@@ -39,8 +40,8 @@ inline recording::Setup setup_of(const LoopUnderTest& test) {
     setup.gloves.push_back(glove);
     setup.hands.push_back(input);
   }
-  setup.loop = recording::LoopSetup{
-      "ball.obj", recording::sum_of(test.model.vertices), test.placement, test.options, "AVX2", {}};
+  setup.loop = recording::LoopSetup{"ball.obj", recording::sum_of(test.model.vertices),
+                                    test.placement, test.options, "AVX2"};
   return setup;
 }
 
@@ -80,17 +81,20 @@ struct RecordedLoop {
 };
 
 /// Plays what people do: hands bend and move at random, requests are made, a switch is turned now
-/// and then, and ticks find several samples or none. With `changes`, settings are changed, too.
+/// and then, and ticks find several samples or none. With `changes`, settings and models are
+/// changed, too.
 /// `see` is called with each frame.
 template <class See>
 void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes, See see) {
   std::mt19937 random(seed);
   std::mt19937 of_changes(seed + 1);
+  LateMaker maker(seed + 2);
+  flow::DeformLoop& loop = *played.test.loop;
   HostTime now = HostClock::now();
   int bent = 0;
   std::uint64_t sequence = 0;
   WristSwitch position = WristSwitch::off;
-  for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+  for (std::uint64_t tick = 0; tick < ticks || !maker.is_idle(loop); ++tick) {
     for (auto samples = random() % 3; samples > 0; --samples, ++sequence) {
       bent = std::clamp(bent + static_cast<int>(random() % 5) - 2, 0, 30);
       now += std::chrono::milliseconds(11);
@@ -115,11 +119,11 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
       played.test.commands.try_push(flow::WristMove::to(side, wrist));
     }
     if (changes && of_changes() % 10 == 0)
-      played.test.loop->change_settings(any_settings(played.test.loop->settings(), of_changes));
+      loop.change_settings(any_settings(loop.settings(), of_changes));
+    if (changes) maker.turn(loop);
     const flow::Frame& frame = played.test.frame_after_tick(tick);
     see(frame);
-    if (frame.awaited)
-      played.test.loop->change_settings(*frame.awaited); // as who runs the loop does
+    if (frame.awaited) loop.change_to(*frame.awaited); // as who runs the loop does
   }
 }
 inline void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed = 1) {

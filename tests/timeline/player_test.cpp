@@ -134,7 +134,7 @@ TEST_SUITE("player") {
           taken.live.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick);
         shapes.push_back(taken.live.test.vertices_of(frame));
-        if (frame.awaited) loop.change_settings(*frame.awaited);
+        if (frame.awaited) loop.change_to(*frame.awaited);
       }
       const std::uint64_t changes = loop.stats().changes;
       CHECK(changes > 5);

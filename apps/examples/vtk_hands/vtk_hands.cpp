@@ -213,7 +213,7 @@ public:
   void draw() {
     if (!loop_.frames().update()) return;
     const flow::Frame& frame = loop_.frames().front();
-    loop_.layout().unpack(frame.shape, vertices_);
+    loop_.layout(frame.model).unpack(frame.shape, vertices_);
     model_.show(vertices_, frame.units_per_metre);
     for (std::size_t slot = 0; slot < hands_.size(); ++slot)
       hands_[slot].show(frame.hands[slot].pose);

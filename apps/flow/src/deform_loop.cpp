@@ -31,10 +31,18 @@ SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
                                 : settings_of(options.sculptor, hand.filter, units_per_metre)};
 }
 
-ShapingOptions shaping_options(const LoopOptions& options, const SculptorSetup& sculptor,
-                               const deform::BlockShape* first) {
-  ShapingOptions shaping{sculptor, options.undo_most_bytes};
-  shaping.first = first;
+std::vector<std::unique_ptr<ModelVersion>> first_version(const deform::Mesh& model,
+                                                         const LoopOptions& options,
+                                                         const deform::BlockShape* first) {
+  const UndoRoom undo{options.sculptor.deformer.undo_bytes, options.undo_most_bytes};
+  std::vector<std::unique_ptr<ModelVersion>> versions;
+  versions.push_back(
+      std::make_unique<ModelVersion>(0, model, deform::BlockLayout(model.vertices), undo, first));
+  return versions;
+}
+
+ShapingOptions shaping_options(const LoopOptions& options, const SculptorSetup& sculptor) {
+  ShapingOptions shaping{sculptor};
   if (options.commands != nullptr) shaping.most_requests = options.commands->capacity();
   shaping.held = options.begins_held();
   return shaping;
@@ -48,8 +56,9 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     : options_(options), units_per_metre_(placement.units_per_metre),
       tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
       first_(first_setup(options, hands.front(), placement.units_per_metre)),
-      shaping_(model.vertices, tips_.cols(), shaping_options(options, first_, first)),
-      asked_(first_), frames_(first_frame(shaping_, placement.units_per_metre)) {
+      versions_(first_version(model, options, first)), asked_model_(versions_.front().get()),
+      shaping_(*asked_model_, tips_.cols(), shaping_options(options, first_)), asked_(first_),
+      frames_(first_frame(shaping_, placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.side);
@@ -176,7 +185,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   if (stats_.ticks == 0) first_due_ = record.scheduled;
   shaping_.set_time(record.scheduled - first_due_);
   if (runs.deform) {
-    const bool completes = taken_ != nullptr && taken_->settings.has_value();
+    const bool completes = taken_ != nullptr && taken_->ends_stroke();
     frame.status = shaping_.shape(tips_, frame, stats_, completes);
   }
   if (taken_ != nullptr) finish_change(frame);
@@ -240,6 +249,12 @@ void DeformLoop::run(const std::atomic<bool>& stop, std::uint64_t most_ticks) no
 
 Points DeformLoop::final_shape() {
   return shaping_.final_shape(tips_);
+}
+
+deform::Mesh DeformLoop::final_mesh() {
+  deform::Mesh mesh = shaping_.model().mesh;
+  mesh.vertices = final_shape();
+  return mesh;
 }
 
 } // namespace nendo::flow

@@ -5,8 +5,8 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, 8> step_names{"stroke", "reset",   "mode",   "kernel",
-                                                     "radius", "folding", "filter", "settings"};
+constexpr std::array<std::string_view, 9> step_names{
+    "stroke", "reset", "mode", "kernel", "radius", "folding", "filter", "settings", "subdivide"};
 
 } // namespace
 

@@ -51,6 +51,27 @@ void LoopReplay::take(const driver::RecordedSample& sample) noexcept {
   exact_ = sample.glove < rings_.size() && rings_[sample.glove]->try_push(sample.sample) && exact_;
 }
 
+/// Makes that version, or goes back to it. Returns false if the loop cannot have it, as after a
+/// gap.
+bool LoopReplay::follow(const flow::ChangeModel& change) {
+  const bool is_new = change.source == flow::ModelSource::subdivided;
+  if (!loop_->is_still()) {
+    // What was not made since the recording began is the model with which it began.
+    const auto known = versions_.find(change.number);
+    const std::uint32_t number = known == versions_.end() ? 0 : known->second;
+    return !is_new && loop_->change_to({loop_->settings(), number});
+  }
+  const flow::ModelVersion& now = loop_->newest_model();
+  if (!is_new || !flow::FinerModel::can_be_made_of(now)) {
+    loop_->keep_model();
+    return !is_new;
+  }
+  flow::FinerModel finer(now);
+  loop_->change_model(finer);
+  versions_[change.number] = loop_->newest_model().number;
+  return true;
+}
+
 bool LoopReplay::feed(const Entry& entry) noexcept {
   if (const auto* sample = std::get_if<driver::RecordedSample>(&entry)) {
     take(*sample);
@@ -60,6 +81,10 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     exact_ = commands_.try_push(*move) && exact_;
   } else if (const auto* settings = std::get_if<flow::LoopSettings>(&entry)) {
     exact_ = loop_->change_settings(*settings) && exact_;
+  } else if (std::holds_alternative<flow::HoldStill>(entry)) {
+    exact_ = loop_->hold_still() && exact_;
+  } else if (const auto* change = std::get_if<flow::ChangeModel>(&entry)) {
+    exact_ = follow(*change) && exact_;
   } else if (const auto* tick = std::get_if<flow::LoggedTick>(&entry)) {
     loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);

@@ -114,6 +114,10 @@ private:
     } else if (const auto* change = std::get_if<flow::ChangeSettings>(&command)) {
       put(change->settings);
       settings_ = change->settings;
+    } else if (const auto* still = std::get_if<flow::HoldStill>(&command)) {
+      put(*still);
+    } else if (const auto* model = std::get_if<flow::ChangeModel>(&command)) {
+      put(*model);
     }
   }
   void add(const flow::LoggedTick& tick) {

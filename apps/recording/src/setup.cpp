@@ -36,6 +36,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.placement = state.placement;
   loop.options.sculptor = state.sculptor.options;
   loop.options.held = state.held;
+  loop.subdivisions = state.subdivisions;
   loop.options.settings = state.sculptor.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
   const deform::BlockShape original = layout.pack();

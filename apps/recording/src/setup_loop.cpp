@@ -14,8 +14,9 @@ constexpr std::size_t most_supports = 64; // of each kind
 constexpr std::uint64_t most_memory = std::uint64_t{1} << 28;
 constexpr std::uint32_t most_links = 1024;
 constexpr std::uint32_t most_catch_up = 1000; // as parse_policy()
-constexpr double most_points = 10.0;          // two hands' fingertips
-constexpr double largest_number = 1e100;      // as the solver takes
+constexpr std::uint32_t most_subdivisions = 16;
+constexpr double most_points = 10.0;     // two hands' fingertips
+constexpr double largest_number = 1e100; // as the solver takes
 
 void put_placement(ByteWriter& writer, const flow::Placement& placement) {
   writer.f64_le(placement.units_per_metre);
@@ -130,6 +131,7 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   writer.u8(static_cast<std::uint8_t>(options.begins_held()));
   writer.u8(static_cast<std::uint8_t>(options.settings.has_value()));
   if (options.settings) put_settings(writer, *options.settings);
+  writer.u32_le(loop.subdivisions);
 }
 
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings) {
@@ -216,6 +218,8 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
       checked.require(options.settings.has_value());
     }
   }
+  if (reader.remaining() > 0) read.subdivisions = reader.u32_le(); // since 1.4
+  checked.require(read.subdivisions <= most_subdivisions);
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

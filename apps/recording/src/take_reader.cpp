@@ -14,6 +14,7 @@ constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
 constexpr std::size_t wrist_bytes = 57;
+constexpr std::size_t model_bytes = 5;
 
 struct EntryWriter {
   ByteWriter& writer;
@@ -42,6 +43,14 @@ struct EntryWriter {
   void operator()(const flow::LoopSettings& settings) const {
     driver::put_entry_head(writer, EntryKind::settings, settings_bytes);
     put_settings(writer, settings);
+  }
+  void operator()(const flow::HoldStill&) const {
+    driver::put_entry_head(writer, EntryKind::hold_still, 0);
+  }
+  void operator()(const flow::ChangeModel& change) const {
+    driver::put_entry_head(writer, EntryKind::model, model_bytes);
+    writer.u32_le(change.number);
+    writer.u8(static_cast<std::uint8_t>(change.source));
   }
   void operator()(const Gap& gap) const {
     driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
@@ -80,6 +89,16 @@ std::optional<Entry> wrist_of(ByteReader& reader) {
     return std::nullopt;
   move.side = static_cast<Side>(side);
   return move;
+}
+
+std::optional<Entry> model_of(ByteReader& reader) {
+  flow::ChangeModel change;
+  change.number = reader.u32_le();
+  const std::uint8_t source = reader.u8();
+  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::subdivided))
+    return std::nullopt;
+  change.source = static_cast<flow::ModelSource>(source);
+  return change;
 }
 
 std::optional<Ending> ending_of(std::span<const std::byte> payload) {
@@ -212,6 +231,10 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
     entry = wrist_of(reader);
   } else if (record.is(EntryKind::settings)) {
     if (const auto settings = read_settings(reader)) entry = *settings;
+  } else if (record.is(EntryKind::hold_still)) {
+    entry = flow::HoldStill{};
+  } else if (record.is(EntryKind::model)) {
+    entry = model_of(reader);
   } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

@@ -36,6 +36,8 @@ public:
     // The recorder repeats them.
     if (std::exchange(settings_, settings) != settings) ++summary_.settings_changes;
   }
+  void operator()(const flow::HoldStill&) {}
+  void operator()(const flow::ChangeModel&) { ++summary_.model_changes; }
   void operator()(const flow::LoggedTick& tick) {
     if (summary_.ticks > 0) {
       if (tick.number < next_tick_) ++summary_.ticks_out_of_order;

@@ -22,6 +22,7 @@ const KEYS = [
   ['[', 'smaller radii', panel => panel.shaping.scale(1 / 1.1)],
   [']', 'larger radii', panel => panel.shaping.scale(1.1)],
   ['i', 'the surface never folds, or may', panel => panel.toggle('injective', '')],
+  ['e', 'subdivide: the model gets more vertices for finer strokes', panel => panel.ask('subdivide')],
   ['h', 'hands on and off', panel => panel.toggle('skin')],
   ['b', 'bones on and off', panel => panel.toggle('bones')],
   ['v', 'control vectors on and off', panel => panel.toggle('vectors')],
@@ -153,7 +154,7 @@ class Panel {
   }
   setSettings(settings) {
     this.settings = settings
-    element('record').textContent = settings.recorded ? 'End the recording' : 'Record'
+    element('record').textContent = settings.recorded ? 'End recording' : 'Record'
     element('record').classList.toggle('on', settings.recorded)
     this.shaping.follow(settings)
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include <nendo/deform/step_note.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
@@ -19,7 +20,9 @@ public:
   /// Allocates for the vertices (3 by #vertices) and for the history: DeformerOptions::undo_bytes
   /// and undo_memory. With `first`, which has the layout's size, the shape is that one, and
   /// `original` is only what reset() of a deformer goes back to.
-  SculptedShape(Points original, const DeformerOptions& options, const BlockShape* first = nullptr);
+  SculptedShape(Points original, const DeformerOptions& options, const BlockShape* first = nullptr)
+      : SculptedShape(BlockLayout(std::move(original)), options, first) {}
+  SculptedShape(BlockLayout layout, const DeformerOptions& options, const BlockShape* first);
   ~SculptedShape();
   SculptedShape(const SculptedShape&) = delete;
   SculptedShape& operator=(const SculptedShape&) = delete;

@@ -24,6 +24,8 @@ enum class EntryKind : std::uint8_t {
   gap = 4,
   wrist = 5,
   settings = 6,
+  hold_still = 7,
+  model = 8,
 };
 
 /// One entry of an input log: its kind and what it holds.

@@ -3,6 +3,7 @@
 // browser. A command is a plain value of fixed size, so that it passes through rings without
 // allocation.
 
+#include <cstdint>
 #include <type_traits>
 #include <variant>
 
@@ -17,6 +18,10 @@ namespace nendo::flow {
 struct ChangeSettings {
   LoopSettings settings;
   friend bool operator==(const ChangeSettings&, const ChangeSettings&) = default;
+};
+/// Makes a finer model of the present one (deform::subdivide()), with which the loop then goes on.
+struct Subdivide {
+  friend bool operator==(const Subdivide&, const Subdivide&) = default;
 };
 /// Begins or ends a recording to a file.
 struct SetRecording {
@@ -36,10 +41,27 @@ struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
 };
 
-/// A loop obeys Request and WristMove at the beginning of its next tick. It ignores all others,
-/// which are obeyed by the code that runs the loop.
+/// The hands stop shaping at the end of a tick. Nobody asks for it but who makes a model of that
+/// shape; the ChangeModel that follows lets them go on where they have stopped.
+struct HoldStill {
+  friend bool operator==(const HoldStill&, const HoldStill&) = default;
+};
+/// From what a model comes. Recordings keep the numbers.
+enum class ModelSource : std::uint8_t {
+  kept,       ///< it was there before: an undo or a redo goes there
+  subdivided, ///< it is the model before, subdivided
+};
+/// The loop goes on with another version of the model (ModelVersion::number).
+struct ChangeModel {
+  std::uint32_t number = 0;
+  ModelSource source = ModelSource::kept;
+  friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
+};
+
+/// A loop obeys Request and WristMove at the beginning of its next tick. All others are obeyed by
+/// the code that runs the loop. HoldStill and ChangeModel only tell a log what the loop did.
 using Command = std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape,
-                             SaveRecording, EndRun>;
+                             SaveRecording, EndRun, Subdivide, HoldStill, ChangeModel>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -14,9 +15,9 @@
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/frame_sink.hpp>
 #include <nendo/flow/input_log.hpp>
-#include <nendo/flow/loop_change.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
+#include <nendo/flow/prepared_change.hpp>
 #include <nendo/flow/shaping.hpp>
 #include <nendo/flow/tick_record.hpp>
 #include <nendo/flow/wrist_switch.hpp>
@@ -63,7 +64,7 @@ struct LoopOptions : PaceOptions {
   CommandRing* commands = nullptr;
   /// The log to which the loop writes its input, for a recorder. It must outlive the loop.
   InputLog* input_log = nullptr;
-  std::size_t undo_most_bytes = 0; ///< ShapingOptions::undo_most_bytes
+  std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
   /// The sinks that are shown every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
   /// Is notified of each sample that comes; OverrunPolicy::sample needs it. It must outlive the
@@ -83,8 +84,8 @@ struct LoopOptions : PaceOptions {
 
 class DeformLoop {
 public:
-  /// `hands` are one or two, at most one of a side. Copies the model's vertices and allocates all
-  /// that a tick needs. The hands take hold of the model at their first samples. With
+  /// `hands` are one or two, at most one of a side. Copies the model and allocates all that a tick
+  /// needs. The hands take hold of the model at their first samples. With
   /// SwitchAction::grab they hold it only while a switch is on. With `first`, the shape is at first
   /// that one, in the blocks of the model's layout.
   DeformLoop(const deform::Mesh& model, const Placement& placement, std::vector<HandInput> hands,
@@ -125,24 +126,58 @@ public:
   /// Returns the state with which the log began, or ended, once for each change_log() that the loop
   /// has taken.
   std::optional<LoopState> take_state();
+  /// Asks for what an undo or a redo waits for (Frame::awaited): settings, or a version of the
+  /// model that is kept. Returns false, and changes nothing, if there are no such, or if the loop
+  /// has yet to take another change of models. Allocates.
+  bool change_to(const Awaited& awaited);
   /// Returns the settings that were asked for last, and their sculptor's options.
   const LoopSettings& settings() const noexcept { return asked_.settings; }
   const SculptorOptions& sculptor_options() const noexcept { return asked_.options; }
   /// Tells whether the loop has yet to take a change.
   bool is_changing();
 
+  // Another model, in two changes, so that the hands go on while it is made and nothing is lost of
+  // what they do. Make a FinerModel of newest_model(); ask the loop to hold still; when it does,
+  // finish the model and hand it over. No log may begin or end meanwhile.
+
+  /// Lets the hands stop shaping at the end of the next tick (Shaping::hold_still()). Returns
+  /// false, and does nothing, if the loop has yet to take a change or holds still already.
+  bool hold_still();
+  /// Tells whether the loop has done so, and waits for a model.
+  bool is_still();
+  /// Finishes the model, which must be made of newest_model(), and hands it to the loop, which must
+  /// be still and goes on with it. `accepts` is called with the new version before the loop has it;
+  /// if it returns false, the loop goes on with the model that it has, and so does this function.
+  /// Settings that are asked for meanwhile come with it. Later, versions to which no undo or redo
+  /// leads any more are freed. Allocates.
+  bool change_model(FinerModel& finer,
+                    const std::function<bool(const ModelVersion&)>& accepts = {});
+  /// Lets a loop that holds still go on with the model that it has.
+  void keep_model();
+  /// Returns the version that the loop has or was asked last to go on with.
+  const ModelVersion& newest_model() const noexcept { return *asked_model_; }
+  /// Returns that version; null if there is none. It lives until change_model() frees it.
+  const ModelVersion* model(std::uint32_t number) const noexcept;
+
   /// Returns ok or merged if the hands could take hold of the model.
   deform::FieldStatus grab_status() const noexcept { return grab_status_; }
   /// One reader thread may poll it while the loop runs.
   FrameExchange& frames() noexcept { return frames_; }
   const LoopStats& stats() const noexcept { return stats_; }
-  /// Makes room for more undos, up to LoopOptions::undo_most_bytes. See Shaping::refill_undo().
-  bool refill_undo() { return shaping_.refill_undo(); }
-  /// Returns the layout, which turns a frame's shape into points in the mesh's order. Any thread.
-  const deform::BlockLayout& layout() const noexcept { return shaping_.layout(); }
+  /// Makes room for more undos, up to LoopOptions::undo_most_bytes. The thread that asks for
+  /// changes should call it now and then. Returns false if there is no more room, so that the
+  /// oldest steps will be dropped.
+  bool refill_undo();
+  /// Returns the layout of a version that there is, which turns a frame's shape into points in the
+  /// mesh's order.
+  const deform::BlockLayout& layout(std::uint32_t version = 0) const noexcept {
+    return model(version)->layout();
+  }
   /// Completes the last stroke and returns the shape, 3 by #vertices. Call it when the loop has
   /// ended.
   deform::Points final_shape();
+  /// Does the same, with the faces of the version that the loop has.
+  deform::Mesh final_mesh();
 
 private:
   void tick(const Pacer::Due& due) noexcept;
@@ -154,8 +189,12 @@ private:
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
   void place_tips() noexcept;
-  LoopChange& next_change();
+  PreparedChange& next_change();
   void offer_change();
+  void offer_model(ModelVersion& version, ModelSource source);
+  void go_back();
+  void free_others(const ChangeModel& taken);
+  UndoRoom undo_room() const noexcept;
   void take_samples(TickRecord& record) noexcept;
   void follow_switches() noexcept;
   void compute_hands(Frame& frame) noexcept;
@@ -194,19 +233,27 @@ private:
   double units_per_metre_;
   std::vector<Hand> hands_;
   deform::Points tips_; ///< 3 by 5 a hand, model units
-  SculptorSetup first_; ///< for the thread that asks for changes, like asked_
+  // For the thread that asks for changes:
+  SculptorSetup first_;
+  std::vector<std::unique_ptr<ModelVersion>> versions_;
+  ModelVersion* asked_model_;            ///< for last
+  ModelVersion* model_before_ = nullptr; ///< before that
+  std::uint32_t last_number_ = 0;
+  // For the loop's thread:
   Shaping shaping_;
   deform::FieldStatus grab_status_ = deform::FieldStatus::ok;
   bool switch_on_ = false; ///< any hand's, for SwitchAction::grab
-  JobOffer<LoopChange*> changes_;
-  LoopChange* taken_ = nullptr; ///< by this tick
+  JobOffer<PreparedChange*> changes_;
+  PreparedChange* taken_ = nullptr; ///< by this tick
   // For the thread that asks for changes:
-  SculptorSetup asked_;                ///< for last
-  std::unique_ptr<LoopChange> change_; ///< that the loop has, or will have
+  SculptorSetup asked_;                    ///< for last
+  std::unique_ptr<PreparedChange> change_; ///< that the loop has, or will have
   bool is_offered_ = false;
-  std::vector<LoopState> states_; ///< not taken yet
-  HostTime first_due_{};          ///< of the first tick
-  HostTime last_woke_{};          ///< of the tick before; HostTime{} at first
+  bool is_still_ = false;                      ///< the loop has taken that it holds still
+  std::optional<LoopSettings> settings_later_; ///< that were asked for while it holds still
+  std::vector<LoopState> states_;              ///< not taken yet
+  HostTime first_due_{};                       ///< of the first tick
+  HostTime last_woke_{};                       ///< of the tick before; HostTime{} at first
   LoopStats stats_;
   FrameExchange frames_;
 };

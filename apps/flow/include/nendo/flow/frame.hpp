@@ -29,6 +29,14 @@ struct HandFrame {
   hand::JointAngles angles{}; ///< of which the pose is made
 };
 
+/// What an undo or a redo waits for. Whoever runs the loop must ask for it
+/// (DeformLoop::change_to()).
+struct Awaited {
+  LoopSettings settings;
+  std::uint32_t model = 0; ///< ModelVersion::number
+  friend bool operator==(const Awaited&, const Awaited&) = default;
+};
+
 struct Frame {
   std::uint64_t tick = 0;      ///< the number of the deadline on the grid; gaps were missed
   std::uint64_t ticks_run = 0; ///< how many ticks have run
@@ -46,9 +54,7 @@ struct Frame {
   std::uint64_t undo_steps = 0;
   std::uint64_t redo_steps = 0;
   StepList steps; ///< the names of the last of them
-  /// The settings that an undo or a redo waits for: whoever runs the loop must ask for them
-  /// (DeformLoop::change_settings()).
-  std::optional<LoopSettings> awaited;
+  std::optional<Awaited> awaited;
   bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};
@@ -62,8 +68,9 @@ struct Frame {
   /// Type-2 from the shape of the frame before.
   deform::FieldSequence fields;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
-  /// The deformed vertices, which DeformLoop::layout() turns into points. The stamps tell which
-  /// blocks differ from those of an earlier frame.
+  std::uint32_t model = 0;   ///< the version of the model that `shape` is of
+  /// The deformed vertices, which DeformLoop::layout(model) turns into points. The stamps tell
+  /// which blocks differ from those of an earlier frame of the same version.
   deform::BlockShape shape;
 };
 

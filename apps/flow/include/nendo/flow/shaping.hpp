@@ -7,10 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include <nendo/deform/sculpted_shape.hpp>
-#include <nendo/deform/undo_memory.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/loop_stats.hpp>
+#include <nendo/flow/model_version.hpp>
 #include <nendo/flow/request.hpp>
 #include <nendo/flow/sculptor.hpp>
 
@@ -18,28 +17,32 @@ namespace nendo::flow {
 
 struct ShapingOptions {
   SculptorSetup sculptor;
-  /// The most bytes by which refill_undo() may enlarge the memory for undo beyond
-  /// DeformerOptions::undo_bytes; 0 if it is not enlarged.
-  std::size_t undo_most_bytes = 0;
   std::size_t most_requests = 64; ///< in one tick
   bool held = true;               ///< at first
-  /// The shape at first; null: the rest shape. It has the layout of the rest shape, to which a
-  /// reset goes back.
-  const deform::BlockShape* first = nullptr;
 };
 
-/// Another sculptor for the same shape, made before it is needed.
+/// Another sculptor, made before it is needed.
 struct ReadySculptor {
+  ModelVersion* model = nullptr; ///< that it works on
+  bool is_new_model = false;     ///< and that no step leads to yet
   std::unique_ptr<Sculptor> sculptor;
   LoopSettings settings{};
   /// Room for its fields in the three frames of a FrameExchange, which may have had too little.
   std::array<deform::FieldSequence, 3> room;
+  struct ShapeRoom {
+    static constexpr std::uint32_t none = 0xFFFFFFFF;
+    std::uint32_t model = none;
+    deform::BlockShape shape;
+  };
+  /// Room for the shapes of another version of the model in these frames.
+  std::array<ShapeRoom, 3> shape_room;
 };
 
 class Shaping {
 public:
-  /// rest: 3 by #vertices. Allocates all that a tick needs.
-  Shaping(const deform::Points& rest, Eigen::Index control_points, const ShapingOptions& options);
+  /// Shapes that model, which must outlive this, as must all others that come in its place.
+  /// Allocates all that a tick needs.
+  Shaping(ModelVersion& model, Eigen::Index control_points, const ShapingOptions& options);
 
   /// Lets the fingertips take hold for the first time (3 by control_points, model units).
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
@@ -63,17 +66,27 @@ public:
   bool is_held() const noexcept { return held_; }
   const LoopSettings& settings() const noexcept { return settings_; } ///< in force
   const Sculptor& sculptor() const noexcept { return *sculptor_; }
-  const deform::BlockLayout& layout() const noexcept { return shape_.layout(); }
+  bool is_still() const noexcept { return is_still_; }
+  const ModelVersion& model() const noexcept { return *model_; } ///< in force
+  const deform::BlockLayout& layout() const noexcept { return model_->layout(); }
 
-  /// Makes another sculptor. Another thread may call it, at any time. Allocates.
-  ReadySculptor prepare(const SculptorSetup& setup);
+  /// Lets the hands stop shaping, after shape() with `completes` and in the same tick. What they
+  /// have shaped is a step, and what is asked for meanwhile waits. When another version comes, they
+  /// take hold of it at the places where they stopped, so that nothing of their way is lost.
+  /// Wait-free, without allocation.
+  void hold_still(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
+  /// Makes another sculptor, for that version of the model. Another thread may call it, at any
+  /// time. For a version that is not in force, the caller makes `shape_room`. Allocates.
+  ReadySculptor prepare(const SculptorSetup& setup, ModelVersion& model);
   /// Lets that sculptor go on where the present one ends, which `ready` then has: after shape()
   /// with `completes`, in the same tick. A stroke ends, and the fingertips take hold anew at
   /// `tips`. Stroke and change are steps of their own; less than a second after the exchange before
   /// they belong to the steps before and behind. If an undo or a redo has waited for these settings
   /// (Frame::awaited), this is it. The shape does not change, but for what the hands have shaped
-  /// since the last step, which an undo drops. Wait-free, without allocation.
-  void exchange(ReadySculptor& ready, const deform::Points& tips, Frame& frame,
+  /// since the last step, which an undo drops. Another version of the model is always a step, and
+  /// the frame then shows it. Returns false, and goes on as it was, if another version is not new,
+  /// and no undo or redo waits for it any more. Wait-free, without allocation.
+  bool exchange(ReadySculptor& ready, const deform::Points& tips, Frame& frame,
                 LoopStats& stats) noexcept;
   /// Ends the stroke, lets undo go back to here and no farther (`fences`), or as far as memory
   /// goes, and lets the fingertips that hold the shape take hold anew, as begin() does. What was
@@ -81,40 +94,51 @@ public:
   /// comes, but the shape, and whether it is held. Wait-free, without allocation.
   void begin_anew(const deform::Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept;
 
-  /// Allocates memory for further undo steps. One thread should call it now and then, at any time.
-  /// Returns false if there is no more room, so that the oldest steps will be dropped.
-  bool refill_undo() { return undo_memory_ == nullptr || undo_memory_->refill(); }
-
 private:
-  struct NotedStep;
+  Awaited in_force() const noexcept { return {settings_, model_->number}; }
+  deform::FieldStatus shape_by_hands(const deform::Points& tips, Frame& frame, LoopStats& stats,
+                                     bool completes) noexcept;
+  deform::FieldStatus show_rest(Frame& frame) noexcept;
+  bool is_in_hand() const noexcept;
+  void make_room(Frame& frame) noexcept;
+  void go_on_with(ReadySculptor& ready) noexcept;
+  void tell(Frame& frame, LoopStats& stats) noexcept;
+  // In shaping_history.cpp:
   void take_steps(const deform::Points& tips, LoopStats& stats) noexcept;
   bool take_step(Request step, const deform::Points& tips, LoopStats& stats) noexcept;
   bool take_change(Request step, const deform::Points& tips, LoopStats& stats) noexcept;
   void count(Request step, LoopStats& stats) noexcept;
-  void step_over_change(Request step, const LoopSettings& before) noexcept;
+  static void step_over_change(Request step, ModelVersion& version, const Awaited& before) noexcept;
+  void step_to(Request step, ModelVersion& next, const Awaited& before) noexcept;
   bool is_change_next(Request step) const noexcept;
-  std::optional<LoopSettings> other_of(Request step) const noexcept;
-  void note_change(const LoopSettings& before, bool is_step) noexcept;
+  std::optional<Awaited> other_of(Request step) const noexcept;
+  void note_settings(const LoopSettings& before, bool is_step) noexcept;
+  void note_model(ModelVersion& next, const LoopSettings& before) noexcept;
   Step step_now(StepKind kind) const noexcept;
-  void list_steps(StepList& list) const noexcept;
+  const ModelVersion* version_before(const ModelVersion& version) const noexcept;
+  std::size_t steps_to_undo() const noexcept;
+  std::size_t steps_to_redo() const noexcept;
   std::size_t undo_steps() const noexcept;
-  bool is_in_hand() const noexcept;
-  void make_room(deform::FieldSequence& fields) noexcept;
-  void tell(Frame& frame, LoopStats& stats) const noexcept;
+  void forget_later() noexcept;
+  void list_undoable(StepList& list) const noexcept;
+  void list_undone(StepList& list) const noexcept;
+  void list_steps(StepList& list) const noexcept;
 
-  std::unique_ptr<deform::UndoMemory> undo_memory_; ///< outlives the shape
-  deform::SculptedShape shape_;
-  Eigen::Index control_points_;
+  ModelVersion* model_;
+  ModelVersion* fenced_ = nullptr; ///< undo goes back to the fence there and no farther
   std::unique_ptr<Sculptor> sculptor_;
   std::array<deform::FieldSequence, 3> room_; ///< for frames that have too little
-  bool held_;                                 ///< the fingertips shape the model
+  std::array<ReadySculptor::ShapeRoom, 3> shape_room_;
+  deform::Points still_tips_; ///< where the hands stopped, if is_still_
+  bool is_still_ = false;
+  bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< what is asked for; follows at the next tick that can
   bool commit_due_ = false;
-  bool shaped_ = false;                 ///< since the hands took hold, or since the last commit
-  std::uint64_t otherwise_ended_ = 0;   ///< strokes, by a change, without a commit
-  bool in_step_ = false;                ///< shaped before the last change, and not a step yet
-  LoopSettings settings_;               ///< in force
-  std::optional<LoopSettings> awaited_; ///< by the first step that is due
+  bool shaped_ = false;               ///< since the hands took hold, or since the last commit
+  std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
+  bool in_step_ = false;              ///< shaped before the last change, and not a step yet
+  LoopSettings settings_;             ///< in force
+  std::optional<Awaited> awaited_;    ///< by the first step that is due
   HostClock::duration time_{};
   std::optional<HostClock::duration> exchanged_at_; ///< last
   std::vector<Request> steps_due_;                  ///< undos, redos and resets, in their order

@@ -20,12 +20,17 @@ enum class StepKind : std::uint8_t {
   radius,  ///< of one finger or more
   folding, ///< LoopSettings::injective
   filter,
-  settings, ///< a change of several settings at once, or within a second
+  settings,  ///< a change of several settings at once, or within a second
+  subdivide, ///< the model became finer
 };
 
 std::string_view name_of(StepKind kind) noexcept;
 /// Returns the kind of a step that leads from one of these to the other.
 StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) noexcept;
+constexpr bool is_setting(StepKind kind) noexcept {
+  return kind >= StepKind::mode && kind <= StepKind::settings;
+}
+/// Tells whether such a step needs another sculptor, and so another thread, to be undone.
 constexpr bool is_change(StepKind kind) noexcept {
   return kind >= StepKind::mode;
 }

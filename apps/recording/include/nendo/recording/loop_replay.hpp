@@ -2,6 +2,7 @@
 // Feeds a loop from a recording, tick by tick and without a clock. The same recording gives the
 // same shape, bit for bit, on the same build and the same kind of processor.
 
+#include <map>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -33,10 +34,12 @@ public:
 private:
   LoopReplay() = default;
   void take(const driver::RecordedSample& sample) noexcept;
+  bool follow(const flow::ChangeModel& change);
 
   std::vector<std::unique_ptr<SampleRing>> rings_;
   flow::CommandRing commands_{2048};
   std::unique_ptr<flow::DeformLoop> loop_;
+  std::map<std::uint32_t, std::uint32_t> versions_; ///< of the model, by their recorded numbers
   bool exact_ = true;
 };
 

@@ -33,6 +33,8 @@ struct LoopSetup {
   flow::LoopOptions options;
   /// The vector instructions with which the field was evaluated. Others may round differently.
   std::string simd;
+  /// How often the file's model was subdivided (deform::subdivide()) before the recording began.
+  std::uint32_t subdivisions = 0;
   /// The shape at first, in the blocks of the model's layout; empty: the model.
   std::vector<deform::VertexBlock> rest{};
 };

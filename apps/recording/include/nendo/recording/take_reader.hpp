@@ -26,8 +26,9 @@ struct Gap {
   std::uint64_t entries = 0; ///< 0 means an unknown number
 };
 
-using Entry = std::variant<driver::RecordedSample, flow::Request, flow::WristMove,
-                           flow::LoopSettings, flow::LoggedTick, Gap>;
+using Entry =
+    std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
+                 flow::HoldStill, flow::ChangeModel, flow::LoggedTick, Gap>;
 
 /// What a recorder writes at the end of a recording.
 struct Ending {

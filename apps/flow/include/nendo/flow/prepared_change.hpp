@@ -20,6 +20,7 @@ struct LoopState {
   Placement placement{};                                       ///< without the gaps
   bool held = true;
   SculptorSetup sculptor{};
+  std::uint32_t subdivisions = 0; ///< of the model with which the loop began
   deform::BlockShape shape;
 };
 
@@ -29,11 +30,18 @@ struct LogChange {
   LoopState state;         ///< with which the log begins, or that it led to
 };
 
-struct LoopChange {
+/// What a loop goes on with from a tick on. It swaps pointers, and gives back what it had before.
+struct PreparedChange {
+  bool holds_still = false; ///< at the end of that tick, until the next change with a `model`
+  std::optional<ChangeModel> model{};     ///< the version that `ready` works on
   std::optional<LoopSettings> settings{}; ///< the loop goes on with them
   SculptorSetup before{};                 ///< which this change of settings replaces
+  bool is_refused = false; ///< by the loop, which goes on as it was (Shaping::exchange())
   ReadySculptor ready{};
   std::optional<LogChange> log{};
+
+  bool is_empty() const noexcept { return !holds_still && !model && !settings && !log; }
+  bool ends_stroke() const noexcept { return holds_still || model || settings; }
 };
 
 } // namespace nendo::flow

@@ -1,0 +1,65 @@
+#pragma once
+// The versions of a model. What changes its vertices or faces makes a new version, beside the loop,
+// and the loop goes on with it from one tick to the next. An undo goes back to the version before.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <nendo/deform/sculpted_shape.hpp>
+#include <nendo/deform/subdivision.hpp>
+
+namespace nendo::flow {
+
+/// How much can be undone in a version: deform::DeformerOptions::undo_bytes, and by how many bytes
+/// more that memory may grow.
+struct UndoRoom {
+  std::size_t bytes = 0;
+  std::size_t most_bytes = 0;
+};
+
+/// A version does not move in memory. What is const may be read from any thread.
+struct ModelVersion {
+  /// Allocates. With `first`, the shape is at first that one, in blocks of the layout.
+  ModelVersion(std::uint32_t number, deform::Mesh mesh, deform::BlockLayout layout,
+               const UndoRoom& undo, const deform::BlockShape* first);
+
+  const deform::BlockLayout& layout() const noexcept { return shape.layout(); }
+
+  const std::uint32_t number; ///< 0: the model with which the loop began
+  const deform::Mesh mesh;    ///< before the hands; a reset goes back to it
+
+  // What follows belongs to the loop's thread while the loop has this version, and to the thread
+  // that asks for changes otherwise.
+  std::unique_ptr<deform::UndoMemory> undo_memory; ///< null: it does not grow
+  deform::SculptedShape shape;
+  ModelVersion* before = nullptr; ///< an undo of the first step here leads to the last one there
+  ModelVersion* behind = nullptr; ///< a redo of the last step here leads to the first one there
+};
+
+/// A finer version in the making. Making it takes longer than a tick; only finish() needs the
+/// shape.
+class FinerModel {
+public:
+  /// Subdivides. Any thread may call it while the loop goes on. Allocates.
+  explicit FinerModel(const ModelVersion& from);
+  /// Tells whether the model is not too large for it: 16 subdivisions of a triangle would be.
+  static bool can_be_made_of(const ModelVersion& from) noexcept {
+    return from.mesh.face_corners.size() <= most_corners;
+  }
+
+  bool is_of(const ModelVersion& version) const noexcept { return &version == from_; }
+  /// Makes the version, with the shape that `from` has now: the loop must hold still. May be called
+  /// once. Allocates.
+  std::unique_ptr<ModelVersion> finish(std::uint32_t number, const UndoRoom& undo);
+
+  /// The corners of faces of the largest model that can be subdivided.
+  static constexpr std::size_t most_corners = std::size_t{6} << 20;
+
+private:
+  const ModelVersion* from_;
+  deform::Subdivision subdivision_;
+  deform::BlockLayout layout_;
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,267 @@
+// The part of the loop that takes changes: on the loop's side in the tick, and on the side of the
+// thread that asks for them.
+
+#include <nendo/flow/prepared_change.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include <nendo/base/relax.hpp>
+#include <nendo/flow/deform_loop.hpp>
+
+namespace nendo::flow {
+
+// The loop's side.
+
+void DeformLoop::take_change() noexcept {
+  if (!changes_.take(taken_)) return;
+  InputLog* const log = options_.input_log;
+  if (log != nullptr) {
+    if (taken_->holds_still) log->command(HoldStill{});
+    if (taken_->model) log->command(*taken_->model);
+    if (taken_->settings) log->command(ChangeSettings{*taken_->settings});
+  }
+  if (!taken_->log || !shaping_.is_held()) return;
+  // What was recorded leads to a shape that is committed, so that a replay ends with the same one.
+  if (log != nullptr) log->command(Request::commit);
+  shaping_.ask(Request::commit);
+}
+
+/// After the tick has made its shape.
+void DeformLoop::finish_change(Frame& frame) noexcept {
+  if (taken_->holds_still) shaping_.hold_still(tips_, frame, stats_);
+  if (taken_->settings) change_filters(taken_->settings->filter);
+  if (taken_->settings || taken_->model)
+    taken_->is_refused = !shaping_.exchange(taken_->ready, tips_, frame, stats_);
+  if (taken_->log) begin_anew(*taken_->log, frame);
+}
+
+/// The angles, and so the fingertips, may jump; the shape does not, since they take hold anew.
+void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
+  for (Hand& hand : hands_) {
+    if (hand.filter.options() == filter) continue;
+    hand.filter = hand::JointFilter(filter);
+    const auto& calibration = hand.calibration.of(hand.latest.side);
+    hand.angles = hand.filter.pass(hand::joint_angles(hand.latest, calibration), hand.time());
+  }
+  place_tips();
+}
+
+void DeformLoop::place_tips() noexcept {
+  Eigen::Index column = 0;
+  for (const Hand& hand : hands_) {
+    tips_.middleCols<5>(column) = units_per_metre_ * hand.pose().fingertip_positions();
+    column += 5;
+  }
+}
+
+void DeformLoop::Hand::begin_anew() noexcept {
+  input.first = latest;
+  const hand::RangeAdaptation* const adaptation = calibration.adaptation();
+  if (adaptation != nullptr) input.wearer.learned = adaptation->learned();
+  calibration = hand::ActiveCalibration(input.wearer);
+  gate = {};
+  filter = hand::JointFilter(filter.options());
+  wrist_switch = {};
+  follow(input.first);
+}
+
+void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
+  LoopState& state = change.state;
+  for (std::size_t at = 0; at < hands_.size(); ++at) {
+    Hand& hand = hands_[at];
+    hand.begin_anew();
+    state.latest[at] = hand.input.first;
+    state.learned[at] = hand.input.wearer.learned;
+    state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
+  }
+  place_tips();
+  switch_on_ = false;
+  shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
+  state.held = shaping_.is_held();
+  state.shape.follow(shaping_.sculptor().rest());
+}
+
+void DeformLoop::give_back_change() noexcept {
+  if (taken_->log) options_.input_log = taken_->log->log;
+  taken_ = nullptr;
+  changes_.done();
+}
+
+// The side of the thread that asks.
+
+bool DeformLoop::change_settings(const LoopSettings& settings) {
+  if (!settings.are_usable()) return false;
+  is_changing();
+  if ((is_still_ && !is_offered_) || (change_ && change_->holds_still)) {
+    settings_later_ = settings;
+    return true;
+  }
+  if (settings == asked_.settings) return true;
+  PreparedChange& change = next_change();
+  if (!change.settings) change.before = asked_;
+  // Settings that the loop has not taken are as if nobody had asked for them.
+  if (settings == change.before.settings) {
+    asked_ = change.before;
+    change.settings.reset();
+  } else {
+    asked_ = with_settings(change.before, first_, settings, static_cast<int>(hands_.size()),
+                           units_per_metre_);
+    change.settings = settings;
+  }
+  if (change.settings || change.model) {
+    auto shape_room = std::move(change.ready.shape_room);
+    const bool is_new_model = change.ready.is_new_model;
+    change.ready = shaping_.prepare(asked_, *asked_model_);
+    change.ready.shape_room = std::move(shape_room);
+    change.ready.is_new_model = is_new_model;
+  } else {
+    change.ready = {};
+  }
+  offer_change();
+  return true;
+}
+
+void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
+  assert(!is_still_);
+  PreparedChange& change = next_change();
+  LogChange begins;
+  begins.log = log;
+  begins.state.placement.units_per_metre = units_per_metre_;
+  begins.state.shape = like;
+  change.log = std::move(begins);
+  offer_change();
+}
+
+/// Takes the change back that the loop has not taken yet, or makes another.
+PreparedChange& DeformLoop::next_change() {
+  if (is_offered_ && changes_.withdraw()) is_offered_ = false;
+  while (is_changing()) // the loop is in its tick
+    relax();
+  if (!change_) change_ = std::make_unique<PreparedChange>();
+  return *change_;
+}
+
+void DeformLoop::offer_change() {
+  if (change_->is_empty()) return change_.reset();
+  changes_.offer(change_.get());
+  is_offered_ = true;
+}
+
+bool DeformLoop::is_changing() {
+  if (is_offered_ && changes_.is_done()) {
+    is_offered_ = false;
+    is_still_ = change_->holds_still;
+    if (change_->is_refused) go_back();
+    if (change_->model) free_others(*change_->model);
+    if (change_->log) {
+      states_.push_back(std::move(change_->log->state));
+      states_.back().sculptor = asked_; // nobody has asked for others since
+      for (const ModelVersion* at = asked_model_->before; at != nullptr; at = at->before)
+        ++states_.back().subdivisions;
+      first_ = asked_; // from here on, as a replay that begins here
+    }
+    change_.reset();
+  }
+  return is_offered_;
+}
+
+bool DeformLoop::hold_still() {
+  if (is_changing() || is_still_) return false;
+  next_change().holds_still = true;
+  offer_change();
+  return true;
+}
+
+bool DeformLoop::is_still() {
+  return !is_changing() && is_still_;
+}
+
+const ModelVersion* DeformLoop::model(std::uint32_t number) const noexcept {
+  for (const auto& version : versions_)
+    if (version->number == number) return version.get();
+  return nullptr;
+}
+
+bool DeformLoop::change_model(FinerModel& finer,
+                              const std::function<bool(const ModelVersion&)>& accepts) {
+  assert(is_still() && finer.is_of(*asked_model_));
+  versions_.push_back(finer.finish(last_number_ + 1, undo_room()));
+  if (accepts && !accepts(*versions_.back())) {
+    versions_.pop_back();
+    keep_model();
+    return false;
+  }
+  ++last_number_;
+  offer_model(*versions_.back(), ModelSource::subdivided);
+  return true;
+}
+
+void DeformLoop::keep_model() {
+  assert(is_still());
+  offer_model(*asked_model_, ModelSource::kept);
+}
+
+bool DeformLoop::change_to(const Awaited& awaited) {
+  const auto* const version = model(awaited.model);
+  if (version == nullptr || !awaited.settings.are_usable()) return false;
+  if (version != asked_model_) {
+    if (is_changing() || is_still_) return false;
+    offer_model(const_cast<ModelVersion&>(*version), ModelSource::kept);
+  }
+  return change_settings(awaited.settings);
+}
+
+/// Offers that version, which must not change until the loop has it.
+void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
+  PreparedChange& change = next_change();
+  change.model = {version.number, source};
+  change.ready = shaping_.prepare(asked_, version);
+  change.ready.is_new_model = source == ModelSource::subdivided;
+  model_before_ = asked_model_;
+  if (&version != asked_model_)
+    change.ready.shape_room.fill({version.number, version.shape.shape()});
+  asked_model_ = &version;
+  offer_change();
+  if (settings_later_) change_settings(*std::exchange(settings_later_, {}));
+}
+
+/// The loop has refused what was asked for last.
+void DeformLoop::go_back() {
+  asked_model_ = model_before_;
+  if (change_->settings) asked_ = change_->before;
+}
+
+/// Where a new version has taken the way that a redo would have gone, frees those of that way.
+void DeformLoop::free_others(const ChangeModel& taken) {
+  if (taken.source == ModelSource::kept) return;
+  std::erase_if(versions_, [this](const auto& version) {
+    for (const ModelVersion* at = asked_model_; at != nullptr; at = at->before)
+      if (at == version.get()) return false;
+    return true;
+  });
+}
+
+/// What is left of the memory for undo.
+UndoRoom DeformLoop::undo_room() const noexcept {
+  std::size_t used = 0;
+  for (const auto& version : versions_)
+    if (version->undo_memory) used += version->undo_memory->bytes();
+  const std::size_t most = options_.undo_most_bytes;
+  return {options_.sculptor.deformer.undo_bytes, most - std::min(most, used)};
+}
+
+bool DeformLoop::refill_undo() {
+  return asked_model_->undo_memory == nullptr || asked_model_->undo_memory->refill();
+}
+
+std::optional<LoopState> DeformLoop::take_state() {
+  is_changing();
+  if (states_.empty()) return std::nullopt;
+  LoopState state = std::move(states_.front());
+  states_.erase(states_.begin());
+  return state;
+}
+
+} // namespace nendo::flow

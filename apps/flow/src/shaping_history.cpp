@@ -1,0 +1,199 @@
+// The part of Shaping that goes through the history, which reaches across settings and versions of
+// the model.
+
+#include <nendo/flow/shaping.hpp>
+
+#include <algorithm>
+
+#include "noted_step.hpp"
+
+namespace nendo::flow {
+
+using deform::FieldStatus;
+using deform::Points;
+using deform::StepNote;
+
+Step Shaping::step_now(StepKind kind) const noexcept {
+  return {kind, static_cast<float>(to_seconds(time_))};
+}
+
+void Shaping::count(Request step, LoopStats& stats) noexcept {
+  ++(step == Request::undo ? stats.undos : step == Request::redo ? stats.redos : stats.resets);
+  shaped_ = in_step_ = false;
+  forget_later();
+}
+
+void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
+  model_->shape.set_notes(NotedStep{step_now(StepKind::stroke), {}}.note(),
+                          NotedStep{step_now(StepKind::reset), {}}.note());
+  awaited_.reset();
+  auto due = steps_due_.begin();
+  // What cannot be done now has changed nothing, and is tried again at the next tick.
+  while (due != steps_due_.end() && take_step(*due, tips, stats))
+    ++due;
+  steps_due_.erase(steps_due_.begin(), due);
+}
+
+/// Returns false if the step cannot be done now.
+bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noexcept {
+  if (step == Request::redo && sculptor_->redo_steps() == 0) return true;
+  if (is_change_next(step)) return take_change(step, tips, stats);
+  const FieldStatus status = step == Request::undo   ? sculptor_->undo(tips)
+                             : step == Request::redo ? sculptor_->redo(tips)
+                                                     : sculptor_->reset(tips);
+  if (!is_solved(status)) return false;
+  count(step, stats);
+  return true;
+}
+
+/// Tells whether the step is to undo or redo a change. What the hands have shaped in a stroke of
+/// type 2, or before a change that was no step, comes before it; what they hold in type 1 goes with
+/// it.
+bool Shaping::is_change_next(Request step) const noexcept {
+  if (step == Request::reset || (step == Request::undo && is_in_hand())) return false;
+  return other_of(step).has_value();
+}
+
+/// That to which the next step leads, if it is a change.
+std::optional<Awaited> Shaping::other_of(Request step) const noexcept {
+  const StepNote* const note =
+      step == Request::undo ? model_->shape.to_undo() : model_->shape.to_redo();
+  if (note == nullptr || !is_change(NotedStep::of(*note).step.kind)) return std::nullopt;
+  return NotedStep::of(*note).other;
+}
+
+/// Only a sculptor with the other settings, or of the other version, can do it, which another
+/// thread must make.
+bool Shaping::take_change(Request step, const Points& tips, LoopStats& stats) noexcept {
+  const auto other = other_of(step);
+  if (other != in_force()) {
+    awaited_ = other;
+    return false;
+  }
+  sculptor_->release(false); // there and back: there is nothing to make
+  step_over_change(step, *model_, *other);
+  if (held_) held_ = is_solved(sculptor_->grab_on(tips));
+  count(step, stats);
+  return true;
+}
+
+/// In the history of that version, the step now leads back to `before`.
+void Shaping::step_over_change(Request step, ModelVersion& version,
+                               const Awaited& before) noexcept {
+  deform::SculptedShape& shape = version.shape;
+  const bool undoes = step == Request::undo;
+  const StepNote* const next = undoes ? shape.to_undo() : shape.to_redo();
+  if (next == nullptr || !is_change(NotedStep::of(*next).step.kind)) return; // memory had ended
+  NotedStep noted = NotedStep::of(*next);
+  noted.other = before;
+  undoes ? shape.note_to_undo(noted.note()) : shape.note_to_redo(noted.note());
+  undoes ? shape.undo_mark() : shape.redo_mark();
+}
+
+/// The step between two versions stands in the histories of both.
+void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) noexcept {
+  step_over_change(step, *model_, {before.settings, next.number});
+  if (&next == model_) return;
+  step_over_change(step, next, before);
+  if (step == Request::undo) next.behind = model_;
+}
+
+/// Adds a step from these settings to the present ones, or lets the last one, if it is a change of
+/// settings and not `is_step`, lead here.
+void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
+  deform::SculptedShape& shape = model_->shape;
+  const StepNote* const last = is_step ? nullptr : shape.to_undo();
+  NotedStep noted{step_now(StepKind::settings), {before, model_->number}};
+  const bool goes_on =
+      last != nullptr && is_setting(NotedStep::of(*last).step.kind) && shape.redo_steps() == 0;
+  if (goes_on) noted.other = NotedStep::of(*last).other;
+  noted.step.kind = kind_of_change(noted.other.settings, settings_);
+  if (goes_on)
+    shape.note_to_undo(noted.note());
+  else
+    shape.mark(noted.note());
+}
+
+/// Adds a step to that new version.
+void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcept {
+  const Step step = step_now(StepKind::subdivide);
+  next.before = model_;
+  model_->behind = nullptr; // as mark() forgets what was undone
+  model_->shape.mark(NotedStep{step, {before, next.number}}.note());
+  next.shape.mark(NotedStep{step, {before, model_->number}}.note());
+}
+
+// Type-1 drops with an undo what was shaped since the commit that it undoes. Type-2 keeps it as a
+// step of its own.
+std::size_t Shaping::undo_steps() const noexcept {
+  const std::size_t steps = steps_to_undo();
+  if (is_in_hand()) return steps + 1;
+  return held_ && shaped_ ? std::max<std::size_t>(steps, 1) : steps;
+}
+
+bool Shaping::is_in_hand() const noexcept {
+  return in_step_ || (held_ && shaped_ && sculptor_->mode() == Mode::type2);
+}
+
+/// Memory that has ended, or a recording that has begun, bars the way to the version before.
+const ModelVersion* Shaping::version_before(const ModelVersion& version) const noexcept {
+  return &version == fenced_ || version.shape.forgotten_steps() > 0 ? nullptr : version.before;
+}
+
+/// The step between two versions stands in the histories of both, so that one of them counts.
+std::size_t Shaping::steps_to_undo() const noexcept {
+  std::size_t steps = 0;
+  for (const ModelVersion* at = model_; at != nullptr; at = version_before(*at))
+    steps += at->shape.undo_steps() - (at != model_ && at->shape.undo_steps() > 0 ? 1 : 0);
+  return steps;
+}
+
+std::size_t Shaping::steps_to_redo() const noexcept {
+  std::size_t steps = 0;
+  for (const ModelVersion* at = model_; at != nullptr; at = at->behind)
+    steps += at->shape.redo_steps() - (at != model_ && at->shape.redo_steps() > 0 ? 1 : 0);
+  return steps;
+}
+
+/// A new step leads elsewhere.
+void Shaping::forget_later() noexcept {
+  if (model_->shape.redo_steps() == 0) model_->behind = nullptr;
+}
+
+/// From the end of an empty list's part for them, the last step first. Then they move to the front.
+void Shaping::list_undoable(StepList& list) const noexcept {
+  std::array<deform::StepNote, StepList::most_undoable> notes;
+  std::size_t at = StepList::most_undoable;
+  for (const ModelVersion* version = model_; version != nullptr;
+       version = version_before(*version)) {
+    const std::size_t count = version->shape.copy_undoable(notes);
+    for (std::size_t note = version == model_ ? 0 : 1; note < count && at > 0; ++note)
+      list.steps[--at] = NotedStep::of(notes[note]).step;
+  }
+  list.undoable = static_cast<std::uint32_t>(StepList::most_undoable - at);
+  std::copy_n(&list.steps[at], list.undoable, list.steps.begin());
+  list.count = list.undoable;
+}
+
+void Shaping::list_undone(StepList& list) const noexcept {
+  std::array<deform::StepNote, StepList::most_undone> notes;
+  const std::size_t most = list.undoable + StepList::most_undone;
+  for (const ModelVersion* version = model_; version != nullptr; version = version->behind) {
+    const std::size_t count = version->shape.copy_undone(notes);
+    for (std::size_t note = version == model_ ? 0 : 1; note < count && list.count < most; ++note)
+      list.steps[list.count++] = NotedStep::of(notes[note]).step;
+    if (count < version->shape.redo_steps()) return;
+  }
+}
+
+void Shaping::list_steps(StepList& list) const noexcept {
+  constexpr unsigned history_bits = 40;
+  const std::uint64_t version = (std::uint64_t{model_->number} << history_bits) +
+                                model_->shape.history_version() + 1; // an empty list has 0
+  if (list.version == version) return;
+  list_undoable(list);
+  list_undone(list);
+  list.version = version;
+}
+
+} // namespace nendo::flow

@@ -1,0 +1,32 @@
+#pragma once
+// A finer mesh of the same surface, for strokes that need more vertices than the model has.
+
+#include <cstdint>
+#include <vector>
+
+#include <nendo/deform/mesh.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
+
+namespace nendo::deform {
+
+/// A subdivided mesh. Its first vertices are those of the mesh before, with their numbers and bits.
+struct Subdivision {
+  Mesh mesh;
+  /// The k-th further vertex is the mean of the vertices parents[parent_starts[k]] to
+  /// parents[parent_starts[k + 1] - 1] of the mesh before.
+  std::vector<std::uint32_t> parent_starts{0};
+  std::vector<std::uint32_t> parents;
+};
+
+/// Subdivides without smoothing, as Blender's Subdivide does: each edge gets a vertex in its
+/// middle, a triangle becomes four, and a face of n > 3 corners becomes n faces about its middle.
+/// Texture coordinates follow. Faces of fewer than three corners stay. Allocates.
+Subdivision subdivide(const Mesh& mesh);
+
+/// Returns the shape of the subdivided mesh that a shape of the mesh before means: old vertices
+/// keep their bits, and a new one is moved by the mean of what its parents are moved by. `before`
+/// and `after` are the layouts of both meshes. Allocates.
+BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
+                      const Subdivision& subdivision, const BlockLayout& after);
+
+} // namespace nendo::deform

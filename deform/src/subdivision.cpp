@@ -1,0 +1,203 @@
+#include <nendo/deform/subdivision.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <span>
+#include <utility>
+
+namespace nendo::deform {
+namespace {
+
+/// An edge of a face: its ends, the lesser one first, and the corner behind which it is.
+struct Edge {
+  std::uint64_t ends;
+  std::uint32_t corner;
+};
+
+std::uint64_t ends_of(std::uint32_t a, std::uint32_t b) noexcept {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+std::span<const std::uint32_t> corners_of(const Mesh& mesh, std::size_t face) {
+  return std::span(mesh.face_corners)
+      .subspan(mesh.face_starts[face], mesh.face_starts[face + 1] - mesh.face_starts[face]);
+}
+
+/// The edges of all faces by their ends, with the values of `corner_values` as ends.
+std::vector<Edge> sorted_edges(const Mesh& mesh, const std::vector<std::uint32_t>& corner_values) {
+  std::vector<Edge> edges;
+  edges.reserve(corner_values.size());
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face];
+    const std::uint32_t end = mesh.face_starts[face + 1];
+    if (end - begin < 3) continue;
+    for (std::uint32_t at = begin; at < end; ++at) {
+      const std::uint32_t next = at + 1 < end ? at + 1 : begin;
+      edges.push_back({ends_of(corner_values[at], corner_values[next]), at});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return std::pair(a.ends, a.corner) < std::pair(b.ends, b.corner);
+  });
+  return edges;
+}
+
+/// Numbers the middles of edges and of faces from `first` on: of each corner the middle of the edge
+/// behind it, and of each face its own.
+struct Middles {
+  std::vector<std::uint32_t> of_corner;
+  std::vector<std::uint32_t> of_face; ///< of those with more than three corners
+  std::vector<std::uint32_t> parent_starts{0};
+  std::vector<std::uint32_t> parents;
+
+  Middles(const Mesh& mesh, const std::vector<std::uint32_t>& corner_values, std::uint32_t first)
+      : of_corner(corner_values.size()), of_face(mesh.face_count()) {
+    const std::vector<Edge> edges = sorted_edges(mesh, corner_values);
+    for (std::size_t at = 0; at < edges.size(); ++at) {
+      if (at == 0 || edges[at].ends != edges[at - 1].ends)
+        add(std::array{static_cast<std::uint32_t>(edges[at].ends >> 32),
+                       static_cast<std::uint32_t>(edges[at].ends)});
+      of_corner[edges[at].corner] = first + count() - 1;
+    }
+    for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+      const std::uint32_t begin = mesh.face_starts[face];
+      const std::size_t corners = mesh.face_starts[face + 1] - begin;
+      if (corners < 4) continue;
+      add(std::span(corner_values).subspan(begin, corners));
+      of_face[face] = first + count() - 1;
+    }
+  }
+  std::uint32_t count() const noexcept {
+    return static_cast<std::uint32_t>(parent_starts.size() - 1);
+  }
+  void add(std::span<const std::uint32_t> of) {
+    parents.insert(parents.end(), of.begin(), of.end());
+    parent_starts.push_back(static_cast<std::uint32_t>(parents.size()));
+  }
+};
+
+/// Appends the means of parents to the columns of `points`.
+template <class Columns>
+void append_means(const Middles& middles, Columns& points) {
+  const Eigen::Index before = points.cols();
+  points.conservativeResize(Eigen::NoChange, before + middles.count());
+  for (std::uint32_t at = 0; at < middles.count(); ++at) {
+    const std::uint32_t begin = middles.parent_starts[at];
+    const std::uint32_t end = middles.parent_starts[at + 1];
+    auto mean = points.col(before + at);
+    const auto parent = [&](std::uint32_t of) {
+      return points.col(static_cast<Eigen::Index>(middles.parents[of]));
+    };
+    mean = parent(begin) / (end - begin);
+    auto lowest = parent(begin).eval();
+    auto highest = lowest;
+    for (std::uint32_t of = begin + 1; of < end; ++of) {
+      mean += parent(of) / (end - begin);
+      lowest = lowest.cwiseMin(parent(of)).eval();
+      highest = highest.cwiseMax(parent(of)).eval();
+    }
+    // Rounding must not lead out of the box of the parents. What is not finite stays so.
+    if (mean.allFinite()) mean = mean.cwiseMax(lowest).cwiseMin(highest).eval();
+  }
+}
+
+/// Appends the corners of the faces that a face becomes. `ends_face` is called behind each.
+template <class EndsFace>
+void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_values,
+                  const Middles& middles, std::vector<std::uint32_t>& corners,
+                  const EndsFace& ends_face) {
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face];
+    const auto count = static_cast<std::uint32_t>(corners_of(mesh, face).size());
+    const auto behind = [&](std::uint32_t at) { return middles.of_corner[begin + at]; };
+    const auto before = [&](std::uint32_t at) { return behind((at + count - 1) % count); };
+    if (count < 3) {
+      corners.insert(corners.end(), corner_values.begin() + begin,
+                     corner_values.begin() + begin + count);
+      ends_face();
+      continue;
+    }
+    for (std::uint32_t at = 0; at < count; ++at) {
+      corners.insert(corners.end(), {corner_values[begin + at], behind(at)});
+      if (count > 3) corners.push_back(middles.of_face[face]);
+      corners.push_back(before(at));
+      ends_face();
+    }
+    if (count > 3) continue;
+    corners.insert(corners.end(), {behind(0), behind(1), behind(2)});
+    ends_face();
+  }
+}
+
+} // namespace
+
+Subdivision subdivide(const Mesh& mesh) {
+  Subdivision result;
+  Mesh& finer = result.mesh;
+  finer.vertices = mesh.vertices;
+  Middles middles(mesh, mesh.face_corners, static_cast<std::uint32_t>(mesh.vertices.cols()));
+  append_means(middles, finer.vertices);
+  append_faces(mesh, mesh.face_corners, middles, finer.face_corners, [&] {
+    finer.face_starts.push_back(static_cast<std::uint32_t>(finer.face_corners.size()));
+  });
+  result.parent_starts = std::move(middles.parent_starts);
+  result.parents = std::move(middles.parents);
+  if (mesh.corner_texcoords.empty()) return result;
+  finer.texcoords = mesh.texcoords;
+  const Middles of_texture(mesh, mesh.corner_texcoords,
+                           static_cast<std::uint32_t>(mesh.texcoords.cols()));
+  append_means(of_texture, finer.texcoords);
+  append_faces(mesh, mesh.corner_texcoords, of_texture, finer.corner_texcoords, [] {});
+  return result;
+}
+
+namespace {
+
+Eigen::Vector3f at_place(const BlockShape& shape, std::size_t at) {
+  const VertexBlock& block = shape[at / block_size];
+  return {block.x[at % block_size], block.y[at % block_size], block.z[at % block_size]};
+}
+
+std::vector<std::uint32_t> places_of(const BlockLayout& layout) {
+  std::vector<std::uint32_t> places(layout.vertex_count());
+  for (std::size_t at = 0; at < places.size(); ++at)
+    places[layout.order()[at]] = static_cast<std::uint32_t>(at);
+  return places;
+}
+
+} // namespace
+
+BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
+                      const Subdivision& subdivision, const BlockLayout& after) {
+  assert(before.origin() == after.origin() && before.unit() == after.unit());
+  const std::vector<std::uint32_t> places = places_of(before);
+  const BlockShape unmoved = before.pack();
+  const BlockShape finer = after.pack();
+  std::vector<VertexBlock> blocks(finer.data(), finer.data() + finer.block_count());
+  const auto shown = [&](std::uint32_t vertex) -> Eigen::Vector3f {
+    if (vertex < places.size()) return at_place(shape, places[vertex]);
+    const std::size_t middle = vertex - places.size();
+    const std::uint32_t begin = subdivision.parent_starts[middle];
+    const std::uint32_t end = subdivision.parent_starts[middle + 1];
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (std::uint32_t of = begin; of < end; ++of) {
+      const std::uint32_t place = places[subdivision.parents[of]];
+      sum += at_place(shape, place) - at_place(unmoved, place);
+    }
+    return sum / static_cast<float>(end - begin);
+  };
+  for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
+    const std::uint32_t vertex = after.order()[std::min(at, after.order().size() - 1)];
+    const Eigen::Vector3f value = shown(vertex);
+    const bool is_old = vertex < places.size();
+    VertexBlock& block = blocks[at / block_size];
+    const std::size_t lane = at % block_size;
+    block.x[lane] = is_old ? value[0] : block.x[lane] + value[0];
+    block.y[lane] = is_old ? value[1] : block.y[lane] + value[1];
+    block.z[lane] = is_old ? value[2] : block.z[lane] + value[2];
+  }
+  return BlockShape(std::move(blocks));
+}
+
+} // namespace nendo::deform

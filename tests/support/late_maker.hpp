@@ -1,0 +1,55 @@
+#pragma once
+// Makes other models for a loop at random, as who runs it does, and is as late as it likes.
+
+#include <memory>
+#include <random>
+
+#include <nendo/flow/deform_loop.hpp>
+
+namespace nendo::test {
+
+class LateMaker {
+public:
+  /// Models of that many vertices or more are not subdivided.
+  explicit LateMaker(unsigned seed, std::size_t most_vertices = 3000)
+      : random_(seed), most_vertices_(most_vertices) {}
+
+  /// To be called between two ticks.
+  void turn(flow::DeformLoop& loop) {
+    if (!finer_ && loop.newest_model().layout().vertex_count() < most_vertices_ &&
+        random_() % 40 == 0) {
+      finer_ = std::make_unique<flow::FinerModel>(loop.newest_model());
+      late_ = random_() % 8;
+    }
+    if (!finer_ || (late_ > 0 && late_-- > 0)) return;
+    if (!asked_) {
+      asked_ = loop.hold_still();
+      late_ = random_() % 8;
+    } else if (loop.is_still()) {
+      give(loop);
+    }
+  }
+  bool is_idle(flow::DeformLoop& loop) const { return !finer_ && !loop.is_changing(); }
+  int made() const noexcept { return made_; }
+
+private:
+  void give(flow::DeformLoop& loop) {
+    if (finer_->is_of(loop.newest_model()) && random_() % 8 != 0) {
+      loop.change_model(*finer_);
+      ++made_;
+    } else {
+      loop.keep_model();
+    }
+    finer_.reset();
+    asked_ = false;
+  }
+
+  std::mt19937 random_;
+  std::size_t most_vertices_;
+  std::unique_ptr<flow::FinerModel> finer_;
+  bool asked_ = false;
+  unsigned long late_ = 0; ///< turns until it goes on
+  int made_ = 0;
+};
+
+} // namespace nendo::test
