@@ -60,8 +60,12 @@ public:
     if (flow::goes_through_history(request)) steps_.push_back(request);
   }
 
+  void hear(const flow::HoldStill&) { is_still_ = true; }
+  /// The model is made of the shape of the tick in which the loop began to hold still.
   void hear(const flow::ChangeModel& change) {
-    subdivides_ = subdivides_ || change.source == flow::ModelSource::subdivided;
+    is_still_ = false;
+    if (change.source == flow::ModelSource::subdivided)
+      timeline_.events.push_back({still_at_s_, {}, {}, true});
   }
 
   /// Returns false if a timeline has no such settings.
@@ -88,6 +92,7 @@ public:
     }
     timeline_.duration_s = time_s;
     see_events(time_s, frame, commits);
+    if (std::exchange(is_still_, false)) still_at_s_ = time_s;
     awaited_ = frame.awaited;
   }
   bool has_seen() const noexcept { return first_.has_value(); }
@@ -118,7 +123,6 @@ private:
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
     if (committed && !frame.held) add(time_s, flow::Request::let_go);
-    if (std::exchange(subdivides_, false)) timeline_.events.push_back({time_s, {}, {}, true});
     if (settings_) timeline_.events.push_back({time_s, {}, std::exchange(settings_, {})});
     commits_ = commits;
     held_ = frame.held;
@@ -131,7 +135,8 @@ private:
   std::uint64_t undos_ = 0;
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
-  bool subdivides_ = false;                    ///< the model, since the last tick
+  bool is_still_ = false;                      ///< from the next tick on
+  double still_at_s_ = 0.0;                    ///< the end of the last tick that shaped
   std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
   std::optional<flow::LoggedTick> first_;
 };
@@ -165,6 +170,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   Follower follower(made.timeline, setup.loop->options);
   while (const auto entry = reader->next()) {
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
+    if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
     if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) follower.hear(*change);
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
     if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))

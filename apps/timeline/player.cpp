@@ -117,11 +117,12 @@ std::shared_ptr<const flow::ModelVersion> Player::model(std::uint32_t number) co
 }
 
 /// As the loop does at the end of a tick.
-void Player::change_to(const flow::Awaited& awaited) {
+void Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   now_ = flow::with_settings(now_, first_, awaited.settings, static_cast<int>(hands_.size()),
                              timeline_.units_per_metre);
   flow::ModelVersion& model = *versions_[awaited.model];
   flow::ReadySculptor ready = shaping_.prepare(now_, model);
+  ready.is_new_model = is_new_model;
   if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
   shaping_.exchange(ready, tips_, frame_, stats_);
 }
@@ -131,7 +132,7 @@ void Player::subdivide() {
   const auto number = static_cast<std::uint32_t>(versions_.size());
   flow::FinerModel finer(shaping_.model());
   versions_.push_back(finer.finish(number, undo_room()));
-  change_to({shaping_.settings(), number});
+  change_to({shaping_.settings(), number}, true);
 }
 
 bool Player::ask_what_is_due(double time_s) {

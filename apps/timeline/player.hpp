@@ -51,7 +51,7 @@ private:
   void pose_hands(double time_s);
   bool ask_what_is_due(double time_s);
   void ask(const Event& event);
-  void change_to(const flow::Awaited& awaited);
+  void change_to(const flow::Awaited& awaited, bool is_new_model = false);
   void subdivide();
   void describe(std::uint64_t number);
 
