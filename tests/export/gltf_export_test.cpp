@@ -52,6 +52,34 @@ double way(const RecordedMotion& motion) {
 } // namespace
 
 TEST_SUITE("gltf_export") {
+  TEST_CASE("where the model becomes finer another mesh is shown, and each is right in its time") {
+    const RecordedMotion motion(Motion{.subdivide_at_tick = 24});
+    const auto done = export_it(motion, {}, {.tolerance = 1e-4});
+    REQUIRE(done);
+    REQUIRE(done->morphs);
+    CHECK(done->morphs->models == 2);
+    CHECK_FALSE(done->morphs->by_control_vectors);
+    const Glb glb = read(motion);
+    REQUIRE(glb.json["meshes"].size() == 4); // with two hands
+    CHECK(glb.json["scenes"][0]["nodes"].size() == 6); // two of each hand
+    std::array<std::size_t, 2> frames{};
+    for (std::size_t at = 0; at < motion.shapes.size(); ++at) {
+      const double time_s = motion.times_s[at] - motion.times_s[0];
+      const bool is_finer = motion.shapes[at].cols() > motion.shapes[0].cols();
+      const Eigen::Vector3d hidden = Eigen::Vector3d::Zero();
+      const auto scale = [&](std::size_t node) -> Eigen::Vector3d {
+        return glb.animated(node, "scale", time_s + 1e-6, hidden);
+      };
+      CHECK(scale(is_finer ? 0 : 1) == hidden);
+      CHECK(scale(is_finer ? 1 : 0).minCoeff() > 0.0);
+      const auto shown = glb.vertices(is_finer ? 1 : 0, time_s);
+      REQUIRE(shown.cols() == motion.shapes[at].cols());
+      CHECK(test::farthest(shown, motion.shapes[at]) < 1.01e-4 * motion.diagonal());
+      ++frames[is_finer ? 1 : 0];
+    }
+    CHECK(frames == std::array<std::size_t, 2>{25, 35});
+  }
+
   TEST_CASE("a take of Type-1 is its control vectors, exact at every frame, and sparse") {
     const RecordedMotion motion(Motion{});
     const auto done = export_it(motion);

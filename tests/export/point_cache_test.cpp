@@ -90,6 +90,34 @@ TEST_SUITE("point_cache") {
     check_points(motion, words, 8 + 4 * 5, 5, 1, 5);
   }
 
+  TEST_CASE("where the model becomes finer another file begins, and it is told when") {
+    const RecordedMotion motion(Motion{.subdivide_at_tick = 24});
+    for (const PointCache format : {PointCache::pc2, PointCache::mdd}) {
+      const bool is_mdd = format == PointCache::mdd;
+      const auto done = export_it(motion, format, {.rate_hz = 100.0});
+      REQUIRE(done.files == std::vector<std::string>{motion.path("cache"), motion.path("cache-2")});
+      CHECK(done.frames == 60);
+      REQUIRE(done.begin_s.size() == 2);
+      CHECK(done.begin_s[1] == doctest::Approx(0.26));
+      std::size_t first = 0;
+      for (const auto& [file, frames] : {std::pair{done.files[0], 25}, {done.files[1], 35}}) {
+        const Words words{test::file_bytes(file), is_mdd};
+        CHECK(words.word(is_mdd ? 0 : 28) == static_cast<std::uint32_t>(frames));
+        const auto points = static_cast<std::size_t>(motion.shapes[first].cols());
+        CHECK(words.word(is_mdd ? 4 : 16) == points);
+        const std::size_t head = is_mdd ? 8 + 4 * static_cast<std::size_t>(frames) : 32;
+        REQUIRE(words.bytes.size() == head + 12 * points * static_cast<std::size_t>(frames));
+        double worst = 0.0;
+        for (std::size_t frame = 0; frame < static_cast<std::size_t>(frames); ++frame, ++first)
+          for (std::size_t at = 0; at < 3 * points; ++at)
+            worst = std::max(
+                worst, std::abs(words.number(head + 4 * (3 * points * frame + at)) -
+                                motion.shapes[first].reshaped()[static_cast<Eigen::Index>(at)]));
+        CHECK(worst < 1e-7);
+      }
+    }
+  }
+
   TEST_CASE("where it cannot be written is told, and nothing is left there") {
     const RecordedMotion motion(Motion{.ticks = 3});
     const auto done = export_point_caches(frames_of(motion), {.rate_hz = 100.0}, PointCache::pc2,

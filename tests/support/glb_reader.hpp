@@ -77,11 +77,16 @@ public:
       const auto& target = channel.at("target");
       if (target.at("node") != node || target.at("path") != path) continue;
       const auto& sampler = animation.at("samplers").at(channel.at("sampler").get<std::size_t>());
-      if (sampler.at("interpolation") != "LINEAR") throw std::runtime_error("not linear");
+      const bool steps = sampler.at("interpolation") == "STEP";
+      if (!steps && sampler.at("interpolation") != "LINEAR") throw std::runtime_error("not linear");
       const Eigen::MatrixXd times = accessor(sampler.at("input"));
       Eigen::MatrixXd values = accessor(sampler.at("output"));
       values = Eigen::MatrixXd(values.reshaped(values.size() / times.size(), times.size()));
-      return at_time(times, values, time_s);
+      if (!steps) return at_time(times, values, time_s);
+      Eigen::Index key = 0; // the last that is not later
+      while (key + 1 < times.size() && times.reshaped()[key + 1] <= time_s)
+        ++key;
+      return values.col(key);
     }
     return still;
   }

@@ -16,6 +16,7 @@ struct Motion {
   std::uint64_t ticks = 60;
   double bend_counts = 25.0;          ///< there and back once
   std::uint64_t commit_at_tick = ~0U; ///< never
+  std::uint64_t subdivide_at_tick = ~0U;
   int hertz = 100;
 };
 
@@ -33,7 +34,13 @@ struct RecordedMotion {
           6.283185307179586 * static_cast<double>(tick) / static_cast<double>(motion.ticks - 1);
       played.test.bend(static_cast<int>(motion.bend_counts * 0.5 * (1.0 - std::cos(turn))), woke);
       if (tick == motion.commit_at_tick) played.test.commands.try_push(flow::Request::commit);
-      played.test.loop->tick(tick, woke, woke);
+      flow::DeformLoop& loop = *played.test.loop;
+      if (tick == motion.subdivide_at_tick) loop.hold_still();
+      if (loop.is_still()) {
+        flow::FinerModel finer(loop.newest_model());
+        loop.change_model(finer);
+      }
+      loop.tick(tick, woke, woke);
       played.test.loop->frames().update();
       const flow::Frame& frame = played.test.loop->frames().front();
       times_s.push_back(seconds_between(played.setup.begun_host, woke));
