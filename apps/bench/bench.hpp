@@ -19,6 +19,9 @@ void add(cli::Command& bench);
 namespace hand_bench {
 void add(cli::Command& bench);
 }
+namespace models_bench {
+void add(cli::Command& bench);
+}
 namespace latency_bench {
 void add(cli::Command& bench);
 }

@@ -30,6 +30,7 @@ void add_bench(cli::Command& program) {
   latency_bench::add(bench);
   faults_bench::add(bench);
   hand_bench::add(bench);
+  models_bench::add(bench);
   rt_bench::add(bench);
   scale_bench::add(bench);
   soak_bench::add(bench);

@@ -224,6 +224,26 @@ TEST_SUITE("bench") {
     CHECK(is_one_line_about(nowhere.err, "/nowhere/table1.svg"));
   }
 
+  TEST_CASE("bench models tells what another version of the model costs a tick") {
+    const auto done =
+        nendo::test::nendo({"bench", "models", "--cells", "20", "--repetitions", "1", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 2); // hands that have let go, and hands that hold
+    for (const auto& text : lines) {
+      const auto line = nlohmann::json::parse(text);
+      CHECK(line["vertices"].get<int>() > 1500);
+      for (const char* key : {"ordinary_us", "commit_us", "new_us", "make_ms", "finish_ms"})
+        CHECK(line[key].get<double>() > 0.0);
+      if (!line["held"].get<bool>())
+        for (const char* key : {"undo_us", "redo_us"})
+          CHECK(line[key].get<double>() > 0.0);
+    }
+    const auto never = nendo::test::nendo({"bench", "models", "--cells", "5000"});
+    CHECK(never.exit_code == 2);
+    CHECK(is_one_line_about(never.err, "--cells"));
+  }
+
   TEST_CASE("bench scale tells what vertices and centres cost") {
     const auto done =
         nendo::test::nendo({"bench", "scale", "--short", "--repetitions", "1", "--json"});

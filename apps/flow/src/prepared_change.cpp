@@ -243,13 +243,15 @@ void DeformLoop::free_others(const ChangeModel& taken) {
   });
 }
 
-/// What is left of the memory for undo.
+/// What is left of the memory for undo. Memory that grows is not allocated while the loop holds
+/// still.
 UndoRoom DeformLoop::undo_room() const noexcept {
   std::size_t used = 0;
   for (const auto& version : versions_)
     if (version->undo_memory) used += version->undo_memory->bytes();
   const std::size_t most = options_.undo_most_bytes;
-  return {options_.sculptor.deformer.undo_bytes, most - std::min(most, used)};
+  if (most > 0) return {0, most - std::min(most, used)};
+  return {options_.sculptor.deformer.undo_bytes, 0};
 }
 
 bool DeformLoop::refill_undo() {

@@ -1,0 +1,198 @@
+// nendo bench models: what it costs a tick to go on with another version of the model.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <nendo/flow/deform_loop.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/plane_room.hpp"
+#include "cli/cli.hpp"
+#include "reference/table1.hpp"
+
+namespace nendo::bench::models_bench {
+namespace {
+
+struct Options {
+  unsigned cells = 500;
+  unsigned repetitions = 5;
+  bool json = false;
+};
+
+double us(HostClock::duration time) {
+  return std::chrono::duration<double, std::micro>(time).count();
+}
+
+GloveSample resting_hand(HostTime now, int counts) {
+  GloveSample sample;
+  sample.side = Side::right;
+  sample.present = sensors_22;
+  sample.arrival = now;
+  const hand::Calibration calibration = hand::default_calibration();
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    sample.raw[slot].value =
+        static_cast<std::uint16_t>(calibration[static_cast<Sensor>(slot)].offset_counts + counts);
+  return sample;
+}
+
+/// Quads of the paper's plane.
+deform::Mesh plane(unsigned cells) {
+  deform::Mesh mesh;
+  mesh.vertices = reference::table1_plane(static_cast<int>(cells));
+  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(mesh.vertices.cols())));
+  for (std::uint32_t row = 0; row + 1 < side; ++row)
+    for (std::uint32_t column = 0; column + 1 < side; ++column) {
+      const std::uint32_t at = row * side + column;
+      mesh.face_corners.insert(mesh.face_corners.end(), {at, at + 1, at + side + 1, at + side});
+      mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+    }
+  return mesh;
+}
+
+/// A loop over a plane, whose ticks are timed one by one.
+class TimedLoop {
+public:
+  TimedLoop(const deform::Mesh& model, bool held) {
+    flow::HandInput hand;
+    hand.ring = &ring_;
+    hand.first = resting_hand(HostClock::now(), 0);
+    flow::LoopOptions options;
+    options.commands = &commands_;
+    options.held = held;
+    options.sculptor.deformer.supports =
+        deform::one_radius(0.2 * deform::diagonal_of(model.vertices));
+    options.sculptor.deformer.csrbf.merge_fraction = 0.05;
+    options.undo_most_bytes = std::size_t{1} << 30;
+    flow::Placement placement;
+    placement.units_per_metre = deform::diagonal_of(model.vertices);
+    loop_ = std::make_unique<flow::DeformLoop>(model, placement, std::vector{hand}, options);
+  }
+
+  flow::DeformLoop& loop() noexcept { return *loop_; }
+  double tick_us() {
+    const HostTime now = HostClock::now();
+    ring_.try_push(resting_hand(now, static_cast<int>(++number_ % 8)));
+    const HostTime begin = HostClock::now();
+    loop_->tick(number_, now);
+    const double time = us(HostClock::now() - begin);
+    loop_->frames().update();
+    return time;
+  }
+  /// Of a request's tick, and of the tick that takes the version for which it waits.
+  double step_us(flow::Request request) {
+    commands_.try_push(request);
+    tick_us();
+    if (const auto& awaited = loop_->frames().front().awaited) loop_->change_to(*awaited);
+    return tick_us();
+  }
+  void commit() { commands_.try_push(flow::Request::commit); }
+
+private:
+  SampleRing ring_{64};
+  flow::CommandRing commands_{16};
+  std::unique_ptr<flow::DeformLoop> loop_;
+  std::uint64_t number_ = 0;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Figures {
+  std::size_t vertices = 0;
+  std::vector<double> ordinary_us, commit_us, new_us, undo_us, redo_us, make_us, finish_us;
+};
+
+Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
+  Figures figures;
+  for (unsigned repetition = 0; repetition < repetitions && !cli::stop_requested(); ++repetition) {
+    TimedLoop timed(model, held);
+    flow::DeformLoop& loop = timed.loop();
+    timed.tick_us();
+    const HostTime begin = HostClock::now();
+    flow::FinerModel finer(loop.newest_model());
+    figures.make_us.push_back(us(HostClock::now() - begin));
+    loop.hold_still();
+    timed.tick_us();
+    const HostTime still = HostClock::now();
+    loop.is_still(); // which change_model() requires
+    loop.change_model(finer);
+    figures.finish_us.push_back(us(HostClock::now() - still));
+    figures.new_us.push_back(timed.tick_us());
+    figures.vertices = loop.newest_model().layout().vertex_count();
+    for (int tick = 0; tick < 20; ++tick)
+      figures.ordinary_us.push_back(timed.tick_us());
+    timed.commit();
+    figures.commit_us.push_back(timed.tick_us());
+    loop.is_changing(); // frees what was before
+    if (held) continue; // an undo would first take what the hands hold
+    figures.undo_us.push_back(timed.step_us(flow::Request::undo));
+    loop.is_changing();
+    figures.redo_us.push_back(timed.step_us(flow::Request::redo));
+  }
+  return figures;
+}
+
+void tell(const Options& options, bool held, const Figures& figures) {
+  const auto of = [](const std::vector<double>& values) {
+    return values.empty() ? 0.0 : median(values);
+  };
+  if (options.json) {
+    const nlohmann::ordered_json line{{"measured", "models"},
+                                      {"vertices", figures.vertices},
+                                      {"held", held},
+                                      {"ordinary_us", of(figures.ordinary_us)},
+                                      {"commit_us", of(figures.commit_us)},
+                                      {"new_us", of(figures.new_us)},
+                                      {"undo_us", of(figures.undo_us)},
+                                      {"redo_us", of(figures.redo_us)},
+                                      {"make_ms", of(figures.make_us) / 1e3},
+                                      {"finish_ms", of(figures.finish_us) / 1e3}};
+    std::cout << line.dump() << std::endl;
+    return;
+  }
+  std::printf("%zu vertices, hands that %s the model; medians, us a tick\n", figures.vertices,
+              held ? "hold" : "have let go of");
+  std::printf("  an ordinary tick %10.1f\n  a commit         %10.1f\n  a new version    %10.1f\n",
+              of(figures.ordinary_us), of(figures.commit_us), of(figures.new_us));
+  if (!held)
+    std::printf("  back by an undo  %10.1f\n  forth by a redo  %10.1f\n", of(figures.undo_us),
+                of(figures.redo_us));
+  std::printf("  beside the loop: %.0f ms to make it, and %.0f ms while the loop holds still\n",
+              of(figures.make_us) / 1e3, of(figures.finish_us) / 1e3);
+}
+
+int run(const Options& options) {
+  if (options.cells < 10 || options.cells > 1000 || options.repetitions < 1)
+    return cli::report(
+        {Errc::usage, "--cells, --repetitions: use 10 to 1000 cells a side, and at least once"});
+  if (!has_room_for_plane(static_cast<int>(2 * options.cells), "models")) return static_cast<int>(Errc::failed);
+  cli::install_stop_signals();
+  const deform::Mesh model = plane(options.cells);
+  for (const bool held : {false, true})
+    tell(options, held, measure(model, held, options.repetitions));
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& bench) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = bench.add_command(
+      "models", "What it costs a tick to go on with a model that was subdivided, or to go back");
+  command.add_option("--cells", options->cells,
+                     "The plane has so many cells a side before it is subdivided");
+  command.add_option("--repetitions", options->repetitions, "Loops of which the median is told");
+  command.add_flag("--json", options->json, "A JSON line for each table");
+  command.on_chosen([options] { return run(*options); });
+}
+
+} // namespace nendo::bench::models_bench
