@@ -60,7 +60,7 @@ TEST_SUITE("gltf_export") {
     CHECK(done->morphs->models == 2);
     CHECK_FALSE(done->morphs->by_control_vectors);
     const Glb glb = read(motion);
-    REQUIRE(glb.json["meshes"].size() == 4); // with two hands
+    REQUIRE(glb.json["meshes"].size() == 4);           // with two hands
     CHECK(glb.json["scenes"][0]["nodes"].size() == 6); // two of each hand
     std::array<std::size_t, 2> frames{};
     for (std::size_t at = 0; at < motion.shapes.size(); ++at) {
