@@ -22,6 +22,9 @@ void play(nendo::timeline::Timeline timeline) {
   auto& deformer = timeline.sculptor.deformer; // time is not what is looked for here
   if (deformer.injective)
     deformer.injective->most_links = std::min(deformer.injective->most_links, 8);
+  int finer = 0; // nor memory
+  std::erase_if(timeline.events,
+                [&](const auto& event) { return event.subdivides && ++finer > 3; });
   const auto player = nendo::timeline::Player::make(std::move(timeline), model);
   if (!player) return;
   for (int frame = 0; frame < most_frames && (*player)->next(); ++frame) {
