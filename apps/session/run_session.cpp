@@ -270,12 +270,12 @@ private:
   bool ends_ = false;                                    ///< somebody has asked for the end
   std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
   std::optional<bool> record_;                           ///< to a file, or not; not done yet
+  PlacedLoop placed_; ///< outlives what another thread may be making of its model
   RunRecorder recorder_;
   RunModels models_;
   std::uint32_t shown_model_ = 0; ///< of the latest frame
   RunSaving saving_;
   std::vector<gloves::GloveLight> lights_; ///< of all gloves, if their switches do something
-  PlacedLoop placed_;
   GloveStatuses gloves_;
   double elapsed_s_ = 0.0;
   bool end_reported_ = false; ///< that all gloves have ended
