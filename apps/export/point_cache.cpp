@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "export/one_file.hpp"
@@ -47,21 +46,16 @@ struct Part {
   double begin_s = 0.0;
 };
 
-Result<std::vector<Part>> parts_of(const OpenFrames& open, const Choice& choice) {
-  auto source = open();
-  if (!source) return source.error();
-  auto frames = ChosenFrames::make(**source, choice);
-  if (!frames) return frames.error();
-  if ((*source)->has_one_model())
-    return std::vector<Part>{{1, static_cast<std::uint32_t>(*frames->count()), 0, 0.0}};
+/// Goes through all frames.
+Result<std::vector<Part>> parts_of(ChosenFrames& frames) {
   std::vector<Part> parts;
   for (;;) {
-    const auto more = frames->next();
+    const auto more = frames.next();
     if (!more) return more.error();
     if (!*more) return parts;
-    const std::uint32_t version = frames->frame().model;
+    const std::uint32_t version = frames.frame().model;
     if (parts.empty() || parts.back().version != version)
-      parts.push_back({frames->made(), 0, version, frames->time_s()});
+      parts.push_back({frames.made(), 0, version, frames.time_s()});
     ++parts.back().count;
   }
 }
@@ -84,21 +78,19 @@ void put_head(PointCache format, const ChosenFrames& frames, std::uint32_t count
 }
 
 /// The frames before and behind the part are made and left out.
-Result<Exported> export_part(takes::FrameSource& source, const Choice& choice, const Part& part,
-                             PointCache format, const std::filesystem::path& path) {
-  auto frames = ChosenFrames::make(source, choice);
-  if (!frames) return frames.error();
+Result<Exported> export_part(ChosenFrames& frames, const Part& part, PointCache format,
+                             const std::filesystem::path& path) {
   Words words(format == PointCache::mdd);
   deform::Points vertices;
-  auto done = export_to_one_file(*frames, path, [&](FileReplacement& file) -> Result<void> {
-    const std::uint64_t number = frames->made();
+  return export_to_one_file(frames, path, [&](FileReplacement& file) -> Result<void> {
+    const std::uint64_t number = frames.made();
     if (number < part.first || number >= part.first + part.count) return {};
-    frames->vertices(vertices);
+    frames.vertices(vertices);
     if (vertices.cols() > std::numeric_limits<std::int32_t>::max() / 3)
       return Error{Errc::bad_input, path.string() + ": too many vertices for a point cache"};
     words.clear();
     if (number == part.first)
-      put_head(format, *frames, part.count, static_cast<std::uint32_t>(vertices.cols()), words);
+      put_head(format, frames, part.count, static_cast<std::uint32_t>(vertices.cols()), words);
     if (!vertices.cast<float>().allFinite())
       return Error{Errc::bad_input, path.string() + ": a vertex is too far out for 32-bit floats; "
                                                     "scale the model down"};
@@ -106,7 +98,6 @@ Result<Exported> export_part(takes::FrameSource& source, const Choice& choice, c
       words.put(coordinate);
     return file.write(words.bytes());
   });
-  return done;
 }
 
 std::filesystem::path numbered(const std::filesystem::path& path, std::size_t number) {
@@ -122,13 +113,22 @@ std::filesystem::path numbered(const std::filesystem::path& path, std::size_t nu
 Result<Exported> export_point_caches(const OpenFrames& open, const Choice& choice,
                                      PointCache format, const std::filesystem::path& path) {
   assert(choice.rate_hz);
-  const auto parts = parts_of(open, choice);
+  auto source = open();
+  if (!source) return source.error();
+  auto frames = ChosenFrames::make(**source, choice);
+  if (!frames) return frames.error();
+  if ((*source)->has_one_model())
+    return export_part(*frames, {1, static_cast<std::uint32_t>(*frames->count()), 0, 0.0}, format,
+                       path);
+  const auto parts = parts_of(*frames);
   if (!parts) return parts.error();
   Exported all;
   for (std::size_t at = 0; at < parts->size(); ++at) {
-    auto source = open();
+    source = open();
     if (!source) return source.error();
-    const auto part = export_part(**source, choice, (*parts)[at], format, numbered(path, at + 1));
+    frames = ChosenFrames::make(**source, choice);
+    if (!frames) return frames.error();
+    const auto part = export_part(*frames, (*parts)[at], format, numbered(path, at + 1));
     if (!part) return part;
     if (at == 0) {
       all = *part;

@@ -50,19 +50,19 @@ std::optional<std::string> RunModels::hand_over() {
   flow::DeformLoop& loop = *placed_.loop;
   const std::unique_ptr<flow::FinerModel> finer = std::exchange(finer_, nullptr);
   stage_ = Stage::handing_over;
+  if (!finer->is_of(loop.newest_model())) { // somebody has undone meanwhile
+    loop.keep_model();
+    asked_ = true; // of the model that there is now
+    return std::nullopt;
+  }
   Result<void> prepared;
-  const bool is_from_newest = finer->is_of(loop.newest_model()); // nobody has undone meanwhile
-  const bool takes = is_from_newest && loop.change_model(*finer, [&](const auto& version) {
+  const bool takes = loop.change_model(*finer, [&](const auto& version) {
     prepared = prepare(version);
     return static_cast<bool>(prepared);
   });
-  if (!is_from_newest) loop.keep_model();
-  if (!is_from_newest) asked_ = true; // of the model that there is now
-  if (takes)
-    return "the model has " + std::to_string(loop.newest_model().layout().vertex_count()) +
-           " vertices now";
-  if (!prepared) return prepared.error().message + "; the model stays as it is";
-  return std::nullopt;
+  if (!takes) return prepared.error().message + "; the model stays as it is";
+  return "the model has " + std::to_string(loop.newest_model().layout().vertex_count()) +
+         " vertices now";
 }
 
 } // namespace nendo::session

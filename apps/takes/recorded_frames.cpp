@@ -39,14 +39,14 @@ double rate_of(const flow::LoopOptions& options, const Extent& extent) {
 } // namespace
 
 Result<std::unique_ptr<RecordedFrames>> RecordedFrames::open(const std::filesystem::path& path,
-                                                             deform::Mesh model) {
+                                                             const deform::Mesh& model) {
   auto scanned = recording::TakeReader::open(path);
   if (!scanned) return scanned.error();
   const Extent extent = extent_of(*std::move(scanned));
   auto reader = recording::TakeReader::open(path);
   if (!reader) return reader.error();
-  std::unique_ptr<RecordedFrames> frames(new RecordedFrames(*std::move(reader), std::move(model)));
-  auto replay = recording::LoopReplay::make(frames->setup(), frames->model_);
+  std::unique_ptr<RecordedFrames> frames(new RecordedFrames(*std::move(reader)));
+  auto replay = recording::LoopReplay::make(frames->setup(), model);
   if (!replay) return Error{replay.error().code, path.string() + ": " + replay.error().message};
   if (extent.ticks == 0)
     return Error{Errc::bad_input, path.string() + ": there is no tick of a loop in it"};

@@ -17,7 +17,7 @@ public:
   /// to find its duration. Blocks. Errors: those of TakeReader::open() and LoopReplay::make();
   /// bad_input (no tick in it).
   static Result<std::unique_ptr<RecordedFrames>> open(const std::filesystem::path& path,
-                                                      deform::Mesh model);
+                                                      const deform::Mesh& model);
 
   const deform::Mesh& model(std::uint32_t version) const override {
     return replay_->loop().model(version)->mesh;
@@ -38,11 +38,9 @@ public:
   const recording::Setup& setup() const noexcept { return reader_.setup(); }
 
 private:
-  RecordedFrames(recording::TakeReader reader, deform::Mesh model)
-      : reader_(std::move(reader)), model_(std::move(model)) {}
+  explicit RecordedFrames(recording::TakeReader reader) : reader_(std::move(reader)) {}
 
   recording::TakeReader reader_;
-  deform::Mesh model_;
   std::unique_ptr<recording::LoopReplay> replay_;
   double rate_hz_ = 0.0;
   double duration_s_ = 0.0;

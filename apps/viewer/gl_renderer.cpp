@@ -67,9 +67,7 @@ GlRenderer::~GlRenderer() {
 }
 
 void GlRenderer::set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder) {
-  std::vector<std::uint32_t> place_of(layout.vertex_count());
-  for (std::size_t at = 0; at < place_of.size(); ++at)
-    place_of[layout.order()[at]] = static_cast<std::uint32_t>(at);
+  const std::vector<std::uint32_t> place_of = layout.places();
   corners_.clear();
   for (const std::uint32_t corner : builder.corners())
     corners_.push_back(place_of[corner]);

@@ -11,9 +11,7 @@ namespace {
 
 // The corners of all triangles, as the vertices' places in the blocks.
 std::vector<std::uint32_t> corners_of(const deform::BlockLayout& layout, const deform::Mesh& mesh) {
-  std::vector<std::uint32_t> place_of(layout.vertex_count());
-  for (std::size_t at = 0; at < place_of.size(); ++at)
-    place_of[layout.order()[at]] = static_cast<std::uint32_t>(at);
+  const std::vector<std::uint32_t> place_of = layout.places();
   std::vector<std::uint32_t> corners;
   for (const std::uint32_t vertex : deform::corners_of_triangles(mesh))
     corners.push_back(place_of[vertex]);

@@ -152,38 +152,22 @@ Subdivision subdivide(const Mesh& mesh) {
   return result;
 }
 
-namespace {
-
-Eigen::Vector3f at_place(const BlockShape& shape, std::size_t at) {
-  const VertexBlock& block = shape[at / block_size];
-  return {block.x[at % block_size], block.y[at % block_size], block.z[at % block_size]};
-}
-
-std::vector<std::uint32_t> places_of(const BlockLayout& layout) {
-  std::vector<std::uint32_t> places(layout.vertex_count());
-  for (std::size_t at = 0; at < places.size(); ++at)
-    places[layout.order()[at]] = static_cast<std::uint32_t>(at);
-  return places;
-}
-
-} // namespace
-
 BlockShape subdivided(const BlockShape& shape, const BlockLayout& before,
                       const Subdivision& subdivision, const BlockLayout& after) {
   assert(before.origin() == after.origin() && before.unit() == after.unit());
-  const std::vector<std::uint32_t> places = places_of(before);
+  const std::vector<std::uint32_t> places = before.places();
   const BlockShape unmoved = before.pack();
   const BlockShape finer = after.pack();
   std::vector<VertexBlock> blocks(finer.data(), finer.data() + finer.block_count());
   const auto shown = [&](std::uint32_t vertex) -> Eigen::Vector3f {
-    if (vertex < places.size()) return at_place(shape, places[vertex]);
+    if (vertex < places.size()) return vertex_at(shape, places[vertex]);
     const std::size_t middle = vertex - places.size();
     const std::uint32_t begin = subdivision.parent_starts[middle];
     const std::uint32_t end = subdivision.parent_starts[middle + 1];
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     for (std::uint32_t of = begin; of < end; ++of) {
       const std::uint32_t place = places[subdivision.parents[of]];
-      sum += at_place(shape, place) - at_place(unmoved, place);
+      sum += vertex_at(shape, place) - vertex_at(unmoved, place);
     }
     return sum / static_cast<float>(end - begin);
   };

@@ -70,12 +70,14 @@ BlockShape filled(const std::vector<std::uint32_t>& order, std::size_t block_cou
   return BlockShape(std::move(blocks));
 }
 
-Eigen::Vector3f at_place(const BlockShape& shape, std::size_t at) {
-  const VertexBlock& block = shape[at / block_size];
-  return {block.x[at % block_size], block.y[at % block_size], block.z[at % block_size]};
-}
-
 } // namespace
+
+std::vector<std::uint32_t> BlockLayout::places() const {
+  std::vector<std::uint32_t> places(vertex_count());
+  for (std::size_t at = 0; at < places.size(); ++at)
+    places[order_[at]] = static_cast<std::uint32_t>(at);
+  return places;
+}
 
 BlockShape BlockLayout::pack() const {
   return filled(order_, block_count(), [&](Eigen::Index vertex) -> Eigen::Vector3f {
@@ -89,7 +91,7 @@ void BlockLayout::unpack(const BlockShape& shape, Points& out) const {
   if (out.cols() != original_.cols()) out.resize(3, original_.cols());
   for (std::size_t at = 0; at < order_.size(); ++at) {
     const auto vertex = static_cast<Eigen::Index>(order_[at]);
-    const Eigen::Vector3f place = at_place(shape, at);
+    const Eigen::Vector3f place = vertex_at(shape, at);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double before = original_(axis, vertex);
       const float before_packed = packed(before, axis);

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "support/flow_fixtures.hpp"
+#include "support/clocked_loop.hpp"
 #include "support/late_maker.hpp"
 #include "support/restraint.hpp"
 #include "support/rounds.hpp"
@@ -17,64 +17,12 @@ namespace exchange_test {
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::flow;
+using nendo::test::Clocked;
+using nendo::test::gap;
 using nendo::test::LoopUnderTest;
 using nendo::test::Restraint;
 
 namespace {
-
-/// Ticks of a clock that a test sets itself.
-struct Clocked {
-  LoopUnderTest test;
-  HostTime now = HostClock::now();
-  std::uint64_t number = 0;
-
-  explicit Clocked(Mode mode, const test::LoopFixture& fixture = {.rings_of_ball = 12})
-      : test(mode, fixture) {}
-
-  deform::Points tick(HostClock::duration later = 1ms) {
-    now += later;
-    test.loop->tick(number++, now, now);
-    test.loop->frames().update();
-    return test.vertices_of(frame());
-  }
-  /// Asks for it, and ticks until it is done, as who runs the loop does.
-  deform::Points step(Request request) {
-    const std::uint64_t before = frame().undos;
-    REQUIRE(test.commands.try_push(request));
-    deform::Points shape = tick();
-    if (frame().awaited) {
-      CHECK(frame().undos == before);
-      REQUIRE(test.loop->change_to(*frame().awaited));
-      shape = tick();
-      CHECK_FALSE(frame().awaited);
-    }
-    CHECK(frame().undos == before + 1);
-    return shape;
-  }
-  std::vector<StepKind> kinds() {
-    std::vector<StepKind> all;
-    for (const Step& step : frame().steps.all())
-      all.push_back(step.kind);
-    return all;
-  }
-  deform::Points bent(int counts, HostClock::duration later = 11ms) {
-    test.bend(counts, now + later);
-    return tick(later);
-  }
-  /// Bends the hands little by little, up to `counts`.
-  deform::Points stroke(int from, int counts) {
-    deform::Points shape;
-    for (int at = from; at != counts; at += from < counts ? 1 : -1)
-      shape = bent(at);
-    return shape;
-  }
-  const Frame& frame() { return test.loop->frames().front(); }
-  void change(const LoopSettings& settings) { REQUIRE(test.loop->change_settings(settings)); }
-};
-
-double gap(const deform::Points& a, const deform::Points& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
 
 LoopSettings with_radius(LoopSettings settings, double radius_m) {
   settings.radius_m.fill(radius_m);

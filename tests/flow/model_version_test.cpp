@@ -6,42 +6,21 @@
 
 #include <doctest/doctest.h>
 
-#include "support/flow_fixtures.hpp"
+#include "support/clocked_loop.hpp"
 
 namespace model_version_test {
 
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::flow;
-using nendo::test::LoopUnderTest;
+using nendo::test::gap;
 
 namespace {
 
-struct Clocked {
-  LoopUnderTest test;
-  HostTime now = HostClock::now();
-  std::uint64_t number = 0;
-
-  explicit Clocked(Mode mode) : test(mode, {.rings_of_ball = 10}) {}
+struct Versioned : test::Clocked {
+  explicit Versioned(Mode mode) : Clocked(mode, {.rings_of_ball = 10}) {}
 
   DeformLoop& loop() { return *test.loop; }
-  const Frame& frame() { return loop().frames().front(); }
-  deform::Points tick() {
-    now += 11ms;
-    loop().tick(number++, now, now);
-    loop().frames().update();
-    return test.vertices_of(frame());
-  }
-  deform::Points bent(int counts) {
-    test.bend(counts, now + 11ms);
-    return tick();
-  }
-  deform::Points stroke(int from, int to) {
-    deform::Points shape;
-    for (int at = from; at != to; at += from < to ? 1 : -1)
-      shape = bent(at);
-    return shape;
-  }
   deform::Points commit() {
     REQUIRE(test.commands.try_push(Request::commit));
     return tick();
@@ -55,29 +34,7 @@ struct Clocked {
     REQUIRE(loop().change_model(finer));
     return tick();
   }
-  /// Asks for it, and ticks until it is done, as who runs the loop does.
-  deform::Points step(Request request) {
-    const std::uint64_t before = frame().undos;
-    REQUIRE(test.commands.try_push(request));
-    deform::Points shape = tick();
-    if (frame().awaited) {
-      REQUIRE(loop().change_to(*frame().awaited));
-      shape = tick();
-    }
-    CHECK(frame().undos == before + 1);
-    return shape;
-  }
-  std::vector<StepKind> kinds() {
-    std::vector<StepKind> all;
-    for (const Step& step : frame().steps.all())
-      all.push_back(step.kind);
-    return all;
-  }
 };
-
-double gap(const deform::Points& a, const deform::Points& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
 
 /// Of the vertices that a subdivided model has in common with the one before.
 double old_gap(const deform::Points& finer, const deform::Points& before) {
@@ -90,7 +47,7 @@ TEST_SUITE("model_version") {
   TEST_CASE("subdividing moves nothing, and the hands go on with what they hold") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       CAPTURE(name_of(mode));
-      Clocked run(mode);
+      Versioned run(mode);
       run.stroke(0, 15);
       const deform::Points before = run.commit();
       CHECK(gap(before, run.test.model.vertices) > 1e-2);
@@ -111,8 +68,8 @@ TEST_SUITE("model_version") {
       for (const int late : {0, 1, 7, 40}) {
         CAPTURE(name_of(mode));
         CAPTURE(late);
-        Clocked run(mode);
-        Clocked reference(mode); // which commits where the other holds still, and keeps its model
+        Versioned run(mode);
+        Versioned reference(mode); // which commits where the other holds still, and keeps its model
         reference.now = run.now;
         run.stroke(0, 10);
         reference.stroke(0, 10);
@@ -137,7 +94,7 @@ TEST_SUITE("model_version") {
   }
 
   TEST_CASE("what is asked for while the loop holds still is done when it goes on") {
-    Clocked run(Mode::type1);
+    Versioned run(Mode::type1);
     run.stroke(0, 10);
     FinerModel finer(run.loop().newest_model());
     REQUIRE(run.loop().hold_still());
@@ -164,7 +121,7 @@ TEST_SUITE("model_version") {
 
   TEST_CASE("a model that is not wanted after all leaves the loop as it was") {
     for (const bool refused : {false, true}) {
-      Clocked run(Mode::type1);
+      Versioned run(Mode::type1);
       run.stroke(0, 10);
       FinerModel finer(run.loop().newest_model());
       REQUIRE(run.loop().hold_still());
@@ -192,7 +149,7 @@ TEST_SUITE("model_version") {
   TEST_CASE("undo and redo go through versions, settings and strokes, bit for bit") {
     for (const Mode mode : {Mode::type1, Mode::type2}) {
       CAPTURE(name_of(mode));
-      Clocked run(mode);
+      Versioned run(mode);
       std::vector<deform::Points> shapes{run.bent(0)};
       const auto keep = [&](const deform::Points& shape) { shapes.push_back(shape); };
       run.stroke(0, 10);
@@ -237,7 +194,7 @@ TEST_SUITE("model_version") {
   }
 
   TEST_CASE("a step after an undo forgets the versions that were undone") {
-    Clocked run(Mode::type1);
+    Versioned run(Mode::type1);
     run.stroke(0, 10);
     run.commit();
     run.subdivide();
@@ -265,7 +222,7 @@ TEST_SUITE("model_version") {
   }
 
   TEST_CASE("a reset goes back to the subdivided model before the hands") {
-    Clocked run(Mode::type2);
+    Versioned run(Mode::type2);
     run.stroke(0, 10);
     run.commit();
     const deform::Points finer = run.subdivide();
@@ -277,7 +234,7 @@ TEST_SUITE("model_version") {
   }
 
   TEST_CASE("an undo of a version drops what type 1 holds, and the hands take hold there") {
-    Clocked run(Mode::type1);
+    Versioned run(Mode::type1);
     run.stroke(0, 10);
     const deform::Points before = run.commit();
     run.subdivide();

@@ -110,15 +110,10 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
                            units_per_metre_);
     change.settings = settings;
   }
-  if (change.settings || change.model) {
-    auto shape_room = std::move(change.ready.shape_room);
-    const bool is_new_model = change.ready.is_new_model;
-    change.ready = shaping_.prepare(asked_, *asked_model_);
-    change.ready.shape_room = std::move(shape_room);
-    change.ready.is_new_model = is_new_model;
-  } else {
+  if (change.settings || change.model)
+    shaping_.prepare(asked_, *asked_model_, change.ready);
+  else
     change.ready = {};
-  }
   offer_change();
   return true;
 }
@@ -178,7 +173,7 @@ bool DeformLoop::is_still() {
   return !is_changing() && is_still_;
 }
 
-const ModelVersion* DeformLoop::model(std::uint32_t number) const noexcept {
+ModelVersion* DeformLoop::version_numbered(std::uint32_t number) const noexcept {
   for (const auto& version : versions_)
     if (version->number == number) return version.get();
   return nullptr;
@@ -204,11 +199,11 @@ void DeformLoop::keep_model() {
 }
 
 bool DeformLoop::change_to(const Awaited& awaited) {
-  const auto* const version = model(awaited.model);
+  ModelVersion* const version = version_numbered(awaited.model);
   if (version == nullptr || !awaited.settings.are_usable()) return false;
   if (version != asked_model_) {
     if (is_changing() || is_still_) return false;
-    offer_model(const_cast<ModelVersion&>(*version), ModelSource::kept);
+    offer_model(*version, ModelSource::kept);
   }
   return change_settings(awaited.settings);
 }
@@ -217,7 +212,7 @@ bool DeformLoop::change_to(const Awaited& awaited) {
 void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
   PreparedChange& change = next_change();
   change.model = {version.number, source};
-  change.ready = shaping_.prepare(asked_, version);
+  shaping_.prepare(asked_, version, change.ready);
   change.ready.is_new_model = source == ModelSource::subdivided;
   model_before_ = asked_model_;
   if (&version != asked_model_)

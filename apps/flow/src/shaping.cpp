@@ -128,13 +128,11 @@ void Shaping::make_room(Frame& frame) noexcept {
   }
 }
 
-ReadySculptor Shaping::prepare(const SculptorSetup& setup, ModelVersion& model) {
-  ReadySculptor ready;
+void Shaping::prepare(const SculptorSetup& setup, ModelVersion& model, ReadySculptor& ready) const {
   ready.model = &model;
   ready.sculptor = std::make_unique<Sculptor>(model.shape, still_tips_.cols(), setup.options);
   ready.settings = setup.settings;
   ready.room.fill(ready.sculptor->fields());
-  return ready;
 }
 
 bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,

@@ -60,6 +60,13 @@ private:
   std::vector<std::uint64_t> stamps_;
 };
 
+/// Returns the vertex at that place in block order.
+inline Eigen::Vector3f vertex_at(const BlockShape& shape, std::size_t place) noexcept {
+  const VertexBlock& block = shape[place / block_size];
+  const std::size_t lane = place % block_size;
+  return {block.x[lane], block.y[lane], block.z[lane]};
+}
+
 /// Where each vertex of a mesh stands in the blocks, and what the numbers there mean: vertex =
 /// origin + unit * coordinate. The origin is the middle of the model and the unit a power of two of
 /// about half its size, so that float is precise enough for models of any size and place. A layout
@@ -77,6 +84,9 @@ public:
   std::size_t block_count() const noexcept { return block_count_of(order_.size()); }
   /// The k-th vertex in block order is vertex order()[k] of the mesh.
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
+
+  /// Returns the place in block order of each vertex of the mesh: the inverse of order().
+  std::vector<std::uint32_t> places() const;
 
   /// Returns the original in blocks. The rest of the last block repeats its last vertex. Allocates.
   BlockShape pack() const;

@@ -157,7 +157,9 @@ public:
   /// Returns the version that the loop has or was asked last to go on with.
   const ModelVersion& newest_model() const noexcept { return *asked_model_; }
   /// Returns that version; null if there is none. It lives until change_model() frees it.
-  const ModelVersion* model(std::uint32_t number) const noexcept;
+  const ModelVersion* model(std::uint32_t number) const noexcept {
+    return version_numbered(number);
+  }
 
   /// Returns ok or merged if the hands could take hold of the model.
   deform::FieldStatus grab_status() const noexcept { return grab_status_; }
@@ -189,6 +191,7 @@ private:
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
   void place_tips() noexcept;
+  ModelVersion* version_numbered(std::uint32_t number) const noexcept;
   PreparedChange& next_change();
   void offer_change();
   void offer_model(ModelVersion& version, ModelSource source);

@@ -75,9 +75,9 @@ public:
   /// take hold of it at the places where they stopped, so that nothing of their way is lost.
   /// Wait-free, without allocation.
   void hold_still(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
-  /// Makes another sculptor, for that version of the model. Another thread may call it, at any
-  /// time. For a version that is not in force, the caller makes `shape_room`. Allocates.
-  ReadySculptor prepare(const SculptorSetup& setup, ModelVersion& model);
+  /// Puts another sculptor into `ready`, for that version of the model. Another thread may call it,
+  /// at any time. For a version that is not in force, the caller makes `shape_room`. Allocates.
+  void prepare(const SculptorSetup& setup, ModelVersion& model, ReadySculptor& ready) const;
   /// Lets that sculptor go on where the present one ends, which `ready` then has: after shape()
   /// with `completes`, in the same tick. A stroke ends, and the fingertips take hold anew at
   /// `tips`. Stroke and change are steps of their own; less than a second after the exchange before
