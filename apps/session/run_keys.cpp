@@ -15,7 +15,7 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes, x "
       "resets; " +
       std::string("[ and ] make the brush smaller, larger; m the other mode, n the next kernel, ") +
-      "i never folds, or may; e makes the model finer; t records; s saves; " +
+      "i never folds, or may; e makes the model finer; t records; . marks the moment; s saves; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
 
@@ -30,6 +30,7 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == 'x') commands.try_push(flow::Request::reset);
   if (*key == 't') commands.try_push(flow::SetRecording{!status.recording});
   if (*key == 'e') commands.try_push(flow::Subdivide{});
+  if (*key == '.') commands.try_push(flow::Mark{});
   if (*key == 's') commands.try_push(flow::SaveShape{});
   if (*key == 'k') commands.try_push(flow::SaveRecording{});
   if (*key == 'q') commands.try_push(flow::EndRun{});

@@ -74,6 +74,8 @@ public:
 
   bool is_changing() const noexcept { return is_changing_; }
   bool is_to_file() const noexcept { return to_file_; } ///< of the present recording
+  /// Returns true while there is one, to a file or in memory.
+  bool is_recording() const noexcept { return recorder_ != nullptr; }
   /// Returns true with --keep-last.
   bool keeps_last_minute() const noexcept;
   /// Asks for the recording in memory to be written to a file. Does nothing unless

@@ -161,8 +161,16 @@ private:
       settings_ = change->settings; // only the newest count
     if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
     if (std::holds_alternative<flow::Subdivide>(command)) models_.subdivide();
+    if (std::holds_alternative<flow::Mark>(command)) mark();
     ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
     saving_.add(command);
+  }
+
+  void mark() noexcept {
+    const bool marks = recorder_.is_recording() && loop_commands_.try_push(flow::Mark{});
+    if (marks) ++marks_;
+    report(marks ? "mark " + std::to_string(marks_) + " is in the recording"
+                 : "there is no recording to mark; begin one with t");
   }
 
   // Commands that came just before the end are still obeyed, if the loop ticks at all.
@@ -278,6 +286,7 @@ private:
   std::vector<gloves::GloveLight> lights_; ///< of all gloves, if their switches do something
   GloveStatuses gloves_;
   double elapsed_s_ = 0.0;
+  std::uint64_t marks_ = 0;
   bool end_reported_ = false; ///< that all gloves have ended
 };
 

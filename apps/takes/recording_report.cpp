@@ -60,6 +60,16 @@ void print_loop(const TakeSummary& summary) {
   std::printf("\n");
 }
 
+/// The first of them; more do not help anybody who reads a page of text.
+void print_marks(const TakeSummary& summary) {
+  constexpr std::size_t most = 20;
+  std::printf("  %-12s", "marks");
+  for (std::size_t at = 0; at < summary.marks.size() && at < most; ++at)
+    std::printf("%s %zu at %.2f s", at == 0 ? "" : ",", at + 1, to_seconds(summary.marks[at]));
+  if (summary.marks.size() > most) std::printf(", and %zu more", summary.marks.size() - most);
+  std::printf("\n");
+}
+
 ordered_json gloves_json(const TakeSummary& summary) {
   ordered_json gloves = ordered_json::array();
   for (std::size_t at = 0; at < summary.gloves.size(); ++at) {
@@ -95,6 +105,9 @@ ordered_json loop_json(const TakeSummary& summary) {
   line["settings_changes"] = summary.settings_changes;
   line["model_changes"] = summary.model_changes;
   line["shapes"] = summary.shapes;
+  line["marks_s"] = ordered_json::array();
+  for (const HostClock::duration mark : summary.marks)
+    line["marks_s"].push_back(to_seconds(mark));
   return line;
 }
 
@@ -111,6 +124,7 @@ void print_take(const std::string& file, const TakeSummary& summary) {
   for (std::size_t at = 0; at < summary.gloves.size(); ++at)
     print_glove(setup.gloves[at], summary.gloves[at]);
   if (setup.loop) print_loop(summary);
+  if (!summary.marks.empty()) print_marks(summary);
   if (summary.gaps > 0)
     std::printf("  %-12s %llu, of %llu entries that are counted\n", "gaps", number(summary.gaps),
                 number(summary.missing));

@@ -19,6 +19,7 @@ constexpr std::array key_table{
     KeyLine{"r, ctrl y", "redo what was undone; ctrl shift z, too"},
     KeyLine{"x", "reset: back to the model as it was loaded"},
     KeyLine{"t", "a take: record from here on, and end that"},
+    KeyLine{".", "mark this moment in the recording"},
     KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
     KeyLine{"s", "save the model as it is now"},
     KeyLine{"m, n", "the other mode, the next kernel"},
@@ -87,6 +88,7 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
   if (pressed(GLFW_KEY_U)) step(Request::undo, frame, commands);
   if (pressed(GLFW_KEY_R)) step(Request::redo, frame, commands);
   if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
+  if (pressed(GLFW_KEY_PERIOD)) commands.emplace_back(flow::Mark{});
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_E)) commands.emplace_back(flow::Subdivide{});
   if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});

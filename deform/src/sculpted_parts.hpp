@@ -1,6 +1,8 @@
 #pragma once
 // What the deformers of a shape work on.
 
+#include <utility>
+
 #include <nendo/deform/sculpted_shape.hpp>
 
 #include "block_evaluator.hpp"
@@ -14,9 +16,28 @@ struct SculptedShape::Parts {
   ShapeHistory history;
   StepNote note{}; ///< of the next step
   StepNote note_of_reset{};
+  /// Whether `now` may differ from the shape that was kept last. To find out reads a stamp a block,
+  /// which is too much for the tick that takes another version of a large model.
+  bool is_changed = false;
 
+  /// Returns the present shape, for writing.
+  BoundedShape& change() noexcept {
+    is_changed = true;
+    return now;
+  }
   /// Ends a step, which led to the present shape.
-  void keep() noexcept { history.keep(now.shape, note); }
+  void keep() noexcept {
+    if (std::exchange(is_changed, false)) history.keep(now.shape, note);
+  }
+  /// Makes the present shape the one that was kept last.
+  void revert() noexcept {
+    if (std::exchange(is_changed, false)) history.revert(now);
+  }
+  void undo() noexcept { history.undo(now); } ///< call keep() or revert() first
+  void redo() noexcept {
+    revert();
+    history.redo(now);
+  }
   /// Makes the original shape the present one. Both ways are steps in the history.
   void reset() noexcept {
     keep();

@@ -47,12 +47,12 @@ void SculptedShape::mark(const StepNote& note) noexcept {
 }
 
 void SculptedShape::undo_mark() noexcept {
-  parts_->history.revert(parts_->now);
-  parts_->history.undo(parts_->now);
+  parts_->revert();
+  parts_->undo();
 }
 
 void SculptedShape::redo_mark() noexcept {
-  parts_->history.redo(parts_->now);
+  parts_->redo();
 }
 
 const StepNote* SculptedShape::to_undo() const noexcept {

@@ -185,7 +185,6 @@ bool ShapeHistory::undo(BoundedShape& shape) noexcept {
 
 bool ShapeHistory::redo(BoundedShape& shape) noexcept {
   if (undone_ == 0) return false;
-  revert(shape);
   SavedBlock* next = present_ != nullptr ? present_->next : oldest_;
   head_ = next;
   const std::uint64_t step = next->step;

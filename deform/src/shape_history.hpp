@@ -37,8 +37,8 @@ public:
   /// Undoes the last step. `shape` must be the shape that was kept last. Returns false if there is
   /// no step, or none behind the fence.
   bool undo(BoundedShape& shape) noexcept;
-  /// Does the last undone step again, from the shape that was kept last; later changes of `shape`
-  /// are dropped. Returns false, and changes nothing, if there is no undone step.
+  /// Does the last undone step again. `shape` must be the shape that was kept last. Returns false,
+  /// and changes nothing, if there is no undone step.
   bool redo(BoundedShape& shape) noexcept;
 
   /// Makes undo() stop here, and forgets the undone steps.

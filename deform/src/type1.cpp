@@ -162,7 +162,7 @@ void Type1Deformer::draw(BlockShape& out) {
 
 /// Makes the applied shape the rest shape.
 void Type1Deformer::absorb() {
-  BoundedShape& rest = shape_->parts().now;
+  BoundedShape& rest = shape_->parts().change();
   if (in_links_) {
     rest.follow(*linked_);
   } else if (weights_->is_built()) {
@@ -210,9 +210,8 @@ FieldStatus Type1Deformer::undo(const Points& tips) {
   assert(tips.cols() == starts_.cols());
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  SculptedShape::Parts& parts = shape_->parts();
-  parts.keep(); // what release() left out
-  parts.history.undo(parts.now);
+  shape_->parts().keep(); // what release() left out
+  shape_->parts().undo();
   take_hold();
   return status;
 }
@@ -222,7 +221,7 @@ FieldStatus Type1Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = build(tips);
   if (!is_solved(status)) return status;
-  shape_->parts().history.redo(shape_->parts().now);
+  shape_->parts().redo();
   take_hold();
   return status;
 }

@@ -97,7 +97,7 @@ FieldStatus Type2Deformer::undo(const Points& tips) {
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
   shape_->parts().keep();
-  shape_->parts().history.undo(shape_->parts().now);
+  shape_->parts().undo();
   fields_.clear();
   return status;
 }
@@ -106,7 +106,7 @@ FieldStatus Type2Deformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   const FieldStatus status = take_hold(tips);
   if (!is_solved(status)) return status;
-  shape_->parts().history.redo(shape_->parts().now);
+  shape_->parts().redo();
   fields_.clear();
   return status;
 }
@@ -138,7 +138,7 @@ FieldStatus Type2Deformer::apply_piece() {
 }
 
 FieldStatus Type2Deformer::apply(const CsrbfField& field) {
-  if (!evaluator_->set_field(field) || !evaluator_->displace(shape_->parts().now))
+  if (!evaluator_->set_field(field) || !evaluator_->displace(shape_->parts().change()))
     return FieldStatus::not_finite;
   fields_.push(field);
   return FieldStatus::ok;

@@ -135,6 +135,36 @@ TEST_SUITE("take_tools") {
     CHECK(summary->missed == 100);
     CHECK(summary->requests == std::array<std::uint64_t, flow::requests.size()>{0, 0, 0, 1});
     CHECK(summary->gaps == 0);
+    CHECK(summary->marks.empty());
+  }
+
+  TEST_CASE("marks are found again when they were made, and a replay does the same with them") {
+    RecordedLoop live(Mode::type2);
+    live.record();
+    const HostTime begin = HostClock::now();
+    for (int at = 0; at < 50; ++at) {
+      for (const Side side : {Side::left, Side::right}) {
+        GloveSample sample = test::bent_sample(side, at, begin + at * 10ms);
+        sample.sequence = static_cast<std::uint64_t>(at);
+        live.test.rings[flow::Placement::index_of(side)]->try_push(sample);
+      }
+      if (at == 20 || at == 45) live.test.commands.try_push(flow::Mark{});
+      live.test.loop->tick(static_cast<std::uint64_t>(at), begin + at * 10ms, begin + at * 10ms);
+    }
+    REQUIRE(live.end());
+    const auto summary = summarise(live.path);
+    REQUIRE(summary);
+    CHECK(summary->is_whole());
+    REQUIRE(summary->marks.size() == 2);
+    CHECK(summary->setup.begun_host + summary->marks[0] == begin + 200ms);
+    CHECK(summary->setup.begun_host + summary->marks[1] == begin + 450ms);
+    auto reader = TakeReader::open(live.path);
+    auto replay = LoopReplay::make(reader->setup(), live.test.model);
+    REQUIRE(replay);
+    while (const auto entry = reader->next())
+      (*replay)->feed(*entry);
+    CHECK((*replay)->is_exact());
+    CHECK(sum_of((*replay)->loop().final_shape()) == reader->ending()->shape);
   }
 
   TEST_CASE(

@@ -11,6 +11,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/recording/loop_replay.hpp>
+#include <nendo/recording/take_tools.hpp>
 
 #include "session/open_hands.hpp"
 #include "support/temporary_folder.hpp"
@@ -314,6 +315,23 @@ TEST_SUITE("run_session") {
     CHECK(outcome.recordings.size() == 2);
     for (const auto& recording : outcome.recordings)
       CHECK(replay(recording.file) >= 0);
+  }
+
+  TEST_CASE("a mark is in the recording, and without one the reason is told") {
+    Run run;
+    Asker asker(Changes{{flow::Mark{}}, {record(true)}, {flow::Mark{}}, {flow::Mark{}}});
+    asker.least_ticks = 60;
+    const auto outcome = run.follow({&asker});
+    const auto told = [&](const char* words) {
+      return std::count(asker.reports.begin(), asker.reports.end(), words);
+    };
+    CHECK(told("there is no recording to mark; begin one with t") == 1);
+    CHECK(told("mark 1 is in the recording") == 1);
+    CHECK(told("mark 2 is in the recording") == 1);
+    REQUIRE(outcome.recordings.size() == 1);
+    const auto summary = recording::summarise(outcome.recordings[0].file);
+    REQUIRE(summary);
+    CHECK(summary->marks.size() == 2);
   }
 
   TEST_CASE("a model that a sink cannot take is not taken, and the reason is told") {

@@ -31,6 +31,8 @@ TEST_SUITE("client_commands") {
     CHECK(parsed_as<flow::SetRecording>("record") == flow::SetRecording{true});
     CHECK(parsed_as<flow::SetRecording>("end recording") == flow::SetRecording{false});
     CHECK(parsed_as<flow::SaveShape>("save"));
+    CHECK(parsed_as<flow::Mark>("mark"));
+    CHECK_FALSE(parse_command("mark 1"));
     CHECK(parsed_as<flow::SaveRecording>("keep"));
   }
 

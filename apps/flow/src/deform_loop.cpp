@@ -143,9 +143,10 @@ void DeformLoop::take_commands() noexcept {
 void DeformLoop::apply(const Command& command) noexcept {
   const auto* const request = std::get_if<Request>(&command);
   const auto* const move = std::get_if<WristMove>(&command);
-  if (request == nullptr && (move == nullptr || !move->is_usable())) return;
+  if (!is_for_loop(command) || (move != nullptr && !move->is_usable())) return;
   if (options_.input_log != nullptr) options_.input_log->command(command);
   if (request != nullptr) return shaping_.ask(*request);
+  if (move == nullptr) return; // a mark is only logged
   for (Hand& hand : hands_)
     if (hand.slot == Placement::index_of(move->side)) hand.T_stage_wrist = move->pose();
 }

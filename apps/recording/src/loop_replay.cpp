@@ -89,8 +89,8 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);
     return true;
-  } else {
-    exact_ = false;
+  } else if (!std::holds_alternative<flow::Mark>(entry)) {
+    exact_ = false; // a gap
   }
   return false;
 }

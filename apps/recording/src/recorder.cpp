@@ -118,6 +118,8 @@ private:
       put(*still);
     } else if (const auto* model = std::get_if<flow::ChangeModel>(&command)) {
       put(*model);
+    } else if (const auto* mark = std::get_if<flow::Mark>(&command)) {
+      put(*mark);
     }
   }
   void add(const flow::LoggedTick& tick) {

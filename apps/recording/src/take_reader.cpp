@@ -52,6 +52,7 @@ struct EntryWriter {
     writer.u32_le(change.number);
     writer.u8(static_cast<std::uint8_t>(change.source));
   }
+  void operator()(const flow::Mark&) const { driver::put_entry_head(writer, EntryKind::mark, 0); }
   void operator()(const Gap& gap) const {
     driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
     writer.u64_le(gap.entries);
@@ -235,6 +236,8 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
     entry = flow::HoldStill{};
   } else if (record.is(EntryKind::model)) {
     entry = model_of(reader);
+  } else if (record.is(EntryKind::mark)) {
+    entry = flow::Mark{};
   } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

@@ -38,7 +38,10 @@ public:
   }
   void operator()(const flow::HoldStill&) {}
   void operator()(const flow::ChangeModel&) { ++summary_.model_changes; }
+  void operator()(const flow::Mark&) { ++marks_due_; }
   void operator()(const flow::LoggedTick& tick) {
+    for (; marks_due_ > 0; --marks_due_)
+      summary_.marks.push_back(tick.woke - summary_.setup.begun_host);
     if (summary_.ticks > 0) {
       if (tick.number < next_tick_) ++summary_.ticks_out_of_order;
       if (tick.number > next_tick_ && !after_gap_) summary_.missed += tick.number - next_tick_;
@@ -59,7 +62,8 @@ private:
   std::vector<std::uint64_t> next_sequence_;
   std::optional<flow::LoopSettings> settings_;
   std::uint64_t next_tick_ = 0;
-  bool after_gap_ = false; ///< what is not in the recording was not missed by the loop
+  std::uint64_t marks_due_ = 0; ///< of the next tick
+  bool after_gap_ = false;      ///< what is not in the recording was not missed by the loop
 };
 
 bool agree(const TakeSummary& summary) {

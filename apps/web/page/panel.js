@@ -15,6 +15,7 @@ const KEYS = [
   ['Ctrl Z', 'undo, too; with Shift, or Ctrl Y: redo'],
   ['x', 'reset: back to the model as it was loaded', panel => panel.ask('reset')],
   ['t', 'a take: record from here on, and end that', panel => panel.record()],
+  ['.', 'mark this moment in the recording', panel => panel.ask('mark')],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
   ['s', 'save the model as it is now', panel => panel.ask('save')],
   ['m', 'the other mode', panel => panel.shaping.otherMode()],

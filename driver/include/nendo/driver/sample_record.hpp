@@ -26,6 +26,7 @@ enum class EntryKind : std::uint8_t {
   settings = 6,
   hold_still = 7,
   model = 8,
+  mark = 9,
 };
 
 /// One entry of an input log: its kind and what it holds.

@@ -36,6 +36,10 @@ struct SaveShape {
 struct SaveRecording {
   friend bool operator==(const SaveRecording&, const SaveRecording&) = default;
 };
+/// Marks this moment in the recording, so that it is found again. The shape does not depend on it.
+struct Mark {
+  friend bool operator==(const Mark&, const Mark&) = default;
+};
 /// Ends the run, which then writes its shape.
 struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
@@ -58,10 +62,11 @@ struct ChangeModel {
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
-/// A loop obeys Request and WristMove at the beginning of its next tick. All others are obeyed by
-/// the code that runs the loop. HoldStill and ChangeModel only tell a log what the loop did.
+/// A loop obeys Request and WristMove at the beginning of its next tick, and logs a Mark. All
+/// others are obeyed by the code that runs the loop. HoldStill and ChangeModel only tell a log what
+/// the loop did.
 using Command = std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape,
-                             SaveRecording, EndRun, Subdivide, HoldStill, ChangeModel>;
+                             SaveRecording, EndRun, Subdivide, HoldStill, ChangeModel, Mark>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.
@@ -69,7 +74,8 @@ using CommandRing = SpscRing<Command>;
 
 /// Tells whether a running loop obeys the command by itself.
 constexpr bool is_for_loop(const Command& command) noexcept {
-  return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command);
+  return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command) ||
+         std::holds_alternative<Mark>(command);
 }
 
 } // namespace nendo::flow

@@ -35,7 +35,8 @@ struct TakeSummary {
   std::array<std::uint64_t, flow::requests.size()> requests{};
   std::uint64_t wrist_moves = 0;
   std::uint64_t settings_changes = 0;
-  std::uint64_t model_changes = 0; ///< undos and redos of them, too
+  std::uint64_t model_changes = 0;        ///< undos and redos of them, too
+  std::vector<HostClock::duration> marks; ///< of flow::Mark, since the beginning
   std::uint64_t shapes = 0;
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0; ///< deadlines between ticks
