@@ -70,6 +70,22 @@ Result<void> check_outputs(const CommandOptions& options) {
                               {"--screenshot", view.screenshot}});
 }
 
+/// A file, or the name of a shipped puppet. Its model stands beside it.
+Result<void> read_puppet(session::RunOptions& run) {
+  if (run.puppet_file.empty()) return {};
+  std::error_code ignored;
+  if (!std::filesystem::exists(run.puppet_file, ignored)) {
+    const auto shipped = cli::shipped_model(run.puppet_file + ".puppet.toml");
+    if (std::filesystem::exists(shipped, ignored)) run.puppet_file = shipped.string();
+  }
+  auto puppet = puppet::read_puppet(run.puppet_file);
+  if (!puppet) return puppet.error();
+  run.puppet = *std::move(puppet);
+  if (run.mesh.empty())
+    run.mesh = (std::filesystem::path(run.puppet_file).parent_path() / run.puppet->model).string();
+  return {};
+}
+
 Result<void> check(CommandOptions& options) {
   auto& run = options.run;
   const auto mode = flow::mode_named(options.mode);
@@ -106,6 +122,7 @@ Result<void> check(CommandOptions& options) {
   if (auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
+  if (auto fine = read_puppet(run); !fine) return fine;
   if (run.mesh.empty()) run.mesh = cli::shipped_model("moai.obj").string();
   return check_outputs(options);
 }
@@ -156,7 +173,7 @@ void note_oddities(const deform::Mesh& model, const CommandOptions& options) {
 
 /// Turns the guard against folds on, or says that a model of this size goes without.
 void choose_injective(const deform::Mesh& model, CommandOptions& options) {
-  if (options.not_injective) return;
+  if (options.not_injective || options.run.puppet) return;
   if (options.injective || model.vertices.cols() <= most_injective_unasked) {
     options.run.loop.sculptor.deformer.injective.emplace();
     return;
@@ -223,6 +240,9 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", run_options.mesh,
                      "OBJ or PLY file to shape; without it, the shipped Moai");
+  command.add_option("--puppet", run_options.puppet_file,
+                     "A puppet file, or face: what each finger does to the model, in place of "
+                     "hands that touch it");
   command.add_option(
       "--mode", options.mode,
       "type1: the rest shape follows the fingertips; type2: strokes along their paths");

@@ -13,7 +13,7 @@ namespace {
 // Opens the gloves that the machine has, one for each hand, or simulated ones. A glove that is
 // there but may not be used is an error. If one does not answer, a note says so, and the other hand
 // goes on alone.
-Result<std::vector<gloves::OpenHand>> open_any(EventCount* event_count) {
+Result<std::vector<gloves::OpenHand>> open_any(const RunOptions& options, EventCount* event_count) {
   std::vector<gloves::OpenHand> hands;
   std::vector<std::string> why;
   for (const Side side : {Side::left, Side::right}) {
@@ -36,7 +36,7 @@ Result<std::vector<gloves::OpenHand>> open_any(EventCount* event_count) {
   cli::note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
             "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {
-    auto hand = gloves::open_hand("sim", side, event_count);
+    auto hand = gloves::open_hand(options.puppet ? "sim:faces" : "sim", side, event_count);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }
@@ -78,7 +78,7 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
   if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.event_count = &event_count;
   const bool named = !options.left.empty() || !options.right.empty();
   EventCount* const notified = options.loop.event_count;
-  auto hands = named ? open_named(options, model, notified) : open_any(notified);
+  auto hands = named ? open_named(options, model, notified) : open_any(options, notified);
   if (!hands) return hands.error();
   if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
     return fine.error();

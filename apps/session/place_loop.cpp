@@ -67,6 +67,24 @@ Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_
 
 } // namespace
 
+namespace {
+
+/// Puts the puppet into the options. Error: bad_input, naming its file.
+Result<void> set_rig(const RunOptions& options, const deform::Mesh& model,
+                     flow::LoopOptions& loop) {
+  if (model.face_corners.empty())
+    return Error{Errc::bad_input, options.mesh + ": has no face, and a puppet needs a surface"};
+  loop.rig = std::make_shared<const puppet::Rig>(*options.puppet, model);
+  loop.sculptor.deformer.supports = loop.rig->supports();
+  const auto surface = flow::surface_for(*loop.rig, model, deform::BlockLayout(model.vertices),
+                                         loop.sculptor.deformer);
+  if (!surface)
+    return Error{surface.error().code, options.puppet_file + ": " + surface.error().message};
+  return {};
+}
+
+} // namespace
+
 Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
   if (text.empty()) return std::optional<deform::Supports>();
   auto supports = flow::parse_finger_supports(text);
@@ -88,6 +106,8 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   // between them.
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
+  if (options.puppet)
+    if (const auto fine = set_rig(options, model, loop_options); !fine) return fine.error();
   const auto placement = placement_for(hands, inputs, model);
   PlacedSetup setup{inputs, placement, loop_options};
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
@@ -99,7 +119,9 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 }
 
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
-  const auto points = 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
+  const auto& rig = placed.setup.options.rig;
+  const auto points =
+      rig ? rig->starts().cols() : 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);

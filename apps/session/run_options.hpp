@@ -13,12 +13,14 @@
 namespace nendo::session {
 
 struct RunOptions {
-  std::string left;        ///< GLOVE; empty: not asked for
-  std::string right;       ///< GLOVE; empty: not asked for
-  std::string mesh;        ///< empty: the shipped model
-  std::string out;         ///< empty: a name made of date and time
-  std::string picture;     ///< empty: none
-  double duration_s = 0.0; ///< 0: until a stop signal
+  std::string left;                       ///< GLOVE; empty: not asked for
+  std::string right;                      ///< GLOVE; empty: not asked for
+  std::string mesh;                       ///< empty: the shipped model, or a puppet's
+  std::string puppet_file;                ///< empty: none
+  std::optional<puppet::Puppet> puppet{}; ///< of that file
+  std::string out;                        ///< empty: a name made of date and time
+  std::string picture;                    ///< empty: none
+  double duration_s = 0.0;                ///< 0: until a stop signal
   /// The supports of both hands' fingertips in model units (flow::parse_finger_supports). nullopt
   /// means one radius for all, computed from the model's size.
   std::optional<deform::Supports> supports{};

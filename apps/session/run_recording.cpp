@@ -88,6 +88,7 @@ recording::Setup RunRecorder::setup_now() const {
                                     placed_.setup.options,
                                     std::string(deform::simd_names().front()),
                                     {}};
+  if (options_.puppet) setup.loop->puppet = options_.puppet->text;
   return setup;
 }
 

@@ -5,10 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "config/toml_reader.hpp"
 #include "timeline/timeline_file.hpp"
-#include "timeline/toml_reader.hpp"
 
 namespace nendo::timeline {
+
+using config::TomlReader;
+
 namespace {
 
 deform::Support read_support(TomlReader& reader, const toml::node& node) {

@@ -25,10 +25,20 @@ Frame first_frame(const Shaping& shaping, double units_per_metre) {
 }
 
 SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
-                          double units_per_metre) {
-  return {options.sculptor, options.settings
-                                ? *options.settings
-                                : settings_of(options.sculptor, hand.filter, units_per_metre)};
+                          const ModelVersion& model, double units_per_metre) {
+  SculptorSetup setup{options.sculptor,
+                      options.settings
+                          ? *options.settings
+                          : settings_of(options.sculptor, hand.filter, units_per_metre)};
+  if (!options.rig) return setup;
+  if (auto surface =
+          surface_for(*options.rig, model.mesh, model.layout(), options.sculptor.deformer))
+    setup.options.surface = *std::move(surface);
+  return setup;
+}
+
+Eigen::Index control_points(const LoopOptions& options, std::size_t hands) {
+  return options.rig ? options.rig->starts().cols() : 5 * static_cast<Eigen::Index>(hands);
 }
 
 std::vector<std::unique_ptr<ModelVersion>> first_version(const deform::Mesh& model,
@@ -50,13 +60,27 @@ ShapingOptions shaping_options(const LoopOptions& options, const SculptorSetup& 
 
 } // namespace
 
+Result<std::shared_ptr<const deform::SurfaceField>>
+surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
+            const deform::DeformerOptions& options) {
+  if (rig.puppet().distance == puppet::Distance::air)
+    return std::shared_ptr<const deform::SurfaceField>();
+  deform::SurfaceSetup setup = puppet::surface_setup(rig.puppet(), model, options.csrbf.kernel);
+  for (deform::SurfacePoint& point : setup.points) // where all are equal, none has one of its own
+    point.radius = options.supports.shared.front().radius;
+  for (const deform::OwnSupport& own : options.supports.own)
+    setup.points[static_cast<std::size_t>(own.point)].radius = own.support.radius;
+  return deform::SurfaceField::make(model, layout, setup);
+}
+
 DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        std::vector<HandInput> hands, const LoopOptions& options,
                        const deform::BlockShape* first)
     : options_(options), units_per_metre_(placement.units_per_metre),
-      tips_(Points::Zero(3, 5 * static_cast<Eigen::Index>(hands.size()))),
-      first_(first_setup(options, hands.front(), placement.units_per_metre)),
-      versions_(first_version(model, options, first)), asked_model_(versions_.front().get()),
+      tips_(Points::Zero(3, control_points(options, hands.size()))),
+      versions_(first_version(model, options, first)),
+      first_(first_setup(options, hands.front(), *versions_.front(), placement.units_per_metre)),
+      asked_model_(versions_.front().get()),
       shaping_(*asked_model_, tips_.cols(), shaping_options(options, first_)), asked_(first_),
       frames_(first_frame(shaping_, placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
@@ -73,6 +97,11 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                       {},
                       filter});
     hands_.back().follow(hands_.back().input.first);
+  }
+  if (options.rig) {
+    rig_.emplace(options.rig);
+    rig_->set_asked(options.function_values);
+    rig_->take_hold(hand_states());
   }
   compute_hands(frames_.back());
   grab_status_ = shaping_.begin(tips_);
@@ -162,9 +191,34 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     shown.present = true;
     shown.silent = hand.silent;
     shown.samples = stats_.samples[hand.slot];
+    if (rig_) continue;
     tips_.middleCols<5>(column) = units_per_metre_ * shown.pose.fingertip_positions();
     column += 5;
   }
+  if (!rig_) return;
+  play_rig();
+  for (std::size_t at = 0; at < rig_->values().size(); ++at)
+    frame.functions[at] = static_cast<float>(rig_->values()[at]);
+}
+
+puppet::RigPlayer::Hands DeformLoop::hand_states() noexcept {
+  puppet::RigPlayer::Hands states{};
+  for (const Hand& hand : hands_) {
+    hand_states_[hand.slot] = {hand.angles, hand.pose(), hand.T_stage_wrist};
+    states[hand.slot] = &hand_states_[hand.slot];
+  }
+  return states;
+}
+
+/// Hands that have let go move nothing, and take hold again where they are then, as one lifts a
+/// mouse.
+void DeformLoop::play_rig() noexcept {
+  const auto hands = hand_states();
+  if (shaping_.is_held())
+    rig_->follow(hands);
+  else
+    rig_->take_hold(hands);
+  rig_->write(tips_);
 }
 
 void DeformLoop::tick(const Pacer::Due& due) noexcept {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <nendo/flow/finger_supports.hpp>
@@ -28,6 +29,25 @@ LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOpti
           .filter = filter};
 }
 
+double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept {
+  const auto sum = [](const auto& radii) {
+    return std::accumulate(radii.begin(), radii.end(), 0.0);
+  };
+  return sum(settings.radius_m) / sum(first.radius_m);
+}
+
+namespace {
+
+deform::Supports scaled(deform::Supports supports, double scale) {
+  for (deform::Support& shared : supports.shared)
+    shared.radius *= scale;
+  for (deform::OwnSupport& own : supports.own)
+    own.support.radius *= scale;
+  return supports;
+}
+
+} // namespace
+
 SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
                             const LoopSettings& wanted, int hands, double units_per_metre) {
   if (wanted == first.settings) return first;
@@ -40,7 +60,10 @@ SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first
     if (wanted.injective) deformer.injective.emplace();
   }
   const bool other_radii = wanted.radius_m != now.settings.radius_m;
-  if (other_radii) {
+  if (other_radii && hands == 0) {
+    deformer.supports =
+        scaled(first.options.deformer.supports, scale_of_radii(wanted, first.settings));
+  } else if (other_radii) {
     // Both hands are alike, so that one hand has what two have.
     auto of_hands = supports_of_hands(supports_on_model(wanted.radius_m, units_per_metre), hands);
     if (of_hands) deformer.supports = *std::move(of_hands);

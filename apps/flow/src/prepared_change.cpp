@@ -49,6 +49,7 @@ void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
 }
 
 void DeformLoop::place_tips() noexcept {
+  if (rig_) return rig_->take_hold(hand_states()); // the points stay where they are
   Eigen::Index column = 0;
   for (const Hand& hand : hands_) {
     tips_.middleCols<5>(column) = units_per_metre_ * hand.pose().fingertip_positions();
@@ -78,6 +79,7 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   }
   place_tips();
   switch_on_ = false;
+  if (rig_) std::copy(rig_->asked().begin(), rig_->asked().end(), state.function_values.begin());
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
   state.held = shaping_.is_held();
   state.shape.follow(shaping_.sculptor().rest());
@@ -106,8 +108,9 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
     asked_ = change.before;
     change.settings.reset();
   } else {
-    asked_ = with_settings(change.before, first_, settings, static_cast<int>(hands_.size()),
-                           units_per_metre_);
+    auto wanted = setup_for(change.before, settings);
+    if (!wanted) return false;
+    asked_ = *std::move(wanted);
     change.settings = settings;
   }
   if (change.settings || change.model)
@@ -118,6 +121,26 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
   return true;
 }
 
+/// Of a puppet. Returns false, and changes nothing, if its points are too near to each other.
+bool DeformLoop::set_surface(SculptorOptions& sculptor, const ModelVersion& model) const {
+  if (!options_.rig) return true;
+  auto surface = surface_for(*options_.rig, model.mesh, model.layout(), sculptor.deformer);
+  if (surface) sculptor.surface = *std::move(surface);
+  return static_cast<bool>(surface);
+}
+
+/// Nothing, if nothing can be done with the settings.
+std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
+                                                   const LoopSettings& settings) const {
+  const int hands = options_.rig ? 0 : static_cast<int>(hands_.size());
+  SculptorSetup setup = with_settings(before, first_, settings, hands, units_per_metre_);
+  setup.options.surface = before.options.surface; // that of `first_` may be another version's
+  const bool same =
+      settings.kernel == before.settings.kernel && settings.radius_m == before.settings.radius_m;
+  if (!same && !set_surface(setup.options, *asked_model_)) return std::nullopt;
+  return setup;
+}
+
 void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   assert(!is_still_);
   PreparedChange& change = next_change();
@@ -125,6 +148,7 @@ void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   begins.log = log;
   begins.state.placement.units_per_metre = units_per_metre_;
   begins.state.shape = like;
+  if (rig_) begins.state.function_values.resize(rig_->asked().size());
   change.log = std::move(begins);
   offer_change();
 }
@@ -212,6 +236,7 @@ bool DeformLoop::change_to(const Awaited& awaited) {
 void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
   PreparedChange& change = next_change();
   change.model = {version.number, source};
+  if (&version != asked_model_) set_surface(asked_.options, version);
   shaping_.prepare(asked_, version, change.ready);
   change.ready.is_new_model = source == ModelSource::subdivided;
   model_before_ = asked_model_;
@@ -226,6 +251,7 @@ void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
 void DeformLoop::go_back() {
   asked_model_ = model_before_;
   if (change_->settings) asked_ = change_->before;
+  set_surface(asked_.options, *asked_model_);
 }
 
 /// Where a new version has taken the way that a redo would have gone, frees those of that way.

@@ -13,14 +13,20 @@ using deform::Type2Deformer;
 
 namespace {
 
-/// shape: points, or a SculptedShape.
-template <class Shape>
-std::variant<Type1Deformer, Type2Deformer> make(Shape&& shape, Eigen::Index control_points,
-                                                const SculptorOptions& options) {
-  if (options.mode == Mode::type1)
-    return Type1Deformer(std::forward<Shape>(shape), control_points, options.deformer);
-  return Type2Deformer(std::forward<Shape>(shape), control_points, options.piece_length,
-                       options.deformer);
+using Deformer = std::variant<Type1Deformer, Type2Deformer, deform::SurfaceDeformer>;
+
+Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorOptions& options) {
+  if (options.mode == Mode::type2)
+    return Type2Deformer(shape, control_points, options.piece_length, options.deformer);
+  if (options.surface) return deform::SurfaceDeformer(shape, options.surface);
+  return Type1Deformer(shape, control_points, options.deformer);
+}
+
+/// Whose shape is its own: points.
+Deformer make(Points rest, Eigen::Index control_points, const SculptorOptions& options) {
+  if (options.mode == Mode::type2)
+    return Type2Deformer(std::move(rest), control_points, options.piece_length, options.deformer);
+  return Type1Deformer(std::move(rest), control_points, options.deformer);
 }
 
 } // namespace
@@ -43,12 +49,14 @@ Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
     : deformer_(make(shape, control_points, options)) {}
 
 FieldStatus Sculptor::grab(const Points& tips) noexcept {
-  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->grab(tips);
-  return std::get_if<Type2Deformer>(&deformer_)->begin(tips);
+  if (auto* type2 = std::get_if<Type2Deformer>(&deformer_)) return type2->begin(tips);
+  return grab_on(tips);
 }
 
 FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->apply(tips, out);
+  if (auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
+    return surface->apply(tips, out);
   auto* type2 = std::get_if<Type2Deformer>(&deformer_);
   const FieldStatus status = type2->stroke_to(tips).status;
   out.follow(type2->shape());
@@ -65,6 +73,8 @@ FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->commit(tips);
+  if (auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
+    return surface->commit(tips);
   return std::get_if<Type2Deformer>(&deformer_)->begin(tips);
 }
 
@@ -101,23 +111,25 @@ std::size_t Sculptor::forgotten_steps() const noexcept {
 }
 
 const BlockShape& Sculptor::rest() const noexcept {
-  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
-  return type1 != nullptr ? type1->rest() : std::get_if<Type2Deformer>(&deformer_)->shape();
+  if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_)) return type2->shape();
+  if (const auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->rest();
+  return std::get_if<deform::SurfaceDeformer>(&deformer_)->rest();
 }
 
 const deform::BlockLayout& Sculptor::layout() const noexcept {
-  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
-  return type1 != nullptr ? type1->layout() : std::get_if<Type2Deformer>(&deformer_)->layout();
+  return std::visit(
+      [](const auto& deformer) -> const deform::BlockLayout& { return deformer.layout(); },
+      deformer_);
 }
 
 const deform::FieldSequence& Sculptor::fields() const noexcept {
-  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
-  return type1 != nullptr ? type1->fields() : std::get_if<Type2Deformer>(&deformer_)->fields();
+  return std::visit(
+      [](const auto& deformer) -> const deform::FieldSequence& { return deformer.fields(); },
+      deformer_);
 }
 
 deform::ChainReport Sculptor::report() const noexcept {
-  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
-  return type1 != nullptr ? type1->report() : std::get_if<Type2Deformer>(&deformer_)->report();
+  return std::visit([](const auto& deformer) { return deformer.report(); }, deformer_);
 }
 
 } // namespace nendo::flow

@@ -68,7 +68,9 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   frame.fields.follow(sculptor_->fields());
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  const bool moves = moves_anything(frame.fields);
+  const bool leads = !sculptor_->is_along_surface();
+  if (!leads) ++leaps_;
+  const bool moves = !leads || moves_anything(frame.fields);
   shaped_ = moves || (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_->commit(tips))) {
@@ -101,7 +103,7 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   stats.undo_steps = steps_to_undo();
   stats.forgotten_steps = sculptor_->forgotten_steps();
   frame.commits = stats.commits + otherwise_ended_;
-  frame.undos = stats.undos + stats.redos + stats.resets;
+  frame.undos = stats.undos + stats.redos + stats.resets + leaps_;
   frame.undo_steps = undo_steps();
   frame.redo_steps = steps_to_redo();
   frame.awaited = awaited_;

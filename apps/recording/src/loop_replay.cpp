@@ -11,20 +11,33 @@ namespace {
 // As many as may wait for a live loop, or more.
 constexpr std::size_t ring_size = 4096;
 
-bool points_exist(const deform::Supports& supports, std::size_t hands) {
-  return std::all_of(supports.own.begin(), supports.own.end(), [&](const auto& own) {
-    return own.point < 5 * static_cast<Eigen::Index>(hands);
-  });
+bool points_exist(const deform::Supports& supports, Eigen::Index points) {
+  return std::all_of(supports.own.begin(), supports.own.end(),
+                     [&](const auto& own) { return own.point < points; });
+}
+
+/// Returns null if the hands touch the model.
+Result<std::shared_ptr<const puppet::Rig>> rig_of(const LoopSetup& loop,
+                                                  const deform::Mesh& model) {
+  if (loop.puppet.empty()) return std::shared_ptr<const puppet::Rig>();
+  auto read = puppet::parse_puppet(loop.puppet, "the recorded puppet");
+  if (!read) return read.error();
+  if (model.face_corners.empty())
+    return Error{Errc::bad_input, "the model has no face, and a puppet needs a surface"};
+  return std::make_shared<const puppet::Rig>(*std::move(read), model);
 }
 
 } // namespace
 
 Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
                                                      const deform::Mesh& model) {
-  if (!setup.loop || setup.hands.empty() ||
-      !points_exist(setup.loop->options.sculptor.deformer.supports, setup.hands.size())) {
+  if (!setup.loop || setup.hands.empty()) return Error{Errc::bad_input, std::string(without_loop)};
+  auto rig = rig_of(*setup.loop, model);
+  if (!rig) return rig.error();
+  const Eigen::Index points =
+      *rig ? (*rig)->starts().cols() : 5 * static_cast<Eigen::Index>(setup.hands.size());
+  if (!points_exist(setup.loop->options.sculptor.deformer.supports, points))
     return Error{Errc::bad_input, std::string(without_loop)};
-  }
   std::unique_ptr<LoopReplay> replay(new LoopReplay);
   std::vector<flow::HandInput> inputs = setup.hands;
   for (auto& input : inputs) {
@@ -33,6 +46,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   }
   flow::LoopOptions options = setup.loop->options;
   options.commands = &replay->commands_;
+  options.rig = *std::move(rig);
   options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
   const deform::BlockShape first(setup.loop->rest);
   const bool has_first = first.block_count() > 0;

@@ -36,6 +36,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.placement = state.placement;
   loop.options.sculptor = state.sculptor.options;
   loop.options.held = state.held;
+  loop.options.function_values = state.function_values;
   loop.subdivisions = state.subdivisions;
   loop.options.settings = state.sculptor.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
@@ -69,6 +70,8 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
   }
   if (!setup.loop) return bytes;
   append(loop_chunk, [&](ByteWriter writer) { put_loop(writer, *setup.loop); });
+  if (!setup.loop->puppet.empty())
+    append(puppet_chunk, [&](ByteWriter writer) { put_puppet(writer, *setup.loop); });
   std::span<const deform::VertexBlock> rest(setup.loop->rest);
   while (!rest.empty()) {
     const std::size_t count = std::min(rest.size(), most_blocks_of_chunk);
@@ -83,6 +86,7 @@ bool read_setup_chunk(driver::ChunkType type, std::span<const std::byte> payload
   if (type == head_chunk) return read_head(reader, setup);
   if (type == hand_chunk) return read_hand(reader, setup.hands);
   if (type == loop_chunk) return read_loop(reader, setup.loop);
+  if (type == puppet_chunk) return read_puppet(reader, setup.loop);
   if (type == rest_chunk) return read_rest(payload, setup.loop);
   if (type != driver::glove_chunk) return true;
   auto glove = driver::glove_of(payload);

@@ -10,13 +10,13 @@
 namespace nendo::recording {
 namespace {
 
-constexpr std::size_t most_supports = 64; // of each kind
+constexpr std::size_t most_supports = puppet::Puppet::most_points; // of each kind
 constexpr std::uint64_t most_memory = std::uint64_t{1} << 28;
 constexpr std::uint32_t most_links = 1024;
 constexpr std::uint32_t most_catch_up = 1000; // as parse_policy()
 constexpr std::uint32_t most_subdivisions = 16;
-constexpr double most_points = 10.0;     // two hands' fingertips
-constexpr double largest_number = 1e100; // as the solver takes
+constexpr double most_points = puppet::Puppet::most_points; // two hands' fingertips, or a puppet's
+constexpr double largest_number = 1e100;                    // as the solver takes
 
 void put_placement(ByteWriter& writer, const flow::Placement& placement) {
   writer.f64_le(placement.units_per_metre);
@@ -187,6 +187,31 @@ bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loo
   }
   if (usable) loop->rest.insert(loop->rest.end(), blocks.begin(), blocks.end());
   return usable;
+}
+
+void put_puppet(ByteWriter& writer, const LoopSetup& loop) {
+  writer.u32_le(static_cast<std::uint32_t>(loop.puppet.size()));
+  writer.bytes(std::as_bytes(std::span(loop.puppet)));
+  writer.u16_le(static_cast<std::uint16_t>(loop.options.function_values.size()));
+  for (const double value : loop.options.function_values)
+    writer.f64_le(value);
+}
+
+bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
+  constexpr double most_value = 1e9;
+  constexpr std::uint32_t most_text = std::uint32_t{1} << 20;
+  CheckedReader checked(reader);
+  const std::uint32_t size = reader.u32_le();
+  if (!loop || !loop->puppet.empty() || size == 0 || size > most_text || size > reader.remaining())
+    return false;
+  const auto text = reader.take(size);
+  std::vector<double> values(checked.count(puppet::Puppet::most_functions));
+  for (double& value : values)
+    value = checked.number(-most_value, most_value);
+  if (!checked.fine()) return false;
+  loop->puppet.assign(reinterpret_cast<const char*>(text.data()), text.size());
+  loop->options.function_values = std::move(values);
+  return true;
 }
 
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {

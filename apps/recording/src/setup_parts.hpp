@@ -16,10 +16,11 @@ inline constexpr driver::ChunkType head_chunk = driver::chunk_type("HEAD");
 inline constexpr driver::ChunkType hand_chunk = driver::chunk_type("HAND");
 inline constexpr driver::ChunkType loop_chunk = driver::chunk_type("LOOP");
 inline constexpr driver::ChunkType rest_chunk = driver::chunk_type("REST");
+inline constexpr driver::ChunkType puppet_chunk = driver::chunk_type("PUPP");
 
 constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
   return type == head_chunk || type == hand_chunk || type == loop_chunk || type == rest_chunk ||
-         type == driver::glove_chunk;
+         type == puppet_chunk || type == driver::glove_chunk;
 }
 
 /// Reads one value after another and remembers whether all of them were usable. After an unusable
@@ -60,6 +61,7 @@ private:
 void put_head(ByteWriter& writer, const Setup& setup);
 void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand);
 void put_loop(ByteWriter& writer, const LoopSetup& loop);
+void put_puppet(ByteWriter& writer, const LoopSetup& loop);
 /// Writes some of the blocks of the shape at first. A chunk has at most most_blocks_of_chunk.
 void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks);
 inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
@@ -75,5 +77,6 @@ bool read_head(ByteReader& reader, Setup& setup);
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands);
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop);
 bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loop);
+bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop);
 
 } // namespace nendo::recording

@@ -22,11 +22,12 @@ struct MotionName {
   std::string_view name;
   Motion motion;
 };
-constexpr std::array<MotionName, 5> motions{{{"rest", Motion::rest},
+constexpr std::array<MotionName, 6> motions{{{"rest", Motion::rest},
                                              {"wave", Motion::wave},
                                              {"pinch", Motion::pinch},
                                              {"grasp", Motion::grasp},
-                                             {"sculpt", Motion::sculpt}}};
+                                             {"sculpt", Motion::sculpt},
+                                             {"faces", Motion::faces}}};
 
 struct Finger {
   Sensor mcp;
@@ -199,6 +200,41 @@ Pose sculpt(const Character& hand, double time_s) noexcept {
   return add;
 }
 
+/// How far each finger of both hands bends for an expression, 0 to 1, and how far the index finger
+/// moves away from the middle finger. Left hand first; thumb to little finger, then the spread.
+using Bends = std::array<std::array<double, 6>, 2>;
+constexpr std::size_t expression_count = 6;
+constexpr std::array<Bends, expression_count> expressions{{
+    {{{0, 1, 0, 0, 0, 0}, {0.3, 1, 0, 0, 0, 0}}},         // smile
+    {{{0, 0, 1, 1, 0, 0}, {0, 0, 1, 1, 0, 0}}},           // frown
+    {{{0, 0, 0, 0, 1, 0}, {1, 0, 0, 0, 1, 0}}},           // surprise
+    {{{0, 0.15, 0, 0, 0.5, 0}, {0.15, 0.9, 0, 0, 0, 1}}}, // wink
+    {{{1, 0, 0, 0.2, 0, 0}, {0.15, 0, 0, 0.2, 0, 0}}},    // pout
+    {{{0.25, 0, 0, 0, 0.3, 0}, {0.45, 0, 0, 0, 0.3, 0}}}, // talk: the thumbs go to and fro
+}};
+
+Pose faces(Side side, double time_s) noexcept {
+  constexpr double first_s = 0.8; // at rest, so that the hands take hold of a face at rest
+  constexpr double each_s = 1.6;
+  constexpr double talk_hz = 2.6;
+  Pose add{};
+  const double cycle = (time_s - first_s) / each_s;
+  if (cycle < 0.0) return add;
+  const auto number = static_cast<std::size_t>(cycle) % expression_count;
+  const double size = plateau(cycle, 0.05, 0.35, 0.7, 1.0);
+  std::array<double, 6> bend = expressions[number][side == Side::left ? 0 : 1];
+  if (number + 1 == expression_count)
+    bend[0] *= side == Side::left ? swell(0.5 * talk_hz * time_s) : swell(talk_hz * time_s);
+  slot(add, Sensor::thumb_mcp) = 15.0 * size * bend[0];
+  slot(add, Sensor::thumb_ip) = 25.0 * size * bend[0];
+  for (std::size_t k = 0; k < fingers.size(); ++k) {
+    slot(add, fingers[k].mcp) = 30.0 * size * bend[k + 1];
+    slot(add, fingers[k].pip) = 36.0 * size * bend[k + 1];
+  }
+  slot(add, Sensor::index_middle_abduction) = 14.0 * size * bend[5];
+  return add;
+}
+
 // Ring and little finger share muscle bellies and tendon links: neither goes all its own way.
 void couple_ring_and_little(Pose& add) noexcept {
   const auto mix = [](double& ring, double& little) {
@@ -210,7 +246,7 @@ void couple_ring_and_little(Pose& add) noexcept {
   mix(slot(add, Sensor::ring_pip), slot(add, Sensor::pinky_pip));
 }
 
-Pose gesture(Motion motion, const Character& hand, double time_s) noexcept {
+Pose gesture(Motion motion, Side side, const Character& hand, double time_s) noexcept {
   Pose add{};
   switch (motion) {
   case Motion::rest:
@@ -227,6 +263,8 @@ Pose gesture(Motion motion, const Character& hand, double time_s) noexcept {
   case Motion::sculpt:
     add = sculpt(hand, time_s);
     break;
+  case Motion::faces:
+    return faces(side, time_s); // of hands that have learned to bend each finger alone
   }
   couple_ring_and_little(add);
   slot(add, Sensor::wrist_pitch) = 6.0 * sine(0.11 * time_s * hand.tempo + hand.phase);
@@ -274,7 +312,8 @@ double part_of_range(const JointAngles& angles, Sensor sensor) noexcept {
   return std::clamp((angle_rad - range.least_rad) / (range.most_rad - range.least_rad), 0.0, 1.0);
 }
 
-HandMotion::HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept : motion_(motion) {
+HandMotion::HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept
+    : motion_(motion), side_(side) {
   // The standard's distributions differ between libraries; the engine itself does not.
   std::mt19937 random(2 * seed + (side == Side::left ? 1 : 0));
   const auto between = [&random](double low, double high) {
@@ -298,7 +337,7 @@ JointAngles HandMotion::at(double time_s) const noexcept {
   assert(time_s >= 0.0);
   constexpr double growth_s = 1.0;
   const double size = smoothstep(0.0, growth_s, time_s);
-  const Pose add = gesture(motion_, character_, time_s);
+  const Pose add = gesture(motion_, side_, character_, time_s);
   Pose pose{};
   for (std::size_t k = 0; k < sensor_slots; ++k) {
     if (!sensors_22.has(static_cast<Sensor>(k))) continue;

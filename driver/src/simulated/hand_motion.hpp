@@ -18,6 +18,7 @@ enum class Motion : std::uint8_t {
   pinch,  ///< the thumb meets each finger in turn
   grasp,  ///< the whole hand closes and opens
   sculpt, ///< press in, knead, pull out: cycles of about 8 s
+  faces,  ///< what makes a puppet smile, frown, wonder, wink, pout and talk, 1.6 s each
 };
 
 /// Returns the motion that one of motion_names() (simulated_glove.hpp) names. Error: usage, naming
@@ -64,6 +65,7 @@ public:
 
 private:
   Motion motion_;
+  Side side_;
   Character character_;
 };
 

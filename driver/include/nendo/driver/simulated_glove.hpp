@@ -15,7 +15,7 @@
 namespace nendo::driver {
 
 /// Returns the names of the motions that a simulated or emulated hand can make by itself: rest,
-/// wave, pinch, grasp, sculpt.
+/// wave, pinch, grasp, sculpt, faces.
 std::vector<std::string_view> motion_names();
 
 /// Reads `sim:MOTION?seed=N&rate=HZ&hand=left|right&sensors=18|22`, all of which may be left out.

@@ -24,6 +24,7 @@
 #include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
 
@@ -75,12 +76,24 @@ struct LoopOptions : PaceOptions {
   /// Whether the hands hold the model at first; nothing: unless SwitchAction::grab waits for a
   /// switch.
   std::optional<bool> held{};
+  /// A puppet: the hands play its functions, which move its points, in place of touching the model
+  /// with their fingertips. The supports are then those of the points. It must be of this model.
+  std::shared_ptr<const puppet::Rig> rig{};
+  /// RigPlayer::asked() at first; what is not told is 0.
+  std::vector<double> function_values{};
   /// The settings at first, if settings_of() the sculptor and the filter would tell them less
   /// exactly.
   std::optional<LoopSettings> settings{};
 
   bool begins_held() const noexcept { return held.value_or(switch_action != SwitchAction::grab); }
 };
+
+/// Returns the field of a puppet along that model's surface, with the kernel and the radii of these
+/// options; null if it measures distances through the air. Error: as SurfaceField::make().
+/// Allocates.
+Result<std::shared_ptr<const deform::SurfaceField>>
+surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
+            const deform::DeformerOptions& options);
 
 class DeformLoop {
 public:
@@ -191,7 +204,12 @@ private:
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
   void place_tips() noexcept;
+  void play_rig() noexcept;
+  puppet::RigPlayer::Hands hand_states() noexcept;
   ModelVersion* version_numbered(std::uint32_t number) const noexcept;
+  bool set_surface(SculptorOptions& sculptor, const ModelVersion& model) const;
+  std::optional<SculptorSetup> setup_for(const SculptorSetup& before,
+                                         const LoopSettings& settings) const;
   PreparedChange& next_change();
   void offer_change();
   void offer_model(ModelVersion& version, ModelSource source);
@@ -235,10 +253,13 @@ private:
   LoopOptions options_;
   double units_per_metre_;
   std::vector<Hand> hands_;
-  deform::Points tips_; ///< 3 by 5 a hand, model units
+  std::optional<puppet::RigPlayer> rig_;
+  std::array<puppet::HandState, 2> hand_states_; ///< by side, for the rig
+  /// The control points, 3 by 5 a hand, or by as many as a puppet has; model units.
+  deform::Points tips_;
   // For the thread that asks for changes:
-  SculptorSetup first_;
   std::vector<std::unique_ptr<ModelVersion>> versions_;
+  SculptorSetup first_;
   ModelVersion* asked_model_;            ///< for last
   ModelVersion* model_before_ = nullptr; ///< before that
   std::uint32_t last_number_ = 0;

@@ -15,6 +15,7 @@
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/step.hpp>
 #include <nendo/hand/skeleton.hpp>
+#include <nendo/puppet/puppet.hpp>
 
 namespace nendo::flow {
 
@@ -46,8 +47,9 @@ struct Frame {
   /// stroke. One in this frame comes after its fields.
   std::uint64_t commits = 0;
   /// How often the shape became an earlier one (undo), or that one's successor again (redo), or
-  /// what it was at first (reset). One in this frame comes before its fields, so that they do not
-  /// lead here from the frame before. A reader that applies fields must then copy the whole shape.
+  /// what it was at first (reset), or was moved by distances along its surface, which no field
+  /// tells. One in this frame comes before its fields, so that they do not lead here from the frame
+  /// before. A reader that applies fields must then copy the whole shape.
   std::uint64_t undos = 0;
   /// How often one can undo, and how often redo, after this frame. At 0 it changes nothing. What
   /// hands that hold the model have shaped since the last commit can be undone, too.
@@ -69,6 +71,8 @@ struct Frame {
   deform::FieldSequence fields;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   std::uint32_t model = 0;   ///< the version of the model that `shape` is of
+  /// The values of a puppet's functions, in their order; 0 without a puppet.
+  std::array<float, puppet::Puppet::most_functions> functions{};
   /// The deformed vertices, which DeformLoop::layout(model) turns into points. The stamps tell
   /// which blocks differ from those of an earlier frame of the same version.
   deform::BlockShape shape;

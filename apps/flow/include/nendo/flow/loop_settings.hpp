@@ -32,6 +32,10 @@ struct LoopSettings {
 LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
                          double units_per_metre);
 
+/// Returns by what the radii of these settings are larger than those of `first`: the ratio of their
+/// sums.
+double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept;
+
 /// The options of a sculptor, and the settings that they mean.
 struct SculptorSetup {
   SculptorOptions options{};
@@ -40,7 +44,7 @@ struct SculptorSetup {
 
 /// Returns `now` with other settings. What settings do not tell stays. Radii that do not change
 /// stay as they are, with all their weights; these come back with the settings of `first`, with
-/// which it began.
+/// which it began. A puppet's points (`hands` is then 0) keep the ratios of their radii.
 SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
                             const LoopSettings& wanted, int hands, double units_per_metre);
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include <nendo/flow/input_log.hpp>
 #include <nendo/flow/placement.hpp>
@@ -20,7 +21,8 @@ struct LoopState {
   Placement placement{};                                       ///< without the gaps
   bool held = true;
   SculptorSetup sculptor{};
-  std::uint32_t subdivisions = 0; ///< of the model with which the loop began
+  std::uint32_t subdivisions = 0;        ///< of the model with which the loop began
+  std::vector<double> function_values{}; ///< puppet::RigPlayer::asked()
   deform::BlockShape shape;
 };
 

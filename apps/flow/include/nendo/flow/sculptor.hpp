@@ -3,10 +3,12 @@
 // runs.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <variant>
 
+#include <nendo/deform/surface_deformer.hpp>
 #include <nendo/deform/type1.hpp>
 #include <nendo/deform/type2.hpp>
 
@@ -23,6 +25,9 @@ struct SculptorOptions {
   Mode mode = Mode::type1;
   double piece_length = 0.05; ///< of a cut of type 2, in model units
   deform::DeformerOptions deformer;
+  /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
+  /// the surface, where all distances would have to be measured anew at each piece.
+  std::shared_ptr<const deform::SurfaceField> surface{};
 };
 
 class Sculptor {
@@ -33,7 +38,12 @@ public:
            const SculptorOptions& options);
 
   Mode mode() const noexcept {
-    return std::holds_alternative<deform::Type1Deformer>(deformer_) ? Mode::type1 : Mode::type2;
+    return std::holds_alternative<deform::Type2Deformer>(deformer_) ? Mode::type2 : Mode::type1;
+  }
+
+  /// Tells whether it measures distances along the surface, so that fields() tells nothing.
+  bool is_along_surface() const noexcept {
+    return std::holds_alternative<deform::SurfaceDeformer>(deformer_);
   }
 
   /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
@@ -83,7 +93,7 @@ public:
   deform::ChainReport report() const noexcept;
 
 private:
-  std::variant<deform::Type1Deformer, deform::Type2Deformer> deformer_;
+  std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer> deformer_;
 };
 
 } // namespace nendo::flow

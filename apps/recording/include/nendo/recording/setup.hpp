@@ -37,6 +37,7 @@ struct LoopSetup {
   std::uint32_t subdivisions = 0;
   /// The shape at first, in the blocks of the model's layout; empty: the model.
   std::vector<deform::VertexBlock> rest{};
+  std::string puppet{}; ///< the text of its file; empty: the hands touch the model
 };
 
 struct Setup {

@@ -17,7 +17,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/base/text.hpp>
 
-namespace nendo::timeline {
+namespace nendo::config {
 
 inline std::string one_line(std::string_view text) {
   return printable(text.substr(0, 160));
@@ -125,4 +125,4 @@ private:
   std::optional<Error> error_;
 };
 
-} // namespace nendo::timeline
+} // namespace nendo::config

@@ -1,0 +1,51 @@
+#pragma once
+// What a hand tells a puppet: one number of its pose. Angles are steadier than places, because a
+// fingertip's place mixes three joints and the wrist.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nendo/base/side.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::puppet {
+
+/// A hand at one moment.
+struct HandState {
+  hand::JointAngles angles;
+  hand::HandPose pose;
+  Eigen::Isometry3d T_world_wrist = Eigen::Isometry3d::Identity();
+};
+
+/// One number of a hand's pose. Its name is the hand, a point, and one of
+/// - thumb_flexion to little_flexion: what all joints of the finger are bent by, radians;
+/// - a joint angle (hand::Angle): thumb_roll, index_mcp_abduction, wrist_yaw and so on, radians;
+/// - thumb_tip_x to little_tip_z: the fingertip's place along an axis of the wrist, metres.
+class HandSignal {
+public:
+  HandSignal() = default;
+  /// Returns nothing if there is no such signal.
+  static std::optional<HandSignal> named(std::string_view name) noexcept;
+  /// Returns the signal of that number; nothing if there is none. Recordings keep the numbers.
+  static std::optional<HandSignal> numbered(Side side, std::uint8_t number) noexcept;
+  /// Returns the signal of the other hand.
+  HandSignal mirrored() const noexcept;
+
+  std::string name() const;
+  Side side() const noexcept { return side_; }
+  std::uint8_t number() const noexcept { return number_; }
+  bool is_angle() const noexcept; ///< radians; otherwise metres
+  /// Returns its value. Wait-free; no allocation.
+  double of(const HandState& hand) const noexcept;
+  friend bool operator==(const HandSignal&, const HandSignal&) = default;
+
+private:
+  HandSignal(Side side, std::uint8_t number) noexcept : side_(side), number_(number) {}
+
+  Side side_ = Side::left;
+  std::uint8_t number_ = 0; ///< five flexions, then all angles, then 5 tips times 3 axes
+};
+
+} // namespace nendo::puppet

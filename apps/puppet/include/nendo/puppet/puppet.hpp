@@ -1,0 +1,92 @@
+#pragma once
+// A puppet: what each finger does to a model. The paper assigned the displacements of ten
+// fingertips to ten functions on a face (2.2, figure 3); so does a puppet file, a short text beside
+// the model (README.md of this folder tells its keys).
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/deform/surface_field.hpp>
+#include <nendo/puppet/hand_signal.hpp>
+
+namespace nendo::puppet {
+
+/// How far apart a place and a start point are.
+enum class Distance : std::uint8_t {
+  surface, ///< along it, so that a mouth opens
+  air,     ///< straight
+};
+
+/// A start point of the field.
+struct PuppetPoint {
+  std::string name;
+  std::optional<std::uint32_t> vertex{};        ///< where it is; or else
+  Eigen::Vector3d at = Eigen::Vector3d::Zero(); ///< near here, model units
+  double radius = 1.0;                          ///< model units, > 0
+  bool is_pin = false;                          ///< nothing moves it
+  bool is_mirrored = false; ///< it is on the other side of x = 0 of where `vertex` or `at` are
+};
+
+/// What a function does to one point when its value is 1.
+struct Move {
+  std::size_t point = 0;                            ///< of Puppet::points
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero(); ///< model units; for a turn, beside it
+  /// The point turns about this axis; the vector is where that leads, in a straight line.
+  double turn_rad = 0.0;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d through = Eigen::Vector3d::Zero();
+};
+
+/// One thing that the model can do, by a hand.
+struct Function {
+  std::string name; ///< ARKit's, where it means the same
+  HandSignal input;
+  double travel = 1.0; ///< by how much the signal changes for a value of 1; may be < 0
+  double least = 0.0;  ///< the values between which it stays
+  double most = 1.0;
+  bool eases = false; ///< towards its limits it slows down, in place of stopping
+  std::vector<Move> moves;
+};
+
+/// Vertices that belong to no part of the surface that a point stands on, such as teeth.
+struct PuppetPart {
+  std::optional<deform::Box> inside{}; ///< only those in here, model units; otherwise all
+  std::vector<std::size_t> points;     ///< that they follow by an affine map; empty: the surface
+};
+
+/// What stays as it is, within a radius of a place.
+struct Mask {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  double radius = 0.0; ///< model units; vertices within half of it stay, and the rest eases out
+};
+
+struct Puppet {
+  std::string model; ///< file name, beside the puppet's file
+  Distance distance = Distance::surface;
+  std::vector<PuppetPoint> points;
+  std::vector<Function> functions;
+  std::vector<PuppetPart> parts;
+  std::vector<Mask> masks;
+  std::string text; ///< of the file
+
+  static constexpr std::size_t most_points = 1000;
+  static constexpr std::size_t most_functions = 64;
+};
+
+/// Parses a puppet file. What `mirror = "x"` asks for is in the result: points and functions whose
+/// names end with Left have twins that end with Right. Error: bad_input, with the line.
+Result<Puppet> parse_puppet(std::string_view text, std::string_view name);
+/// Reads and parses a file. Errors: those of parse_puppet(), and bad_input if it cannot be read.
+Result<Puppet> read_puppet(const std::filesystem::path& path);
+
+/// Returns where the points are on that model, in their order. The model must have a face.
+std::vector<deform::SurfacePlace> places_on(const Puppet& puppet, const deform::Mesh& model);
+/// Returns what the field along that model's surface is made of.
+deform::SurfaceSetup surface_setup(const Puppet& puppet, const deform::Mesh& model,
+                                   deform::Wendland kernel);
+
+} // namespace nendo::puppet

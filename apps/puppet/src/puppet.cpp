@@ -1,0 +1,103 @@
+#include <nendo/puppet/puppet.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <nendo/base/files.hpp>
+
+namespace nendo::puppet {
+
+using deform::Mesh;
+using deform::SurfacePlace;
+using Eigen::Vector3d;
+
+namespace {
+
+bool is_in(const deform::Box& box, const Vector3d& place) {
+  return (place.array() >= box.lowest.array()).all() &&
+         (place.array() <= box.highest.array()).all();
+}
+
+/// Vertices on parts of the surface where no point stands.
+std::vector<std::uint32_t> vertices_without_points(const Mesh& model,
+                                                   const std::vector<SurfacePlace>& places) {
+  const auto parts = deform::SurfaceGraph(model).parts();
+  std::set<std::uint32_t> with_points;
+  for (const SurfacePlace& place : places)
+    with_points.insert(parts[place.corners[0]]);
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t vertex = 0; vertex < parts.size(); ++vertex)
+    if (!with_points.contains(parts[vertex])) vertices.push_back(vertex);
+  return vertices;
+}
+
+/// A vertex belongs to the first part that takes it.
+std::vector<deform::FollowingPart> following_parts(const Puppet& puppet, const Mesh& model,
+                                                   const std::vector<SurfacePlace>& places) {
+  std::vector<deform::FollowingPart> parts(puppet.parts.size());
+  for (std::size_t part = 0; part < parts.size(); ++part)
+    for (const std::size_t point : puppet.parts[part].points)
+      parts[part].points.push_back(static_cast<Eigen::Index>(point));
+  if (parts.empty()) return parts;
+  for (const std::uint32_t vertex : vertices_without_points(model, places)) {
+    const Vector3d place = model.vertices.col(vertex);
+    const auto takes =
+        std::find_if(puppet.parts.begin(), puppet.parts.end(), [&](const PuppetPart& part) {
+          return !part.inside || is_in(*part.inside, place);
+        });
+    if (takes != puppet.parts.end())
+      parts[static_cast<std::size_t>(takes - puppet.parts.begin())].vertices.push_back(vertex);
+  }
+  return parts;
+}
+
+/// 0 within half of the radius, 1 outside, smooth in between.
+double passes(const Mask& mask, const Vector3d& place) {
+  const double part = 2.0 * (place - mask.at).norm() / mask.radius - 1.0;
+  const double t = std::clamp(part, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+} // namespace
+
+Result<Puppet> read_puppet(const std::filesystem::path& path) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 20;
+  const auto text = read_file(path, most_bytes, "puppet");
+  if (!text) return text.error();
+  return parse_puppet(*text, path.string());
+}
+
+std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model) {
+  const auto vertices = static_cast<std::uint32_t>(model.vertices.cols());
+  std::vector<SurfacePlace> places;
+  for (const PuppetPoint& point : puppet.points) {
+    const bool at_vertex = point.vertex && *point.vertex < vertices;
+    Vector3d at = at_vertex ? Vector3d(model.vertices.col(*point.vertex)) : point.at;
+    if (point.is_mirrored) at.x() = -at.x();
+    if (at_vertex && !point.is_mirrored)
+      places.push_back(SurfacePlace::at_vertex(*point.vertex));
+    else
+      places.push_back(deform::nearest_place(model, at));
+  }
+  return places;
+}
+
+deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
+                                   deform::Wendland kernel) {
+  deform::SurfaceSetup setup;
+  setup.kernel = kernel;
+  const auto places = places_on(puppet, model);
+  for (std::size_t at = 0; at < places.size(); ++at)
+    setup.points.push_back({places[at], puppet.points[at].radius});
+  setup.parts = following_parts(puppet, model, places);
+  if (puppet.masks.empty()) return setup;
+  setup.mask = Eigen::VectorXd::Ones(model.vertices.cols());
+  for (const Mask& mask : puppet.masks)
+    for (Eigen::Index v = 0; v < setup.mask.size(); ++v)
+      setup.mask[v] = std::min(setup.mask[v], passes(mask, model.vertices.col(v)));
+  return setup;
+}
+
+} // namespace nendo::puppet

@@ -1,0 +1,279 @@
+// Reading puppet files.
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+#include <nendo/base/units.hpp>
+#include <nendo/puppet/puppet.hpp>
+
+#include "config/toml_reader.hpp"
+
+namespace nendo::puppet {
+
+using config::TomlReader;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double largest = 1e9; // of lengths, model units
+constexpr std::string_view left = "Left";
+constexpr std::string_view right = "Right";
+
+Vector3d vector_of(const std::array<double, 3>& numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// "browLeft" is the twin of "browRight". Other names have none, and are their own.
+std::string twin_of(const std::string& name) {
+  for (const auto& [ending, other] : {std::pair{left, right}, std::pair{right, left}})
+    if (name.ends_with(ending))
+      return name.substr(0, name.size() - ending.size()) + std::string(other);
+  return name;
+}
+
+class PuppetReader {
+public:
+  PuppetReader(TomlReader& reader, Puppet& puppet) : reader_(reader), puppet_(puppet) {}
+
+  void read(const toml::table& root) {
+    reader_.allow_only(
+        root, {"version", "model", "distance", "mirror", "points", "functions", "parts", "masks"});
+    puppet_.model = reader_.text(root, "model");
+    const std::string distance = root.get("distance") ? reader_.text(root, "distance") : "surface";
+    puppet_.distance = distance == "air" ? Distance::air : Distance::surface;
+    if (distance != "air" && distance != "surface")
+      reader_.complain(root, "distance must be \"surface\" or \"air\"");
+    const bool mirrors = root.get("mirror") != nullptr;
+    if (mirrors && reader_.text(root, "mirror") != "x")
+      reader_.complain(root, "mirror must be \"x\": the plane x = 0; or leave it out");
+    read_points(root);
+    if (mirrors) mirror_points();
+    read_functions(root);
+    if (mirrors) mirror_functions();
+    if (root.get("parts") != nullptr) read_list(root, "parts", [&](const auto& one) { part(one); });
+    if (root.get("masks") != nullptr) read_list(root, "masks", [&](const auto& one) { mask(one); });
+    check(root);
+  }
+
+private:
+  template <class Read>
+  void read_list(const toml::table& root, std::string_view key, const Read& read) {
+    const toml::array* const list = reader_.array(root, key);
+    if (list == nullptr) return;
+    for (const toml::node& node : *list) {
+      const toml::table* const one = reader_.as_table(node, key);
+      if (one == nullptr || reader_.error()) return;
+      read(*one);
+    }
+  }
+  double length(const toml::table& table, std::string_view key) {
+    const double value = reader_.number(table, key);
+    if (!(value > 0.0 && value <= largest))
+      reader_.complain(table, std::string(key) + " must be more than 0, and at most 1e9");
+    return value;
+  }
+  Vector3d place(const toml::node& node, std::string_view what) {
+    const Vector3d read = vector_of(reader_.numbers<3>(node, what));
+    if (!(read.cwiseAbs().maxCoeff() <= largest))
+      reader_.complain(node, std::string(what) + " is farther away than 1e9");
+    return read;
+  }
+  Vector3d place(const toml::table& table, std::string_view key) {
+    const toml::node* const node = reader_.find(table, key);
+    return node == nullptr ? Vector3d(Vector3d::Zero()) : place(*node, key);
+  }
+  /// A number that may be left out.
+  double number_or(const toml::table& table, std::string_view key, double usual) {
+    return table.get(key) == nullptr ? usual : reader_.number(table, key);
+  }
+
+  void read_points(const toml::table& root) {
+    const toml::table* const points = reader_.table(root, "points");
+    if (points == nullptr) return;
+    for (const auto& [key, node] : *points) {
+      const toml::table* const table = reader_.as_table(node, key.str());
+      if (table == nullptr || reader_.error()) return;
+      reader_.allow_only(*table, {"vertex", "at", "radius", "pin"});
+      PuppetPoint& point = puppet_.points.emplace_back();
+      point.name = key.str();
+      point.radius = length(*table, "radius");
+      point.is_pin = table->get("pin") != nullptr && reader_.truth(*table, "pin");
+      if (table->get("vertex") != nullptr)
+        point.vertex = static_cast<std::uint32_t>(reader_.count(*table, "vertex", 0xFFFFFFFE));
+      else
+        point.at = place(*table, "at");
+    }
+  }
+  void mirror_points() {
+    const std::size_t count = puppet_.points.size();
+    for (std::size_t at = 0; at < count; ++at) {
+      PuppetPoint twin = puppet_.points[at];
+      twin.name = twin_of(twin.name);
+      if (!puppet_.points[at].name.ends_with(left) || find(twin.name)) continue;
+      twin.is_mirrored = true;
+      puppet_.points.push_back(std::move(twin));
+    }
+  }
+  std::optional<std::size_t> find(std::string_view name) const {
+    const auto found = std::find_if(puppet_.points.begin(), puppet_.points.end(),
+                                    [&](const auto& point) { return point.name == name; });
+    if (found == puppet_.points.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - puppet_.points.begin());
+  }
+  std::size_t point_named(const toml::node& where, std::string_view name) {
+    const auto found = find(name);
+    if (!found)
+      reader_.complain(where, "there is no point '" + std::string(name) + "'; add it to [points]");
+    return found.value_or(0);
+  }
+
+  void read_functions(const toml::table& root) {
+    const toml::table* const functions = reader_.table(root, "functions");
+    if (functions == nullptr) return;
+    for (const auto& [key, node] : *functions) {
+      const toml::table* const table = reader_.as_table(node, key.str());
+      if (table == nullptr || reader_.error()) return;
+      puppet_.functions.push_back(function(*table, std::string(key.str())));
+    }
+  }
+  Function function(const toml::table& table, std::string name) {
+    reader_.allow_only(
+        table, {"input", "travel_deg", "travel_m", "least", "most", "curve", "turn", "move"});
+    Function read;
+    read.name = std::move(name);
+    read.input = reader_.named(table, "input", HandSignal::named);
+    read.travel = read.input.is_angle() ? from_degrees(reader_.number(table, "travel_deg"))
+                                        : reader_.number(table, "travel_m");
+    if (!(std::abs(read.travel) >= 1e-6))
+      reader_.complain(table, "the travel of " + read.name + " must not be 0");
+    read.least = number_or(table, "least", 0.0);
+    read.most = number_or(table, "most", 1.0);
+    if (!(read.least <= 0.0 && read.most >= 0.0 && read.least < read.most))
+      reader_.complain(table, read.name + ": least must be at most 0, and most at least 0");
+    const std::string curve = table.get("curve") ? reader_.text(table, "curve") : "linear";
+    read.eases = curve == "ease";
+    if (curve != "linear" && curve != "ease")
+      reader_.complain(table, "curve must be \"linear\" or \"ease\"");
+    if (table.get("turn") != nullptr) turn(table, read);
+    if (table.get("move") != nullptr) move(table, read);
+    if (read.moves.empty()) reader_.complain(table, read.name + " has neither move nor turn");
+    return read;
+  }
+  void turn(const toml::table& function, Function& read) {
+    const toml::table* const table = reader_.table(function, "turn");
+    if (table == nullptr) return;
+    reader_.allow_only(*table, {"degrees", "axis", "through", "points"});
+    Move turn;
+    const double turn_rad = from_degrees(reader_.number(*table, "degrees"));
+    turn.axis = place(*table, "axis");
+    turn.through = place(*table, "through");
+    if (!(turn.axis.norm() > 1e-9)) reader_.complain(*table, "the axis has no direction");
+    turn.axis.stableNormalize();
+    const toml::table* const points = reader_.table(*table, "points");
+    if (points == nullptr) return;
+    for (const auto& [key, node] : *points) {
+      turn.point = point_named(node, key.str());
+      turn.turn_rad = turn_rad * reader_.number(node, key.str());
+      read.moves.push_back(turn);
+    }
+  }
+  void move(const toml::table& function, Function& read) {
+    const toml::table* const table = reader_.table(function, "move");
+    if (table == nullptr) return;
+    for (const auto& [key, node] : *table) {
+      Move one;
+      one.point = point_named(node, key.str());
+      one.vector = place(node, key.str());
+      read.moves.push_back(one);
+    }
+  }
+  void mirror_functions() {
+    const Vector3d flip(-1.0, 1.0, 1.0);
+    const std::size_t count = puppet_.functions.size();
+    for (std::size_t at = 0; at < count; ++at) {
+      Function twin = puppet_.functions[at];
+      if (!twin.name.ends_with(left)) continue;
+      twin.name = twin_of(twin.name);
+      if (std::any_of(puppet_.functions.begin(), puppet_.functions.end(),
+                      [&](const Function& known) { return known.name == twin.name; }))
+        continue;
+      twin.input = twin.input.mirrored();
+      for (Move& move : twin.moves) {
+        move.point = find(twin_of(puppet_.points[move.point].name)).value_or(move.point);
+        move.vector = move.vector.cwiseProduct(flip);
+        move.through = move.through.cwiseProduct(flip);
+        move.axis = -move.axis.cwiseProduct(flip); // of a mirrored turn
+      }
+      puppet_.functions.push_back(std::move(twin));
+    }
+  }
+
+  void part(const toml::table& table) {
+    reader_.allow_only(table, {"inside", "points"});
+    PuppetPart& read = puppet_.parts.emplace_back();
+    if (table.get("inside") != nullptr) {
+      const toml::array* const box = reader_.array(table, "inside");
+      if (box == nullptr) return;
+      if (box->size() != 2) return reader_.complain(table, "inside must be two corners of a box");
+      read.inside = {place((*box)[0], "a corner"), place((*box)[1], "a corner")};
+    }
+    if (table.get("points") == nullptr) return;
+    const toml::array* const points = reader_.array(table, "points");
+    if (points == nullptr) return;
+    for (const toml::node& node : *points) {
+      const auto name = node.value<std::string>();
+      if (!name) return reader_.complain(node, "points must be names in quotes");
+      read.points.push_back(point_named(node, *name));
+    }
+    if (read.points.size() < 4)
+      reader_.complain(table, "a part follows four points or more, which are not in one plane; "
+                              "without points, it follows the surface");
+  }
+  void mask(const toml::table& table) {
+    reader_.allow_only(table, {"at", "radius"});
+    puppet_.masks.push_back({place(table, "at"), length(table, "radius")});
+  }
+
+  void check(const toml::table& root) {
+    if (reader_.error()) return;
+    if (puppet_.points.empty()) reader_.complain(root, "[points] is empty; add a point");
+    if (puppet_.functions.empty()) reader_.complain(root, "there are no functions; add one");
+    if (puppet_.points.size() > Puppet::most_points)
+      reader_.complain(root, "there are more than 1000 points");
+    if (puppet_.functions.size() > Puppet::most_functions)
+      reader_.complain(root, "there are more than 64 functions");
+    for (const Function& function : puppet_.functions)
+      for (const Move& move : function.moves)
+        if (puppet_.points[move.point].is_pin)
+          reader_.complain(root, function.name + " moves '" + puppet_.points[move.point].name +
+                                     "', which is a pin");
+  }
+
+  TomlReader& reader_;
+  Puppet& puppet_;
+};
+
+} // namespace
+
+Result<Puppet> parse_puppet(std::string_view text, std::string_view name) {
+  toml::table root;
+  TomlReader reader(name);
+  try {
+    root = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    reader.complain(error.source().begin.line, std::string(error.description()) + "; mend it");
+    return *reader.error();
+  }
+  const toml::node* const version = reader.find(root, "version");
+  if (version != nullptr && version->value_exact<std::int64_t>() != 1)
+    reader.complain(*version, "is of a version that this program does not know; it reads 1");
+  Puppet puppet;
+  if (!reader.error()) PuppetReader(reader, puppet).read(root);
+  if (reader.error()) return *reader.error();
+  puppet.text = text;
+  return puppet;
+}
+
+} // namespace nendo::puppet

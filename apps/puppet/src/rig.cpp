@@ -1,0 +1,108 @@
+#include <nendo/puppet/rig.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace nendo::puppet {
+
+using deform::Points;
+using Eigen::Index;
+using Eigen::Vector3d;
+
+namespace {
+
+Vector3d vector_of(const Move& move, const Vector3d& start) {
+  if (move.turn_rad == 0.0) return move.vector;
+  const Vector3d arm = start - move.through;
+  return move.vector + Eigen::AngleAxisd(move.turn_rad, move.axis) * arm - arm;
+}
+
+constexpr double straight = 0.7; // of the way to a limit, of a function that eases
+constexpr double slowing = 1.3;  // of it, where the limit is reached
+
+/// Arrives at the limit with a slope of 0, in place of a corner.
+double eased(double value, double limit) noexcept {
+  const double part = std::abs(value / limit);
+  if (part <= straight) return value;
+  const double rest = 1.0 - straight;
+  const double over = std::min((part - straight) / (2.0 * rest), 1.0);
+  return std::copysign(std::abs(limit) * (straight + rest * over * (2.0 - over)), value);
+}
+
+double limited(const Function& function, double value) noexcept {
+  const double limit = value < 0.0 ? function.least : function.most;
+  if (limit == 0.0) return 0.0;
+  return function.eases ? eased(value, limit) : std::clamp(value, function.least, function.most);
+}
+
+/// A hand that takes hold again moves the function at once, however far beyond its limit it was.
+double within_reach(const Function& function, double value) noexcept {
+  const double reach = function.eases ? slowing : 1.0;
+  return std::clamp(value, reach * function.least, reach * function.most);
+}
+
+} // namespace
+
+Rig::Rig(Puppet puppet, const deform::Mesh& model) : puppet_(std::move(puppet)) {
+  const auto places = places_on(puppet_, model);
+  starts_.resize(3, static_cast<Index>(places.size()));
+  for (std::size_t at = 0; at < places.size(); ++at)
+    starts_.col(static_cast<Index>(at)) = places[at].in(model.vertices);
+  for (const Function& function : puppet_.functions) {
+    Points& vectors = vectors_.emplace_back(Points::Zero(3, starts_.cols()));
+    for (const Move& move : function.moves) {
+      const auto point = static_cast<Index>(move.point);
+      vectors.col(point) += vector_of(move, starts_.col(point));
+    }
+  }
+}
+
+deform::Supports Rig::supports() const {
+  std::vector<deform::OwnSupport> own;
+  for (std::size_t at = 0; at < puppet_.points.size(); ++at)
+    own.push_back({static_cast<Index>(at), {puppet_.points[at].radius}});
+  return deform::with_common(std::move(own));
+}
+
+RigPlayer::RigPlayer(std::shared_ptr<const Rig> rig)
+    : rig_(std::move(rig)), holds_(rig_->puppet().functions.size()), asked_(holds_.size(), 0.0),
+      values_(holds_.size(), 0.0) {}
+
+void RigPlayer::take_hold(const Hands& hands) noexcept {
+  for (std::size_t at = 0; at < holds_.size(); ++at) {
+    const Function& function = rig_->puppet().functions[at];
+    const HandState* const hand = hands[static_cast<std::size_t>(function.input.side())];
+    if (hand == nullptr) continue;
+    asked_[at] = within_reach(function, asked_[at]);
+    holds_[at] = {function.input.of(*hand), asked_[at]};
+  }
+}
+
+void RigPlayer::follow(const Hands& hands) noexcept {
+  for (std::size_t at = 0; at < holds_.size(); ++at) {
+    const Function& function = rig_->puppet().functions[at];
+    const HandState* const hand = hands[static_cast<std::size_t>(function.input.side())];
+    if (hand == nullptr) continue;
+    const double moved = (function.input.of(*hand) - holds_[at].signal) / function.travel;
+    asked_[at] = holds_[at].value + moved;
+    values_[at] = limited(function, asked_[at]);
+  }
+}
+
+void RigPlayer::write(Points& points) const noexcept {
+  points = rig_->starts();
+  for (std::size_t at = 0; at < values_.size(); ++at)
+    if (values_[at] != 0.0) points += values_[at] * rig_->vectors_of(at);
+}
+
+void RigPlayer::set_asked(std::span<const double> values) noexcept {
+  const std::size_t count = std::min(values.size(), values_.size());
+  for (std::size_t at = 0; at < count; ++at) {
+    const Function& function = rig_->puppet().functions[at];
+    asked_[at] = within_reach(function, values[at]);
+    values_[at] = limited(function, asked_[at]);
+  }
+}
+
+} // namespace nendo::puppet

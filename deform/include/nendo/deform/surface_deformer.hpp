@@ -1,0 +1,53 @@
+#pragma once
+// Type-1 (the paper, 2.3.1) with distances along the surface. The functions belong to the surface
+// at rest and stay as they are, whatever is committed, so a grab needs no equations.
+
+#include <memory>
+
+#include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/injective_chain.hpp>
+#include <nendo/deform/sculpted_shape.hpp>
+#include <nendo/deform/surface_field.hpp>
+
+namespace nendo::deform {
+
+/// Its functions do what those of Type1Deformer do, and allocate as little. A deformer belongs to
+/// one thread at a time.
+class SurfaceDeformer {
+public:
+  /// Allocates. The field must be of the shape's layout, and `shape` must outlive the deformer.
+  SurfaceDeformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field);
+
+  FieldStatus grab(const Points& starts);
+  /// Before the first grab, the status is singular and `out` is the rest shape.
+  FieldStatus apply(const Points& ends, BlockShape& out);
+  FieldStatus commit(const Points& ends);
+  void release(bool is_step) noexcept;
+  FieldStatus reset(const Points& tips);
+  FieldStatus undo(const Points& tips);
+  FieldStatus redo(const Points& tips);
+  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
+  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
+  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
+
+  const BlockLayout& layout() const noexcept { return shape_->layout(); }
+  const BlockShape& rest() const noexcept { return shape_->shape(); }
+  /// Always empty: no formula of a place tells what happens there.
+  const FieldSequence& fields() const noexcept { return fields_; }
+  ChainReport report() const noexcept { return {}; }
+
+private:
+  void absorb() noexcept;
+  void take_hold(const Points& starts) noexcept;
+  bool is_moved() const noexcept { return !coefficients_.all.isZero(0.0F); }
+
+  SculptedShape* shape_;
+  std::shared_ptr<const SurfaceField> field_;
+  Points starts_;
+  Points vectors_;
+  SurfaceField::Coefficients coefficients_; ///< of the last apply(); 0: at rest
+  FieldSequence fields_;
+  bool grabbed_ = false;
+};
+
+} // namespace nendo::deform

@@ -1,0 +1,91 @@
+#pragma once
+// A CSRBF field whose distances are measured along the surface. Its radial functions are computed
+// once, vertex by vertex, where the surface is at rest: s(x) = sum_j psi(d_j(x) / r_j) c_j, with
+// d_j the distance along the surface from start point j. The coefficients solve A c = v, with A the
+// functions at the start points and v the control vectors, so that s is linear in them.
+//
+// Wendland's functions are positive definite in space, and no theorem says so of distances along a
+// surface, nor of a radius for each column. So A is factored with pivoting, and its condition,
+// which never changes, is looked at when the field is made.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/deform/surface_graph.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
+#include <nendo/deform/wendland.hpp>
+
+namespace nendo::deform {
+
+struct SurfacePoint {
+  SurfacePlace place;
+  double radius = 1.0; ///< along the surface, model units, > 0
+};
+
+/// Vertices that no function reaches along the surface, because they belong to another part of it.
+struct FollowingPart {
+  std::vector<std::uint32_t> vertices;
+  /// The start points that they follow by an affine map: where these turn, the part turns. Empty:
+  /// each vertex moves as the nearest one of the surface that the functions reach.
+  std::vector<Eigen::Index> points;
+};
+
+struct SurfaceSetup {
+  std::vector<SurfacePoint> points;
+  Wendland kernel = Wendland::c2;
+  std::vector<FollowingPart> parts{};
+  /// How far each vertex follows, 0 to 1; empty: all follow. 0 leaves a vertex alone, bit for bit.
+  Eigen::VectorXd mask{};
+};
+
+class SurfaceField {
+public:
+  /// Above it, control vectors of a millimetre would need coefficients of metres.
+  static constexpr double most_condition = 1e4;
+
+  /// Computes all functions: a shortest way for each point. The layout must be the mesh's. Error:
+  /// bad_input (two points are so near to each other, for their radii, that the condition is above
+  /// most_condition; it names their numbers). Allocates.
+  static Result<std::shared_ptr<const SurfaceField>>
+  make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSetup& setup);
+
+  Eigen::Index point_count() const noexcept { return inverse_.rows(); }
+  double condition() const noexcept { return condition_; } ///< of A, in the 1-norm
+  /// Returns what each vertex gets of each control vector: #points by #vertices. Allocates.
+  Eigen::MatrixXf weights() const;
+
+  /// What a tick needs.
+  struct Coefficients {
+    explicit Coefficients(Eigen::Index points);
+    Eigen::Matrix3Xd of_functions; ///< c
+    Eigen::Matrix3Xf all; ///< c, and behind it v, which the affine maps take; in blocks' units
+  };
+  /// Computes the coefficients of control vectors (3 by point_count(), model units). Does not
+  /// allocate.
+  void solve(const Points& vectors, Coefficients& coefficients) const noexcept;
+  /// Writes to = from + s, block by block, where s is not 0, and copies the other blocks where they
+  /// differ. Does not allocate.
+  void displace(const Coefficients& by, const BlockShape& from, BlockShape& to) const noexcept;
+  bool reaches(std::size_t block) const noexcept { return starts_[block] < starts_[block + 1]; }
+
+private:
+  /// A function in a block.
+  struct alignas(64) Entry {
+    std::array<float, block_size> values{};
+    std::uint32_t column = 0; ///< of Coefficients::all
+  };
+
+  friend class SurfaceFieldBuilder;
+  SurfaceField() = default;
+
+  Eigen::MatrixXd inverse_; ///< of A
+  double condition_ = 1.0;
+  double unit_ = 1.0;
+  std::vector<std::uint32_t> order_; ///< BlockLayout::order()
+  std::vector<std::size_t> starts_;  ///< of each block's entries
+  std::vector<Entry> entries_;
+};
+
+} // namespace nendo::deform

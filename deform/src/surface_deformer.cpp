@@ -1,0 +1,103 @@
+#include <nendo/deform/surface_deformer.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "sculpted_parts.hpp"
+#include "usable.hpp"
+
+namespace nendo::deform {
+
+SurfaceDeformer::SurfaceDeformer(SculptedShape& shape, std::shared_ptr<const SurfaceField> field)
+    : shape_(&shape), field_(std::move(field)), starts_(Points::Zero(3, field_->point_count())),
+      vectors_(starts_), coefficients_(field_->point_count()) {}
+
+FieldStatus SurfaceDeformer::grab(const Points& starts) {
+  if (!all_usable(starts)) return FieldStatus::not_finite;
+  take_hold(starts);
+  return FieldStatus::ok;
+}
+
+void SurfaceDeformer::take_hold(const Points& starts) noexcept {
+  assert(starts.cols() == starts_.cols());
+  starts_ = starts;
+  coefficients_.all.setZero();
+  grabbed_ = true;
+}
+
+FieldStatus SurfaceDeformer::apply(const Points& ends, BlockShape& out) {
+  const BoundedShape& rest = shape_->parts().now;
+  if (out.block_count() != rest.shape.block_count()) out = rest.shape;
+  FieldStatus status = grabbed_ ? FieldStatus::ok : FieldStatus::singular;
+  if (grabbed_ && all_usable(ends)) {
+    vectors_ = ends - starts_;
+    field_->solve(vectors_, coefficients_);
+    // The functions are at most 1, and affine maps of rigid parts reach a few times farther.
+    const double most = 1e3 * static_cast<double>(coefficients_.all.cols()) *
+                        static_cast<double>(coefficients_.all.cwiseAbs().maxCoeff());
+    if (!(rest.extent + most <= most_units)) {
+      coefficients_.all.setZero();
+      status = FieldStatus::not_finite;
+    }
+  } else if (grabbed_) {
+    status = FieldStatus::not_finite; // the last good shape
+  }
+  field_->displace(coefficients_, rest.shape, out);
+  return status;
+}
+
+/// Makes the applied shape the rest shape.
+void SurfaceDeformer::absorb() noexcept {
+  if (!is_moved()) return;
+  BoundedShape& rest = shape_->parts().change();
+  field_->displace(coefficients_, rest.shape, rest.shape);
+  for (std::size_t block = 0; block < rest.bounds.size(); ++block) {
+    if (!field_->reaches(block)) continue;
+    rest.bounds[block] = bounds_of(rest.shape[block]);
+    for (const float side : rest.bounds[block].sides)
+      rest.extent = std::max(rest.extent, std::abs(static_cast<double>(side)));
+  }
+}
+
+FieldStatus SurfaceDeformer::commit(const Points& ends) {
+  if (!all_usable(ends)) return FieldStatus::not_finite;
+  absorb();
+  shape_->parts().keep();
+  take_hold(ends);
+  return FieldStatus::ok;
+}
+
+void SurfaceDeformer::release(bool is_step) noexcept {
+  if (grabbed_) absorb();
+  if (is_step) shape_->parts().keep();
+  grabbed_ = false;
+  coefficients_.all.setZero();
+}
+
+FieldStatus SurfaceDeformer::reset(const Points& tips) {
+  if (!all_usable(tips)) return FieldStatus::not_finite;
+  absorb();
+  shape_->parts().reset();
+  take_hold(tips);
+  return FieldStatus::ok;
+}
+
+FieldStatus SurfaceDeformer::undo(const Points& tips) {
+  if (!all_usable(tips)) return FieldStatus::not_finite;
+  shape_->parts().keep(); // what release() left out
+  shape_->parts().undo();
+  take_hold(tips);
+  return FieldStatus::ok;
+}
+
+FieldStatus SurfaceDeformer::redo(const Points& tips) {
+  if (redo_steps() == 0) return FieldStatus::ok;
+  if (!all_usable(tips)) return FieldStatus::not_finite;
+  shape_->parts().redo();
+  take_hold(tips);
+  return FieldStatus::ok;
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,244 @@
+#include <nendo/deform/surface_field.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace nendo::deform {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+double norm_1(const MatrixXd& matrix) {
+  return matrix.cwiseAbs().colwise().sum().maxCoeff();
+}
+
+/// Rows are places in the surface, columns the functions: a function's value is interpolated within
+/// a face as the place itself is.
+Eigen::RowVectorXd at_place(const MatrixXd& values, const SurfacePlace& place) {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(values.cols());
+  for (std::size_t k = 0; k < place.corners.size(); ++k)
+    row += place.weights[k] * values.row(place.corners[k]);
+  return row;
+}
+
+/// The functions at the mesh's vertices: #vertices by #points.
+MatrixXd functions_on(const Mesh& mesh, const SurfaceSetup& setup) {
+  const SurfaceGraph graph(mesh);
+  MatrixXd values(mesh.vertices.cols(), static_cast<Index>(setup.points.size()));
+  for (Index j = 0; j < values.cols(); ++j) {
+    const SurfacePoint& point = setup.points[static_cast<std::size_t>(j)];
+    const VectorXd distances = graph.distances(point.place, point.radius);
+    for (Index v = 0; v < values.rows(); ++v)
+      values(v, j) = wendland(setup.kernel, distances[v] / point.radius);
+  }
+  return values;
+}
+
+/// The two points whose rows are the most alike.
+std::pair<Index, Index> nearest_pair(const MatrixXd& functions) {
+  std::pair<Index, Index> pair{0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  for (Index a = 0; a < functions.rows(); ++a)
+    for (Index b = a + 1; b < functions.rows(); ++b) {
+      const double apart = (functions.row(a) - functions.row(b)).norm();
+      if (apart < least) {
+        least = apart;
+        pair = {a, b};
+      }
+    }
+  return pair;
+}
+
+/// Where each vertex gets what it gets of the points: the nearest vertex that a function reaches.
+std::uint32_t nearest_reached(const Mesh& mesh, const std::vector<std::uint32_t>& reached,
+                              std::uint32_t vertex) {
+  const auto squared = [&](std::uint32_t other) {
+    return (mesh.vertices.col(other) - mesh.vertices.col(vertex)).squaredNorm();
+  };
+  return *std::min_element(
+      reached.begin(), reached.end(),
+      [&](std::uint32_t one, std::uint32_t other) { return squared(one) < squared(other); });
+}
+
+/// The coordinates of `place` among those points: the least whose sum is 1 and whose weighted mean
+/// is the place, so that an affine motion of the points is one of the place.
+VectorXd affine_coordinates(const Mesh& mesh, const SurfaceSetup& setup,
+                            const std::vector<Index>& points, std::uint32_t vertex) {
+  MatrixXd system(4, static_cast<Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto column = static_cast<Index>(k);
+    system.col(column).head<3>() =
+        setup.points[static_cast<std::size_t>(points[k])].place.in(mesh.vertices);
+    system(3, column) = 1.0;
+  }
+  Eigen::Vector4d wanted;
+  wanted << mesh.vertices.col(vertex), 1.0;
+  return system.completeOrthogonalDecomposition().solve(wanted);
+}
+
+} // namespace
+
+SurfaceField::Coefficients::Coefficients(Index points)
+    : of_functions(Eigen::Matrix3Xd::Zero(3, points)), all(Eigen::Matrix3Xf::Zero(3, 2 * points)) {}
+
+/// Builds the blocks of a field.
+class SurfaceFieldBuilder {
+public:
+  SurfaceFieldBuilder(const Mesh& mesh, const BlockLayout& layout, const SurfaceSetup& setup)
+      : mesh_(mesh), setup_(setup), places_(layout.places()), functions_(functions_on(mesh, setup)),
+        blocks_(layout.block_count()) {}
+
+  MatrixXd at_points() const {
+    MatrixXd rows(functions_.cols(), functions_.cols());
+    for (Index i = 0; i < rows.rows(); ++i)
+      rows.row(i) = at_place(functions_, setup_.points[static_cast<std::size_t>(i)].place);
+    return rows;
+  }
+
+  void fill() {
+    for (Index v = 0; v < functions_.rows(); ++v) {
+      if (!functions_.row(v).isZero(0.0)) reached_.push_back(static_cast<std::uint32_t>(v));
+      add_functions(static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(v));
+    }
+    for (const FollowingPart& part : setup_.parts)
+      for (const std::uint32_t vertex : part.vertices)
+        if (functions_.row(vertex).isZero(0.0)) add_following(part, vertex);
+  }
+
+  template <class Entry>
+  void take(std::vector<std::size_t>& starts, std::vector<Entry>& entries) const {
+    starts.assign(1, 0);
+    for (const auto& block : blocks_) {
+      for (const auto& [column, values] : block) {
+        entries.emplace_back();
+        entries.back().values = values;
+        entries.back().column = column;
+      }
+      starts.push_back(entries.size());
+    }
+  }
+
+private:
+  using Column = std::pair<std::uint32_t, std::array<float, block_size>>;
+
+  double mask(std::uint32_t vertex) const {
+    return setup_.mask.size() == 0 ? 1.0 : setup_.mask[vertex];
+  }
+  void add(std::uint32_t vertex, Index column, double value) {
+    const auto part = static_cast<float>(value * mask(vertex));
+    if (part == 0.0F) return;
+    const std::size_t place = places_[vertex];
+    auto& block = blocks_[place / block_size];
+    const auto number = static_cast<std::uint32_t>(column);
+    auto found = std::find_if(block.begin(), block.end(),
+                              [&](const Column& known) { return known.first == number; });
+    if (found == block.end()) found = block.insert(block.end(), {number, {}});
+    found->second[place % block_size] = part;
+  }
+  void add_functions(std::uint32_t vertex, std::uint32_t as) {
+    for (Index j = 0; j < functions_.cols(); ++j)
+      add(vertex, j, functions_(as, j));
+  }
+  void add_following(const FollowingPart& part, std::uint32_t vertex) {
+    if (part.points.empty()) {
+      if (!reached_.empty()) add_functions(vertex, nearest_reached(mesh_, reached_, vertex));
+      return;
+    }
+    const VectorXd coordinates = affine_coordinates(mesh_, setup_, part.points, vertex);
+    for (std::size_t k = 0; k < part.points.size(); ++k)
+      add(vertex, functions_.cols() + part.points[k], coordinates[static_cast<Index>(k)]);
+  }
+
+  const Mesh& mesh_;
+  const SurfaceSetup& setup_;
+  std::vector<std::uint32_t> places_;
+  MatrixXd functions_;
+  std::vector<std::uint32_t> reached_; ///< along the surface
+  std::vector<std::vector<Column>> blocks_;
+};
+
+Result<std::shared_ptr<const SurfaceField>>
+SurfaceField::make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSetup& setup) {
+  SurfaceFieldBuilder builder(mesh, layout, setup);
+  std::shared_ptr<SurfaceField> field(new SurfaceField);
+  const MatrixXd functions = builder.at_points();
+  const Eigen::PartialPivLU<MatrixXd> factor(functions);
+  field->inverse_ = factor.inverse();
+  field->condition_ = norm_1(functions) * norm_1(field->inverse_);
+  if (!(field->condition_ <= most_condition)) { // also where it is not a number
+    const auto [one, other] = nearest_pair(functions);
+    return Error{Errc::bad_input,
+                 "points " + std::to_string(one) + " and " + std::to_string(other) +
+                     " are too near to each other for their radii; move one away or make both "
+                     "radii smaller"};
+  }
+  builder.fill();
+  builder.take(field->starts_, field->entries_);
+  field->unit_ = layout.unit();
+  field->order_ = layout.order();
+  return std::shared_ptr<const SurfaceField>(std::move(field));
+}
+
+Eigen::MatrixXf SurfaceField::weights() const {
+  const Index points = point_count();
+  Eigen::MatrixXf all = Eigen::MatrixXf::Zero(points, static_cast<Index>(order_.size()));
+  for (std::size_t block = 0; block + 1 < starts_.size(); ++block) {
+    for (std::size_t at = starts_[block]; at < starts_[block + 1]; ++at) {
+      const Entry& entry = entries_[at];
+      const Index column = entry.column;
+      for (std::size_t lane = 0; lane < block_size; ++lane) {
+        const std::size_t place = block * block_size + lane;
+        if (entry.values[lane] == 0.0F || place >= order_.size()) continue;
+        const auto vertex = static_cast<Index>(order_[place]);
+        if (column < points)
+          all.col(vertex) += entry.values[lane] * inverse_.row(column).transpose().cast<float>();
+        else
+          all(column - points, vertex) += entry.values[lane];
+      }
+    }
+  }
+  return all;
+}
+
+void SurfaceField::solve(const Points& vectors, Coefficients& coefficients) const noexcept {
+  assert(vectors.cols() == point_count() && coefficients.of_functions.cols() == point_count());
+  coefficients.of_functions.noalias() = vectors.lazyProduct(inverse_.transpose());
+  const double scale = 1.0 / unit_;
+  for (Index j = 0; j < vectors.cols(); ++j) {
+    coefficients.all.col(j) = (scale * coefficients.of_functions.col(j)).cast<float>();
+    coefficients.all.col(vectors.cols() + j) = (scale * vectors.col(j)).cast<float>();
+  }
+}
+
+void SurfaceField::displace(const Coefficients& by, const BlockShape& from,
+                            BlockShape& to) const noexcept {
+  for (std::size_t block = 0; block + 1 < starts_.size(); ++block) {
+    bool moves = false;
+    for (std::size_t at = starts_[block]; at < starts_[block + 1] && !moves; ++at)
+      moves = !by.all.col(entries_[at].column).isZero(0.0F);
+    if (!moves) {
+      to.follow(from, block);
+      continue;
+    }
+    VertexBlock moved = from[block];
+    for (std::size_t at = starts_[block]; at < starts_[block + 1]; ++at) {
+      const Entry& entry = entries_[at];
+      const Eigen::Vector3f vector = by.all.col(entry.column);
+      for (std::size_t lane = 0; lane < block_size; ++lane) {
+        moved.x[lane] += vector.x() * entry.values[lane];
+        moved.y[lane] += vector.y() * entry.values[lane];
+        moved.z[lane] += vector.z() * entry.values[lane];
+      }
+    }
+    to.data()[block] = moved;
+    to.set_stamp(block, BlockShape::new_stamp());
+  }
+}
+
+} // namespace nendo::deform
