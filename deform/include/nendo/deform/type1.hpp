@@ -1,6 +1,6 @@
 #pragma once
-// Type-1 (the paper, 2.4): the start points are frozen when the operator grabs. Every tick only the
-// end points move, so everything that depends on start points alone is kept, down to what each
+// Type-1 (the paper, 2.3.1): the start points are frozen when the operator grabs. Every tick only
+// the end points move, so everything that depends on start points alone is kept, down to what each
 // vertex gets of each displacement, and the rest shape is deformed anew: nothing accumulates.
 
 #include <memory>
