@@ -59,6 +59,9 @@ public:
   /// Makes the rest shape what it was before the last commit, and `tips` the start points. What
   /// apply() made since then is dropped. If no commit can be undone, this is grab(tips).
   FieldStatus undo(const Points& tips);
+  /// Takes back what apply() made since the last commit, as a step of its own, and makes `tips` the
+  /// start points. redo() brings it back, unless there was no memory for it. Older steps stay.
+  FieldStatus take_back(const Points& tips);
   /// Makes the rest shape what it was before the last undo, and `tips` the start points. If there
   /// is no such undo, or there was a commit since, nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);
