@@ -23,9 +23,11 @@ std::array<deform::Points, poses> random_ends(const deform::Points& starts) {
 
 namespace {
 
-deform::DeformerOptions undoable(const deform::Points& mesh, double radius, int threads) {
+deform::DeformerOptions undoable(const deform::Points& mesh, double radius, int threads,
+                                 const deform::CsrbfOptions& csrbf) {
   deform::DeformerOptions options;
   options.supports = deform::one_radius(radius);
+  options.csrbf = csrbf;
   options.evaluation.threads = threads;
   constexpr std::size_t bytes_a_block = 832; // and as many for the step
   options.undo_bytes =
@@ -36,9 +38,9 @@ deform::DeformerOptions undoable(const deform::Points& mesh, double radius, int 
 } // namespace
 
 Strokes::Strokes(const deform::Points& mesh, const deform::Points& starts, double radius,
-                 int threads)
+                 int threads, const deform::CsrbfOptions& csrbf)
     : starts_(starts), ends_(random_ends(starts)),
-      deformer_(mesh, starts.cols(), one_piece, undoable(mesh, radius, threads)) {
+      deformer_(mesh, starts.cols(), one_piece, undoable(mesh, radius, threads, csrbf)) {
   deformer_.begin(starts_);
 }
 

@@ -61,6 +61,18 @@ private:
   double us_ = 1e300;
 };
 
+/// Calls `round` once, and again until the time is over.
+template <class Round>
+void for_seconds(double seconds, const Round& round) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto passed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  do
+    round();
+  while (passed() < seconds);
+}
+
 using Best = BestBy<std::chrono::steady_clock>;
 /// For frames that take longer than the scheduler lets a thread run without interruption.
 using BestOfThread = BestBy<ThreadClock>;
@@ -70,7 +82,8 @@ using BestOfThread = BestBy<ThreadClock>;
 /// few places. So each turn begins with the original mesh.
 class Strokes {
 public:
-  Strokes(const deform::Points& mesh, const deform::Points& starts, double radius, int threads = 1);
+  Strokes(const deform::Points& mesh, const deform::Points& starts, double radius, int threads = 1,
+          const deform::CsrbfOptions& csrbf = {});
 
   /// Measures one turn.
   template <class Clock>

@@ -12,9 +12,11 @@
 #include <nendo/base/files.hpp>
 
 #include "bench/bench.hpp"
+#include "bench/figure4_picture.hpp"
 #include "bench/simd_choice.hpp"
 #include "bench/table1_paper.hpp"
 #include "bench/table1_picture.hpp"
+#include "bench/whole_frame.hpp"
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "reference/table1.hpp"
@@ -25,6 +27,7 @@ namespace {
 struct Options {
   std::string simd;
   std::string picture;
+  std::string figure4;
   double seconds_per_cell = 1.0;
   bool json = false;
 };
@@ -52,26 +55,32 @@ void print_json(const Place& place, const Table1Entry& entry) {
           {"paper_frames_per_second",
            (type == 0 ? paper_type1 : paper_type2).at(entry.plane).at(entry.radius)},
           {"paper_evaluations", paper_evaluations.at(entry.plane).at(entry.radius)},
-          {"plain_loop_frames_per_second", nullptr}};
+          {"plain_loop_frames_per_second", nullptr},
+          {"whole_frames_per_second", nullptr}};
       if (cell.plain_loop[type] > 0.0)
         object["plain_loop_frames_per_second"] = cell.plain_loop[type];
+      if (threads == 1) object["whole_frames_per_second"] = cell.whole_frame[type];
       std::cout << object.dump() << std::endl;
     }
 }
 
 void print_heading() {
-  std::printf("The paper's Table 1 in frames a second. The paper: Athlon 64 3400+, drawing "
-              "included. Here: the best of\nmany, solving and moving all vertices; plain: a loop "
-              "that the compiler vectorises; 2 thr: two threads.\n");
+  std::printf("The paper's Table 1 in frames a second. The paper: Athlon 64 3400+; p(x), normals "
+              "and drawing included.\nHere, the best of many. whole: the same in the frame, one "
+              "thread, %s.\nOthers only solve and move all vertices, without p(x). plain: a loop "
+              "that the compiler vectorises; 2 thr: two threads.\n",
+              whole_frame_drawing);
 }
 
 void print_layout(const reference::Table1Layout& layout) {
   std::printf("\nlayout %s: ten control points at z = %.0f\n", layout.name, layout.height);
-  std::printf("%25s %17s  %35s  %35s\n", "", "evaluations", "------------- Type-1 --------------",
-              "------------- Type-2 --------------");
-  std::printf("%9s %8s %6s %8s %8s  %7s %8s %9s %8s  %7s %8s %9s %8s\n", "triangles", "vertices",
-              "radius", "here", "paper", "paper", "plain", "1 thread", "2 thr", "paper", "plain",
-              "1 thread", "2 thr");
+  std::printf("%25s %17s  %42s  %42s\n", "", "evaluations",
+              "---------------- Type-1 ------------------",
+              "---------------- Type-2 ------------------");
+  std::printf("%9s %8s %6s %8s %8s", "triangles", "vertices", "radius", "here", "paper");
+  for (int type = 0; type < 2; ++type)
+    std::printf("  %6s %6s %8s %9s %9s", "paper", "whole", "plain", "1 thread", "2 thr");
+  std::printf("\n");
 }
 
 void print_text(const Place& place, const Table1Entry& entry) {
@@ -80,9 +89,10 @@ void print_text(const Place& place, const Table1Entry& entry) {
               reference::table1_radii.at(entry.radius), cell.evaluations,
               paper_evaluations.at(entry.plane).at(entry.radius));
   for (std::size_t type = 0; type < 2; ++type)
-    std::printf("  %7.1f %8.0f %9.0f %8.0f",
+    std::printf("  %6.1f %6.0f %8.0f %9.0f %9.0f",
                 (type == 0 ? paper_type1 : paper_type2).at(entry.plane).at(entry.radius),
-                cell.plain_loop[type], cell.one_thread[type], cell.two_threads[type]);
+                cell.whole_frame[type], cell.plain_loop[type], cell.one_thread[type],
+                cell.two_threads[type]);
   std::printf("\n");
   std::fflush(stdout);
 }
@@ -96,13 +106,23 @@ std::vector<Table1Entry> measure_layout(const reference::Table1Layout& layout,
     const Place place{layout, plane, static_cast<std::size_t>(mesh.vertices.cols()),
                       mesh.face_count()};
     for (std::size_t radius = 0; radius < reference::table1_radii.size(); ++radius) {
-      const Table1Cell cell = measure_table1_cell(
-          mesh.vertices, starts, reference::table1_radii.at(radius), options.seconds_per_cell);
+      const Table1Cell cell = measure_table1_cell(mesh, starts, reference::table1_radii.at(radius),
+                                                  options.seconds_per_cell);
       entries.push_back({plane, radius, cell});
       options.json ? print_json(place, entries.back()) : print_text(place, entries.back());
     }
   }
   return entries;
+}
+
+Result<void> draw_pictures(const Options& options, const std::vector<Table1Entry>& entries,
+                           const char* layout) {
+  if (!options.picture.empty()) {
+    const auto written = replace_file(options.picture, table1_picture(entries, layout));
+    if (!written) return written;
+  }
+  if (options.figure4.empty()) return {};
+  return replace_file(options.figure4, figure4_picture(entries, layout));
 }
 
 int bench_table1(const Options& options) {
@@ -111,14 +131,16 @@ int bench_table1(const Options& options) {
     return cli::report({Errc::usage, "--seconds-per-cell: more than 0, at most 600"});
   if (const auto fine = cli::check_place("--picture", options.picture); !fine)
     return cli::report(fine.error());
+  if (const auto fine = cli::check_place("--figure4", options.figure4); !fine)
+    return cli::report(fine.error());
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   if (!options.json) print_heading();
   for (const reference::Table1Layout& layout : reference::table1_layouts) {
     if (!options.json) print_layout(layout);
     const auto entries = measure_layout(layout, options);
-    if (options.picture.empty() || &layout != reference::table1_layouts.data()) continue;
-    const auto written = replace_file(options.picture, table1_picture(entries, layout.name));
-    if (!written) return cli::report(written.error());
+    if (&layout != reference::table1_layouts.data()) continue;
+    if (const auto drawn = draw_pictures(options, entries, layout.name); !drawn)
+      return cli::report(drawn.error());
   }
   return 0;
 }
@@ -133,6 +155,9 @@ void add(cli::Command& bench) {
                        "Seconds for each mesh, radius and layout, of which there are forty");
   command.add_option("--picture", options->picture,
                      "Also draw the layout 'near' beside the paper's figures, as FILE.svg");
+  command.add_option("--figure4", options->figure4,
+                     "Also draw the time of a whole frame over its evaluations, as the paper's "
+                     "figure 4 does, beside the paper's, as FILE.svg");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
   command.add_flag("--json", options->json, "A JSON object a line");

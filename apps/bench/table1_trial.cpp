@@ -1,29 +1,16 @@
 #include "bench/table1_trial.hpp"
 
-#include <chrono>
-
 #include <nendo/deform/type1.hpp>
 
 #include "bench/deform_frames.hpp"
 #include "bench/plain_deformer.hpp"
+#include "bench/whole_frame.hpp"
 #include "reference/table1.hpp"
 
 namespace nendo::bench {
 namespace {
 
 using namespace nendo::deform;
-
-/// Calls `round` once, and again until the time is over.
-template <class Round>
-void for_seconds(double seconds, const Round& round) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto passed = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
-  do
-    round();
-  while (passed() < seconds);
-}
 
 class Trial {
 public:
@@ -80,13 +67,14 @@ private:
 
 } // namespace
 
-Table1Cell measure_table1_cell(const Points& plane, const Points& starts, double radius,
+Table1Cell measure_table1_cell(const Mesh& plane, const Points& starts, double radius,
                                double seconds) {
   Table1Cell cell;
-  cell.evaluations = reference::count_evaluations(plane, starts, radius);
-  Trial trial(plane, starts, radius);
-  trial.measure_alone(0.6 * seconds, cell);
-  cell.two_threads = {trial.type1_by_two(0.2 * seconds), trial.type2_by_two(0.2 * seconds)};
+  cell.evaluations = reference::count_evaluations(plane.vertices, starts, radius);
+  Trial trial(plane.vertices, starts, radius);
+  trial.measure_alone(0.5 * seconds, cell);
+  cell.two_threads = {trial.type1_by_two(0.15 * seconds), trial.type2_by_two(0.15 * seconds)};
+  cell.whole_frame = WholeFrame(plane, starts, radius).measure(0.2 * seconds);
   return cell;
 }
 

@@ -16,6 +16,7 @@ flow::ShapingOptions shaping_options(const Timeline& timeline,
   flow::ShapingOptions options{sculptor};
   options.most_requests = timeline.events.size() + 1;
   options.held = timeline.held;
+  options.pull_is_step = timeline.pull_is_step;
   return options;
 }
 

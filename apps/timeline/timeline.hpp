@@ -58,6 +58,7 @@ struct Timeline {
   double rate_hz = 90.0;        ///< of the frames that are made from the timeline
   double duration_s = 0.0;      ///< of the last frame
   bool held = true;             ///< the hands hold the model at first
+  bool pull_is_step = false;    ///< LoopOptions::pull_is_step; false in files that do not tell
   flow::SculptorOptions sculptor;
   /// One or two, of different sides. Their order numbers the own supports of fingertips.
   std::vector<HandTrack> hands;

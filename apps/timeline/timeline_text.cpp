@@ -102,8 +102,9 @@ std::string head_text(const Timeline& timeline) {
          line("units_per_metre", decimal_text(timeline.units_per_metre)) +
          line("rate_hz", decimal_text(timeline.rate_hz)) +
          line("duration_s", decimal_text(timeline.duration_s)) +
-         line("held", timeline.held ? "true" : "false") + "events = [\n" + events + "]\n" +
-         "\n[model]\n" + line("file", toml_string(timeline.mesh)) +
+         line("held", timeline.held ? "true" : "false") +
+         (timeline.pull_is_step ? line("pull_is_step", "true") : "") + "events = [\n" + events +
+         "]\n" + "\n[model]\n" + line("file", toml_string(timeline.mesh)) +
          line("vertices", std::to_string(timeline.mesh_sum.vertices)) +
          line("crc32c", std::to_string(timeline.mesh_sum.crc));
 }

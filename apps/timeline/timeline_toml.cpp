@@ -158,13 +158,14 @@ void read_model(TomlReader& reader, const toml::table& root, Timeline& timeline)
 
 Timeline read_root(TomlReader& reader, const toml::table& root) {
   reader.allow_only(root, {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
-                           "events", "model", "sculptor", "hands"});
+                           "pull_is_step", "events", "model", "sculptor", "hands"});
   Timeline timeline;
   timeline.take = reader.text(root, "take");
   timeline.units_per_metre = reader.number(root, "units_per_metre");
   timeline.rate_hz = reader.number(root, "rate_hz");
   timeline.duration_s = reader.number(root, "duration_s");
   timeline.held = reader.truth(root, "held");
+  timeline.pull_is_step = root.contains("pull_is_step") && reader.truth(root, "pull_is_step");
   read_events(reader, root, timeline);
   read_model(reader, root, timeline);
   read_sculptor(reader, root, timeline.sculptor);

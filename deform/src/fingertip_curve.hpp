@@ -1,8 +1,8 @@
 #pragma once
-// Type-2's curves (the paper, 2.4): one smooth curve joins the samples of all fingertips and is cut
-// at constant arc length. A cubic Hermite piece leads from each sample to the next. Its end tangent
-// is that of the parabola through the last three samples, so that the curve need not wait for a
-// later sample; the next piece begins with that tangent.
+// Type-2's curves (the paper, 2.3.2): one smooth curve joins the samples of all fingertips and is
+// cut at constant arc length. A cubic Hermite piece leads from each sample to the next. Its end
+// tangent is that of the parabola through the last three samples, so that the curve need not wait
+// for a later sample; the next piece begins with that tangent.
 
 #include <array>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The paper's first step (Sato, Savchenko, Ohbuchi 2004, section 2.3): it orders points as an
+// The paper's first step (Sato, Savchenko, Ohbuchi 2004, section 2.4): it orders points as an
 // octree's leaves are visited, so that points near in space are near in the list, and the matrix of
 // their interactions is banded.
 

@@ -36,14 +36,20 @@ std::size_t ShapeHistory::count_changed(const BlockShape& now) const noexcept {
   return changed;
 }
 
-/// Takes memory, and drops the oldest steps, until so many blocks are free. Returns false if there
-/// are no more to drop.
-bool ShapeHistory::make_room(std::size_t blocks) noexcept {
+/// Takes memory until so many blocks are free. Returns false if there is no more.
+bool ShapeHistory::take_more(std::size_t blocks) noexcept {
   while (more_ != nullptr && free_count_ < blocks) {
     const SavedChain chain = more_->take();
     if (chain.count == 0) break;
     add_free(chain);
   }
+  return blocks <= free_count_;
+}
+
+/// Takes memory, and drops the oldest steps, until so many blocks are free. Returns false if there
+/// are no more to drop.
+bool ShapeHistory::make_room(std::size_t blocks) noexcept {
+  take_more(blocks);
   for (; steps_ > 0 && free_count_ < blocks; ++forgotten_)
     drop_oldest();
   return blocks <= free_count_;
@@ -61,6 +67,19 @@ void ShapeHistory::keep(const BlockShape& now, const StepNote& note) noexcept {
     kept_.follow(now, block);
   }
   if (!fits) ++forgotten_;
+  if (more_ != nullptr) more_->tell_free(free_count_);
+}
+
+void ShapeHistory::keep_undone(BoundedShape& shape, const StepNote& note) noexcept {
+  const std::size_t changed = count_changed(shape.shape);
+  if (changed == 0) return;
+  forget_undone();
+  if (take_more(changed + 1)) {
+    keep(shape.shape, note);
+    undo(shape);
+    return;
+  }
+  revert(shape);
   if (more_ != nullptr) more_->tell_free(free_count_);
 }
 

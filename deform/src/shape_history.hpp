@@ -26,10 +26,16 @@ public:
   ~ShapeHistory();
   ShapeHistory(ShapeHistory&&) noexcept = default;
 
+  /// Tells whether there is any memory, so that revert() can go back.
+  bool is_kept() const noexcept { return kept_.block_count() > 0; }
   /// Ends a step, which leads from the shape kept last to this one, and forgets undone steps. If
   /// nothing changed, there is no step. A step for which there is no room is not kept, and neither
   /// are those before it.
   void keep(const BlockShape& now, const StepNote& note) noexcept;
+  /// Makes `shape` again the shape that was kept last, as keep() and undo() would, so that redo()
+  /// leads to what `shape` is now. It drops no step that can be undone: without room it only makes
+  /// the shape what it was. Does nothing if nothing is kept or nothing has changed.
+  void keep_undone(BoundedShape& shape, const StepNote& note) noexcept;
   /// Adds a step that does not change the shape, and forgets undone steps.
   void mark(const StepNote& note) noexcept;
   /// Makes `shape` again the shape that was kept last.
@@ -78,8 +84,8 @@ public:
   std::size_t forgotten() const noexcept { return forgotten_; } ///< for want of memory
 
 private:
-  bool is_kept() const noexcept { return kept_.block_count() > 0; }
   std::size_t count_changed(const BlockShape& now) const noexcept;
+  bool take_more(std::size_t blocks) noexcept;
   bool make_room(std::size_t blocks) noexcept;
   SavedBlock& take() noexcept;
   void begin_step(const StepNote& note) noexcept;

@@ -216,6 +216,19 @@ FieldStatus Type1Deformer::undo(const Points& tips) {
   return status;
 }
 
+FieldStatus Type1Deformer::take_back(const Points& tips) {
+  assert(tips.cols() == starts_.cols());
+  const FieldStatus status = build(tips);
+  if (!is_solved(status)) return status;
+  SculptedShape::Parts& parts = shape_->parts();
+  if (parts.history.is_kept()) {
+    if (in_links_ || !displacements_.isZero(0.0)) absorb();
+    parts.history.keep_undone(parts.now, parts.note);
+  }
+  take_hold();
+  return status;
+}
+
 FieldStatus Type1Deformer::redo(const Points& tips) {
   assert(tips.cols() == starts_.cols());
   if (redo_steps() == 0) return FieldStatus::ok;

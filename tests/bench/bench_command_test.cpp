@@ -175,8 +175,10 @@ TEST_SUITE("bench") {
   TEST_CASE("bench table1 counts the paper's evaluations in 19 cells of 20, and draws them all") {
     const nendo::test::TemporaryFolder folder;
     const auto picture = folder.path() / "table1.svg";
-    const auto done = nendo::test::nendo({"bench", "table1", "--seconds-per-cell", "0.001",
-                                          "--json", "--picture", picture.string()});
+    const auto figure4 = folder.path() / "figure4.svg";
+    const auto done =
+        nendo::test::nendo({"bench", "table1", "--seconds-per-cell", "0.001", "--json", "--picture",
+                            picture.string(), "--figure4", figure4.string()});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
     const auto lines = lines_of(done.out);
     REQUIRE(lines.size() == 160); // layouts, meshes, radii, types, threads
@@ -191,6 +193,12 @@ TEST_SUITE("bench") {
       CHECK(cell["paper_frames_per_second"].get<double>() > 10.0);
       const auto& plain = cell["plain_loop_frames_per_second"];
       CHECK((plain.is_null() || plain.get<double>() > 0.0));
+      const auto& whole = cell["whole_frames_per_second"];
+      REQUIRE(whole.is_null() == (cell["threads"] == 2));
+      if (!whole.is_null()) {
+        CHECK(whole.get<double>() > 0.0);
+        CHECK(whole.get<double>() < cell["frames_per_second"].get<double>());
+      }
       if (at >= 80 || at % 4 != 0) continue;
       const double ratio =
           cell["evaluations"].get<double>() / cell["paper_evaluations"].get<double>();
@@ -209,6 +217,13 @@ TEST_SUITE("bench") {
     for (std::size_t at = 0; (at = drawn.find(" x</text>", at)) != std::string::npos; ++at)
       ++factors;
     CHECK(factors == 40);
+    const std::string figure = nendo::test::contents(figure4);
+    CHECK(figure.starts_with("<svg"));
+    CHECK(figure.ends_with("</svg>\n"));
+    std::size_t dots = 0;
+    for (std::size_t at = 0; (at = figure.find("<circle", at)) != std::string::npos; ++at)
+      ++dots;
+    CHECK(dots == 3 * 2 * 20 + 5); // series, types, cells; and the key's
   }
 
   TEST_CASE("bench table1 refuses what it cannot measure or write") {
@@ -222,6 +237,10 @@ TEST_SUITE("bench") {
         {"bench", "table1", "--seconds-per-cell", "0.001", "--picture", "/nowhere/table1.svg"});
     CHECK(nowhere.exit_code == 1);
     CHECK(is_one_line_about(nowhere.err, "/nowhere/table1.svg"));
+    const auto no_figure = nendo::test::nendo(
+        {"bench", "table1", "--seconds-per-cell", "0.001", "--figure4", "/nowhere/figure4.svg"});
+    CHECK(no_figure.exit_code == 1);
+    CHECK(is_one_line_about(no_figure.err, "/nowhere/figure4.svg"));
   }
 
   TEST_CASE("bench models tells what another version of the model costs a tick") {

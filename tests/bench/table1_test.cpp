@@ -10,6 +10,8 @@
 #include <Eigen/Geometry>
 
 #include "bench/table1_paper.hpp"
+#include "bench/table1_trial.hpp"
+#include "bench/whole_frame.hpp"
 
 namespace table1_test {
 
@@ -60,6 +62,22 @@ TEST_SUITE("table1") {
     CHECK(count_evaluations(vertices, starts, 5.0) == 2);
     CHECK(count_evaluations(vertices, starts, 5.001) == 4);
     CHECK(count_evaluations(vertices, starts, 7.0) == 6);
+  }
+
+  TEST_CASE("a whole frame draws the deformed plane, and takes longer than its deformation") {
+    const Mesh mesh = table1_mesh(table1_planes[0]);
+    const auto starts = table1_starts();
+    WholeFrame frame(mesh, starts, 20.0);
+    CHECK(frame.covered_share() == 0.0);
+    const auto whole = frame.measure(0.0);
+    // A square from 30 degrees above and 25 degrees beside, in a picture with a margin.
+    CHECK(frame.covered_share() > 0.2);
+    CHECK(frame.covered_share() < 0.8);
+    const auto alone = measure_table1_cell(mesh, starts, 20.0, 0.0).one_thread;
+    for (std::size_t type = 0; type < 2; ++type) {
+      CHECK(whole[type] > 0.0);
+      CHECK(whole[type] < alone[type]);
+    }
   }
 }
 

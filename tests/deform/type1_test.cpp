@@ -335,6 +335,43 @@ TEST_SUITE("type1") {
     }
   }
 
+  TEST_CASE("take_back drops what was pulled and no commit, and redo brings it back if there was "
+            "room") {
+    for (const bool injective : {false, true})
+      for (const std::size_t room : {0U, 1U, 10U}) {
+        CAPTURE(injective);
+        CAPTURE(room);
+        DeformerOptions options = with_undo(room);
+        if (injective) options.injective.emplace();
+        Type1Deformer deformer(rest, 10, options);
+        Points pulled;
+        Points out;
+        REQUIRE(deformer.grab(start_points()) == FieldStatus::ok);
+        REQUIRE(apply(deformer, end_points(0.5), out) == FieldStatus::ok);
+        REQUIRE(deformer.commit(end_points(0.5)) == FieldStatus::ok);
+        const Points committed = unpacked(deformer, deformer.rest());
+        const std::size_t steps = deformer.undo_steps();
+        apply(deformer, end_points(3.0), pulled);
+        REQUIRE(pulled != committed);
+        Points nowhere = start_points();
+        nowhere(0, 0) = std::nan("");
+        CHECK(deformer.take_back(nowhere) == FieldStatus::not_finite);
+        REQUIRE(deformer.take_back(end_points(3.0)) == FieldStatus::ok);
+        CHECK(unpacked(deformer, deformer.rest()) == committed);
+        apply(deformer, end_points(3.0), out);
+        CHECK(out == committed); // held there
+        CHECK(deformer.undo_steps() == steps);
+        CHECK(deformer.forgotten_steps() == 0);
+        CHECK(deformer.redo_steps() == (room == 10 ? 1 : 0));
+        REQUIRE(deformer.redo(start_points()) == FieldStatus::ok);
+        CHECK(unpacked(deformer, deformer.rest()) == (room == 10 ? pulled : committed));
+        if (room == 0) continue;
+        if (room == 10) REQUIRE(deformer.undo(start_points()) == FieldStatus::ok);
+        REQUIRE(deformer.undo(start_points()) == FieldStatus::ok);
+        CHECK(unpacked(deformer, deformer.rest()) == unpacked(deformer, deformer.layout().pack()));
+      }
+  }
+
   TEST_CASE("no function allocates") {
     DeformerOptions options = with_undo(2);
     options.csrbf.polynomial = Polynomial::linear;

@@ -366,7 +366,7 @@ TEST_SUITE("exchange") {
           test.loop->change_settings(test::any_settings(test.loop->settings(), random));
         maker.turn(*test.loop);
         if (tick % 300 == 299) // back to coarser models, from which finer ones can be made
-          for (int undo = 0; undo < 25; ++undo)
+          for (int undo = 0; undo < 30; ++undo)
             test.commands.try_push(Request::undo);
         if (random() % 400 == 0 && maker.is_idle(*test.loop))
           test.loop->change_log(random() % 2 == 0 ? &log : nullptr,

@@ -118,6 +118,74 @@ TEST_SUITE("request") {
     }
   }
 
+  TEST_CASE("what hands have pulled since a commit is taken back first, as a step of its own") {
+    for (const Mode mode : modes) {
+      CAPTURE(name_of(mode));
+      Person person(mode);
+      person.move(0, 12);
+      person.ask(Request::commit, 12);
+      const Points committed = person.shape();
+      CHECK(person.move(12, 25).undo_steps == 2);
+      const Points pulled = person.shape();
+      REQUIRE(pulled != committed);
+      const Frame& back = person.ask(Request::undo, 25);
+      CHECK(person.shape() == committed);
+      CHECK(back.held);
+      CHECK(back.undo_steps == 1);
+      CHECK(back.redo_steps == 1);
+      person.ask(Request::redo, 25);
+      CHECK(person.shape() == pulled);
+      person.ask(Request::undo, 25);
+      CHECK(person.shape() == committed);
+      CHECK(person.ask(Request::undo, 25).undo_steps == 0);
+      CHECK(person.shape() == person.test.model.vertices);
+      CHECK(person.bend(25).redo_steps == 2);
+    }
+  }
+
+  TEST_CASE("a pull is taken back before a change of settings that came before it") {
+    Person person(Mode::type1);
+    person.move(0, 12);
+    LoopSettings other = person.test.loop->settings();
+    other.kernel = deform::Wendland::c4;
+    REQUIRE(person.test.loop->change_settings(other));
+    person.bend(12);
+    const Points changed = person.shape();
+    person.move(12, 25);
+    REQUIRE(person.shape() != changed);
+    const Frame& frame = person.ask(Request::undo, 25);
+    CHECK(person.shape() == changed);
+    CHECK(frame.settings == other);
+    CHECK_FALSE(frame.awaited.has_value());
+  }
+
+  TEST_CASE("by the rule before format 1.5, type 1 drops a pull together with the commit") {
+    Person person(Mode::type1);
+    person.test.options.pull_is_step = false;
+    person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
+                                                    person.test.inputs, person.test.options);
+    person.move(0, 12);
+    person.ask(Request::commit, 12);
+    CHECK(person.move(12, 25).undo_steps == 1);
+    CHECK(person.ask(Request::undo, 25).undo_steps == 0);
+    CHECK(person.shape() == person.test.model.vertices);
+    CHECK(person.bend(25).redo_steps == 1);
+  }
+
+  TEST_CASE("a pull is taken back where there is no memory for undo, too") {
+    Person person(Mode::type1);
+    person.test.options.sculptor.deformer.undo_bytes = 0;
+    person.test.loop = std::make_unique<DeformLoop>(person.test.model, person.test.placement,
+                                                    person.test.inputs, person.test.options);
+    person.move(0, 12);
+    person.ask(Request::commit, 12);
+    const Points committed = person.shape();
+    person.move(12, 25);
+    REQUIRE(person.shape() != committed);
+    CHECK(person.ask(Request::undo, 25).redo_steps == 0);
+    CHECK(person.shape() == committed);
+  }
+
   TEST_CASE("redo goes forth commit by commit, bit for bit, and a commit ends it") {
     for (const Mode mode : modes) {
       CAPTURE(name_of(mode));

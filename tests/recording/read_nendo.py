@@ -73,6 +73,7 @@ def loop(b):
     if b.take("B"):
         o["settings"] = settings(b)
     o["subdivisions"] = b.take("I")
+    o["pull_is_step"] = b.take("B")
     return o
 
 

@@ -107,6 +107,7 @@ Setup unusual_setup() {
   setup.gloves[1].counts = {1023, true};
   setup.gloves[1].abilities.light = true;
   setup.loop->options.held = false;
+  setup.loop->options.pull_is_step = false;
   setup.loop->options.settings = flow::LoopSettings{
       .mode = flow::Mode::type2, .radius_m = {0.1, 0.2, 0.3, 0.4, 0.5}, .piece_fraction = 0.07};
   setup.loop->rest.resize(2);
@@ -194,6 +195,7 @@ TEST_SUITE("take_reader") {
     CHECK(lines[at]["merge"] == 0.07);
     CHECK(lines[at]["most_links"] == 33);
     CHECK(lines[at]["held"] == 0);
+    CHECK(lines[at]["pull_is_step"] == 0);
     CHECK(is_settings(lines[at]["settings"], *options.settings));
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");
@@ -254,6 +256,26 @@ TEST_SUITE("take_reader") {
       CHECK_FALSE(setup.hands.back().wearer.learned.has_value());
     }
     CHECK(setup.hands.size() == 2);
+  }
+
+  TEST_CASE("a loop of format 1.4 undoes pulls by the rule of its time") {
+    std::uint32_t chunks = 0;
+    const auto bytes = setup_bytes(test::setup_of(test::LoopUnderTest(Mode::type1)), chunks);
+    auto reader = driver::ChunkReader::of(bytes, "test");
+    REQUIRE(reader);
+    int loops = 0;
+    while (const auto chunk = reader->next()) {
+      if (chunk->type != driver::chunk_type("LOOP")) continue;
+      const std::span whole(chunk->payload);
+      Setup now, then;
+      REQUIRE(read_setup_chunk(chunk->type, whole, now));
+      CHECK(now.loop->options.pull_is_step);
+      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - 1), then));
+      CHECK_FALSE(then.loop->options.pull_is_step);
+      CHECK(then.loop->subdivisions == now.loop->subdivisions);
+      ++loops;
+    }
+    CHECK(loops == 1);
   }
 
   TEST_CASE("the setup is complete with the first input log, whatever comes behind it") {

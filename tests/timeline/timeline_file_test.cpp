@@ -50,6 +50,7 @@ TEST_SUITE("timeline_file") {
       CHECK(back->take == made.take);
       CHECK(back->mesh == made.mesh);
       CHECK(back->held == made.held);
+      CHECK(back->pull_is_step == made.pull_is_step);
       CHECK(back->mesh_sum.crc == made.mesh_sum.crc);
       CHECK(back->mesh_sum.vertices == made.mesh_sum.vertices);
       CHECK(back->sculptor.deformer.supports.shared == made.sculptor.deformer.supports.shared);

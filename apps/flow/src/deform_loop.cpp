@@ -55,6 +55,7 @@ ShapingOptions shaping_options(const LoopOptions& options, const SculptorSetup& 
   ShapingOptions shaping{sculptor};
   if (options.commands != nullptr) shaping.most_requests = options.commands->capacity();
   shaping.held = options.begins_held();
+  shaping.pull_is_step = options.pull_is_step;
   return shaping;
 }
 

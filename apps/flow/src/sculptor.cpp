@@ -94,6 +94,11 @@ FieldStatus Sculptor::undo(const Points& tips) noexcept {
   return std::visit([&](auto& deformer) { return deformer.undo(tips); }, deformer_);
 }
 
+FieldStatus Sculptor::take_back(const Points& tips) noexcept {
+  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->take_back(tips);
+  return std::get_if<Type2Deformer>(&deformer_)->undo(tips);
+}
+
 FieldStatus Sculptor::redo(const Points& tips) noexcept {
   return std::visit([&](auto& deformer) { return deformer.redo(tips); }, deformer_);
 }

@@ -32,8 +32,8 @@ void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
 Shaping::Shaping(ModelVersion& model, Eigen::Index control_points, const ShapingOptions& options)
     : model_(&model),
       sculptor_(std::make_unique<Sculptor>(model.shape, control_points, options.sculptor.options)),
-      still_tips_(Points::Zero(3, control_points)), held_(options.held), hold_wanted_(held_),
-      settings_(options.sculptor.settings) {
+      still_tips_(Points::Zero(3, control_points)), pull_is_step_(options.pull_is_step),
+      held_(options.held), hold_wanted_(held_), settings_(options.sculptor.settings) {
   steps_due_.reserve(options.most_requests);
 }
 

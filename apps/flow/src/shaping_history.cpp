@@ -38,7 +38,10 @@ void Shaping::take_steps(const Points& tips, LoopStats& stats) noexcept {
 bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noexcept {
   if (step == Request::redo && sculptor_->redo_steps() == 0) return true;
   if (is_change_next(step)) return take_change(step, tips, stats);
-  const FieldStatus status = step == Request::undo   ? sculptor_->undo(tips)
+  const auto undone = [&] {
+    return is_pulled() ? sculptor_->take_back(tips) : sculptor_->undo(tips);
+  };
+  const FieldStatus status = step == Request::undo   ? undone()
                              : step == Request::redo ? sculptor_->redo(tips)
                                                      : sculptor_->reset(tips);
   if (!is_solved(status)) return false;
@@ -46,9 +49,9 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
   return true;
 }
 
-/// Tells whether the step is to undo or redo a change. What the hands have shaped in a stroke of
-/// type 2, or before a change that was no step, comes before it; what they hold in type 1 goes with
-/// it.
+/// Tells whether the step is to undo or redo a change. What the hands have shaped since the last
+/// step comes before it. By the old rule (LoopOptions::pull_is_step), what they hold in type 1 goes
+/// with it.
 bool Shaping::is_change_next(Request step) const noexcept {
   if (step == Request::reset || (step == Request::undo && is_in_hand())) return false;
   return other_of(step).has_value();
@@ -123,16 +126,21 @@ void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcep
   next.shape.mark(NotedStep{step, {before, model_->number}}.note());
 }
 
-// Type-1 drops with an undo what was shaped since the commit that it undoes. Type-2 keeps it as a
-// step of its own.
+// What was shaped since the last step is a step of its own. By the old rule, Type-1 drops it
+// together with the commit that it undoes.
 std::size_t Shaping::undo_steps() const noexcept {
   const std::size_t steps = steps_to_undo();
   if (is_in_hand()) return steps + 1;
   return held_ && shaped_ ? std::max<std::size_t>(steps, 1) : steps;
 }
 
+/// The hands have pulled in type 1, and that is a step of its own.
+bool Shaping::is_pulled() const noexcept {
+  return held_ && shaped_ && pull_is_step_ && sculptor_->mode() == Mode::type1;
+}
+
 bool Shaping::is_in_hand() const noexcept {
-  return in_step_ || (held_ && shaped_ && sculptor_->mode() == Mode::type2);
+  return in_step_ || is_pulled() || (held_ && shaped_ && sculptor_->mode() == Mode::type2);
 }
 
 /// Memory that has ended, or a recording that has begun, bars the way to the version before.

@@ -132,6 +132,7 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   writer.u8(static_cast<std::uint8_t>(options.settings.has_value()));
   if (options.settings) put_settings(writer, *options.settings);
   writer.u32_le(loop.subdivisions);
+  writer.u8(static_cast<std::uint8_t>(options.pull_is_step));
 }
 
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings) {
@@ -245,6 +246,7 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   }
   if (reader.remaining() > 0) read.subdivisions = reader.u32_le(); // since 1.4
   checked.require(read.subdivisions <= most_subdivisions);
+  options.pull_is_step = reader.remaining() > 0 && reader.u8() != 0; // since 1.5
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

@@ -1,6 +1,6 @@
 #pragma once
 // Finds the field that moves start points by given displacements (Sato, Savchenko, Ohbuchi 2004,
-// section 2.3): s(c_i) = g_i and sum_i a_i q(c_i) = 0 for every q in p's basis.
+// section 2.4): s(c_i) = g_i and sum_i a_i q(c_i) = 0 for every q in p's basis.
 
 #include <cstddef>
 #include <memory>

@@ -1,5 +1,5 @@
 #pragma once
-// The displacement field of the paper (Sato, Savchenko, Ohbuchi 2004, section 2.3):
+// The displacement field of the paper (Sato, Savchenko, Ohbuchi 2004, section 2.4):
 //   s(x) = sum_i a_i psi(|x - c_i| / r_i) + p(x),   p(x) = b0 + b1 x + b2 y + b3 z.
 
 #include <nendo/deform/mesh.hpp>

@@ -1,6 +1,6 @@
 #pragma once
-// Type-1 (the paper, 2.4): the start points are frozen when the operator grabs. Every tick only the
-// end points move, so everything that depends on start points alone is kept, down to what each
+// Type-1 (the paper, 2.3.1): the start points are frozen when the operator grabs. Every tick only
+// the end points move, so everything that depends on start points alone is kept, down to what each
 // vertex gets of each displacement, and the rest shape is deformed anew: nothing accumulates.
 
 #include <memory>
@@ -59,6 +59,9 @@ public:
   /// Makes the rest shape what it was before the last commit, and `tips` the start points. What
   /// apply() made since then is dropped. If no commit can be undone, this is grab(tips).
   FieldStatus undo(const Points& tips);
+  /// Takes back what apply() made since the last commit, as a step of its own, and makes `tips` the
+  /// start points. redo() brings it back, unless there was no memory for it. Older steps stay.
+  FieldStatus take_back(const Points& tips);
   /// Makes the rest shape what it was before the last undo, and `tips` the start points. If there
   /// is no such undo, or there was a commit since, nothing changes and the status is ok.
   FieldStatus redo(const Points& tips);

@@ -1,6 +1,6 @@
 #pragma once
-// Type-2 (the paper, 2.4): the fingertips' samples are joined by a smooth curve, which is cut at a
-// constant arc length. Start and end points are neighbouring cuts; each piece deforms the current
+// Type-2 (the paper, 2.3.2): the fingertips' samples are joined by a smooth curve, which is cut at
+// a constant arc length. Start and end points are neighbouring cuts; each piece deforms the current
 // shape, which becomes the start of the next.
 
 #include <memory>

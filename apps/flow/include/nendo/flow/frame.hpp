@@ -52,7 +52,7 @@ struct Frame {
   /// before. A reader that applies fields must then copy the whole shape.
   std::uint64_t undos = 0;
   /// How often one can undo, and how often redo, after this frame. At 0 it changes nothing. What
-  /// hands that hold the model have shaped since the last commit can be undone, too.
+  /// hands that hold the model have shaped since the last commit is a step, too.
   std::uint64_t undo_steps = 0;
   std::uint64_t redo_steps = 0;
   StepList steps; ///< the names of the last of them

@@ -71,6 +71,9 @@ public:
   /// began (Type1Deformer::undo, Type2Deformer::undo). The fingertips then hold it at `tips`. If
   /// the equations have no solution, nothing changes. It does not allocate.
   deform::FieldStatus undo(const deform::Points& tips) noexcept;
+  /// Takes back what the fingertips have shaped since the last commit, or in this stroke, as a step
+  /// of its own (Type1Deformer::take_back, Type2Deformer::undo). As undo() else.
+  deform::FieldStatus take_back(const deform::Points& tips) noexcept;
   /// Goes forward to the shape before the last undo, if nothing was committed since
   /// (Type1Deformer::redo, Type2Deformer::redo). If there is nothing to redo, nothing changes and
   /// the status is ok.

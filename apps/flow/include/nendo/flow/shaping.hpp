@@ -19,6 +19,7 @@ struct ShapingOptions {
   SculptorSetup sculptor;
   std::size_t most_requests = 64; ///< in one tick
   bool held = true;               ///< at first
+  bool pull_is_step = true;       ///< as LoopOptions::pull_is_step
 };
 
 /// Another sculptor, made before it is needed.
@@ -99,6 +100,7 @@ private:
   deform::FieldStatus shape_by_hands(const deform::Points& tips, Frame& frame, LoopStats& stats,
                                      bool completes) noexcept;
   deform::FieldStatus show_rest(Frame& frame) noexcept;
+  bool is_pulled() const noexcept;
   bool is_in_hand() const noexcept;
   void make_room(Frame& frame) noexcept;
   void go_on_with(ReadySculptor& ready) noexcept;
@@ -131,6 +133,7 @@ private:
   std::array<ReadySculptor::ShapeRoom, 3> shape_room_;
   deform::Points still_tips_; ///< where the hands stopped, if is_still_
   bool is_still_ = false;
+  bool pull_is_step_;
   bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< what is asked for; follows at the next tick that can
   bool commit_due_ = false;
