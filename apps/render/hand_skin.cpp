@@ -66,20 +66,35 @@ hand::HandPose with_bones_of(const hand::HandPose& bones, const hand::HandPose& 
 
 using Stretches = std::array<Eigen::Affine3f, hand::joint_count>;
 
+// What makes the bind pose's palm the wearer's, in the wrist's axes: its breadth, its thickness and
+// its length.
+Vector3d palm_scale(const hand::HandPose& sized, const hand::HandPose& bind, double thickness) {
+  const auto extent = [](const hand::HandPose& pose) {
+    const auto head = [&](Joint joint) -> Vector3d {
+      return pose[Joint::wrist].inverse() * pose[joint].translation();
+    };
+    return std::pair{std::abs(head(Joint::index_proximal).x() - head(Joint::little_proximal).x()),
+                     std::abs(head(Joint::middle_proximal).z())};
+  };
+  const auto [breadth, length] = extent(bind);
+  const auto [sized_breadth, sized_length] = extent(sized);
+  return {sized_breadth / breadth, thickness, sized_length / length};
+}
+
 // What makes the bind pose's flesh that of the wearer's bones at the same angles. Nothing turns.
 Stretches stretches_to(const hand::HandPose& sized, const hand::HandPose& bind) {
   const double across = length_of_hand(sized) / length_of_hand(bind);
   Stretches stretches;
   for (std::size_t at = 0; at < hand::joint_count; ++at) {
     const auto joint = static_cast<Joint>(at);
-    double along = across;
+    Vector3d scale = Vector3d::Constant(across);
+    if (joint == Joint::wrist) scale = palm_scale(sized, bind, across);
     if (const auto end = end_of(joint)) {
       const double before = (bind[*end].translation() - bind[joint].translation()).norm();
       const double now = (sized[*end].translation() - sized[joint].translation()).norm();
-      if (before > 0.0) along = now / before;
+      if (before > 0.0) scale.z() = now / before;
     }
-    const Eigen::Affine3d stretch =
-        sized[joint] * Eigen::Scaling(across, across, along) * bind[joint].inverse();
+    const Eigen::Affine3d stretch = sized[joint] * Eigen::Scaling(scale) * bind[joint].inverse();
     stretches[at] = stretch.cast<float>();
   }
   return stretches;

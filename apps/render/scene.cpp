@@ -16,7 +16,7 @@ namespace {
 // glance, also without seeing red from green. A hand is solid, but one sees the model through it.
 // That of a silent glove is a mere shade.
 const Material clay{{0.50F, 0.235F, 0.135F}, 0.07F};
-const Material skin{{0.25F, 0.265F, 0.29F}, 0.10F, 0.72F, 1.0F, 0.0F, 0.0F, true};
+const Material skin{{0.33F, 0.345F, 0.37F}, 0.10F, 0.64F, 1.0F, 0.0F, 0.0F, true};
 const Material silent_skin{{0.22F, 0.22F, 0.22F}, 0.0F, 0.25F, 0.85F};
 const Material bone{{0.80F, 0.78F, 0.70F}, 0.10F};
 const Material arrow{{0.95F, 0.52F, 0.02F}, 0.20F};

@@ -126,6 +126,8 @@ void HandFlesh::add_metacarpals(const HandPose& pose) {
   for (std::size_t finger = 1; finger < roots.size(); ++finger) {
     const Joint root = roots[finger];
     const float head = radii_mm[finger].knuckle * mm;
+    // Those of index and middle finger are fixed to the wrist.
+    const Joint carrier = finger < 3 ? Joint::wrist : root;
     palm_.push_back({place_of(pose, root) - 4.5F * mm * up,
                      place_of(pose, after(root, 1)) - 2 * mm * up,
                      10 * mm,
@@ -133,7 +135,7 @@ void HandFlesh::add_metacarpals(const HandPose& pose) {
                      in_palm_m,
                      Vector3f::Zero(),
                      1.0F,
-                     {root, root}});
+                     {Joint::wrist, carrier}});
   }
   // The pads below the knuckles.
   const Vector3f first = place_of(pose, Joint::index_proximal);
@@ -145,7 +147,7 @@ void HandFlesh::add_metacarpals(const HandPose& pose) {
                    12 * mm,
                    Vector3f::Zero(),
                    1.0F,
-                   {Joint::index_metacarpal, Joint::little_metacarpal}});
+                   {Joint::wrist, Joint::little_metacarpal}});
   // The heel of the hand, on the little finger's side.
   palm_.push_back(
       {place_of(pose, Joint::little_metacarpal) - 6 * mm * up + 2 * mm * right - 4 * mm * back,
@@ -155,7 +157,7 @@ void HandFlesh::add_metacarpals(const HandPose& pose) {
        in_palm_m,
        Vector3f::Zero(),
        1.0F,
-       {Joint::little_metacarpal, Joint::little_metacarpal}});
+       {Joint::wrist, Joint::little_metacarpal}});
 }
 
 // The ball of the thumb, and the web between thumb and index finger.
@@ -181,7 +183,7 @@ void HandFlesh::add_thumb_side(const HandPose& pose) {
                    16 * mm,
                    Vector3f::Zero(),
                    1.0F,
-                   {Joint::index_metacarpal, Joint::thumb_metacarpal}});
+                   {Joint::wrist, Joint::thumb_metacarpal}});
 }
 
 // Fingers part from one another well after their knuckles.

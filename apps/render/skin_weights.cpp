@@ -13,7 +13,7 @@ namespace {
 using Weights = std::array<float, hand::joint_count>;
 
 // Steps of spreading. Each widens a transition by about the square root of half an edge's square.
-constexpr int steps_everywhere = 9;
+constexpr int steps_everywhere = 7;
 constexpr int steps_in_palm = 40; // where flesh is thick, and follows farther away
 
 struct Nearest {
@@ -67,7 +67,7 @@ SkinInfluence strongest(const Weights& weights) {
 // Leaves four joints at each place. To leave others out makes steps; these are evened out again.
 void keep_strongest(const std::vector<std::vector<std::uint32_t>>& beside,
                     const std::vector<float>& pace, std::vector<Weights>& weights) {
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < 6; ++round) {
     if (round > 0) spread(beside, pace, weights);
     for (Weights& of_place : weights) {
       const SkinInfluence influence = strongest(of_place);
