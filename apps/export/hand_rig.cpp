@@ -111,7 +111,7 @@ GlbFile::Index add_mesh(const HandTrack& track, const hand::HandPose& bind, GlbF
                   {"WEIGHTS_0", file.add_weights(weights)}};
   const auto material = file.add("materials", {{"name", "hand"},
                                                {"pbrMetallicRoughness",
-                                                {{"baseColorFactor", {0.62, 0.66, 0.72, 1.0}},
+                                                {{"baseColorFactor", {0.33, 0.345, 0.37, 1.0}},
                                                  {"metallicFactor", 0.0},
                                                  {"roughnessFactor", 0.7}}}});
   return file.add("meshes", {{"name", std::string(name_of(track.side())) + " hand"},

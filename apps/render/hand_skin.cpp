@@ -1,8 +1,10 @@
 #include "render/hand_skin.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
+#include <utility>
 
+#include "render/skin_net.hpp"
 #include "render/skin_shape.hpp"
 
 namespace nendo::render {
@@ -26,9 +28,7 @@ hand::JointAngles open_angles() {
   return angles;
 }
 
-// Of the skin at a place: the bones that are within reach_m of the nearest, the nearer the more.
-constexpr float reach_m = 0.014F;
-constexpr float nearness_m = 0.004F;
+constexpr float cell_m = 0.0034F; // some five thousand places
 
 // Across a bone, from its size in the bind pose.
 double length_of_hand(const hand::HandPose& pose) {
@@ -41,6 +41,112 @@ double length_of_hand(const hand::HandPose& pose) {
          step(Joint::middle_distal, Joint::middle_tip);
 }
 
+// Where a bone that begins in a joint ends, if it is one bone.
+std::optional<Joint> end_of(Joint joint) {
+  if (joint == Joint::palm || joint == Joint::wrist) return std::nullopt;
+  const bool is_tip =
+      std::find(hand::fingertips.begin(), hand::fingertips.end(), joint) != hand::fingertips.end();
+  if (is_tip) return std::nullopt;
+  return static_cast<Joint>(hand::index_of(joint) + 1);
+}
+
+// The pose with the wearer's bones and the angles of `turns`. Its wrist is the origin.
+hand::HandPose with_bones_of(const hand::HandPose& bones, const hand::HandPose& turns) {
+  hand::HandPose pose = turns;
+  for (std::size_t step = 0; step < hand::joint_count; ++step) {
+    // The palm, joint 0, hangs on the wrist, joint 1.
+    const auto joint = static_cast<Joint>((step + 1) % hand::joint_count);
+    const auto parent = parent_of(joint);
+    if (!parent) continue;
+    const Vector3d offset = bones[*parent].inverse() * bones[joint].translation();
+    pose.joints[hand::index_of(joint)].translation() = pose[*parent] * offset;
+  }
+  return pose;
+}
+
+using Stretches = std::array<Eigen::Affine3f, hand::joint_count>;
+
+// What makes the bind pose's palm the wearer's, in the wrist's axes: its breadth, its thickness and
+// its length.
+Vector3d palm_scale(const hand::HandPose& sized, const hand::HandPose& bind, double thickness) {
+  const auto extent = [](const hand::HandPose& pose) {
+    const auto head = [&](Joint joint) -> Vector3d {
+      return pose[Joint::wrist].inverse() * pose[joint].translation();
+    };
+    return std::pair{std::abs(head(Joint::index_proximal).x() - head(Joint::little_proximal).x()),
+                     std::abs(head(Joint::middle_proximal).z())};
+  };
+  const auto [breadth, length] = extent(bind);
+  const auto [sized_breadth, sized_length] = extent(sized);
+  return {sized_breadth / breadth, thickness, sized_length / length};
+}
+
+// What makes the bind pose's flesh that of the wearer's bones at the same angles. Nothing turns.
+Stretches stretches_to(const hand::HandPose& sized, const hand::HandPose& bind) {
+  const double across = length_of_hand(sized) / length_of_hand(bind);
+  Stretches stretches;
+  for (std::size_t at = 0; at < hand::joint_count; ++at) {
+    const auto joint = static_cast<Joint>(at);
+    Vector3d scale = Vector3d::Constant(across);
+    if (joint == Joint::wrist) scale = palm_scale(sized, bind, across);
+    if (const auto end = end_of(joint)) {
+      const double before = (bind[*end].translation() - bind[joint].translation()).norm();
+      const double now = (sized[*end].translation() - sized[joint].translation()).norm();
+      if (before > 0.0) scale.z() = now / before;
+    }
+    const Eigen::Affine3d stretch = sized[joint] * Eigen::Scaling(scale) * bind[joint].inverse();
+    stretches[at] = stretch.cast<float>();
+  }
+  return stretches;
+}
+
+// A movement as a dual quaternion: a rotation, and half of the translation times it.
+struct Screw {
+  Eigen::Vector4f turn, shift; // x y z w
+};
+using Screws = std::array<Screw, hand::joint_count>;
+
+// Each has the sign that is nearer to its parent's, so that mixtures go the short way round.
+Screws screws_of(const std::array<Eigen::Isometry3d, hand::joint_count>& moves) {
+  Screws screws;
+  std::array<Eigen::Quaterniond, hand::joint_count> turns;
+  for (std::size_t step = 0; step < hand::joint_count; ++step) {
+    const std::size_t at = (step + 1) % hand::joint_count;
+    Eigen::Quaterniond turn = Eigen::Quaterniond(moves[at].linear()).normalized();
+    const auto parent = parent_of(static_cast<Joint>(at));
+    if (parent && turn.dot(turns[hand::index_of(*parent)]) < 0.0) turn.coeffs() = -turn.coeffs();
+    turns[at] = turn;
+    const Vector3d half = 0.5 * moves[at].translation();
+    const Eigen::Quaterniond shift = Eigen::Quaterniond(0.0, half.x(), half.y(), half.z()) * turn;
+    screws[at] = {turn.coeffs().cast<float>(), shift.coeffs().cast<float>()};
+  }
+  return screws;
+}
+
+Vector3f moved_by(const Screws& screws, const SkinInfluence& influence, const Vector3f& place) {
+  Eigen::Vector4f turn = Eigen::Vector4f::Zero();
+  Eigen::Vector4f shift = Eigen::Vector4f::Zero();
+  for (std::size_t rank = 0; rank < 4; ++rank) {
+    const Screw& screw = screws[hand::index_of(influence.joints[rank])];
+    turn += influence.weights[rank] * screw.turn;
+    shift += influence.weights[rank] * screw.shift;
+  }
+  const float per_squared = 2.0F / turn.squaredNorm();
+  const Vector3f v = turn.head<3>();
+  const Vector3f s = shift.head<3>();
+  const Vector3f turned = v.cross(v.cross(place) + turn.w() * place);
+  const Vector3f shifted = turn.w() * s - shift.w() * v + v.cross(s);
+  return place + per_squared * (turned + shifted);
+}
+
+Vector3f moved_by(const Stretches& matrices, const SkinInfluence& influence,
+                  const Vector3f& place) {
+  Vector3f moved = Vector3f::Zero();
+  for (std::size_t rank = 0; rank < 4; ++rank)
+    moved += influence.weights[rank] * (matrices[hand::index_of(influence.joints[rank])] * place);
+  return moved;
+}
+
 } // namespace
 
 hand::HandPose HandSkin::bind_pose(Side side) {
@@ -48,60 +154,46 @@ hand::HandPose HandSkin::bind_pose(Side side) {
 }
 
 std::array<HandSkin::JointShare, 4> HandSkin::influences(std::size_t place) const {
-  const Influence& influence = influences_[place];
+  const SkinInfluence& influence = influences_[place];
   std::array<JointShare, 4> shares;
   for (std::size_t rank = 0; rank < shares.size(); ++rank)
-    shares[rank] = {fleshed_bones()[influence.bones[rank]].joint, influence.weights[rank]};
+    shares[rank] = {influence.joints[rank], influence.weights[rank]};
   return shares;
 }
 
+// A left hand is the mirror image of a right one.
 HandSkin::HandSkin(Side side) : bind_(bind_pose(side)) {
-  const auto lines = bone_lines(bind_);
-  SkinMesh mesh = skin_about(lines);
+  const HandFlesh flesh(bind_pose(Side::right));
+  SkinMesh mesh = net_about([&](const Vector3f& place) { return flesh(place); },
+                            {HandFlesh::steepness, HandFlesh::slack_m}, flesh.box(), cell_m);
+  influences_ = weights_of(flesh, mesh);
+  if (side == Side::left) {
+    for (Vector3f& place : mesh.places)
+      place.x() = -place.x();
+    for (std::size_t at = 0; at < mesh.corners.size(); at += 3)
+      std::swap(mesh.corners[at + 1], mesh.corners[at + 2]);
+  }
   places_ = std::move(mesh.places);
   corners_ = std::move(mesh.corners);
-  for (const Vector3f& place : places_) {
-    std::array<std::pair<float, std::uint8_t>, skin_bones> by_distance;
-    for (std::size_t bone = 0; bone < skin_bones; ++bone)
-      by_distance[bone] = {distance_to(fleshed_bones()[bone], lines[bone], place),
-                           static_cast<std::uint8_t>(bone)};
-    std::partial_sort(by_distance.begin(), by_distance.begin() + 4, by_distance.end());
-    Influence influence;
-    float sum = 0.0F;
-    for (std::size_t rank = 0; rank < 4; ++rank) {
-      const float beyond = by_distance[rank].first - by_distance[0].first;
-      influence.bones[rank] = by_distance[rank].second;
-      const float near = std::max(0.0F, 1.0F - beyond / reach_m) / (beyond + nearness_m);
-      influence.weights[rank] = near * near;
-      sum += influence.weights[rank];
-    }
-    for (float& weight : influence.weights)
-      weight /= sum;
-    influences_.push_back(influence);
-  }
 }
 
-void HandSkin::drape(const hand::HandPose& pose, const Vector3d& origin_m, Surface& surface) const {
-  const auto bind_lines = bone_lines(bind_);
-  const auto lines = bone_lines(pose);
-  const double across = length_of_hand(pose) / length_of_hand(bind_);
-  std::array<Eigen::Affine3f, skin_bones> moves;
-  for (std::size_t bone = 0; bone < skin_bones; ++bone) {
-    const Joint joint = fleshed_bones()[bone].joint;
-    const double before = static_cast<double>((bind_lines[bone].to - bind_lines[bone].from).norm());
-    const double now = static_cast<double>((lines[bone].to - lines[bone].from).norm());
-    const Eigen::Affine3d move = Eigen::Translation3d(-origin_m) * pose[joint] *
-                                 Eigen::Scaling(across, across, before > 0 ? now / before : 1.0) *
-                                 bind_[joint].inverse();
-    moves[bone] = move.cast<float>();
+void HandSkin::drape(const hand::HandPose& pose, const Vector3d& origin_m, Surface& surface,
+                     Mix mix) const {
+  const hand::HandPose sized = with_bones_of(pose, bind_);
+  const Stretches stretches = stretches_to(sized, bind_);
+  std::array<Eigen::Isometry3d, hand::joint_count> moves;
+  Stretches matrices;
+  for (std::size_t at = 0; at < hand::joint_count; ++at) {
+    moves[at] = Eigen::Translation3d(-origin_m) * pose.joints[at] * sized.joints[at].inverse();
+    matrices[at] = Eigen::Affine3d(moves[at]).cast<float>();
   }
+  const Screws screws = screws_of(moves);
   surface.places.resize(places_.size());
-  for (std::size_t place = 0; place < places_.size(); ++place) {
-    const Influence& influence = influences_[place];
-    Vector3f moved = Vector3f::Zero();
-    for (std::size_t rank = 0; rank < 4; ++rank)
-      moved += influence.weights[rank] * (moves[influence.bones[rank]] * places_[place]);
-    surface.places[place] = moved;
+  for (std::size_t at = 0; at < places_.size(); ++at) {
+    const SkinInfluence& influence = influences_[at];
+    const Vector3f place = moved_by(stretches, influence, places_[at]);
+    surface.places[at] = mix == Mix::screws ? moved_by(screws, influence, place)
+                                            : moved_by(matrices, influence, place);
   }
   surface.corners = corners_;
   compute_normals(surface.places, surface.corners, surface.normals);
@@ -120,7 +212,12 @@ void add_bones(const hand::HandPose& pose, const Vector3d& origin_m, Surface& su
     if (!is_tip) add_sphere(surface, place, joint_radius_m, 12);
     if (!parent) continue;
     const Vector3f base = (pose[*parent].translation() - origin_m).cast<float>();
-    add_capsule(surface, base, place, bone_radius_m, bone_radius_m, 8);
+    // A tip's place is on the skin, and the last bone ends within it.
+    const float length = (place - base).norm();
+    const float in_flesh_m = is_tip ? std::min(0.005F, 0.5F * length) : 0.0F;
+    const Vector3f end =
+        length > 0.0F ? Vector3f(place + in_flesh_m / length * (base - place)) : place;
+    add_capsule(surface, base, end, bone_radius_m, bone_radius_m, 8);
   }
 }
 

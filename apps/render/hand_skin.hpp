@@ -1,26 +1,34 @@
 #pragma once
-// A skin for the hand's bones. It is a closed surface around an open hand, which is made once and
-// then follows any pose by the bones near it. It shows the pose and does not measure a wearer's
-// flesh.
+// The skin of a hand. It is a closed surface around an open hand, which is made once and then
+// follows any pose by the joints near it. It shows the pose and does not measure a wearer's flesh.
 
 #include <array>
 #include <vector>
 
 #include <nendo/hand/skeleton.hpp>
 
+#include "render/skin_weights.hpp"
 #include "render/surface.hpp"
 
 namespace nendo::render {
 
 class HandSkin {
 public:
-  /// Makes the skin, which takes some ten milliseconds. Allocates.
+  /// How the movements of the joints that carry a place are mixed.
+  enum class Mix {
+    screws, ///< as dual quaternions: a bent or twisted joint keeps its thickness (L. Kavan, S.
+            ///< Collins, J. Zara, C. O'Sullivan, "Skinning with dual quaternions", I3D 2007)
+    linear, ///< as matrices: it gets thinner; this is all that glTF has
+  };
+
+  /// Makes the skin, which takes some tens of milliseconds. Allocates.
   explicit HandSkin(Side side);
 
   /// Computes the skin in that pose, moved by -origin_m, and replaces positions, normals and
   /// corners of `surface`. Bones may have any length: the skin is stretched along each bone, and
-  /// its thickness follows the size of the hand.
-  void drape(const hand::HandPose& pose, const Eigen::Vector3d& origin_m, Surface& surface) const;
+  /// its thickness follows the size of the hand. Allocates where `surface` has too little room.
+  void drape(const hand::HandPose& pose, const Eigen::Vector3d& origin_m, Surface& surface,
+             Mix mix = Mix::screws) const;
 
   /// Returns the pose of the open hand around which the skin was made. Its wrist is the origin.
   static hand::HandPose bind_pose(Side side);
@@ -32,14 +40,9 @@ public:
   std::array<JointShare, 4> influences(std::size_t place) const;
 
 private:
-  struct Influence {
-    std::array<std::uint8_t, 4> bones{};
-    std::array<float, 4> weights{}; ///< the sum is 1; 0 means not used
-  };
-
   hand::HandPose bind_;
   std::vector<Eigen::Vector3f> places_; ///< in the bind pose
-  std::vector<Influence> influences_;
+  std::vector<SkinInfluence> influences_;
   std::vector<std::uint32_t> corners_;
 };
 

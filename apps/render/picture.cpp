@@ -176,11 +176,16 @@ void draw_band(const View3d& view, Rows pixel_rows, Image& image) {
       if (over[at].inverse_depth <= hits[at].inverse_depth) continue;
       const ShadedPlace place = place_of(over[at], veil);
       const Material& material = veil.surface->material;
-      const float part = opacity_of(place, material, view.projection.eye());
+      const bool before_ground =
+          !(hits[at].inverse_depth > 0.0F) || hits[at].surface >= view.grounds_from;
+      const float part = material.opaque_before_ground && before_ground
+                             ? 1.0F
+                             : opacity_of(place, material, view.projection.eye());
       const Vector3f colour = veil.sky == nullptr ? material.colour
                                                   : shade(place, material, view.projection.eye(),
                                                           view.lighting->maps());
       colours[at] += part * (colour - colours[at]);
+      if (veil.sky != nullptr) hits[at].inverse_depth = over[at].inverse_depth;
     }
   }
   constexpr float share = 1.0F / (samples_across * samples_across);

@@ -12,11 +12,12 @@ using Eigen::Vector3f;
 
 namespace {
 
-// Linear colours. Clay is warm and the hands are cool, so that one is told from the other at a
-// glance, also without seeing red from green.
+// Linear colours. Clay is warm and the hands are grey, so that one is told from the other at a
+// glance, also without seeing red from green. A hand is solid, but one sees the model through it.
+// That of a silent glove is a mere shade.
 const Material clay{{0.50F, 0.235F, 0.135F}, 0.07F};
-const Material skin{{0.10F, 0.19F, 0.30F}, 0.22F, 0.74F, 1.0F};
-const Material silent_skin{{0.22F, 0.22F, 0.22F}, 0.10F, 0.60F, 1.0F};
+const Material skin{{0.33F, 0.345F, 0.37F}, 0.10F, 0.64F, 1.0F, 0.0F, 0.0F, true};
+const Material silent_skin{{0.22F, 0.22F, 0.22F}, 0.0F, 0.25F, 0.85F};
 const Material bone{{0.80F, 0.78F, 0.70F}, 0.10F};
 const Material arrow{{0.95F, 0.52F, 0.02F}, 0.20F};
 const Material reach{{0.80F, 0.40F, 0.05F}, 0.0F, 0.0F, 0.30F};
@@ -95,7 +96,6 @@ void SceneBuilder::add_hand(const SceneHand& hand, std::size_t slot, const Scene
   }
   if (parts.hands) {
     scene.veils.push_back({{}, {}, {}, hand.silent ? silent_skin : skin});
-    if (!parts.bones) scene.veils.back().material.opacity = 1.0F;
     skin_of(slot).drape(hand.pose, origin_m_, scene.veils.back());
   }
   Surface arrows{{}, {}, {}, arrow};

@@ -14,7 +14,7 @@ namespace nendo::render {
 
 struct SceneParts {
   bool hands = true;   ///< the skin
-  bool bones = true;   ///< visible through the skin
+  bool bones = false;  ///< visible through the skin
   bool vectors = true; ///< control vectors, as arrows
   bool radii = true;   ///< the radius of each fingertip's support
   bool ground = true;

@@ -3,22 +3,51 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 namespace nendo::render {
 
 using Eigen::Vector3f;
-using Eigen::Vector3i;
+using hand::HandPose;
 using hand::Joint;
 
 namespace {
 
-constexpr float cell_m = 0.003F;
-constexpr float forearm_m = 0.05F;       // of it, what is shown
-constexpr float forearm_half_m = 0.016F; // between its two bones, half of that
-constexpr float along_finger_m = 0.005F; // over which flesh runs together
-constexpr float in_palm_m = 0.020F;
-constexpr float at_knuckles_m = 0.008F;
+constexpr float mm = 0.001F;
+
+// Over which flesh runs together.
+constexpr float along_finger_m = 3.5F * mm;
+constexpr float in_palm_m = 14 * mm;
+constexpr float at_knuckles_m = 10 * mm;
+constexpr float at_thumb_m = 14 * mm;
+constexpr float between_fingers_m = 6 * mm; // only where they leave the palm
+constexpr float at_cut_m = 13 * mm;
+
+constexpr std::array<Joint, 5> roots{Joint::thumb_metacarpal, Joint::index_metacarpal,
+                                     Joint::middle_metacarpal, Joint::ring_metacarpal,
+                                     Joint::little_metacarpal};
+
+struct Radii {
+  float knuckle, middle, end, tip; // at the finger's joints, from the knuckle to the tip
+};
+constexpr std::array<Radii, 5> radii_mm{{{11.8F, 10.2F, 9.8F, 8.0F}, // the thumb's
+                                         {10.2F, 8.8F, 7.8F, 6.7F},
+                                         {10.4F, 9.0F, 8.0F, 6.9F},
+                                         {9.8F, 8.4F, 7.5F, 6.5F},
+                                         {8.8F, 7.4F, 6.6F, 5.8F}}};
+
+Joint after(Joint joint, std::size_t steps) {
+  return static_cast<Joint>(hand::index_of(joint) + steps);
+}
+Vector3f place_of(const HandPose& pose, Joint joint) {
+  return pose[joint].translation().cast<float>();
+}
+// The axes of a joint: to the right, out of the back of the hand, and back to the wrist.
+Vector3f axis_of(const HandPose& pose, Joint joint, Eigen::Index axis) {
+  return pose[joint].linear().col(axis).cast<float>();
+}
+Vector3f between(const Vector3f& a, const Vector3f& b, float share) {
+  return a + share * (b - a);
+}
 
 // The lesser of two distances, rounded where they are within `soft` of each other.
 float soft_min(float a, float b, float soft) noexcept {
@@ -26,169 +55,249 @@ float soft_min(float a, float b, float soft) noexcept {
   return std::min(a, b) - 0.25F * h * h * soft;
 }
 
-float flesh(const std::array<BoneLine, skin_bones>& lines, const Vector3f& place) {
-  const auto& bones = fleshed_bones();
-  float palm = std::numeric_limits<float>::max();
-  for (std::size_t bone = 0; bone < palm_bones; ++bone)
-    palm = soft_min(palm, distance_to(bones[bone], lines[bone], place), in_palm_m);
-  float whole = palm;
-  for (std::size_t bone = palm_bones; bone < skin_bones;) {
-    float finger = std::numeric_limits<float>::max();
-    do {
-      finger = soft_min(finger, distance_to(bones[bone], lines[bone], place), along_finger_m);
-    } while (++bone < skin_bones && bones[bone].joint == bones[bone - 1].end);
-    whole = std::min(whole, soft_min(finger, palm, at_knuckles_m));
-  }
+float union_of(const std::vector<FleshPart>& parts, const Vector3f& place) noexcept {
+  float whole = distance_to(parts.front(), place);
+  for (std::size_t at = 1; at < parts.size(); ++at)
+    whole = soft_min(whole, distance_to(parts[at], place), parts[at].soft_m);
   return whole;
 }
 
-// Surface nets (S. Gibson, "Constrained elastic surface nets", MICCAI 1998): a vertex in each cell
-// that the surface passes through, amid its crossings of the cell's edges; a quad for each edge.
-class Net {
-public:
-  Net(const std::array<BoneLine, skin_bones>& lines, const Vector3f& lowest,
-      const Vector3f& highest)
-      : lowest_(lowest), count_(((highest - lowest) / cell_m).cast<int>() + Vector3i::Constant(2)) {
-    values_.resize(static_cast<std::size_t>(count_.x()) * static_cast<std::size_t>(count_.y()) *
-                   static_cast<std::size_t>(count_.z()));
-    each([&](const Vector3i& at) { values_[index(at)] = flesh(lines, place(at)); });
-  }
+// From the part's beginning, in a space in which the part is round.
+Vector3f flattened(const FleshPart& part, const Vector3f& place) noexcept {
+  Vector3f from = place - part.from;
+  if (part.flatness < 1.0F)
+    from += (1.0F / part.flatness - 1.0F) * from.dot(part.flat_along) * part.flat_along;
+  return from;
+}
 
-  SkinMesh mesh() {
-    each([&](const Vector3i& at) {
-      for (int axis = 0; axis < 3; ++axis)
-        add_quad(at, axis);
-    });
-    return std::move(mesh_);
+void prepare(std::vector<FleshPart>& parts) {
+  for (FleshPart& part : parts) {
+    part.way = part.to - part.from;
+    part.way += (1.0F / part.flatness - 1.0F) * part.way.dot(part.flat_along) * part.flat_along;
+    const float squared = part.way.squaredNorm();
+    part.per_squared = squared > 0.0F ? 1.0F / squared : 0.0F;
   }
+}
 
-private:
-  template <class Visit>
-  void each(Visit visit) const {
-    for (int z = 0; z < count_.z(); ++z)
-      for (int y = 0; y < count_.y(); ++y)
-        for (int x = 0; x < count_.x(); ++x)
-          visit(Vector3i(x, y, z));
-  }
-  std::size_t index(const Vector3i& at) const noexcept {
-    return static_cast<std::size_t>((at.z() * count_.y() + at.y()) * count_.x() + at.x());
-  }
-  Vector3f place(const Vector3i& at) const { return lowest_ + cell_m * at.cast<float>(); }
-
-  // Of the cell whose lowest corner is `at`.
-  std::uint32_t vertex(const Vector3i& at) {
-    const auto [entry, is_new] =
-        vertices_.try_emplace(index(at), static_cast<std::uint32_t>(mesh_.places.size()));
-    if (!is_new) return entry->second;
-    Vector3f sum = Vector3f::Zero();
-    int crossings = 0;
-    for (int corner = 0; corner < 8; ++corner)
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((corner >> axis & 1) != 0) continue;
-        const Vector3i a = at + Vector3i(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-        const Vector3i b = a + Vector3i::Unit(axis);
-        const float from = values_[index(a)];
-        const float to = values_[index(b)];
-        if ((from < 0.0F) == (to < 0.0F)) continue;
-        sum += place(a) + from / (from - to) * (place(b) - place(a));
-        ++crossings;
-      }
-    mesh_.places.emplace_back(sum / static_cast<float>(std::max(1, crossings)));
-    return entry->second;
-  }
-
-  // About the edge from `at` along `axis`, if the surface crosses it.
-  void add_quad(const Vector3i& at, int axis) {
-    const Vector3i u = Vector3i::Unit((axis + 1) % 3);
-    const Vector3i v = Vector3i::Unit((axis + 2) % 3);
-    if (at.dot(u) == 0 || at.dot(v) == 0 || at[axis] + 1 >= count_[axis]) return;
-    const bool inside = values_[index(at)] < 0.0F;
-    if (inside == (values_[index(at + Vector3i::Unit(axis))] < 0.0F)) return;
-    std::array<std::uint32_t, 4> quad{vertex(at - u - v), vertex(at - v), vertex(at),
-                                      vertex(at - u)};
-    if (!inside) std::reverse(quad.begin(), quad.end());
-    mesh_.corners.insert(mesh_.corners.end(),
-                         {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]});
-  }
-
-  Vector3f lowest_;
-  Vector3i count_;
-  std::vector<float> values_;
-  std::unordered_map<std::size_t, std::uint32_t> vertices_;
-  SkinMesh mesh_;
-};
+Eigen::AlignedBox3f box_of(const std::vector<FleshPart>& parts) {
+  Eigen::AlignedBox3f box;
+  for (const FleshPart& part : parts)
+    for (const auto& [end, radius_m] :
+         {std::pair{part.from, part.radius_m}, {part.to, part.end_radius_m}}) {
+      box.extend(end + Vector3f::Constant(radius_m));
+      box.extend(end - Vector3f::Constant(radius_m));
+    }
+  return box;
+}
 
 } // namespace
 
-// Thicknesses between those of ANSUR II's women and men where it has them (breadths of fingers'
-// joints), and otherwise by eye.
-const std::array<FleshedBone, skin_bones>& fleshed_bones() noexcept {
-  static constexpr std::array<FleshedBone, skin_bones> bones{{
-      {Joint::wrist, Joint::wrist, 0.0170F, 0.0180F},
-      {Joint::thumb_metacarpal, Joint::thumb_proximal, 0.0150F, 0.0125F},
-      {Joint::index_metacarpal, Joint::index_proximal, 0.0135F, 0.0110F},
-      {Joint::middle_metacarpal, Joint::middle_proximal, 0.0140F, 0.0110F},
-      {Joint::ring_metacarpal, Joint::ring_proximal, 0.0140F, 0.0105F},
-      {Joint::little_metacarpal, Joint::little_proximal, 0.0135F, 0.0100F},
-      {Joint::thumb_proximal, Joint::thumb_distal, 0.0115F, 0.0105F},
-      {Joint::thumb_distal, Joint::thumb_tip, 0.0105F, 0.0080F},
-      {Joint::index_proximal, Joint::index_intermediate, 0.0102F, 0.0088F},
-      {Joint::index_intermediate, Joint::index_distal, 0.0088F, 0.0078F},
-      {Joint::index_distal, Joint::index_tip, 0.0078F, 0.0064F},
-      {Joint::middle_proximal, Joint::middle_intermediate, 0.0102F, 0.0090F},
-      {Joint::middle_intermediate, Joint::middle_distal, 0.0090F, 0.0080F},
-      {Joint::middle_distal, Joint::middle_tip, 0.0080F, 0.0066F},
-      {Joint::ring_proximal, Joint::ring_intermediate, 0.0098F, 0.0085F},
-      {Joint::ring_intermediate, Joint::ring_distal, 0.0085F, 0.0075F},
-      {Joint::ring_distal, Joint::ring_tip, 0.0075F, 0.0062F},
-      {Joint::little_proximal, Joint::little_intermediate, 0.0088F, 0.0075F},
-      {Joint::little_intermediate, Joint::little_distal, 0.0075F, 0.0067F},
-      {Joint::little_distal, Joint::little_tip, 0.0067F, 0.0055F},
-  }};
-  return bones;
+float distance_to(const FleshPart& part, const Vector3f& place) noexcept {
+  const Vector3f from = flattened(part, place);
+  const float t = std::clamp(part.per_squared * from.dot(part.way), 0.0F, 1.0F);
+  return (from - t * part.way).norm() - (part.radius_m + t * (part.end_radius_m - part.radius_m));
 }
 
-std::array<BoneLine, skin_bones> bone_lines(const hand::HandPose& pose) {
-  std::array<BoneLine, skin_bones> lines;
-  for (std::size_t bone = 0; bone < skin_bones; ++bone) {
-    const FleshedBone& fleshed = fleshed_bones()[bone];
-    const auto& T_world_joint = pose[fleshed.joint];
-    const Eigen::Vector3d end =
-        fleshed.end == fleshed.joint
-            ? Eigen::Vector3d(T_world_joint *
-                              Eigen::Vector3d(0.0, 0.0, static_cast<double>(forearm_m)))
-            : Eigen::Vector3d(pose[fleshed.end].translation());
-    lines[bone] = {T_world_joint.translation().cast<float>(), end.cast<float>()};
+float share_along(const FleshPart& part, const Vector3f& place) noexcept {
+  return std::clamp(part.per_squared * flattened(part, place).dot(part.way), 0.0F, 1.0F);
+}
+
+HandFlesh::HandFlesh(const HandPose& pose) {
+  add_metacarpals(pose);
+  add_thumb_side(pose);
+  add_webs(pose);
+  add_forearm(pose);
+  add_thumb(pose);
+  for (std::size_t finger = 1; finger < roots.size(); ++finger)
+    add_finger(pose, finger);
+  prepare(palm_);
+  palm_box_ = box_of(palm_);
+  for (std::size_t finger = 0; finger < roots.size(); ++finger) {
+    prepare(fingers_[finger]);
+    finger_boxes_[finger] = box_of(fingers_[finger]);
   }
-  return lines;
 }
 
-float distance_to(const FleshedBone& bone, const BoneLine& line, const Vector3f& place) {
-  const bool is_tip = bone.end == Joint::thumb_tip || bone.end == Joint::index_tip ||
-                      bone.end == Joint::middle_tip || bone.end == Joint::ring_tip ||
-                      bone.end == Joint::little_tip;
-  Vector3f way = line.to - line.from;
-  const float length = way.norm();
-  // A tip is where the finger's flesh ends.
-  if (is_tip && length > bone.end_radius_m) way *= (length - bone.end_radius_m) / length;
-  const Vector3f from = place - line.from;
-  const float squared = way.squaredNorm();
-  const float t = squared > 0.0F ? std::clamp(from.dot(way) / squared, 0.0F, 1.0F) : 0.0F;
-  Vector3f away = from - t * way;
-  if (bone.joint == bone.end) // two bones beside each other: an oval
-    away.x() = std::copysign(std::max(0.0F, std::abs(away.x()) - forearm_half_m), away.x());
-  return away.norm() - (bone.radius_m + t * (bone.end_radius_m - bone.radius_m));
-}
-
-SkinMesh skin_about(const std::array<BoneLine, skin_bones>& lines) {
-  Vector3f lowest = lines[0].from;
-  Vector3f highest = lowest;
-  for (const auto& line : lines) {
-    lowest = lowest.cwiseMin(line.from).cwiseMin(line.to);
-    highest = highest.cwiseMax(line.from).cwiseMax(line.to);
+// The bones lie near the back of the hand, and most flesh lies on the side of the palm.
+void HandFlesh::add_metacarpals(const HandPose& pose) {
+  const Vector3f right = axis_of(pose, Joint::wrist, 0);
+  const Vector3f up = axis_of(pose, Joint::wrist, 1);
+  const Vector3f back = axis_of(pose, Joint::wrist, 2);
+  for (std::size_t finger = 1; finger < roots.size(); ++finger) {
+    const Joint root = roots[finger];
+    const float head = radii_mm[finger].knuckle * mm;
+    // Those of index and middle finger are fixed to the wrist.
+    const Joint carrier = finger < 3 ? Joint::wrist : root;
+    palm_.push_back({place_of(pose, root) - 4.5F * mm * up,
+                     place_of(pose, after(root, 1)) - 2 * mm * up,
+                     10 * mm,
+                     head,
+                     in_palm_m,
+                     Vector3f::Zero(),
+                     1.0F,
+                     {Joint::wrist, carrier}});
   }
-  const Vector3f room = Vector3f::Constant(0.04F);
-  return Net(lines, lowest - room, highest + room).mesh();
+  // The pads below the knuckles.
+  const Vector3f first = place_of(pose, Joint::index_proximal);
+  const Vector3f last = place_of(pose, Joint::little_proximal);
+  palm_.push_back({first - 9 * mm * up - 1 * mm * back + 1 * mm * right,
+                   last - 8 * mm * up - 1 * mm * back - 1 * mm * right,
+                   8.5F * mm,
+                   8 * mm,
+                   12 * mm,
+                   Vector3f::Zero(),
+                   1.0F,
+                   {Joint::wrist, Joint::little_metacarpal}});
+  // The heel of the hand, on the little finger's side.
+  palm_.push_back(
+      {place_of(pose, Joint::little_metacarpal) - 6 * mm * up + 2 * mm * right - 4 * mm * back,
+       between(place_of(pose, Joint::little_metacarpal), last, 0.7F) - 5 * mm * up + 1 * mm * right,
+       13 * mm,
+       10.5F * mm,
+       in_palm_m,
+       Vector3f::Zero(),
+       1.0F,
+       {Joint::wrist, Joint::little_metacarpal}});
+}
+
+// The ball of the thumb, and the web between thumb and index finger.
+void HandFlesh::add_thumb_side(const HandPose& pose) {
+  const Vector3f up = axis_of(pose, Joint::wrist, 1);
+  const Vector3f wrist = place_of(pose, Joint::wrist);
+  const Vector3f base = place_of(pose, Joint::thumb_metacarpal);
+  const Vector3f head = place_of(pose, Joint::thumb_proximal);
+  palm_.push_back({between(wrist, base, 0.65F) - 3 * mm * up,
+                   between(base, head, 0.7F) - 1 * mm * up,
+                   13 * mm,
+                   13 * mm,
+                   in_palm_m,
+                   Vector3f::Zero(),
+                   1.0F,
+                   {Joint::wrist, Joint::thumb_metacarpal}});
+  const Vector3f index =
+      between(place_of(pose, Joint::index_metacarpal), place_of(pose, Joint::index_proximal), 0.6F);
+  palm_.push_back({index - 3 * mm * up,
+                   between(base, head, 0.66F),
+                   9 * mm,
+                   9.5F * mm,
+                   16 * mm,
+                   Vector3f::Zero(),
+                   1.0F,
+                   {Joint::wrist, Joint::thumb_metacarpal}});
+}
+
+// Fingers part from one another well after their knuckles.
+void HandFlesh::add_webs(const HandPose& pose) {
+  for (std::size_t finger = 1; finger + 1 < roots.size(); ++finger) {
+    const auto beside = [&](std::size_t which) -> Vector3f {
+      const Joint proximal = after(roots[which], 1);
+      return between(place_of(pose, proximal), place_of(pose, after(proximal, 1)), 0.34F) -
+             2.5F * mm * axis_of(pose, proximal, 1);
+    };
+    palm_.push_back({beside(finger),
+                     beside(finger + 1),
+                     5 * mm,
+                     5 * mm,
+                     10 * mm,
+                     Vector3f::Zero(),
+                     1.0F,
+                     {after(roots[finger], 1), after(roots[finger + 1], 1)}});
+  }
+}
+
+void HandFlesh::add_forearm(const HandPose& pose) {
+  const Vector3f right = axis_of(pose, Joint::wrist, 0);
+  const Vector3f up = axis_of(pose, Joint::wrist, 1);
+  const Vector3f back = axis_of(pose, Joint::wrist, 2);
+  const Vector3f wrist = place_of(pose, Joint::wrist) + 1.5F * mm * right - 2 * mm * up;
+  palm_.push_back({wrist + 2 * mm * back,
+                   wrist + 70 * mm * back,
+                   25 * mm,
+                   30 * mm,
+                   22 * mm,
+                   up,
+                   0.68F,
+                   {Joint::wrist, Joint::wrist}});
+  cut_place_ = wrist + 50 * mm * back;
+  cut_normal_ = back;
+}
+
+void HandFlesh::add_thumb(const HandPose& pose) {
+  const Radii& radii = radii_mm[0];
+  const auto at = [&](std::size_t step) { return place_of(pose, after(roots[0], step)); };
+  const auto carried = [](std::size_t step) {
+    return std::array{after(roots[0], step), after(roots[0], step)};
+  };
+  const Vector3f up = axis_of(pose, Joint::thumb_distal, 1);
+  const Vector3f along = (at(3) - at(2)).normalized();
+  std::vector<FleshPart>& parts = fingers_[0];
+  parts.push_back(
+      {at(0), at(1), 14 * mm, radii.knuckle * mm, 0.0F, Vector3f::Zero(), 1.0F, carried(0)});
+  parts.push_back({at(1), at(2), radii.knuckle * mm, radii.end * mm, along_finger_m,
+                   Vector3f::Zero(), 1.0F, carried(1)});
+  parts.push_back({at(2), at(3) - radii.tip * mm * along, radii.end * mm, radii.tip * mm,
+                   along_finger_m, up, 0.85F, carried(2)});
+  // The pad of its end.
+  parts.push_back({between(at(2), at(3), 0.4F) - 2.5F * mm * up,
+                   between(at(2), at(3), 0.62F) - 2 * mm * up, 7.6F * mm, 7 * mm, along_finger_m,
+                   Vector3f::Zero(), 1.0F, carried(2)});
+}
+
+void HandFlesh::add_finger(const HandPose& pose, std::size_t finger) {
+  const Radii& radii = radii_mm[finger];
+  const std::array<float, 4> radius_m{radii.knuckle * mm, radii.middle * mm, radii.end * mm,
+                                      radii.tip * mm};
+  std::vector<FleshPart>& parts = fingers_[finger];
+  for (std::size_t bone = 0; bone < 3; ++bone) {
+    const Joint joint = after(roots[finger], bone + 1);
+    const Vector3f up = axis_of(pose, joint, 1);
+    const Vector3f from = place_of(pose, joint) - 1 * mm * up;
+    const Vector3f to = place_of(pose, after(joint, 1)) - 1 * mm * up;
+    const bool is_last = bone == 2;
+    const Vector3f end = is_last ? Vector3f(to - radius_m[3] * (to - from).normalized()) : to;
+    parts.push_back({from,
+                     end,
+                     radius_m[bone],
+                     radius_m[bone + 1],
+                     along_finger_m,
+                     up,
+                     is_last ? 0.88F : 0.95F,
+                     {joint, joint}});
+    // Its pad: the flesh between two creases.
+    const float pad = 0.87F * radius_m[bone + 1];
+    parts.push_back({between(from, to, 0.35F) - 0.30F * radius_m[bone + 1] * up,
+                     between(from, to, is_last ? 0.62F : 0.70F) - 0.26F * radius_m[bone + 1] * up,
+                     pad,
+                     pad,
+                     along_finger_m,
+                     Vector3f::Zero(),
+                     1.0F,
+                     {joint, joint}});
+  }
+}
+
+float HandFlesh::operator()(const Vector3f& place) const noexcept {
+  constexpr float far_m = 0.03F; // farther than anything runs together
+  float palm = palm_box_.exteriorDistance(place);
+  // Rounded where it is cut: the greater of two is minus the lesser of both negated.
+  if (palm < far_m)
+    palm = -soft_min(-union_of(palm_, place), -(place - cut_place_).dot(cut_normal_), at_cut_m);
+  const float near_palm = std::clamp(1.0F - palm / at_knuckles_m, 0.0F, 1.0F);
+  const float soft = std::max(1e-6F, near_palm * between_fingers_m);
+  float fingers = 1.0F; // more than there is
+  for (std::size_t finger = 1; finger < fingers_.size(); ++finger)
+    if (finger_boxes_[finger].exteriorDistance(place) <= palm + at_knuckles_m)
+      fingers = soft_min(fingers, union_of(fingers_[finger], place), soft);
+  const float hand = soft_min(fingers, palm, at_knuckles_m);
+  if (finger_boxes_[0].exteriorDistance(place) > palm + at_thumb_m) return hand;
+  return std::min(hand, soft_min(union_of(fingers_[0], place), palm, at_thumb_m));
+}
+
+Eigen::AlignedBox3f HandFlesh::box() const {
+  Eigen::AlignedBox3f box = palm_box_;
+  for (const auto& finger : finger_boxes_)
+    box.extend(finger);
+  return {box.min() - Vector3f::Constant(slack_m), box.max() + Vector3f::Constant(slack_m)};
 }
 
 } // namespace nendo::render

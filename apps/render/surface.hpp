@@ -17,6 +17,7 @@ struct Material {
   float rim_opacity = 1.0F; ///< where the line of sight is along the surface
   float grid_m = 0.0F;      ///< of a ground: distance between its lines; it has faded out at fade_m
   float fade_m = 0.0F;
+  bool opaque_before_ground = false; ///< translucent only where the model or a solid is behind it
   bool operator==(const Material&) const = default;
 };
 

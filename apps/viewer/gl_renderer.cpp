@@ -19,6 +19,9 @@ namespace {
 
 constexpr std::size_t block_floats = 3 * block_size;
 constexpr int shadow_unit = 2; // after the model's two textures
+// In the stencil: what is seen there, not counting hands.
+constexpr GLint ground_mark = 0; // or nothing
+constexpr GLint solid_mark = 1;  // the model or a solid
 
 bool casts(const render::Surface& surface) {
   return surface.material.opacity > 0.0F;
@@ -169,14 +172,25 @@ void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
   const auto triangles = [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, nullptr);
   };
-  if (veil) { // depth first, so that only its nearest layer is mixed in
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  if (!veil) {
     triangles();
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glEnable(GL_BLEND);
+    return;
   }
+  // Depth first, so that only its nearest layer is mixed in.
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   triangles();
-  if (veil) glDisable(GL_BLEND);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  if (surface.material.opaque_before_ground) {
+    glStencilFunc(GL_EQUAL, ground_mark, 0xFF);
+    triangles();
+    glStencilFunc(GL_EQUAL, solid_mark, 0xFF);
+  }
+  glEnable(GL_BLEND);
+  triangles();
+  glDisable(GL_BLEND);
+  glStencilFunc(GL_ALWAYS, ground_mark, 0xFF);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
 }
 
 // Makes the map of what the key light does not reach. Returns false if nothing casts a shadow.
@@ -232,7 +246,8 @@ void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera,
   glViewport(0, 0, size.width, size.height);
   glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
   if (shaded) glClearColor(0.90F, 0.91F, 0.92F, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glClearStencil(ground_mark);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   set(program_, "clip_of_world",
       Eigen::Matrix4f(camera.projection(1.0 * size.width / size.height).cast<float>()));
   set(program_, "eye", Vector3f(camera.eye().cast<float>()));
@@ -241,23 +256,31 @@ void GlRenderer::draw(const render::Scene& beside, const render::Camera& camera,
   set(program_, "rim", render::turned(render::rim_direction, camera.view.azimuth_deg));
   set(program_, "height", static_cast<float>(size.height));
   set(program_, "flat_white", shaded ? 0 : 1);
+  glEnable(GL_STENCIL_TEST);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   draw_parts(beside, look, shadowed);
+  glDisable(GL_STENCIL_TEST);
 }
 
 void GlRenderer::draw_parts(const render::Scene& beside, Look look, bool shadowed) {
   const bool shaded = look != Look::silhouette;
   const auto receives = [&](bool yes) { set(program_, "shadowed", yes && shadowed ? 1 : 0); };
+  const auto mark = [](GLint as) { glStencilFunc(GL_ALWAYS, as, 0xFF); };
   receives(true);
+  mark(solid_mark);
   set(program_, "facets", look == Look::facets ? 1 : 0);
   if (whole_) draw_surface(beside.model, true);
   set(program_, "facets", 0);
+  mark(ground_mark);
   if (shaded)
     for (const render::Surface& ground : beside.grounds)
       draw_surface(ground, false);
+  mark(solid_mark);
   receives(false); // bones lie in the shadow of their skin
   for (const render::Surface& solid : beside.solids)
     draw_surface(solid, false);
   receives(true);
+  mark(ground_mark);
   // Hands, then what has no depth of its own.
   for (const bool reaches : {false, true})
     for (const render::Surface& veil : beside.veils)

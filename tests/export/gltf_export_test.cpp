@@ -198,7 +198,8 @@ TEST_SUITE("gltf_export") {
         const Eigen::MatrixXd joints = glb.accessor(attributes["JOINTS_0"]);
         const Eigen::MatrixXd weights = glb.accessor(attributes["WEIGHTS_0"]);
         render::Surface surface;
-        render::HandSkin(side).drape(pose, Eigen::Vector3d::Zero(), surface);
+        render::HandSkin(side).drape(pose, Eigen::Vector3d::Zero(), surface,
+                                     render::HandSkin::Mix::linear);
         REQUIRE(static_cast<std::size_t>(places.cols()) == surface.places.size());
         double worst = 0.0;
         for (Eigen::Index v = 0; v < places.cols(); ++v) {

@@ -1,5 +1,6 @@
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -38,6 +39,48 @@ double distance_from(const Surface& surface, const Eigen::Vector3d& point) {
   return least;
 }
 
+using Edges = std::map<std::pair<std::uint32_t, std::uint32_t>, int>;
+
+// How often each edge is run along, in that direction.
+Edges edges_of(const Surface& surface) {
+  Edges edges;
+  for (std::size_t at = 0; at < surface.corners.size(); at += 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      ++edges[{surface.corners[at + k], surface.corners[at + (k + 1) % 3]}];
+  return edges;
+}
+
+// By the divergence theorem: the sum of the tetrahedra to the origin.
+double volume_of(const Surface& surface) {
+  double sum = 0.0;
+  for (std::size_t at = 0; at < surface.corners.size(); at += 3) {
+    const auto corner = [&](std::size_t k) {
+      return Eigen::Vector3d(surface.places[surface.corners[at + k]].cast<double>());
+    };
+    sum += corner(0).dot(corner(1).cross(corner(2))) / 6.0;
+  }
+  return sum;
+}
+
+Surface draped(const HandSkin& skin, Side side, const hand::JointAngles& angles) {
+  Surface surface;
+  skin.drape(hand::HandSkeleton(side).pose(angles, Eigen::Isometry3d::Identity()),
+             Eigen::Vector3d::Zero(), surface);
+  return surface;
+}
+
+hand::JointAngles fist() {
+  hand::JointAngles angles;
+  for (auto& finger : angles.fingers)
+    finger = {1.5, 0.0, 1.8, 1.1};
+  angles.thumb_roll_rad = 1.1;
+  angles.thumb_abduction_rad = 0.25;
+  angles.thumb_mcp_flexion_rad = 0.6;
+  angles.thumb_ip_flexion_rad = 0.9;
+  angles.palm_arch_rad = 0.15;
+  return angles;
+}
+
 } // namespace
 
 TEST_SUITE("hand_skin") {
@@ -62,16 +105,11 @@ TEST_SUITE("hand_skin") {
         Surface surface;
         skin.drape(pose, origin, surface);
 
-        std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-        for (std::size_t at = 0; at < surface.corners.size(); at += 3)
-          for (std::size_t k = 0; k < 3; ++k)
-            ++edges[{surface.corners[at + k], surface.corners[at + (k + 1) % 3]}];
+        const Edges edges = edges_of(surface);
         int open = 0;
-        for (const auto& [edge, count] : edges) {
-          const auto back = edges.find({edge.second, edge.first});
-          open += back == edges.end() || back->second != count ? 1 : 0;
-        }
-        CHECK(open == 0);
+        for (const auto& [edge, count] : edges)
+          open += count != 1 || !edges.contains({edge.second, edge.first}) ? 1 : 0;
+        CHECK(open == 0); // two triangles at each edge
         for (std::size_t at = 0; at < hand::joint_count; ++at) {
           const auto joint = static_cast<hand::Joint>(at);
           const Eigen::Vector3d place = pose[joint].translation() - origin;
@@ -99,7 +137,102 @@ TEST_SUITE("hand_skin") {
       worst = std::max(worst, distance_from(skins[1], {-static_cast<double>(place.x()),
                                                        static_cast<double>(place.y()),
                                                        static_cast<double>(place.z())}));
-    CHECK(worst < 0.0035); // a cell of the net
+    CHECK(worst < 1e-5);
+  }
+
+  TEST_CASE("the skin is one piece without holes: no finger has grown onto another one") {
+    const HandSkin skin(Side::right);
+    Surface surface;
+    skin.drape(HandSkin::bind_pose(Side::right), Eigen::Vector3d::Zero(), surface);
+    CHECK(surface.places.size() >= 3000);
+    CHECK(surface.places.size() <= 6000);
+    const Edges edges = edges_of(surface);
+    // Euler: a sphere's number is 2, and each bridge between two fingers takes 2 away.
+    const auto faces = static_cast<long>(surface.corners.size() / 3);
+    CHECK(static_cast<long>(surface.places.size()) - static_cast<long>(edges.size() / 2) + faces ==
+          2);
+    std::vector<std::uint32_t> piece(surface.places.size());
+    std::iota(piece.begin(), piece.end(), 0U);
+    const auto first_of = [&](std::uint32_t at) {
+      while (piece[at] != at)
+        at = piece[at] = piece[piece[at]];
+      return at;
+    };
+    for (const auto& [edge, count] : edges)
+      piece[first_of(edge.first)] = first_of(edge.second);
+    for (std::uint32_t at = 0; at < piece.size(); ++at)
+      REQUIRE(first_of(at) == first_of(0));
+  }
+
+  TEST_CASE("weights sum to 1, change smoothly, and beyond the knuckles are of one finger") {
+    const HandSkin skin(Side::left);
+    const Surface surface = draped(skin, Side::left, {});
+    std::vector<std::array<double, hand::joint_count>> weights(surface.places.size());
+    for (std::size_t at = 0; at < weights.size(); ++at) {
+      weights[at].fill(0.0);
+      double sum = 0.0;
+      for (const auto& [joint, weight] : skin.influences(at)) {
+        REQUIRE(weight >= 0.0F);
+        weights[at][hand::index_of(joint)] += static_cast<double>(weight);
+        sum += static_cast<double>(weight);
+      }
+      REQUIRE(sum == doctest::Approx(1.0).epsilon(1e-5));
+      int fingers = 0;
+      for (const auto tip : hand::fingertips)
+        fingers +=
+            weights[at][hand::index_of(tip) - 1] + weights[at][hand::index_of(tip) - 2] > 0.05;
+      // The joint before the thumb's last one is its knuckle.
+      REQUIRE(fingers <= 1);
+    }
+    double worst = 0.0;
+    for (const auto& [edge, count] : edges_of(surface))
+      for (std::size_t joint = 0; joint < hand::joint_count; ++joint)
+        worst = std::max(worst, std::abs(weights[edge.first][joint] - weights[edge.second][joint]));
+    CHECK(worst < 0.4);
+  }
+
+  TEST_CASE("a fist has about the flat hand's volume, and so has a bigger hand's, to its scale") {
+    const HandSkin skin(Side::right);
+    const double flat = volume_of(draped(skin, Side::right, {}));
+    // Hands of 187 mm displace some 350 to 450 ml up to the wrist; here is some forearm, too.
+    CHECK(flat > 300e-6);
+    CHECK(flat < 600e-6);
+    const double bent = volume_of(draped(skin, Side::right, fist()));
+    CHECK(bent > 0.93 * flat);
+    CHECK(bent < 1.07 * flat);
+    Surface large;
+    const hand::HandSize size{1.2 * 0.187, 1.2 * 0.083};
+    skin.drape(hand::HandSkeleton(Side::right, size).pose({}, Eigen::Isometry3d::Identity()),
+               Eigen::Vector3d::Zero(), large);
+    CHECK(volume_of(large) == doctest::Approx(1.728 * flat).epsilon(0.001));
+  }
+
+  TEST_CASE("a twisted joint keeps its thickness, which linear mixing would take from it") {
+    const HandSkin skin(Side::right);
+    hand::HandPose pose = HandSkin::bind_pose(Side::right);
+    const auto twisted = pose[hand::Joint::index_distal];
+    const Eigen::Vector3d axis = twisted.linear().col(2);
+    const Eigen::Vector3d place = twisted.translation();
+    const auto thickness = [&](HandSkin::Mix mix) {
+      Surface surface;
+      skin.drape(pose, Eigen::Vector3d::Zero(), surface, mix);
+      double least = 1.0;
+      for (std::size_t at = 0; at < surface.places.size(); ++at) {
+        const Eigen::Vector3d from = surface.places[at].cast<double>() - place;
+        if (std::abs(from.dot(axis)) < 0.003 && from.norm() < 0.02)
+          least = std::min(least, from.cross(axis).norm());
+      }
+      return least;
+    };
+    const double before = thickness(HandSkin::Mix::screws);
+    CHECK(before == doctest::Approx(thickness(HandSkin::Mix::linear)).epsilon(1e-4));
+    CHECK(before > 0.005);
+    for (const hand::Joint joint : {hand::Joint::index_distal, hand::Joint::index_tip})
+      pose.joints[hand::index_of(joint)] = Eigen::Translation3d(place) *
+                                           Eigen::AngleAxisd(2.5, axis) *
+                                           Eigen::Translation3d(-place) * pose[joint];
+    CHECK(thickness(HandSkin::Mix::screws) > 0.9 * before);
+    CHECK(thickness(HandSkin::Mix::linear) < 0.6 * before);
   }
 }
 

@@ -65,6 +65,11 @@ TEST_SUITE("scene") {
     Scene scene;
     builder.build(scene_frame, {}, scene);
     CHECK(scene.veils.size() == 2);  // two skins
+    CHECK(scene.solids.size() == 2); // the arrows of each
+    SceneParts with_bones;
+    with_bones.bones = true;
+    builder.build(scene_frame, with_bones, scene);
+    CHECK(scene.veils.size() == 2);
     CHECK(scene.solids.size() == 4); // bones and arrows of each
     for (Eigen::Index finger = 0; finger < 5; ++finger)
       for (const auto& end :

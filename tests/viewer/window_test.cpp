@@ -160,8 +160,8 @@ TEST_SUITE("window") {
         places += solid.places.size();
       return places;
     };
-    const std::size_t without_bones = drawn_after(GLFW_KEY_B);
     const std::size_t with_bones = drawn_after(GLFW_KEY_B);
+    const std::size_t without_bones = drawn_after(GLFW_KEY_B);
     CHECK(with_bones > without_bones);
   }
 

@@ -72,7 +72,7 @@ file(WRITE ${PROJECT_BINARY_DIR}/debian/changelog "nendo (${PROJECT_VERSION}) ${
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/debian/changelog COMMAND_ERROR_IS_FATAL ANY)
 file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
 set(shlibs "")
-foreach(name base udev driver hand deform flow recording)
+foreach(name base udev driver hand deform puppet flow recording)
   string(APPEND shlibs "libnendo_${name} ${NENDO_SOVERSION} ${library_package} (>= ${PROJECT_VERSION})\n")
 endforeach()
 file(WRITE ${PROJECT_BINARY_DIR}/debian/shlibs "${shlibs}")
