@@ -69,7 +69,10 @@ Result<Exported> export_mesh_sequence(ChosenFrames& frames, const std::string& p
     }
     frames.vertices(mesh.vertices);
     const std::string file = name->of(frames.made());
-    if (const auto written = deform::write_mesh(file, mesh); !written)
+    // One file of materials for all of them.
+    const auto materials = std::filesystem::path(done.files.empty() ? file : done.files.front())
+                               .replace_extension(".mtl");
+    if (const auto written = deform::write_mesh(file, mesh, materials); !written)
       return so_far(written.error());
     std::error_code unknown;
     const auto bytes = std::filesystem::file_size(file, unknown);

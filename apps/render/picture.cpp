@@ -104,6 +104,11 @@ ShadedPlace place_of(const Hit& hit, const Seen& seen) {
   return at;
 }
 
+Vector3f painted_colour(const Hit& hit, const Surface& surface) {
+  const std::uint32_t* const corner = &surface.corners[hit.triangle];
+  return surface.paint->colour_at(hit.triangle / 3, {corner[0], corner[1], corner[2]}, hit.shares);
+}
+
 struct View3d {
   const Lighting* lighting;
   Projection projection;
@@ -146,7 +151,8 @@ Vector3f opaque_colour(const View3d& view, const Hit& hit, float height) {
   const Seen& seen = view.opaque[hit.surface];
   const auto& maps = view.lighting->maps();
   const ShadedPlace at = place_of(hit, seen);
-  const Material& material = seen.surface->material;
+  Material material = seen.surface->material;
+  if (seen.surface->paint) material.colour = painted_colour(hit, *seen.surface);
   if (hit.surface < view.grounds_from) return shade(at, material, view.projection.eye(), maps);
   return ground_brightness(at, material, view.projection.footprint_m(1.0F / hit.inverse_depth),
                            maps) *

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nendo/deform/triangles.hpp>
-
 namespace nendo::render {
 
 using Eigen::Vector3d;
@@ -15,7 +13,8 @@ namespace {
 // Linear colours. Clay is warm and the hands are grey, so that one is told from the other at a
 // glance, also without seeing red from green. A hand is solid, but one sees the model through it.
 // That of a silent glove is a mere shade.
-const Material clay{{0.50F, 0.235F, 0.135F}, 0.07F};
+// The model's is its paint's.
+const Material model{{}, 0.07F};
 const Material skin{{0.33F, 0.345F, 0.37F}, 0.10F, 0.64F, 1.0F, 0.0F, 0.0F, true};
 const Material silent_skin{{0.22F, 0.22F, 0.22F}, 0.0F, 0.25F, 0.85F};
 const Material bone{{0.80F, 0.78F, 0.70F}, 0.10F};
@@ -60,7 +59,7 @@ SceneBuilder::SceneBuilder(const deform::Mesh& rest, double units_per_metre)
     origin_m_ = (box.lowest / 2 + box.highest / 2) / units_per_metre_;
     origin_m_.y() = box.lowest.y() / units_per_metre_;
   }
-  corners_ = deform::corners_of_triangles(rest);
+  paint_ = std::make_shared<const Paint>(rest, corners_);
 }
 
 void SceneBuilder::build(const SceneFrame& scene_frame, const SceneParts& parts,
@@ -78,7 +77,8 @@ void SceneBuilder::build(const SceneFrame& scene_frame, const SceneParts& parts,
 
 void SceneBuilder::build_beside(const SceneFrame& scene_frame, const SceneParts& parts,
                                 Scene& scene) const {
-  scene.model.material = clay;
+  scene.model.material = model;
+  scene.model.paint = paint_;
   scene.solids.clear();
   scene.veils.clear();
   scene.grounds.clear();

@@ -4,6 +4,7 @@
 // model stands on the ground, y = 0, around x = z = 0, as large as it is on the stage.
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "render/hand_skin.hpp"
@@ -45,8 +46,11 @@ public:
   double units_per_metre() const noexcept { return units_per_metre_; }
   /// Returns the origin of the scene: place in the scene = vertex / units_per_metre - origin.
   const Eigen::Vector3d& origin_m() const noexcept { return origin_m_; }
-  /// Returns the faces as triangles, three corners for each. Larger faces are cut into fans.
+  /// Returns the faces to be drawn as triangles, three corners for each, in the order of the
+  /// paint's coats. Larger faces are cut into fans.
   const std::vector<std::uint32_t>& corners() const noexcept { return corners_; }
+  /// Returns the colours of the triangles.
+  const std::shared_ptr<const Paint>& paint() const noexcept { return paint_; }
   /// Returns the size of the rest shape on the stage along x, y and z.
   const Eigen::Vector3d& size_m() const noexcept { return size_m_; }
 
@@ -59,6 +63,7 @@ private:
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m_ = Eigen::Vector3d::Zero();
   std::vector<std::uint32_t> corners_;
+  std::shared_ptr<const Paint> paint_;
 };
 
 } // namespace nendo::render

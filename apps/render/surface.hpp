@@ -2,10 +2,13 @@
 // Surfaces of triangles and their materials.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
+
+#include "render/paint.hpp"
 
 namespace nendo::render {
 
@@ -26,6 +29,7 @@ struct Surface {
   std::vector<Eigen::Vector3f> normals; ///< unit length, or zero where there is no face
   std::vector<std::uint32_t> corners;   ///< three for each triangle, counter-clockwise from outside
   Material material;
+  std::shared_ptr<const Paint> paint{}; ///< of the triangles, in place of the material's colour
 
   void clear() noexcept;
   bool is_empty() const noexcept { return corners.empty(); }

@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr std::size_t block_floats = 3 * block_size;
-constexpr int shadow_unit = 2; // after the model's two textures
+constexpr int shadow_unit = 3; // after the model's three textures
 // In the stencil: what is seen there, not counting hands.
 constexpr GLint ground_mark = 0; // or nothing
 constexpr GLint solid_mark = 1;  // the model or a solid
@@ -38,6 +38,20 @@ GLsizeiptr bytes_of(const std::vector<T>& values) {
   return static_cast<GLsizeiptr>(values.size() * sizeof(T));
 }
 
+/// Vertices' colours in the order of the blocks: 64 reds, 64 greens, 64 blues, and again. One
+/// number if there are none, because a buffer must not be empty.
+std::vector<float> colours_in_blocks(const std::vector<Vector3f>& colours,
+                                     const std::vector<std::uint32_t>& place_of,
+                                     std::size_t blocks) {
+  if (colours.empty()) return {1.0F};
+  std::vector<float> ordered(blocks * block_floats, 1.0F);
+  for (std::size_t vertex = 0; vertex < colours.size(); ++vertex)
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      ordered[place_of[vertex] / block_size * block_floats + channel * block_size +
+              place_of[vertex] % block_size] = colours[vertex][static_cast<Eigen::Index>(channel)];
+  return ordered;
+}
+
 } // namespace
 
 Result<std::unique_ptr<GlRenderer>> GlRenderer::make() {
@@ -54,16 +68,16 @@ Result<std::unique_ptr<GlRenderer>> GlRenderer::make() {
   renderer->program_ = *program;
   glGenVertexArrays(1, &renderer->vertex_array_);
   glGenBuffers(1, &renderer->model_indices_);
-  glGenBuffers(2, renderer->model_buffers_.data());
-  glGenTextures(2, renderer->model_textures_.data());
+  glGenBuffers(3, renderer->model_buffers_.data());
+  glGenTextures(3, renderer->model_textures_.data());
   glGenBuffers(3, renderer->stream_.data());
   return renderer;
 }
 
 GlRenderer::~GlRenderer() {
   glDeleteBuffers(3, stream_.data());
-  glDeleteTextures(2, model_textures_.data());
-  glDeleteBuffers(2, model_buffers_.data());
+  glDeleteTextures(3, model_textures_.data());
+  glDeleteBuffers(3, model_buffers_.data());
   glDeleteBuffers(1, &model_indices_);
   glDeleteVertexArrays(1, &vertex_array_);
   glDeleteProgram(program_);
@@ -79,10 +93,16 @@ void GlRenderer::set_model(const deform::BlockLayout& layout, const render::Scen
   const std::size_t blocks = layout.block_count();
   places_.assign(blocks * block_size, Vector3f::Zero());
   normals_.clear();
-  for (std::size_t which = 0; which < 2; ++which) {
+  paint_ = builder.paint();
+  const std::vector<float> colours = colours_in_blocks(paint_->vertex_colours(), place_of, blocks);
+  for (std::size_t which = 0; which < 3; ++which) {
     glBindBuffer(GL_TEXTURE_BUFFER, model_buffers_[which]);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(blocks * block_floats * sizeof(float)),
-                 nullptr, GL_DYNAMIC_DRAW);
+    if (which < 2)
+      glBufferData(GL_TEXTURE_BUFFER,
+                   static_cast<GLsizeiptr>(blocks * block_floats * sizeof(float)), nullptr,
+                   GL_DYNAMIC_DRAW);
+    else
+      glBufferData(GL_TEXTURE_BUFFER, bytes_of(colours), colours.data(), GL_STATIC_DRAW);
     glBindTexture(GL_TEXTURE_BUFFER, model_textures_[which]);
     glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, model_buffers_[which]);
   }
@@ -156,6 +176,18 @@ void GlRenderer::use_material(const render::Material& material) const {
   set(program_, "unlit", material.opacity > 0.0F ? 0 : 1);
 }
 
+// One call for each colour.
+void GlRenderer::draw_model() const {
+  set(program_, "vertex_colours", paint_->vertex_colours().empty() ? 0 : 1);
+  for (const render::Coat& coat : paint_->coats()) {
+    set(program_, "colour", coat.colour);
+    const std::size_t offset = 3 * coat.first * sizeof(std::uint32_t);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * coat.count), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(offset));
+  }
+  set(program_, "vertex_colours", 0);
+}
+
 void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
   const std::size_t count = model ? corners_.size() : surface.corners.size();
   if (count == 0) return;
@@ -170,6 +202,7 @@ void GlRenderer::draw_surface(const render::Surface& surface, bool model) {
   }
   const bool veil = surface.material.opacity < 1.0F;
   const auto triangles = [&] {
+    if (model) return draw_model();
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, nullptr);
   };
   if (!veil) {
@@ -223,7 +256,8 @@ void GlRenderer::use_model() const {
   set(program_, "offset", offset_);
   set(program_, "block_places", 0);
   set(program_, "block_normals", 1);
-  for (std::size_t which = 0; which < 2; ++which) {
+  set(program_, "block_colours", 2);
+  for (std::size_t which = 0; which < 3; ++which) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(which));
     glBindTexture(GL_TEXTURE_BUFFER, model_textures_[which]);
   }

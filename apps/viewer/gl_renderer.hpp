@@ -52,15 +52,17 @@ private:
   bool cast_shadows(const render::Scene& beside, const Eigen::Vector3f& key);
   void use_material(const render::Material& material) const;
   void use_model() const;
+  void draw_model() const;
 
   unsigned program_ = 0;
   unsigned vertex_array_ = 0;
   unsigned model_indices_ = 0;
-  std::array<unsigned, 2> model_buffers_{};  ///< positions and normals, in blocks
-  std::array<unsigned, 2> model_textures_{}; ///< the shader reads the buffers through them
+  std::array<unsigned, 3> model_buffers_{};  ///< positions, normals and colours, in blocks
+  std::array<unsigned, 3> model_textures_{}; ///< the shader reads the buffers through them
   std::array<unsigned, 3> stream_{};   ///< positions, normals and corners of the other surfaces
   std::vector<std::uint32_t> corners_; ///< indices into the blocks
-  deform::BlockShape shape_;           ///< as the graphics card has it
+  std::shared_ptr<const render::Paint> paint_;
+  deform::BlockShape shape_; ///< as the graphics card has it
   std::vector<Eigen::Vector3f> places_, normals_, new_normals_;
   std::vector<float> block_;
   Eigen::AlignedBox3f box_; ///< of the whole model, in the scene

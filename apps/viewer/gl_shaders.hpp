@@ -8,6 +8,8 @@ uniform mat4 clip_of_world;
 uniform bool from_blocks;
 uniform samplerBuffer block_places;   // 64 x, 64 y, 64 z, and again
 uniform samplerBuffer block_normals;
+uniform samplerBuffer block_colours;
+uniform bool vertex_colours;
 uniform float scale;
 uniform vec3 offset;
 layout(location = 0) in vec3 given_place;
@@ -17,6 +19,7 @@ out vec3 place;
 // triangle is seen edge on. These two are of where the triangle is.
 centroid out vec3 within;
 centroid out vec3 normal;
+centroid out vec3 tint;
 vec3 of_block(samplerBuffer blocks) {
   int at = gl_VertexID / 64 * 192 + gl_VertexID % 64;
   return vec3(texelFetch(blocks, at).r, texelFetch(blocks, at + 64).r, texelFetch(blocks, at + 128).r);
@@ -24,6 +27,7 @@ vec3 of_block(samplerBuffer blocks) {
 void main() {
   place = from_blocks ? scale * of_block(block_places) + offset : given_place;
   normal = from_blocks ? of_block(block_normals) : given_normal;
+  tint = vertex_colours ? of_block(block_colours) : vec3(1.0);
   within = place;
   gl_Position = clip_of_world * vec4(place, 1.0);
 }
@@ -39,6 +43,7 @@ uniform sampler2DShadow shadows;
 in vec3 place;
 centroid in vec3 within;
 centroid in vec3 normal;
+centroid in vec3 tint;
 out vec4 shown;
 vec3 screen(vec3 linear) {
   vec3 soft = mix(linear, 0.8 + (linear - 0.8) / (1.0 + (linear - 0.8) / 0.2), greaterThan(linear, vec3(0.8)));
@@ -93,7 +98,7 @@ void main() {
   light += max(0.0, (dot(n, fill) + 0.3) / 1.3) * vec3(0.22, 0.27, 0.34);
   light += across * across * max(0.0, (dot(n, rim) + 0.2) / 1.2) * vec3(0.62, 0.66, 0.72);
   float highlight = pow(max(0.0, dot(n, normalize(key + sight))), 32.0);
-  shown = vec4(screen(colour * light + gloss * lit * highlight * vec3(1.42, 1.35, 1.25)), part);
+  shown = vec4(screen(colour * tint * light + gloss * lit * highlight * vec3(1.42, 1.35, 1.25)), part);
 }
 )";
 

@@ -13,10 +13,16 @@
 
 namespace nendo::deform {
 
-Result<Mesh> parse_obj(std::string_view text, std::string_view name);
+struct ObjModel {
+  Mesh mesh;                          ///< its materials have names only
+  std::vector<std::string> libraries; ///< what each mtllib says: one file, or several
+};
+
+Result<ObjModel> parse_obj(std::string_view text, std::string_view name);
 Result<Mesh> parse_ply(std::string_view text, std::string_view name);
 
-std::string obj_text(const Mesh& mesh);
+/// Returns the mesh as OBJ. `library` names the file with its materials; it is left out if empty.
+std::string obj_text(const Mesh& mesh, std::string_view library);
 /// Returns the mesh as binary little-endian PLY, with coordinates in double.
 std::string ply_text(const Mesh& mesh);
 

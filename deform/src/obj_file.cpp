@@ -1,13 +1,16 @@
-// Wavefront OBJ: v, vt and f. All else (normals, materials, groups, lines, curves) is skipped.
+// Wavefront OBJ: v with colours, vt, f, usemtl, mtllib, g and o. All else (normals, lines, curves)
+// is skipped.
 
-#include <array>
-#include <charconv>
+#include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include <nendo/base/text.hpp>
 
 #include "mesh_formats.hpp"
+#include "srgb.hpp"
 #include "text_scanner.hpp"
 #include "usable.hpp"
 
@@ -15,17 +18,54 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr std::uint32_t no_texcoord = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_texcoord = no_index;
+
+/// Names in the order in which they were first seen, and which of them holds for the next face.
+class CurrentName {
+public:
+  void set(std::string name) {
+    current_ = no_index;
+    if (name.empty()) return;
+    const auto next = static_cast<std::uint32_t>(numbers_.size());
+    current_ = numbers_.emplace(std::move(name), next).first->second;
+  }
+  void ends_face() { names_.of_face.push_back(current_); }
+  /// Leaves out names that no face has.
+  FaceNames take() &&;
+
+private:
+  std::map<std::string, std::uint32_t> numbers_;
+  FaceNames names_;
+  std::uint32_t current_ = no_index;
+};
+
+FaceNames CurrentName::take() && {
+  std::vector<const std::string*> by_number(numbers_.size());
+  for (const auto& [name, number] : numbers_)
+    by_number[number] = &name;
+  std::vector<std::uint32_t> renumbered(by_number.size(), no_index);
+  for (std::uint32_t& number : names_.of_face) {
+    if (number == no_index) continue;
+    if (renumbered[number] == no_index) {
+      renumbered[number] = static_cast<std::uint32_t>(names_.names.size());
+      names_.names.push_back(*by_number[number]);
+    }
+    number = renumbered[number];
+  }
+  if (names_.names.empty()) names_.of_face.clear();
+  return std::move(names_);
+}
 
 class ObjParser {
 public:
   ObjParser(std::string_view text, std::string_view name)
       : scanner_(text, TextScanner::Dialect::obj), name_(name) {}
 
-  Result<Mesh> parse();
+  Result<ObjModel> parse();
 
 private:
   Result<void> statement();
+  Result<void> vertex();
   Result<void> coordinates(std::vector<double>& list, int needed, int kept);
   Result<void> face();
   Result<void> corner(std::string_view field);
@@ -33,6 +73,7 @@ private:
                                      HighestIndex& highest) const;
   Result<void> check_indices() const;
   void finish_texcoords();
+  void finish_look();
 
   Error bad(const std::string& what) const { return bad_line(name_, scanner_.line(), what); }
 
@@ -40,31 +81,53 @@ private:
   std::string_view name_;
   std::vector<double> vertices_;  ///< three numbers each
   std::vector<double> texcoords_; ///< two numbers each
+  std::vector<float> colours_;    ///< of the first vertices, four numbers each
+  CurrentName material_, group_, object_;
   HighestIndex highest_vertex_;
   HighestIndex highest_texcoord_;
   Mesh mesh_;
+  std::vector<std::string> libraries_;
 };
 
-Result<Mesh> ObjParser::parse() {
+Result<ObjModel> ObjParser::parse() {
   do {
     if (const auto done = statement(); !done) return done.error();
   } while (scanner_.next_line());
   if (const auto good = check_indices(); !good) return good.error();
   mesh_.vertices = columns_of<3>(vertices_);
   finish_texcoords();
-  return std::move(mesh_);
+  finish_look();
+  return ObjModel{std::move(mesh_), std::move(libraries_)};
 }
 
 Result<void> ObjParser::statement() {
   const std::string_view keyword = scanner_.field();
-  if (keyword == "v") return coordinates(vertices_, 3, 3);
+  if (keyword == "v") return vertex();
   if (keyword == "vt") return coordinates(texcoords_, 1, 2);
   if (keyword == "f") return face();
+  if (keyword == "usemtl") material_.set(joined_fields(scanner_));
+  if (keyword == "g") group_.set(joined_fields(scanner_));
+  if (keyword == "o") object_.set(joined_fields(scanner_));
+  if (keyword == "mtllib") libraries_.push_back(joined_fields(scanner_));
   return {};
 }
 
-/// Up to `kept` numbers; of these, those beyond `needed` may be missing and are 0. What follows (a
-/// weight, a colour) is skipped.
+/// Three coordinates, and three parts of a colour behind them where a program wrote those. Vertices
+/// without a colour are white, if others have one.
+Result<void> ObjParser::vertex() {
+  if (auto done = coordinates(vertices_, 3, 3); !done) return done;
+  Eigen::Vector4f colour = Eigen::Vector4f::Ones();
+  for (Eigen::Index channel = 0; channel < 3; ++channel) {
+    const auto number = to_finite_number(scanner_.field());
+    if (!number) return {};
+    colour[channel] = linear_of(static_cast<float>(std::clamp(*number, 0.0, 1.0)));
+  }
+  colours_.resize(4 * (vertices_.size() / 3 - 1), 1.0F);
+  colours_.insert(colours_.end(), colour.begin(), colour.end());
+  return {};
+}
+
+/// Up to `kept` numbers; of these, those beyond `needed` may be missing and are 0.
 Result<void> ObjParser::coordinates(std::vector<double>& list, int needed, int kept) {
   for (int i = 0; i < kept; ++i) {
     const std::string_view field = scanner_.field();
@@ -85,6 +148,8 @@ Result<void> ObjParser::face() {
   const std::size_t corners = mesh_.face_corners.size() - before;
   if (corners < 3) return bad("a face needs 3 corners, has " + std::to_string(corners));
   mesh_.face_starts.push_back(static_cast<std::uint32_t>(mesh_.face_corners.size()));
+  for (CurrentName* name : {&material_, &group_, &object_})
+    name->ends_face();
   return {};
 }
 
@@ -154,47 +219,24 @@ void ObjParser::finish_texcoords() {
   mesh_.texcoords = columns_of<2>(texcoords_);
 }
 
-template <class Number>
-void append(std::string& text, Number number) {
-  std::array<char, 32> digits{}; // the shortest form that reads back the same has at most 24
-  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), number);
-  text.append(digits.data(), result.ptr);
-}
-
-template <class Columns>
-void append_columns(std::string& text, const char* keyword, const Columns& columns) {
-  for (Eigen::Index column = 0; column < columns.cols(); ++column) {
-    text += keyword;
-    for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-      text += ' ';
-      append(text, columns(row, column));
-    }
-    text += '\n';
-  }
+void ObjParser::finish_look() {
+  Appearance& look = mesh_.look;
+  auto materials = std::move(material_).take();
+  look.face_materials = std::move(materials.of_face);
+  for (std::string& name : materials.names)
+    look.materials.push_back({std::move(name), std::nullopt, no_index, true});
+  look.groups = std::move(group_).take();
+  look.objects = std::move(object_).take();
+  if (colours_.empty()) return;
+  colours_.resize(4 * static_cast<std::size_t>(mesh_.vertices.cols()), 1.0F);
+  look.vertex_colours =
+      Eigen::Map<const Eigen::Matrix4Xf>(colours_.data(), 4, mesh_.vertices.cols());
 }
 
 } // namespace
 
-Result<Mesh> parse_obj(std::string_view text, std::string_view name) {
+Result<ObjModel> parse_obj(std::string_view text, std::string_view name) {
   return ObjParser(text, name).parse();
-}
-
-std::string obj_text(const Mesh& mesh) {
-  std::string text = "# nendo\n";
-  append_columns(text, "v", mesh.vertices);
-  append_columns(text, "vt", mesh.texcoords);
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    text += 'f';
-    for (std::size_t at = mesh.face_starts[face]; at < mesh.face_starts[face + 1]; ++at) {
-      text += ' ';
-      append(text, std::uint64_t{mesh.face_corners[at]} + 1);
-      if (mesh.corner_texcoords.empty()) continue;
-      text += '/';
-      append(text, std::uint64_t{mesh.corner_texcoords[at]} + 1);
-    }
-    text += '\n';
-  }
-  return text;
 }
 
 } // namespace nendo::deform

@@ -1,5 +1,7 @@
 // PLY: the body after the header, and the writer.
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -11,6 +13,7 @@
 
 #include "mesh_formats.hpp"
 #include "ply_header.hpp"
+#include "srgb.hpp"
 #include "text_scanner.hpp"
 #include "usable.hpp"
 
@@ -104,7 +107,7 @@ private:
 };
 
 /// What a value is used for.
-enum class Use { skip, x, y, z, corners };
+enum class Use { skip, x, y, z, corners, red, green, blue, alpha };
 
 class PlyParser {
 public:
@@ -119,12 +122,16 @@ private:
   Result<void> read_list(const PlyProperty& property, Use use);
   Result<void> read_corner(PlyType type);
   Result<void> read_value(const PlyProperty& property, Use use);
+  void keep_vertex();
 
   const PlyHeader& header_;
   std::string_view name_;
   PlyBody body_;
   std::vector<double> coordinates_;
   double vertex_[3] = {};
+  std::vector<float> colours_; ///< four numbers each
+  bool has_colours_ = false;
+  std::array<float, 4> colour_{};
   HighestIndex highest_;
   Mesh mesh_;
 };
@@ -137,7 +144,45 @@ Result<Mesh> PlyParser::parse() {
   if (highest_.is_beyond(vertices))
     return body_.error_at(highest_.place, "a face names vertex " + std::to_string(highest_.index) +
                                               ", counted from 0, of " + std::to_string(vertices));
+  mesh_.look.vertex_colours = Eigen::Map<const Eigen::Matrix4Xf>(
+      colours_.data(), 4, static_cast<Eigen::Index>(colours_.size() / 4));
   return std::move(mesh_);
+}
+
+/// What a property of a vertex is used for.
+Use use_in_vertex(std::string_view name) noexcept {
+  constexpr std::array<std::pair<std::string_view, Use>, 10> uses{{{"x", Use::x},
+                                                                   {"y", Use::y},
+                                                                   {"z", Use::z},
+                                                                   {"red", Use::red},
+                                                                   {"green", Use::green},
+                                                                   {"blue", Use::blue},
+                                                                   {"alpha", Use::alpha},
+                                                                   {"diffuse_red", Use::red},
+                                                                   {"diffuse_green", Use::green},
+                                                                   {"diffuse_blue", Use::blue}}};
+  for (const auto& [known, use] : uses)
+    if (known == name) return use;
+  return Use::skip;
+}
+
+/// Whether the colours are whole, and nothing is said twice.
+bool has_colours(const std::vector<Use>& uses) noexcept {
+  const auto count = [&](Use use) { return std::count(uses.begin(), uses.end(), use); };
+  return count(Use::red) == 1 && count(Use::green) == 1 && count(Use::blue) == 1 &&
+         count(Use::alpha) <= 1;
+}
+
+/// As a part of 1, linear. Colours are encoded as on screens, opacity is not.
+float part_of_colour(PlyType type, double value, bool is_alpha) noexcept {
+  double greatest = 1.0; // of floats
+  if (type == PlyType::uint8 || type == PlyType::int8) greatest = 255.0;
+  if (type == PlyType::uint16 || type == PlyType::int16) greatest = 65535.0;
+  if (type == PlyType::uint32 || type == PlyType::int32) greatest = 255.0; // in ASCII, an int
+  const double part = value / greatest;
+  if (!(part > 0.0)) return 0.0F; // NaN, too
+  const auto within = static_cast<float>(std::min(part, 1.0));
+  return is_alpha ? within : linear_of(within);
 }
 
 Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
@@ -146,13 +191,11 @@ Result<std::vector<Use>> PlyParser::uses_of(const PlyElement& element) const {
   for (const auto& property : element.properties) {
     Use use = Use::skip;
     if (element.name == "vertex" && !property.count_type) {
-      if (property.name == "x") use = Use::x;
-      if (property.name == "y") use = Use::y;
-      if (property.name == "z") use = Use::z;
+      use = use_in_vertex(property.name);
     } else if (element.name == "face" && property.count_type) {
       if (property.name == "vertex_indices" || property.name == "vertex_index") use = Use::corners;
     }
-    wanted += use == Use::skip ? 0 : 1;
+    wanted += use != Use::skip && use < Use::red ? 1 : 0;
     uses.push_back(use);
   }
   const std::string name(name_);
@@ -173,7 +216,11 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
   if (!body_.has_room_for(element.count, least_bytes))
     return body_.bad("the header promises " + std::to_string(element.count) + " of " +
                      in_quotes(element.name) + ", the file is too short for them");
-  if (element.name == "vertex") coordinates_.reserve(3 * element.count);
+  if (element.name == "vertex") {
+    coordinates_.reserve(3 * element.count);
+    has_colours_ = has_colours(*uses);
+    colour_ = {1.0F, 1.0F, 1.0F, 1.0F};
+  }
   for (std::uint64_t row = 0; row < element.count; ++row) {
     for (std::size_t i = 0; i < uses->size(); ++i) {
       const auto& property = element.properties[i];
@@ -181,9 +228,14 @@ Result<void> PlyParser::read_element(const PlyElement& element) {
           property.count_type ? read_list(property, (*uses)[i]) : read_value(property, (*uses)[i]);
       if (!done) return done;
     }
-    if (element.name == "vertex") coordinates_.insert(coordinates_.end(), vertex_, vertex_ + 3);
+    if (element.name == "vertex") keep_vertex();
   }
   return {};
+}
+
+void PlyParser::keep_vertex() {
+  coordinates_.insert(coordinates_.end(), vertex_, vertex_ + 3);
+  if (has_colours_) colours_.insert(colours_.end(), colour_.begin(), colour_.end());
 }
 
 Result<void> PlyParser::read_list(const PlyProperty& property, Use use) {
@@ -222,6 +274,11 @@ Result<void> PlyParser::read_value(const PlyProperty& property, Use use) {
   const auto value = body_.number(property.type);
   if (!value) return body_.no_number();
   if (use == Use::skip) return {};
+  if (use >= Use::red) {
+    colour_[static_cast<std::size_t>(use) - static_cast<std::size_t>(Use::red)] =
+        part_of_colour(property.type, *value, use == Use::alpha);
+    return {};
+  }
   if (!is_usable(*value)) return body_.bad("a coordinate is not finite or beyond 1e100");
   vertex_[static_cast<int>(use) - static_cast<int>(Use::x)] = *value;
   return {};
@@ -243,6 +300,14 @@ bool has_large_face(const Mesh& mesh) noexcept {
   return false;
 }
 
+void append_colour(std::string& text, const Eigen::Vector4f& colour) {
+  for (Eigen::Index channel = 0; channel < 4; ++channel) {
+    const float part = channel < 3 ? encoded_of(colour[channel]) : colour[channel];
+    append_little_endian(text,
+                         static_cast<std::uint8_t>(255.0F * std::clamp(part, 0.0F, 1.0F) + 0.5F));
+  }
+}
+
 } // namespace
 
 Result<Mesh> parse_ply(std::string_view text, std::string_view name) {
@@ -256,14 +321,21 @@ std::string ply_text(const Mesh& mesh) {
   // them.
   const bool large_face = has_large_face(mesh);
   const bool large_model = mesh.vertices.cols() > std::numeric_limits<std::int32_t>::max();
+  const bool coloured = mesh.look.vertex_colours.cols() == mesh.vertices.cols();
+  const std::string colour_properties = "property uchar red\nproperty uchar green\n"
+                                        "property uchar blue\nproperty uchar alpha\n";
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment nendo\nelement vertex " +
                      std::to_string(mesh.vertices.cols()) +
-                     "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                     "\nproperty double x\nproperty double y\nproperty double z\n" +
+                     (coloured ? colour_properties : "") + "element face " +
                      std::to_string(mesh.face_count()) + "\nproperty list " +
                      (large_face ? "uint" : "uchar") + (large_model ? " uint" : " int") +
                      " vertex_indices\nend_header\n";
-  for (const double coordinate : mesh.vertices.reshaped())
-    append_little_endian(text, coordinate);
+  for (Eigen::Index vertex = 0; vertex < mesh.vertices.cols(); ++vertex) {
+    for (const double coordinate : mesh.vertices.col(vertex))
+      append_little_endian(text, coordinate);
+    if (coloured) append_colour(text, mesh.look.vertex_colours.col(vertex));
+  }
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const std::uint32_t begin = mesh.face_starts[face];
     const std::uint32_t end = mesh.face_starts[face + 1];

@@ -80,6 +80,7 @@ struct Middles {
 /// Appends the means of parents to the columns of `points`.
 template <class Columns>
 void append_means(const Middles& middles, Columns& points) {
+  using Number = typename Columns::Scalar;
   const Eigen::Index before = points.cols();
   points.conservativeResize(Eigen::NoChange, before + middles.count());
   for (std::uint32_t at = 0; at < middles.count(); ++at) {
@@ -89,11 +90,11 @@ void append_means(const Middles& middles, Columns& points) {
     const auto parent = [&](std::uint32_t of) {
       return points.col(static_cast<Eigen::Index>(middles.parents[of]));
     };
-    mean = parent(begin) / (end - begin);
+    mean = parent(begin) / static_cast<Number>(end - begin);
     auto lowest = parent(begin).eval();
     auto highest = lowest;
     for (std::uint32_t of = begin + 1; of < end; ++of) {
-      mean += parent(of) / (end - begin);
+      mean += parent(of) / static_cast<Number>(end - begin);
       lowest = lowest.cwiseMin(parent(of)).eval();
       highest = highest.cwiseMax(parent(of)).eval();
     }
@@ -130,6 +131,37 @@ void append_faces(const Mesh& mesh, const std::vector<std::uint32_t>& corner_val
   }
 }
 
+/// Of each face that the faces become, the face that it was.
+std::vector<std::uint32_t> faces_before(const Mesh& mesh) {
+  std::vector<std::uint32_t> before;
+  before.reserve(mesh.face_corners.size());
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::size_t corners = corners_of(mesh, face).size();
+    const std::size_t pieces = corners < 3 ? 1 : corners == 3 ? 4 : corners;
+    before.insert(before.end(), pieces, static_cast<std::uint32_t>(face));
+  }
+  return before;
+}
+
+std::vector<std::uint32_t> inherited(const std::vector<std::uint32_t>& of_face,
+                                     const std::vector<std::uint32_t>& before) {
+  std::vector<std::uint32_t> values;
+  if (of_face.empty()) return values;
+  values.reserve(before.size());
+  for (const std::uint32_t face : before)
+    values.push_back(of_face[face]);
+  return values;
+}
+
+/// All but the colours of vertices. Faces look as those that they were part of.
+void inherit_look(const Mesh& mesh, Mesh& finer) {
+  finer.look = mesh.look;
+  const std::vector<std::uint32_t> before = faces_before(mesh);
+  finer.look.face_materials = inherited(mesh.look.face_materials, before);
+  finer.look.groups.of_face = inherited(mesh.look.groups.of_face, before);
+  finer.look.objects.of_face = inherited(mesh.look.objects.of_face, before);
+}
+
 } // namespace
 
 Subdivision subdivide(const Mesh& mesh) {
@@ -141,6 +173,8 @@ Subdivision subdivide(const Mesh& mesh) {
   append_faces(mesh, mesh.face_corners, middles, finer.face_corners, [&] {
     finer.face_starts.push_back(static_cast<std::uint32_t>(finer.face_corners.size()));
   });
+  inherit_look(mesh, finer);
+  if (finer.look.vertex_colours.cols() > 0) append_means(middles, finer.look.vertex_colours);
   result.parent_starts = std::move(middles.parent_starts);
   result.parents = std::move(middles.parents);
   if (mesh.corner_texcoords.empty()) return result;

@@ -45,8 +45,8 @@ Vector3d nearest_weights(const Vector3d& a, const Vector3d& b, const Vector3d& c
   return {va / sum, vb / sum, vc / sum};
 }
 
-/// An edge of a triangle, with the corner opposite to it.
-struct Edge {
+/// An edge of a triangle, about which the next one folds, with the corner opposite to it.
+struct Hinge {
   std::uint32_t low, high, opposite;
 };
 
@@ -104,19 +104,19 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
         const std::uint32_t a = mesh.face_corners[one], b = mesh.face_corners[other];
         add(a, b, straight(a, b));
       }
-  std::vector<Edge> edges;
+  std::vector<Hinge> edges;
   for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
       edges.push_back({std::min(from, to), std::max(from, to), corners[(k + 2) % 3]});
     }
   });
-  std::sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
+  std::sort(edges.begin(), edges.end(), [](const Hinge& one, const Hinge& other) {
     return std::tie(one.low, one.high, one.opposite) <
            std::tie(other.low, other.high, other.opposite);
   });
   for (std::size_t at = 0; at + 1 < edges.size(); ++at) {
-    const Edge &one = edges[at], &other = edges[at + 1];
+    const Hinge &one = edges[at], &other = edges[at + 1];
     if (one.low != other.low || one.high != other.high) continue;
     add(one.opposite, other.opposite,
         across(vertices_.col(one.low), vertices_.col(one.high), vertices_.col(one.opposite),

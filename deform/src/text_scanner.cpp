@@ -52,6 +52,15 @@ std::string_view TextScanner::field_on_any_line() noexcept {
   }
 }
 
+std::string joined_fields(TextScanner& scanner) {
+  std::string joined;
+  for (auto field = scanner.field(); !field.empty(); field = scanner.field()) {
+    if (!joined.empty()) joined += ' ';
+    joined += field;
+  }
+  return joined;
+}
+
 bool TextScanner::next_line() noexcept {
   // A continued line ends where its last part ends; a comment is never continued.
   bool comment = false;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace nendo::deform {
@@ -41,5 +42,8 @@ private:
   std::size_t at_ = 0;
   std::size_t line_ = 1;
 };
+
+/// Returns the other fields of this line, with one blank between two: a name that may have blanks.
+std::string joined_fields(TextScanner& scanner);
 
 } // namespace nendo::deform

@@ -183,6 +183,66 @@ TEST_SUITE("picture") {
     }
   }
 
+  /// A plate of four cells, seen from straight above.
+  static Image plate_from_above(deform::Mesh mesh) {
+    mesh.vertices.row(2) = -mesh.vertices.row(1); // flat on the ground, facing up
+    mesh.vertices.row(1).setZero();
+    const Scene scene = scene_of(mesh, moment_of(mesh));
+    Camera camera;
+    camera.target = {0.0, 0.0, 0.0};
+    camera.distance_m = 2.0;
+    camera.view = {0.0, 90.0};
+    return draw(Lighting(scene), camera, {120, 120});
+  }
+
+  TEST_CASE("faces have their materials' colours, and transparent ones are left out") {
+    deform::Mesh mesh = test::grid(2, 1.0); // cells: bottom left and right, top left and right
+    const auto colour = [](float r, float g, float b, float a) {
+      return Eigen::Vector4f(r, g, b, a);
+    };
+    mesh.look.materials = {{"red", colour(0.6F, 0.0F, 0.0F, 1.0F), deform::no_index, true},
+                           {"green", colour(0.0F, 0.6F, 0.0F, 1.0F), deform::no_index, true},
+                           {"shell", colour(1.0F, 1.0F, 1.0F, 0.0F), deform::no_index, false}};
+    mesh.look.face_materials = {1, 0, 2, deform::no_index};
+    const Image image = plate_from_above(mesh);
+    const Image plain = plate_from_above(test::grid(2, 1.0));
+    const Pixel& left = image.at(52, 68);
+    const Pixel& right = image.at(68, 68);
+    CHECK(left[1] > left[0] + 60);
+    CHECK(right[0] > right[1] + 60);
+    CHECK(image.at(68, 52) == plain.at(68, 52)); // clay, where a face has no material
+    const Pixel& through = image.at(52, 52);     // grey ground
+    CHECK(std::abs(through[0] - through[2]) < 12);
+    CHECK(plain.at(52, 52)[0] > plain.at(52, 52)[2] + 20);
+  }
+
+  TEST_CASE("colours of vertices are mixed over a face") {
+    deform::Mesh mesh = test::grid(2, 1.0);
+    mesh.look.vertex_colours = Eigen::Matrix4Xf::Zero(4, 9);
+    for (Eigen::Index vertex = 0; vertex < 9; ++vertex) { // from red on the left to blue
+      const float along = static_cast<float>(mesh.vertices(0, vertex));
+      mesh.look.vertex_colours.col(vertex) << 0.6F * (1.0F - along), 0.0F, 0.6F * along, 1.0F;
+    }
+    const Image image = plate_from_above(mesh);
+    double before = 1e9;
+    for (const int x : {45, 52, 60, 68, 75}) {
+      const Pixel& pixel = image.at(x, 60);
+      const double warmth = static_cast<double>(pixel[0]) - static_cast<double>(pixel[2]);
+      CHECK(warmth < before - 10.0);
+      before = warmth;
+    }
+    CHECK(std::abs(before) > 40.0);
+  }
+
+  TEST_CASE("a model of which all is transparent is drawn all the same") {
+    deform::Mesh mesh = test::grid(2, 1.0);
+    mesh.look.materials = {
+        {"ghost", Eigen::Vector4f(1.0F, 0.0F, 0.0F, 0.1F), deform::no_index, true}};
+    mesh.look.face_materials = {0, 0, 0, 0};
+    const Pixel pixel = plate_from_above(mesh).at(60, 60);
+    CHECK(pixel[0] > pixel[2] + 60);
+  }
+
   TEST_CASE("a sheet has every panel as it was, and its words under it") {
     std::vector<Panel> panels;
     for (std::uint8_t at = 0; at < 5; ++at)

@@ -8,6 +8,7 @@
 #include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
 
+#include "render/picture.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
 #include "support/test_meshes.hpp"
@@ -233,6 +234,47 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     REQUIRE(beside);
     CHECK(is_clay(image.at(static_cast<int>(shadow->x()), static_cast<int>(shadow->y()))));
     CHECK(brightness_about(image, *shadow) < 0.8 * brightness_about(image, *beside));
+  }
+
+  TEST_CASE("the window shows the colours that pictures show") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    deform::Mesh mesh = test::sphere(30, 60, 1.0);
+    mesh.look.materials = {
+        {"a", Eigen::Vector4f(0.5F, 0.1F, 0.1F, 1.0F), deform::no_index, true},
+        {"b", Eigen::Vector4f(0.1F, 0.1F, 0.6F, 1.0F), deform::no_index, true},
+        {"not drawn", Eigen::Vector4f(1.0F, 1.0F, 1.0F, 0.0F), deform::no_index, false}};
+    mesh.look.vertex_colours = Eigen::Matrix4Xf::Ones(4, mesh.vertices.cols());
+    for (Eigen::Index vertex = 0; vertex < mesh.vertices.cols(); ++vertex)
+      if (mesh.vertices(1, vertex) > 0.0) mesh.look.vertex_colours(1, vertex) = 0.2F;
+    for (std::uint32_t face = 0; face < mesh.face_count(); ++face)
+      mesh.look.face_materials.push_back(face % 7 == 0 ? 2 : face / 300 % 2);
+    Look look(mesh);
+    look.window->parts().ground = false;
+    const Image image = look.picture();
+    Scene scene;
+    SceneFrame moment;
+    moment.vertices = mesh.vertices;
+    SceneParts parts;
+    parts.ground = false;
+    look.builder.build(moment, parts, scene);
+    const Camera& camera = look.window->camera();
+    const Image drawn = draw(Lighting(scene, camera.view.azimuth_deg), camera, size);
+    // Lights differ a little: they have the sky's shadows in pictures. Hues do not.
+    int compared = 0;
+    int alike = 0;
+    for (int y = 0; y < size.height; y += 3)
+      for (int x = 0; x < size.width; x += 3) {
+        const auto hue = [](const Pixel& pixel) {
+          return static_cast<int>(pixel[0]) - static_cast<int>(pixel[2]);
+        };
+        const int expected = hue(drawn.at(x, y));
+        if (std::abs(expected) < 40) continue;
+        ++compared;
+        alike += hue(image.at(x, y)) * expected > 0 ? 1 : 0;
+      }
+    CHECK(compared > 500);
+    CHECK(alike > compared * 97 / 100);
   }
 }
 

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include <nendo/deform/material.hpp>
+
 namespace nendo::deform {
 
 /// Points as columns: 3 by #points, in model units. A model unit is the unit of the file.
@@ -23,6 +25,7 @@ struct Mesh {
   /// if there are none.
   Eigen::Matrix2Xd texcoords;
   std::vector<std::uint32_t> corner_texcoords;
+  Appearance look; ///< materials, colours and names
 
   std::size_t face_count() const noexcept { return face_starts.size() - 1; }
 };

@@ -20,7 +20,8 @@ struct Subdivision {
 
 /// Subdivides without smoothing, as Blender's Subdivide does: each edge gets a vertex in its
 /// middle, a triangle becomes four, and a face of n > 3 corners becomes n faces about its middle.
-/// Texture coordinates follow. Faces of fewer than three corners stay. Allocates.
+/// Texture coordinates and vertices' colours follow, and faces keep materials and names. Faces of
+/// fewer than three corners stay. Allocates.
 Subdivision subdivide(const Mesh& mesh);
 
 /// Returns the shape of the subdivided mesh that a shape of the mesh before means: old vertices

@@ -1,0 +1,44 @@
+#pragma once
+// The colours of a model's triangles: those of its materials and vertices. Without any, a model is
+// of clay.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::render {
+
+/// Triangles that follow each other and have one base colour.
+struct Coat {
+  std::size_t first = 0;                            ///< triangle
+  std::size_t count = 0;                            ///< of triangles
+  Eigen::Vector3f colour = Eigen::Vector3f::Ones(); ///< linear
+};
+
+/// Never changes once it is made, so threads may share it.
+class Paint {
+public:
+  /// Sets `corners` to the vertices of the triangles to be drawn, three for each, in the order of
+  /// the coats: those without a material first, then material by material. Triangles of a material
+  /// that is more than half transparent are left out, unless nothing would be left.
+  Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners);
+
+  const std::vector<Coat>& coats() const noexcept { return coats_; }
+  /// Returns one linear colour for each vertex, which multiplies the coat's; empty if all are
+  /// white.
+  const std::vector<Eigen::Vector3f>& vertex_colours() const noexcept { return vertex_colours_; }
+  /// Returns the linear colour of a place in a triangle. `vertices` are its corners, and `shares`
+  /// their shares, whose sum is 1.
+  Eigen::Vector3f colour_at(std::size_t triangle, const std::array<std::uint32_t, 3>& vertices,
+                            const std::array<float, 3>& shares) const noexcept;
+
+private:
+  std::vector<Coat> coats_;
+  std::vector<std::uint32_t> coat_of_; ///< of each triangle
+  std::vector<Eigen::Vector3f> vertex_colours_;
+};
+
+} // namespace nendo::render
