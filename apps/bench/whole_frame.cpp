@@ -40,8 +40,8 @@ struct WholeFrame::Parts {
     surface.material.colour = {0.50F, 0.30F, 0.20F};
   }
 
-  void show(const BlockLayout& layout, const BlockShape& shape) {
-    layout.unpack(shape, vertices);
+  void show(const BlockLayout& layout, const BlockShape& deformed) {
+    layout.unpack(deformed, vertices);
     for (std::size_t at = 0; at < surface.places.size(); ++at)
       surface.places[at] =
           metres_a_unit * vertices.col(static_cast<Eigen::Index>(at)).cast<float>();

@@ -22,8 +22,8 @@ namespace vtk_hands {
 using namespace nendo;
 
 namespace {
-
 constexpr double bone_radius_m = 0.006;
+} // namespace
 
 // The model as VTK has it, on the stage: metres.
 class ModelActor {
@@ -110,8 +110,6 @@ private:
   vtkNew<vtkSphereSource> ball_;
   vtkNew<vtkGlyph3DMapper> joint_mapper_;
 };
-
-} // namespace
 
 struct Stage::Parts {
   Parts(flow::DeformLoop& shaping, const deform::Mesh& mesh) : loop(shaping), model(mesh) {}
