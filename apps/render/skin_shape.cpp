@@ -49,6 +49,11 @@ Vector3f between(const Vector3f& a, const Vector3f& b, float share) {
   return a + share * (b - a);
 }
 
+FleshPart round_part(const Vector3f& from, const Vector3f& to, float radius_m, float end_radius_m,
+                     float soft_m, std::array<Joint, 2> carriers) {
+  return {from, to, radius_m, end_radius_m, soft_m, Vector3f::Zero(), 1.0F, carriers};
+}
+
 // The lesser of two distances, rounded where they are within `soft` of each other.
 float soft_min(float a, float b, float soft) noexcept {
   const float h = std::max(0.0F, soft - std::abs(a - b)) / soft;
@@ -128,36 +133,21 @@ void HandFlesh::add_metacarpals(const HandPose& pose) {
     const float head = radii_mm[finger].knuckle * mm;
     // Those of index and middle finger are fixed to the wrist.
     const Joint carrier = finger < 3 ? Joint::wrist : root;
-    palm_.push_back({place_of(pose, root) - 4.5F * mm * up,
-                     place_of(pose, after(root, 1)) - 2 * mm * up,
-                     10 * mm,
-                     head,
-                     in_palm_m,
-                     Vector3f::Zero(),
-                     1.0F,
-                     {Joint::wrist, carrier}});
+    palm_.push_back(round_part(place_of(pose, root) - 4.5F * mm * up,
+                               place_of(pose, after(root, 1)) - 2 * mm * up, 10 * mm, head,
+                               in_palm_m, {Joint::wrist, carrier}));
   }
   // The pads below the knuckles.
   const Vector3f first = place_of(pose, Joint::index_proximal);
   const Vector3f last = place_of(pose, Joint::little_proximal);
-  palm_.push_back({first - 9 * mm * up - 1 * mm * back + 1 * mm * right,
-                   last - 8 * mm * up - 1 * mm * back - 1 * mm * right,
-                   8.5F * mm,
-                   8 * mm,
-                   12 * mm,
-                   Vector3f::Zero(),
-                   1.0F,
-                   {Joint::wrist, Joint::little_metacarpal}});
+  palm_.push_back(round_part(first - 9 * mm * up - 1 * mm * back + 1 * mm * right,
+                             last - 8 * mm * up - 1 * mm * back - 1 * mm * right, 8.5F * mm, 8 * mm,
+                             12 * mm, {Joint::wrist, Joint::little_metacarpal}));
   // The heel of the hand, on the little finger's side.
-  palm_.push_back(
-      {place_of(pose, Joint::little_metacarpal) - 6 * mm * up + 2 * mm * right - 4 * mm * back,
-       between(place_of(pose, Joint::little_metacarpal), last, 0.7F) - 5 * mm * up + 1 * mm * right,
-       13 * mm,
-       10.5F * mm,
-       in_palm_m,
-       Vector3f::Zero(),
-       1.0F,
-       {Joint::wrist, Joint::little_metacarpal}});
+  palm_.push_back(round_part(
+      place_of(pose, Joint::little_metacarpal) - 6 * mm * up + 2 * mm * right - 4 * mm * back,
+      between(place_of(pose, Joint::little_metacarpal), last, 0.7F) - 5 * mm * up + 1 * mm * right,
+      13 * mm, 10.5F * mm, in_palm_m, {Joint::wrist, Joint::little_metacarpal}));
 }
 
 // The ball of the thumb, and the web between thumb and index finger.
@@ -166,24 +156,13 @@ void HandFlesh::add_thumb_side(const HandPose& pose) {
   const Vector3f wrist = place_of(pose, Joint::wrist);
   const Vector3f base = place_of(pose, Joint::thumb_metacarpal);
   const Vector3f head = place_of(pose, Joint::thumb_proximal);
-  palm_.push_back({between(wrist, base, 0.65F) - 3 * mm * up,
-                   between(base, head, 0.7F) - 1 * mm * up,
-                   13 * mm,
-                   13 * mm,
-                   in_palm_m,
-                   Vector3f::Zero(),
-                   1.0F,
-                   {Joint::wrist, Joint::thumb_metacarpal}});
+  palm_.push_back(round_part(between(wrist, base, 0.65F) - 3 * mm * up,
+                             between(base, head, 0.7F) - 1 * mm * up, 13 * mm, 13 * mm, in_palm_m,
+                             {Joint::wrist, Joint::thumb_metacarpal}));
   const Vector3f index =
       between(place_of(pose, Joint::index_metacarpal), place_of(pose, Joint::index_proximal), 0.6F);
-  palm_.push_back({index - 3 * mm * up,
-                   between(base, head, 0.66F),
-                   9 * mm,
-                   9.5F * mm,
-                   16 * mm,
-                   Vector3f::Zero(),
-                   1.0F,
-                   {Joint::wrist, Joint::thumb_metacarpal}});
+  palm_.push_back(round_part(index - 3 * mm * up, between(base, head, 0.66F), 9 * mm, 9.5F * mm,
+                             16 * mm, {Joint::wrist, Joint::thumb_metacarpal}));
 }
 
 // Fingers part from one another well after their knuckles.
@@ -194,14 +173,8 @@ void HandFlesh::add_webs(const HandPose& pose) {
       return between(place_of(pose, proximal), place_of(pose, after(proximal, 1)), 0.34F) -
              2.5F * mm * axis_of(pose, proximal, 1);
     };
-    palm_.push_back({beside(finger),
-                     beside(finger + 1),
-                     5 * mm,
-                     5 * mm,
-                     10 * mm,
-                     Vector3f::Zero(),
-                     1.0F,
-                     {after(roots[finger], 1), after(roots[finger + 1], 1)}});
+    palm_.push_back(round_part(beside(finger), beside(finger + 1), 5 * mm, 5 * mm, 10 * mm,
+                               {after(roots[finger], 1), after(roots[finger + 1], 1)}));
   }
 }
 
@@ -231,16 +204,15 @@ void HandFlesh::add_thumb(const HandPose& pose) {
   const Vector3f up = axis_of(pose, Joint::thumb_distal, 1);
   const Vector3f along = (at(3) - at(2)).normalized();
   std::vector<FleshPart>& parts = fingers_[0];
+  parts.push_back(round_part(at(0), at(1), 14 * mm, radii.knuckle * mm, 0.0F, carried(0)));
   parts.push_back(
-      {at(0), at(1), 14 * mm, radii.knuckle * mm, 0.0F, Vector3f::Zero(), 1.0F, carried(0)});
-  parts.push_back({at(1), at(2), radii.knuckle * mm, radii.end * mm, along_finger_m,
-                   Vector3f::Zero(), 1.0F, carried(1)});
+      round_part(at(1), at(2), radii.knuckle * mm, radii.end * mm, along_finger_m, carried(1)));
   parts.push_back({at(2), at(3) - radii.tip * mm * along, radii.end * mm, radii.tip * mm,
                    along_finger_m, up, 0.85F, carried(2)});
   // The pad of its end.
-  parts.push_back({between(at(2), at(3), 0.4F) - 2.5F * mm * up,
-                   between(at(2), at(3), 0.62F) - 2 * mm * up, 7.6F * mm, 7 * mm, along_finger_m,
-                   Vector3f::Zero(), 1.0F, carried(2)});
+  parts.push_back(round_part(between(at(2), at(3), 0.4F) - 2.5F * mm * up,
+                             between(at(2), at(3), 0.62F) - 2 * mm * up, 7.6F * mm, 7 * mm,
+                             along_finger_m, carried(2)));
 }
 
 void HandFlesh::add_finger(const HandPose& pose, std::size_t finger) {
@@ -265,14 +237,10 @@ void HandFlesh::add_finger(const HandPose& pose, std::size_t finger) {
                      {joint, joint}});
     // Its pad: the flesh between two creases.
     const float pad = 0.87F * radius_m[bone + 1];
-    parts.push_back({between(from, to, 0.35F) - 0.30F * radius_m[bone + 1] * up,
-                     between(from, to, is_last ? 0.62F : 0.70F) - 0.26F * radius_m[bone + 1] * up,
-                     pad,
-                     pad,
-                     along_finger_m,
-                     Vector3f::Zero(),
-                     1.0F,
-                     {joint, joint}});
+    parts.push_back(
+        round_part(between(from, to, 0.35F) - 0.30F * radius_m[bone + 1] * up,
+                   between(from, to, is_last ? 0.62F : 0.70F) - 0.26F * radius_m[bone + 1] * up,
+                   pad, pad, along_finger_m, {joint, joint}));
   }
 }
 

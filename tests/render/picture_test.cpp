@@ -136,6 +136,13 @@ TEST_SUITE("picture") {
     const int through = blueness();
     CHECK(through > without + 10);
     CHECK(through < before - 10);
+    // Before the model a hand's skin is like any veil. Before the ground it is like a solid.
+    scene.veils.back().material.opaque_before_ground = true;
+    CHECK(blueness() == through);
+    scene.model.corners.clear();
+    const int before_nothing = blueness();
+    scene.veils.back().material.opacity = scene.veils.back().material.rim_opacity = 1.0F;
+    CHECK(blueness() == before_nothing);
   }
 
   TEST_CASE("hostile shapes are drawn as far as they can be, and nothing crashes") {
