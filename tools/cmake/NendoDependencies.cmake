@@ -9,9 +9,9 @@ pkg_check_modules(libserialport REQUIRED IMPORTED_TARGET libserialport)
 pkg_check_modules(libudev REQUIRED IMPORTED_TARGET libudev)
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+find_package(nlohmann_json 3.11 REQUIRED) # headers alone: programs that use the libraries do without
 if(NENDO_APPS)
   find_package(CLI11 REQUIRED)
-  find_package(nlohmann_json 3.11 REQUIRED)
   find_package(PNG REQUIRED)
   find_package(glfw3 3.3 QUIET)
   find_package(OpenGL QUIET COMPONENTS OpenGL OPTIONAL_COMPONENTS GLX)
@@ -24,7 +24,6 @@ if(NENDO_APPS)
 endif()
 if(NENDO_TESTS)
   find_package(doctest REQUIRED)
-  find_package(nlohmann_json 3.11 REQUIRED)
   find_path(NENDO_OPENXR_INCLUDE openxr/openxr.h REQUIRED) # the header alone: nothing is linked, nothing runs
   if(NOT CMAKE_CROSSCOMPILING) # it is loaded before a program's own libraries, also in the emulator that would run it
     pkg_check_modules(umockdev REQUIRED IMPORTED_TARGET umockdev-1.0)
