@@ -13,6 +13,7 @@ find_package(nlohmann_json 3.11 REQUIRED) # headers alone: programs that use the
 if(NENDO_APPS)
   find_package(CLI11 REQUIRED)
   find_package(PNG REQUIRED)
+  pkg_check_modules(libturbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
   find_package(glfw3 3.3 QUIET)
   find_package(OpenGL QUIET COMPONENTS OpenGL OPTIONAL_COMPONENTS GLX)
   pkg_check_modules(imgui IMPORTED_TARGET QUIET imgui)
