@@ -3,8 +3,10 @@
 // targets, and the hands as skinned skeletons. Units are metres and y points up, as on the stage. A
 // node scales the model to the stage.
 //
-// - Vertices are those of the mesh, in its order. Faces with more than three corners become fans of
-//   triangles.
+// - Vertices are those of the mesh, in its order; behind them stand copies of those that have
+//   several texture coordinates. Faces with more than three corners become fans of triangles.
+// - Each material has a primitive, with its base colour and its texture. Colours of vertices
+// follow.
 // - A take of Type-1 is exact. For each control vector it has targets along each axis and against
 //   it (control_morphs.hpp).
 // - Any other take (with commits, motion in several links, or Type-2) has key shapes
