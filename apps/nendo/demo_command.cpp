@@ -1,5 +1,5 @@
-// nendo demo: two emulated CyberGloves, the real serial driver, and a picture of what both hands
-// shaped.
+// nendo demo: two emulated CyberGloves and the real serial driver. They play a face, or shape a
+// Moai.
 
 #include <cmath>
 #include <iostream>
@@ -23,10 +23,14 @@ constexpr double rate_hz = 90.0;
 constexpr double longest_s = 3600.0;
 
 struct Options {
+  std::string what = "face";
   std::string mode = "type1";
   double duration_s = 10.0;
   std::string out = "nendo-demo.obj";
   std::string picture = "nendo-demo.png";
+  std::string record; ///< empty: not
+
+  bool is_face() const noexcept { return what == "face"; }
 };
 
 /// A glove on a pseudo-terminal, which answers the driver as the real one's electronics would.
@@ -35,12 +39,13 @@ struct DemoGlove {
   std::unique_ptr<emulator::ServedEmulator> server;
 };
 
-Result<DemoGlove> emulate(Side side) {
+Result<DemoGlove> emulate(Side side, const Options& demo) {
   emulator::EmulatorOptions options;
   options.side = side;
   options.sensors = 22;
   options.rate_hz = rate_hz;
   options.seed = 7;
+  if (demo.is_face()) options.motion = "faces";
   auto unit = emulator::GloveEmulator::open(options);
   if (!unit) return unit.error();
   DemoGlove glove{*std::move(unit), nullptr};
@@ -54,19 +59,31 @@ Result<session::RunOptions> run_options(const Options& options) {
   if (!std::isfinite(options.duration_s) || options.duration_s <= 0.0 ||
       options.duration_s > longest_s)
     return Error{Errc::usage, "--duration: use a number of seconds above 0, up to 3600"};
+  if (options.what != "face" && options.what != "moai")
+    return Error{Errc::usage, options.what + ": there is no such demo; use face or moai"};
+  if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
   if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine)
     return fine.error();
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine)
     return fine.error();
   session::RunOptions run;
-  run.mesh = cli::shipped_model("moai.obj").string();
+  run.mesh = cli::shipped_model(options.what + ".obj").string();
   run.out = options.out;
   run.picture = options.picture;
   run.duration_s = options.duration_s;
   run.calibration.calibration = "none"; // what is stored is a real hand's
   run.loop.rate_hz = rate_hz;
   run.loop.sculptor.mode = *mode;
-  run.loop.sculptor.deformer.injective.emplace();
+  run.recording.file = options.record;
+  if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine.error();
+  if (!options.is_face()) {
+    run.loop.sculptor.deformer.injective.emplace();
+    return run;
+  }
+  run.puppet_file = cli::shipped_model("face.puppet.toml").string();
+  auto puppet = puppet::read_puppet(run.puppet_file);
+  if (!puppet) return puppet.error();
+  run.puppet = *std::move(puppet);
   return run;
 }
 
@@ -76,15 +93,17 @@ int demonstrate(const Options& options) {
   auto model = deform::read_mesh(run->mesh);
   if (!model) return cli::report(model.error());
   cli::install_stop_signals();
-  const auto left = emulate(Side::left);
+  const auto left = emulate(Side::left, options);
   if (!left) return cli::report(left.error());
-  const auto right = emulate(Side::right);
+  const auto right = emulate(Side::right, options);
   if (!right) return cli::report(right.error());
   run->left = "serial:" + left->unit->tty_path();
   run->right = "serial:" + right->unit->tty_path();
   std::cout << "Two emulated CyberGloves stream at " << left->unit->tty_path() << " and "
-            << right->unit->tty_path() << ". Both hands shape the Moai for " << run->duration_s
-            << " s.\n"
+            << right->unit->tty_path() << ". "
+            << (options.is_face() ? "Ten fingers play a face for "
+                                  : "Both hands shape the Moai for ")
+            << run->duration_s << " s.\n"
             << std::flush;
   EventCount event_count;
   auto opened = session::open_hands(*run, *model, event_count);
@@ -108,12 +127,15 @@ int demonstrate(const Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
-      "demo", "Two emulated CyberGloves shape a model through the real driver; leaves a picture");
+      "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver; "
+              "leaves a picture");
+  command.add_option("DEMO", options->what, "face: ten fingers make it live; moai: hands shape it");
   command.add_option("--mode", options->mode,
                      "type1: the rest shape follows the fingertips; type2: strokes");
   command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
   command.add_option("--out", options->out, "Where the shape goes, .obj or .ply");
   command.add_option("--picture", options->picture, "Where the picture goes, .png");
+  command.add_option("--record", options->record, "Where a recording goes; without it, none");
   command.on_chosen([options] { return demonstrate(*options); });
 }
 

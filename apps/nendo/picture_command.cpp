@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <nendo/base/text.hpp>
+
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
@@ -28,6 +30,8 @@ struct Options {
   std::uint32_t turntable = 0;
   std::uint32_t strip = 0;
   std::optional<double> time_s;
+  std::string times;    ///< in seconds, with commas; empty: not asked for
+  std::string captions; ///< with commas; empty: none
   bool numbered = false;
 };
 
@@ -42,6 +46,14 @@ Error bad(const std::string& option, const std::string& what) {
   return {Errc::usage, option + ": " + what};
 }
 
+/// The parts between commas; none, if the text is empty.
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::string_view rest = text; !rest.empty();)
+    parts.emplace_back(cut(rest, ','));
+  return parts;
+}
+
 Result<Wanted> check(const Options& options) {
   const auto view = view_named(options.view);
   if (!view)
@@ -49,7 +61,13 @@ Result<Wanted> check(const Options& options) {
                "use front, back, left, right, side, top or AZIMUTH,ELEVATION in degrees");
   const auto size = size_named(options.size);
   if (!size) return bad("--size " + options.size, "use WIDTHxHEIGHT in pixels, 16 to 8192 each");
-  const std::uint32_t panels = std::max({1U, options.turntable, options.strip});
+  const auto moments = static_cast<std::uint32_t>(parts_of(options.times).size());
+  const std::uint32_t panels = std::max({1U, options.turntable, options.strip, moments});
+  if (moments > most_panels || (moments > 0 && (options.strip > 0 || options.turntable > 0)))
+    return bad("--times", "use up to " + std::to_string(most_panels) +
+                              " moments, and neither --strip nor --turntable");
+  if (!options.captions.empty() && parts_of(options.captions).size() != panels)
+    return bad("--captions", "use as many texts as there are pictures, with commas between them");
   for (const auto& [name, count] :
        {std::pair{"--turntable", options.turntable}, {"--strip", options.strip}})
     if (count != 0 && (count < 2 || count > most_panels))
@@ -57,7 +75,7 @@ Result<Wanted> check(const Options& options) {
   if (options.turntable > 0 && options.strip > 0)
     return bad("--turntable and --strip", "give one of them");
   if (options.numbered && panels == 1)
-    return bad("--numbered", "is for --turntable and --strip; leave it out");
+    return bad("--numbered", "is for --turntable, --strip and --times; leave it out");
   const double pixels = 1.0 * size->width * size->height * panels;
   if (!options.numbered && pixels > 6e7)
     return bad("--size " + options.size, "too large for " + std::to_string(panels) +
@@ -69,20 +87,27 @@ Result<Wanted> check(const Options& options) {
 
 // Returns the times of the take that are asked for.
 Result<std::vector<double>> times_of(const Options& options, const takes::Take& take) {
-  if ((options.time_s || options.strip > 0) && !(take.duration_s > 0.0))
-    return bad(options.file, "a mesh has no times; leave --time and --strip out");
+  if ((options.time_s || options.strip > 0 || !options.times.empty()) && !(take.duration_s > 0.0))
+    return bad(options.file, "a mesh has no times; leave --time, --times and --strip out");
   if (options.strip > 0) {
     std::vector<double> times;
     for (std::uint32_t at = 0; at < options.strip; ++at)
       times.push_back(take.duration_s * at / (options.strip - 1));
     return times;
   }
-  const double time = options.time_s.value_or(0.0);
-  if (!(time >= 0.0 && time <= take.duration_s)) {
-    return bad("--time", "use 0 to " + std::to_string(take.duration_s) + " s, which is how long " +
-                             options.file + " lasts");
+  std::vector<double> times;
+  for (const auto& part : parts_of(options.times)) {
+    const auto time = to_finite_number(part);
+    if (!time) return bad("--times " + options.times, "use seconds with commas between them");
+    times.push_back(*time);
   }
-  return std::vector<double>{time};
+  if (times.empty()) times.push_back(options.time_s.value_or(0.0));
+  for (const double time : times)
+    if (!(time >= 0.0 && time <= take.duration_s))
+      return bad(options.times.empty() ? "--time" : "--times",
+                 "use 0 to " + std::to_string(take.duration_s) + " s, which is how long " +
+                     options.file + " lasts");
+  return times;
 }
 
 std::string seconds_text(double time_s) {
@@ -102,13 +127,13 @@ Camera camera_for(const std::vector<Scene>& scenes, View view, Size size) {
 }
 
 std::vector<Panel> draw_strip(const std::vector<Scene>& scenes, const std::vector<double>& times,
-                              const Wanted& wanted) {
+                              const std::vector<std::string>& captions, const Wanted& wanted) {
   const Camera camera = camera_for(scenes, wanted.view, wanted.size);
   std::vector<Panel> panels;
   for (std::size_t at = 0; at < scenes.size(); ++at) {
     const Lighting lighting(scenes[at], wanted.view.azimuth_deg);
-    panels.push_back({draw(lighting, camera, wanted.size),
-                      times.size() > 1 ? seconds_text(times[at]) : std::string()});
+    const std::string time = times.size() > 1 ? seconds_text(times[at]) : std::string();
+    panels.push_back({draw(lighting, camera, wanted.size), captions.empty() ? time : captions[at]});
   }
   return panels;
 }
@@ -170,9 +195,10 @@ Result<void> make_picture(const Options& options) {
       SceneBuilder(*scene_frame->mesh, builder.units_per_metre())
           .build(*scene_frame, {}, scenes.emplace_back());
   }
-  return write_panels(options, options.turntable > 0
-                                   ? draw_turntable(scenes, options.turntable, *wanted)
-                                   : draw_strip(scenes, *times, *wanted));
+  return write_panels(options,
+                      options.turntable > 0
+                          ? draw_turntable(scenes, options.turntable, *wanted)
+                          : draw_strip(scenes, *times, parts_of(options.captions), *wanted));
 }
 
 } // namespace
@@ -191,6 +217,10 @@ void add(cli::Command& program) {
   command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
   command.add_option("--turntable", options->turntable, "So many pictures all round, on one sheet");
   command.add_duration("--time", options->time_s, "Of a recording: the moment, in seconds");
+  command.add_option("--times", options->times,
+                     "Of a recording: moments in seconds, with commas between them, on one sheet");
+  command.add_option("--captions", options->captions,
+                     "Texts below the pictures, with commas between them");
   command.add_option("--strip", options->strip,
                      "Of a recording: so many moments from its begin to its end, on one sheet");
   command.add_flag("--numbered", options->numbered,
