@@ -90,7 +90,7 @@ deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
   setup.kernel = kernel;
   const auto places = places_on(puppet, model);
   for (std::size_t at = 0; at < places.size(); ++at)
-    setup.points.push_back({places[at], puppet.points[at].radius});
+    setup.points.push_back({places[at], puppet.points[at].radius, puppet.points[at].name});
   setup.parts = following_parts(puppet, model, places);
   if (puppet.masks.empty()) return setup;
   setup.mask = Eigen::VectorXd::Ones(model.vertices.cols());
