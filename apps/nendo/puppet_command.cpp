@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -10,9 +11,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/puppet/make_puppet.hpp>
 #include <nendo/puppet/rig_check.hpp>
 
 #include "cli/cli.hpp"
@@ -30,6 +33,8 @@ using puppet::Function;
 struct Options {
   std::string file;
   std::string picture;
+  std::string out;
+  bool force = false;
   std::string view = "15,5";
   std::string size = "360x420";
 };
@@ -229,6 +234,7 @@ void print_twins(const OpenRig& open, const puppet::RigCheck& check) {
   if (check.lone_vertices > 0)
     fmt::print("the model itself is not symmetric: {} of its vertices have no mirror image\n",
                check.lone_vertices);
+  if (check.lone_vertices == static_cast<std::size_t>(open.model.vertices.cols())) return;
   double apart = 0.0;
   for (const puppet::TwinCheck& twins : check.twins) {
     apart = std::max(apart, twins.apart);
@@ -260,6 +266,35 @@ Result<void> check(const Options& options) {
   return {};
 }
 
+/// The file stands beside its model, or names the way to it from there.
+Result<std::string> model_name(const Options& options) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path folder = fs::absolute(options.out, failed).parent_path();
+  const std::string name = fs::proximate(options.file, folder, failed).string();
+  if (failed || printable(name) != name || name.find_first_of("\"\\") != std::string::npos)
+    return Error{Errc::usage, "--out " + options.out +
+                                  ": a puppet cannot name its model from there; put it beside " +
+                                  options.file};
+  return name;
+}
+
+Result<void> make(const Options& options) {
+  if (auto fine = cli::check_place("--out", options.out, {".toml"}); !fine) return fine;
+  std::error_code ignored;
+  if (!options.force && std::filesystem::exists(options.out, ignored))
+    return Error{Errc::usage, "--out " + options.out + ": exists; --force replaces it"};
+  const auto name = model_name(options);
+  if (!name) return name.error();
+  const auto model = deform::read_mesh(options.file);
+  if (!model) return model.error();
+  const auto made = puppet::make_face_puppet(*model, *name);
+  if (!made) return Error{made.error().code, options.file + ": " + made.error().message};
+  for (const std::string& line : made->found)
+    fmt::print("{}\n", line);
+  return replace_file(options.out, made->text);
+}
+
 int done(const Result<void>& result) {
   std::cout.flush();
   return result ? 0 : cli::report(result.error());
@@ -269,8 +304,8 @@ int done(const Result<void>& result) {
 
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
-  cli::Command command =
-      program.add_command("puppet", "Shows and checks puppets: what each finger does to a model");
+  cli::Command command = program.add_command(
+      "puppet", "Shows, checks and makes puppets: what each finger does to a model");
   command.set_footer("A FILE is a path, or the name of a shipped puppet, such as face.");
   command.require_command();
 
@@ -288,6 +323,15 @@ void add(cli::Command& program) {
   checking.add_option("FILE", options->file, "Puppet file, or the name of a shipped one")
       .required();
   checking.on_chosen([options] { return done(check(*options)); });
+
+  cli::Command making =
+      command.add_command("make", "Writes a puppet for a face, by the shape of the model alone");
+  making.set_footer("The face must look along +z, with y up, and be symmetric about x = 0.");
+  making.add_option("MODEL", options->file, "OBJ or PLY file").required();
+  making.add_option("--out", options->out, "Where to write the puppet, .toml, beside the model")
+      .required();
+  making.add_flag("--force", options->force, "Replace a file that is there");
+  making.on_chosen([options] { return done(make(*options)); });
 }
 
 } // namespace nendo::app::puppet_command
