@@ -59,6 +59,9 @@ void add(cli::Command& program);
 namespace poses_command {
 void add(cli::Command& program);
 }
+namespace puppet_command {
+void add(cli::Command& program);
+}
 namespace record_command {
 void add(cli::Command& program);
 }

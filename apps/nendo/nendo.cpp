@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
         udev_command::add(program);
         info_command::add(program);
         calibration_command::add(program);
+        puppet_command::add(program);
         deform_command::add(program);
         picture_command::add(program);
         emulate_command::add(program);

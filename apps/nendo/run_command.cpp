@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -15,6 +15,7 @@
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/puppet_file.hpp"
 #include "service/service_notice.hpp"
 #include "session/browser_view.hpp"
 #include "session/live_view.hpp"
@@ -73,16 +74,11 @@ Result<void> check_outputs(const CommandOptions& options) {
 /// A file, or the name of a shipped puppet. Its model stands beside it.
 Result<void> read_puppet(session::RunOptions& run) {
   if (run.puppet_file.empty()) return {};
-  std::error_code ignored;
-  if (!std::filesystem::exists(run.puppet_file, ignored)) {
-    const auto shipped = cli::shipped_model(run.puppet_file + ".puppet.toml");
-    if (std::filesystem::exists(shipped, ignored)) run.puppet_file = shipped.string();
-  }
-  auto puppet = puppet::read_puppet(run.puppet_file);
-  if (!puppet) return puppet.error();
-  run.puppet = *std::move(puppet);
-  if (run.mesh.empty())
-    run.mesh = (std::filesystem::path(run.puppet_file).parent_path() / run.puppet->model).string();
+  auto file = open_puppet(run.puppet_file);
+  if (!file) return file.error();
+  run.puppet_file = file->path;
+  run.puppet = std::move(file->puppet);
+  if (run.mesh.empty()) run.mesh = file->model;
   return {};
 }
 
@@ -240,9 +236,10 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", run_options.mesh,
                      "OBJ, PLY or glTF file to shape; without it, the shipped Moai");
-  command.add_option("--puppet", run_options.puppet_file,
-                     "A puppet file, or face: what each finger does to the model, in place of "
-                     "hands that touch it");
+  command.add_option(
+      "--puppet", run_options.puppet_file,
+      "A puppet file, or face, moai or spot: what each finger does to the model, in place of "
+      "hands that touch it");
   command.add_option(
       "--mode", options.mode,
       "type1: the rest shape follows the fingertips; type2: strokes along their paths");

@@ -55,6 +55,11 @@ std::pair<Index, Index> nearest_pair(const MatrixXd& functions) {
   return pair;
 }
 
+std::string name_of(const SurfaceSetup& setup, Index point) {
+  const std::string& name = setup.points[static_cast<std::size_t>(point)].name;
+  return name.empty() ? std::to_string(point) : name;
+}
+
 /// Where each vertex gets what it gets of the points: the nearest vertex that a function reaches.
 std::uint32_t nearest_reached(const Mesh& mesh, const std::vector<std::uint32_t>& reached,
                               std::uint32_t vertex) {
@@ -190,7 +195,7 @@ SurfaceField::make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSet
   if (!(field->condition_ <= most_condition)) { // also where it is not a number
     const auto [one, other] = nearest_pair(functions);
     return Error{Errc::bad_input,
-                 "points " + std::to_string(one) + " and " + std::to_string(other) +
+                 "points " + name_of(setup, one) + " and " + name_of(setup, other) +
                      " are too near to each other for their radii; move one away or make both "
                      "radii smaller"};
   }

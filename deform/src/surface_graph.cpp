@@ -45,6 +45,20 @@ Vector3d nearest_weights(const Vector3d& a, const Vector3d& b, const Vector3d& c
   return {va / sum, vb / sum, vc / sum};
 }
 
+/// Calls visit() with the triangles of every face, and with those of both ways to cut a quad: a
+/// mirrored quad's first corner may be another one, and the sides of a model are to be alike.
+template <class Visit>
+void for_each_cut(const Mesh& mesh, Visit visit) {
+  for_each_triangle(mesh, visit);
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face];
+    if (mesh.face_starts[face + 1] - begin != 4) continue;
+    const std::uint32_t* const at = &mesh.face_corners[begin];
+    visit(std::array{at[1], at[2], at[3]});
+    visit(std::array{at[1], at[3], at[0]});
+  }
+}
+
 /// An edge of a triangle, about which the next one folds, with the corner opposite to it.
 struct Hinge {
   std::uint32_t low, high, opposite;
@@ -75,7 +89,7 @@ Vector3d SurfacePlace::in(const Points& vertices) const {
 
 SurfacePlace nearest_place(const Mesh& mesh, const Vector3d& to) {
   NearPlace best;
-  for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+  for_each_cut(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
     const Points& at = mesh.vertices;
     const Vector3d weights =
         nearest_weights(at.col(corners[0]), at.col(corners[1]), at.col(corners[2]), to);
@@ -105,7 +119,7 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
         add(a, b, straight(a, b));
       }
   std::vector<Hinge> edges;
-  for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+  for_each_cut(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
       edges.push_back({std::min(from, to), std::max(from, to), corners[(k + 2) % 3]});
@@ -115,13 +129,16 @@ SurfaceGraph::SurfaceGraph(const Mesh& mesh) : vertices_(mesh.vertices) {
     return std::tie(one.low, one.high, one.opposite) <
            std::tie(other.low, other.high, other.opposite);
   });
-  for (std::size_t at = 0; at + 1 < edges.size(); ++at) {
-    const Hinge &one = edges[at], &other = edges[at + 1];
-    if (one.low != other.low || one.high != other.high) continue;
-    add(one.opposite, other.opposite,
-        across(vertices_.col(one.low), vertices_.col(one.high), vertices_.col(one.opposite),
-               vertices_.col(other.opposite)));
-  }
+  // Two quads meet with two triangles each. Those of one face give a way longer than its diagonal.
+  constexpr std::size_t most_at_edge = 4;
+  for (std::size_t at = 0; at < edges.size(); ++at)
+    for (std::size_t to = at + 1; to < std::min(at + most_at_edge, edges.size()); ++to) {
+      const Hinge &one = edges[at], &other = edges[to];
+      if (one.low != other.low || one.high != other.high) break;
+      add(one.opposite, other.opposite,
+          across(vertices_.col(one.low), vertices_.col(one.high), vertices_.col(one.opposite),
+                 vertices_.col(other.opposite)));
+    }
   // A way from two faces stands there twice, which only costs its memory.
   std::sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
     return std::tie(one.first, one.second.to, one.second.length) <

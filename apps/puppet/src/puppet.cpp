@@ -1,11 +1,13 @@
 #include <nendo/puppet/puppet.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include <nendo/base/files.hpp>
+#include <nendo/deform/triangles.hpp>
 
 namespace nendo::puppet {
 
@@ -63,6 +65,30 @@ double passes(const Mask& mask, const Vector3d& place) {
   return t * t * (3.0 - 2.0 * t);
 }
 
+/// The nearest place of the edges in the plane x = 0, if they are about as near as any: a point in
+/// the middle then is its own mirror image, also where the nearest places are two, beside it.
+SurfacePlace nearest_in_middle(const Mesh& model, const Vector3d& at) {
+  const SurfacePlace nearest = deform::nearest_place(model, at);
+  const double near = 1e-3 * deform::diagonal_of(model.vertices);
+  double least = (nearest.in(model.vertices) - at).norm() + near;
+  SurfacePlace best = nearest;
+  const auto is_middle = [&](std::uint32_t v) { return model.vertices(0, v) == 0.0; };
+  deform::for_each_triangle(model, [&](const std::array<std::uint32_t, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
+      if (!is_middle(a) || !is_middle(b)) continue;
+      const Vector3d from = model.vertices.col(a), along = model.vertices.col(b) - from;
+      const double part =
+          std::clamp(along.dot(at - from) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
+      const double away = (from + part * along - at).norm();
+      if (away >= least) continue;
+      least = away;
+      best = {{a, b, b}, {1.0 - part, part, 0.0}};
+    }
+  });
+  return best;
+}
+
 } // namespace
 
 Result<Puppet> read_puppet(const std::filesystem::path& path) {
@@ -81,6 +107,8 @@ std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model) {
     if (point.is_mirrored) at.x() = -at.x();
     if (at_vertex && !point.is_mirrored)
       places.push_back(SurfacePlace::at_vertex(*point.vertex));
+    else if (at.x() == 0.0)
+      places.push_back(nearest_in_middle(model, at));
     else
       places.push_back(deform::nearest_place(model, at));
   }
@@ -93,7 +121,7 @@ deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
   setup.kernel = kernel;
   const auto places = places_on(puppet, model);
   for (std::size_t at = 0; at < places.size(); ++at)
-    setup.points.push_back({places[at], puppet.points[at].radius});
+    setup.points.push_back({places[at], puppet.points[at].radius, puppet.points[at].name});
   setup.parts = following_parts(puppet, model, places);
   if (puppet.masks.empty()) return setup;
   setup.mask = Eigen::VectorXd::Ones(model.vertices.cols());

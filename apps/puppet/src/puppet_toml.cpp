@@ -84,6 +84,17 @@ private:
     const toml::node* const node = reader_.find(table, key);
     return node == nullptr ? Vector3d(Vector3d::Zero()) : place(*node, key);
   }
+  /// Names go into messages and captions, and into other programs' lists.
+  std::string name(const toml::key& key, const toml::node& where) {
+    const std::string_view text = key.str();
+    constexpr std::string_view letters =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    if (text.empty() || text.size() > 64 ||
+        text.find_first_not_of(letters) != std::string_view::npos)
+      reader_.complain(where, "'" + std::string(text.substr(0, 40)) +
+                                  "': a name has 1 to 64 letters, digits, _ and -");
+    return std::string(text);
+  }
   /// A number that may be left out.
   double number_or(const toml::table& table, std::string_view key, double usual) {
     return table.get(key) == nullptr ? usual : reader_.number(table, key);
@@ -97,7 +108,7 @@ private:
       if (table == nullptr || reader_.error()) return;
       reader_.allow_only(*table, {"vertex", "at", "radius", "pin"});
       PuppetPoint& point = puppet_.points.emplace_back();
-      point.name = key.str();
+      point.name = name(key, node);
       point.radius = length(*table, "radius");
       point.is_pin = table->get("pin") != nullptr && reader_.truth(*table, "pin");
       if (table->get("vertex") != nullptr)
@@ -135,7 +146,7 @@ private:
     for (const auto& [key, node] : *functions) {
       const toml::table* const table = reader_.as_table(node, key.str());
       if (table == nullptr || reader_.error()) return;
-      puppet_.functions.push_back(function(*table, std::string(key.str())));
+      puppet_.functions.push_back(function(*table, name(key, node)));
     }
   }
   Function function(const toml::table& table, std::string name) {

@@ -26,7 +26,14 @@ Result<std::shared_ptr<const puppet::Rig>> rig_of(const LoopSetup& loop,
     return Error{Errc::bad_input, "the model has no face, and a puppet needs a surface"};
   if (static_cast<std::size_t>(loop.puppet_starts.cols()) != read->points.size())
     return Error{Errc::bad_input, "the recorded puppet has other points than its text"};
-  return std::make_shared<const puppet::Rig>(*std::move(read), loop.puppet_starts);
+  auto rig = std::make_shared<const puppet::Rig>(*std::move(read), loop.puppet_starts);
+  if (!points_exist(loop.options.sculptor.deformer.supports, rig->starts().cols()))
+    return Error{Errc::bad_input, std::string(without_loop)};
+  // The loop would do without a field along the surface, and make another shape than the recorded.
+  const auto surface = flow::surface_for(*rig, model, deform::BlockLayout(model.vertices),
+                                         loop.options.sculptor.deformer);
+  if (!surface) return Error{Errc::bad_input, "the recorded puppet: " + surface.error().message};
+  return std::shared_ptr<const puppet::Rig>(std::move(rig));
 }
 
 } // namespace
@@ -36,9 +43,8 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   if (!setup.loop || setup.hands.empty()) return Error{Errc::bad_input, std::string(without_loop)};
   auto rig = rig_of(*setup.loop, model);
   if (!rig) return rig.error();
-  const Eigen::Index points =
-      *rig ? (*rig)->starts().cols() : 5 * static_cast<Eigen::Index>(setup.hands.size());
-  if (!points_exist(setup.loop->options.sculptor.deformer.supports, points))
+  if (const auto tips = 5 * static_cast<Eigen::Index>(setup.hands.size());
+      !*rig && !points_exist(setup.loop->options.sculptor.deformer.supports, tips))
     return Error{Errc::bad_input, std::string(without_loop)};
   std::unique_ptr<LoopReplay> replay(new LoopReplay);
   std::vector<flow::HandInput> inputs = setup.hands;

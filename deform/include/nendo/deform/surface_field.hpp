@@ -22,6 +22,7 @@ namespace nendo::deform {
 struct SurfacePoint {
   SurfacePlace place;
   double radius = 1.0; ///< along the surface, model units, > 0
+  std::string name{};  ///< for errors; empty: its number
 };
 
 /// Vertices that no function reaches along the surface, because they belong to another part of it.
@@ -50,7 +51,7 @@ public:
 
   /// Computes all functions: a shortest way for each point. The layout must be the mesh's. Error:
   /// bad_input (two points are so near to each other, for their radii, that the condition is above
-  /// most_condition; it names their numbers). Allocates.
+  /// most_condition; it names them). Allocates.
   static Result<std::shared_ptr<const SurfaceField>>
   make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSetup& setup);
 

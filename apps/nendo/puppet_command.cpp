@@ -1,0 +1,337 @@
+// nendo puppet: shows, checks and makes puppet files.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <spdlog/fmt/fmt.h>
+
+#include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
+#include <nendo/base/units.hpp>
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/puppet/make_puppet.hpp>
+#include <nendo/puppet/rig_check.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+#include "nendo/commands.hpp"
+#include "nendo/puppet_file.hpp"
+#include "render/picture.hpp"
+
+namespace nendo::app::puppet_command {
+namespace {
+
+using deform::Points;
+using puppet::Function;
+
+struct Options {
+  std::string file;
+  std::string picture;
+  std::string out;
+  bool force = false;
+  std::string view = "15,5";
+  std::string size = "360x420";
+};
+
+/// A puppet's file, its model, and the shapes that it makes of it.
+struct OpenRig {
+  PuppetFile file;
+  deform::Mesh model;
+  std::unique_ptr<puppet::RigShapes> shapes;
+
+  const puppet::Rig& rig() const noexcept { return shapes->rig(); }
+  const std::vector<Function>& functions() const noexcept { return rig().puppet().functions; }
+};
+
+Result<OpenRig> open_rig(const std::string& name) {
+  auto file = open_puppet(name);
+  if (!file) return file.error();
+  auto model = deform::read_mesh(file->model);
+  if (!model) return model.error();
+  if (model->face_corners.empty())
+    return Error{Errc::bad_input, file->model + ": has no face, and a puppet needs a surface"};
+  OpenRig open{*std::move(file), *std::move(model), nullptr};
+  auto shapes = puppet::RigShapes::make(
+      std::make_shared<const puppet::Rig>(open.file.puppet, open.model), open.model);
+  if (!shapes) return Error{shapes.error().code, open.file.path + ": " + shapes.error().message};
+  open.shapes = *std::move(shapes);
+  return open;
+}
+
+std::string place_text(const Eigen::Vector3d& place) {
+  return fmt::format("{:9.4g} {:9.4g} {:9.4g}", place.x(), place.y(), place.z());
+}
+
+std::string limits_text(const Function& function) {
+  return fmt::format("{:g} to {:g}{}", function.least, function.most,
+                     function.eases ? ", eased" : "");
+}
+
+std::string travel_text(const Function& function) {
+  if (function.input.is_angle()) return fmt::format("{:g} degrees", to_degrees(function.travel));
+  return fmt::format("{:g} m", function.travel);
+}
+
+void print_function(const OpenRig& open, std::size_t at) {
+  const Function& function = open.functions()[at];
+  fmt::print("{}: {}, {} for 1; values {}\n", function.name, function.input.name(),
+             travel_text(function), limits_text(function));
+  const Points& vectors = open.rig().vectors_of(at);
+  for (std::size_t point = 0; point < open.rig().puppet().points.size(); ++point) {
+    const Eigen::Vector3d vector = vectors.col(static_cast<Eigen::Index>(point));
+    if (vector.isZero(0.0)) continue;
+    fmt::print("  {:<20} by {}  ({:.4g})\n", open.rig().puppet().points[point].name,
+               place_text(vector), vector.norm());
+  }
+}
+
+void print_points(const OpenRig& open) {
+  fmt::print("points\n");
+  for (std::size_t at = 0; at < open.rig().puppet().points.size(); ++at) {
+    const puppet::PuppetPoint& point = open.rig().puppet().points[at];
+    fmt::print("  {:<20} at {}  radius {:.4g}{}\n", point.name,
+               place_text(open.rig().starts().col(static_cast<Eigen::Index>(at))), point.radius,
+               point.is_pin ? ", pin" : "");
+  }
+}
+
+std::string count_text(std::size_t count, std::string_view word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
+
+void print_head(const OpenRig& open) {
+  const auto& puppet = open.rig().puppet();
+  fmt::print(
+      "{} on {}: {}, {}, {}, distances {}\n", printable(open.file.path), printable(puppet.model),
+      fmt::format("{} vertices", open.model.vertices.cols()),
+      count_text(puppet.points.size(), "point"), count_text(puppet.functions.size(), "function"),
+      puppet.distance == puppet::Distance::surface ? "along the surface" : "through the air");
+}
+
+/// The shapes of a sheet, the model at rest first.
+struct Sheet {
+  std::vector<Points> shapes;
+  std::vector<std::string> captions;
+
+  void add(Points shape, std::string caption) {
+    shapes.push_back(std::move(shape));
+    captions.push_back(std::move(caption));
+  }
+};
+
+Sheet sheet_of(OpenRig& open) {
+  Sheet sheet;
+  sheet.add(open.model.vertices, "rest");
+  for (std::size_t at = 0; at < open.functions().size(); ++at) {
+    const Function& function = open.functions()[at];
+    const bool has_both = function.least < 0.0 && function.most > 0.0;
+    for (const double value : {function.most, function.least})
+      if (value != 0.0)
+        sheet.add(open.shapes->at(at, value),
+                  has_both ? fmt::format("{} {:g}", function.name, value) : function.name);
+  }
+  return sheet;
+}
+
+/// Those that a function moves by more than what rounding does. The camera frames these: of a bust,
+/// the face.
+std::vector<Eigen::Index> moving_vertices(const std::vector<Points>& shapes) {
+  const Points& rest = shapes.front();
+  const double least = 1e-3 * deform::diagonal_of(rest);
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index vertex = 0; vertex < rest.cols(); ++vertex)
+    if (std::any_of(shapes.begin(), shapes.end(), [&](const Points& shape) {
+          return (shape.col(vertex) - rest.col(vertex)).norm() > least;
+        }))
+      moving.push_back(vertex);
+  return moving;
+}
+
+Result<void> draw_sheet(const Sheet& sheet, const deform::Mesh& model, const Options& options,
+                        render::View view, render::Size size) {
+  const render::SceneBuilder builder(model);
+  std::vector<render::Scene> scenes(sheet.shapes.size());
+  const std::vector<Eigen::Index> moving = moving_vertices(sheet.shapes);
+  std::vector<Eigen::Vector3f> outline;
+  for (std::size_t at = 0; at < scenes.size(); ++at) {
+    render::SceneFrame frame;
+    frame.vertices = sheet.shapes[at];
+    builder.build(frame, {}, scenes[at]);
+    for (const Eigen::Index vertex : moving)
+      outline.push_back(
+          (sheet.shapes[at].col(vertex) / builder.units_per_metre() - builder.origin_m())
+              .cast<float>());
+  }
+  const render::Camera camera = render::framing(outline, view, 1.0 * size.width / size.height);
+  std::vector<render::Panel> panels;
+  for (std::size_t at = 0; at < scenes.size(); ++at)
+    panels.push_back(
+        {draw(render::Lighting(scenes[at], view.azimuth_deg), camera, size), sheet.captions[at]});
+  return write_png(options.picture, contact_sheet(panels));
+}
+
+Result<void> show(const Options& options) {
+  const auto view = render::view_named(options.view);
+  if (!view)
+    return Error{Errc::usage, "--view " + options.view +
+                                  ": use front, back, left, right, side, top or "
+                                  "AZIMUTH,ELEVATION in degrees"};
+  const auto size = render::size_named(options.size);
+  if (!size || 1.0 * size->width * size->height > 1e6)
+    return Error{Errc::usage, "--size " + options.size +
+                                  ": use WIDTHxHEIGHT in pixels, 16 or more each, at most a "
+                                  "million together"};
+  if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine) return fine;
+  auto open = open_rig(options.file);
+  if (!open) return open.error();
+  print_head(*open);
+  for (std::size_t at = 0; at < open->functions().size(); ++at)
+    print_function(*open, at);
+  print_points(*open);
+  if (options.picture.empty()) return {};
+  return draw_sheet(sheet_of(*open), open->model, options, *view, *size);
+}
+
+std::string limit_text(const OpenRig& open, const puppet::AtLimit& limit) {
+  return fmt::format("{} at {:g}", open.functions()[limit.function].name, limit.value);
+}
+
+std::string turned_text(const puppet::LimitCheck& limit) {
+  const double part = limit.moved == 0 ? 0.0
+                                       : 100.0 * static_cast<double>(limit.turned) /
+                                             static_cast<double>(limit.moved);
+  return fmt::format("{} of {} that move turn over ({:.2g} %)", limit.turned,
+                     count_text(limit.moved, "triangle"), part);
+}
+
+void print_turned(const OpenRig& open, const puppet::RigCheck& check) {
+  for (const puppet::LimitCheck& limit : check.alone)
+    if (limit.turned > 0 || limit.moved == 0)
+      fmt::print("{}: {}{}\n", limit_text(open, limit.one), turned_text(limit),
+                 puppet::RigCheck::folds(limit) ? "; too many" : "");
+  const puppet::LimitCheck* worst = nullptr;
+  std::size_t pairs = 0;
+  for (const puppet::LimitCheck& pair : check.pairs) {
+    if (pair.turned == 0) continue;
+    ++pairs;
+    if (worst == nullptr || pair.turned > worst->turned) worst = &pair;
+  }
+  fmt::print("{} of {} turn triangles over", pairs, count_text(check.pairs.size(), "pair"));
+  if (worst != nullptr)
+    fmt::print("; most of all {} with {}: {}", limit_text(open, worst->one),
+               limit_text(open, *worst->other), turned_text(*worst));
+  fmt::print("\n");
+}
+
+void print_twins(const OpenRig& open, const puppet::RigCheck& check) {
+  if (check.twins.empty()) return;
+  if (check.lone_vertices > 0)
+    fmt::print("the model itself is not symmetric: {} of its vertices have no mirror image\n",
+               check.lone_vertices);
+  if (check.lone_vertices == static_cast<std::size_t>(open.model.vertices.cols())) return;
+  double apart = 0.0;
+  for (const puppet::TwinCheck& twins : check.twins) {
+    apart = std::max(apart, twins.apart);
+    if (twins.apart > puppet::RigCheck::symmetric_within)
+      fmt::print("{} and {} are not symmetric: {:.2g} of the diagonal apart\n",
+                 open.functions()[twins.left].name, open.functions()[twins.right].name,
+                 twins.apart);
+  }
+  if (apart <= puppet::RigCheck::symmetric_within)
+    fmt::print("{} are symmetric within {:.2g} of the diagonal\n",
+               count_text(check.twins.size(), "pair") + " of twins", apart);
+}
+
+Result<void> check(const Options& options) {
+  auto open = open_rig(options.file);
+  if (!open) return open.error();
+  print_head(*open);
+  if (open->shapes->condition() > 0.0)
+    fmt::print("condition {:.3g}, of at most {:g}\n", open->shapes->condition(),
+               deform::SurfaceField::most_condition);
+  const auto check = puppet::check_rig(*open->shapes, open->model);
+  print_turned(*open, check);
+  print_twins(*open, check);
+  for (const puppet::LimitCheck& limit : check.alone)
+    if (puppet::RigCheck::folds(limit))
+      return Error{Errc::failed,
+                   fmt::format("{}: {}: {}; move its points less far, or make their radii larger",
+                               open->file.path, limit_text(*open, limit.one), turned_text(limit))};
+  return {};
+}
+
+/// The file stands beside its model, or names the way to it from there.
+Result<std::string> model_name(const Options& options) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path folder = fs::absolute(options.out, failed).parent_path();
+  const std::string name = fs::proximate(options.file, folder, failed).string();
+  if (failed || printable(name) != name || name.find_first_of("\"\\") != std::string::npos)
+    return Error{Errc::usage, "--out " + options.out +
+                                  ": a puppet cannot name its model from there; put it beside " +
+                                  options.file};
+  return name;
+}
+
+Result<void> make(const Options& options) {
+  if (auto fine = cli::check_place("--out", options.out, {".toml"}); !fine) return fine;
+  std::error_code ignored;
+  if (!options.force && std::filesystem::exists(options.out, ignored))
+    return Error{Errc::usage, "--out " + options.out + ": exists; --force replaces it"};
+  const auto name = model_name(options);
+  if (!name) return name.error();
+  const auto model = deform::read_mesh(options.file);
+  if (!model) return model.error();
+  const auto made = puppet::make_face_puppet(*model, *name);
+  if (!made) return Error{made.error().code, options.file + ": " + made.error().message};
+  for (const std::string& line : made->found)
+    fmt::print("{}\n", line);
+  return replace_file(options.out, made->text);
+}
+
+int done(const Result<void>& result) {
+  std::cout.flush();
+  return result ? 0 : cli::report(result.error());
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command(
+      "puppet", "Shows, checks and makes puppets: what each finger does to a model");
+  command.set_footer("A FILE is a path, or the name of a shipped puppet, such as face.");
+  command.require_command();
+
+  cli::Command showing = command.add_command("show", "A puppet's functions and points");
+  showing.add_option("FILE", options->file, "Puppet file, or the name of a shipped one").required();
+  showing.add_option("--picture", options->picture,
+                     "Where to draw the model at rest and each function at its most, .png");
+  showing.add_option("--view", options->view,
+                     "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
+  showing.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
+  showing.on_chosen([options] { return done(show(*options)); });
+
+  cli::Command checking = command.add_command(
+      "check", "Whether triangles turn over at the functions' limits, and the sides are alike");
+  checking.add_option("FILE", options->file, "Puppet file, or the name of a shipped one")
+      .required();
+  checking.on_chosen([options] { return done(check(*options)); });
+
+  cli::Command making =
+      command.add_command("make", "Writes a puppet for a face, by the shape of the model alone");
+  making.set_footer("The face must look along +z, with y up, and be symmetric about x = 0.");
+  making.add_option("MODEL", options->file, "OBJ or PLY file").required();
+  making.add_option("--out", options->out, "Where to write the puppet, .toml, beside the model")
+      .required();
+  making.add_flag("--force", options->force, "Replace a file that is there");
+  making.on_chosen([options] { return done(make(*options)); });
+}
+
+} // namespace nendo::app::puppet_command

@@ -1,0 +1,62 @@
+#pragma once
+// What can be wrong with a puppet though its file can be read: triangles that turn over, and sides
+// that are not alike. Along a surface no theorem keeps a field from folding, so this looks at the
+// triangles at the functions' limits.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <nendo/puppet/rig_shapes.hpp>
+
+namespace nendo::puppet {
+
+/// One function at one of its limits.
+struct AtLimit {
+  std::size_t function = 0;
+  double value = 0.0;
+};
+
+/// The triangles of the model where one function, or two, are at a limit.
+struct LimitCheck {
+  AtLimit one;
+  std::optional<AtLimit> other{};
+  std::size_t moved = 0;  ///< triangles with a corner that moves
+  std::size_t turned = 0; ///< of these, whose normal turns by more than 90 degrees
+};
+
+/// Two functions that are each other's mirror image, both at their greatest values.
+struct TwinCheck {
+  std::size_t left = 0;
+  std::size_t right = 0;
+  /// The farthest that a vertex is from the mirror image of its twin, as a part of the diagonal.
+  double apart = 0.0;
+};
+
+struct RigCheck {
+  /// Of the moved triangles of one function alone, so many may turn over: rolling lips do.
+  static constexpr double most_turned = 0.005;
+  /// Where sides are alike, they are so within this part of the diagonal.
+  static constexpr double symmetric_within = 1e-6;
+
+  std::vector<LimitCheck> alone;
+  std::vector<LimitCheck> pairs; ///< of functions whose signals differ
+  std::vector<TwinCheck> twins;
+  std::size_t lone_vertices = 0; ///< of the model, without a vertex where their mirror image is
+
+  static bool folds(const LimitCheck& limit) noexcept {
+    return static_cast<double>(limit.turned) > most_turned * static_cast<double>(limit.moved);
+  }
+  bool passes() const noexcept; ///< no function alone folds
+};
+
+/// Makes a shape for each limit of each function, and of each pair. `model` is the rig's.
+/// Allocates.
+RigCheck check_rig(RigShapes& shapes, const deform::Mesh& model);
+
+/// Returns for each point (3 by N) the numbers of those that are where its mirror image about x = 0
+/// is, within the tolerance. Parts of a model may touch, so there may be several.
+std::vector<std::vector<std::uint32_t>> mirror_images(const deform::Points& points,
+                                                      double tolerance);
+
+} // namespace nendo::puppet

@@ -1,0 +1,155 @@
+#include <nendo/puppet/rig_check.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <nendo/deform/triangles.hpp>
+
+namespace nendo::puppet {
+
+using deform::Points;
+using Eigen::Index;
+using Eigen::Vector3d;
+
+namespace {
+
+Vector3d area_normal(const Points& vertices, const std::uint32_t* corners) {
+  const Vector3d first = vertices.col(corners[0]);
+  return (vertices.col(corners[1]) - first).cross(vertices.col(corners[2]) - first);
+}
+
+/// Compares shapes of a model with its rest.
+class TurnCounter {
+public:
+  explicit TurnCounter(const deform::Mesh& model)
+      : rest_(model.vertices), corners_(deform::corners_of_triangles(model)),
+        diagonal_(deform::diagonal_of(model.vertices)) {}
+
+  void count(const Points& shape, LimitCheck& into) const {
+    const double still = 1e-6 * diagonal_;
+    const double no_area = 1e-14 * diagonal_ * diagonal_;
+    for (std::size_t at = 0; at < corners_.size(); at += 3) {
+      const std::uint32_t* const corners = &corners_[at];
+      const bool moves = std::any_of(corners, corners + 3, [&](std::uint32_t corner) {
+        return (shape.col(corner) - rest_.col(corner)).squaredNorm() > still * still;
+      });
+      if (!moves) continue;
+      ++into.moved;
+      const Vector3d normal = area_normal(rest_, corners);
+      if (normal.norm() > no_area && normal.dot(area_normal(shape, corners)) < 0.0) ++into.turned;
+    }
+  }
+
+private:
+  const Points& rest_;
+  std::vector<std::uint32_t> corners_;
+  double diagonal_;
+};
+
+std::vector<AtLimit> limits_of(const Puppet& puppet) {
+  std::vector<AtLimit> limits;
+  for (std::size_t at = 0; at < puppet.functions.size(); ++at)
+    for (const double value : {puppet.functions[at].least, puppet.functions[at].most})
+      if (value != 0.0) limits.push_back({at, value});
+  return limits;
+}
+
+Points shape_at(RigShapes& shapes, const AtLimit& one, const AtLimit& other) {
+  std::vector<double> values(shapes.rig().puppet().functions.size(), 0.0);
+  values[one.function] = one.value;
+  values[other.function] = other.value;
+  return shapes.at(values);
+}
+
+void check_pairs(RigShapes& shapes, const TurnCounter& counter, const std::vector<AtLimit>& limits,
+                 RigCheck& check) {
+  const auto& functions = shapes.rig().puppet().functions;
+  for (std::size_t a = 0; a < limits.size(); ++a)
+    for (std::size_t b = a + 1; b < limits.size(); ++b) {
+      if (functions[limits[a].function].input == functions[limits[b].function].input) continue;
+      LimitCheck& pair = check.pairs.emplace_back(LimitCheck{limits[a], limits[b]});
+      counter.count(shape_at(shapes, limits[a], limits[b]), pair);
+    }
+}
+
+/// The farthest that a vertex is from the mirror image of its twin.
+double apart(const Points& shape, const std::vector<std::vector<std::uint32_t>>& images) {
+  double most = 0.0;
+  for (std::size_t v = 0; v < images.size(); ++v) {
+    if (images[v].empty()) continue;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t at : images[v]) {
+      Vector3d image = shape.col(at);
+      image.x() = -image.x();
+      least = std::min(least, (shape.col(static_cast<Index>(v)) - image).norm());
+    }
+    most = std::max(most, least);
+  }
+  return most;
+}
+
+void check_twins(RigShapes& shapes, const deform::Mesh& model, RigCheck& check) {
+  const double diagonal = deform::diagonal_of(model.vertices);
+  const auto images = mirror_images(model.vertices, 0.5 * RigCheck::symmetric_within * diagonal);
+  check.lone_vertices = static_cast<std::size_t>(
+      std::count_if(images.begin(), images.end(), [](const auto& image) { return image.empty(); }));
+  const auto& functions = shapes.rig().puppet().functions;
+  for (std::size_t left = 0; left < functions.size(); ++left) {
+    const std::string& name = functions[left].name;
+    if (!name.ends_with("Left")) continue;
+    const std::string twin = name.substr(0, name.size() - 4) + "Right";
+    for (std::size_t right = 0; right < functions.size(); ++right) {
+      if (functions[right].name != twin) continue;
+      const Points shape =
+          shape_at(shapes, {left, functions[left].most}, {right, functions[right].most});
+      check.twins.push_back({left, right, diagonal > 0.0 ? apart(shape, images) / diagonal : 0.0});
+    }
+  }
+}
+
+/// Points by their x, so that those near a mirror image are found by a binary search.
+std::vector<std::uint32_t> by_x(const Points& points) {
+  std::vector<std::uint32_t> order(static_cast<std::size_t>(points.cols()));
+  for (std::size_t at = 0; at < order.size(); ++at)
+    order[at] = static_cast<std::uint32_t>(at);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return points(0, a) < points(0, b); });
+  return order;
+}
+
+} // namespace
+
+std::vector<std::vector<std::uint32_t>> mirror_images(const Points& points, double tolerance) {
+  const auto order = by_x(points);
+  std::vector<std::vector<std::uint32_t>> images(order.size());
+  for (std::size_t v = 0; v < images.size(); ++v) {
+    Vector3d image = points.col(static_cast<Index>(v));
+    image.x() = -image.x();
+    auto at = std::lower_bound(order.begin(), order.end(), image.x() - tolerance,
+                               [&](std::uint32_t point, double x) { return points(0, point) < x; });
+    for (; at != order.end() && points(0, *at) <= image.x() + tolerance; ++at)
+      if ((points.col(*at) - image).norm() <= tolerance) images[v].push_back(*at);
+  }
+  return images;
+}
+
+bool RigCheck::passes() const noexcept {
+  return std::none_of(alone.begin(), alone.end(), folds);
+}
+
+RigCheck check_rig(RigShapes& shapes, const deform::Mesh& model) {
+  RigCheck check;
+  const TurnCounter counter(model);
+  const auto limits = limits_of(shapes.rig().puppet());
+  for (const AtLimit& limit : limits)
+    counter.count(shapes.at(limit.function, limit.value),
+                  check.alone.emplace_back(LimitCheck{limit}));
+  check_pairs(shapes, counter, limits, check);
+  check_twins(shapes, model, check);
+  return check;
+}
+
+} // namespace nendo::puppet
