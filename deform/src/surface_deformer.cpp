@@ -92,6 +92,17 @@ FieldStatus SurfaceDeformer::undo(const Points& tips) {
   return FieldStatus::ok;
 }
 
+FieldStatus SurfaceDeformer::take_back(const Points& tips) {
+  if (!all_usable(tips)) return FieldStatus::not_finite;
+  SculptedShape::Parts& parts = shape_->parts();
+  if (parts.history.is_kept()) {
+    absorb();
+    parts.history.keep_undone(parts.now, parts.note);
+  }
+  take_hold(tips);
+  return FieldStatus::ok;
+}
+
 FieldStatus SurfaceDeformer::redo(const Points& tips) {
   if (redo_steps() == 0) return FieldStatus::ok;
   if (!all_usable(tips)) return FieldStatus::not_finite;

@@ -96,6 +96,8 @@ FieldStatus Sculptor::undo(const Points& tips) noexcept {
 
 FieldStatus Sculptor::take_back(const Points& tips) noexcept {
   if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->take_back(tips);
+  if (auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
+    return surface->take_back(tips);
   return std::get_if<Type2Deformer>(&deformer_)->undo(tips);
 }
 

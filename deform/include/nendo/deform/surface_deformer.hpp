@@ -25,6 +25,7 @@ public:
   void release(bool is_step) noexcept;
   FieldStatus reset(const Points& tips);
   FieldStatus undo(const Points& tips);
+  FieldStatus take_back(const Points& tips);
   FieldStatus redo(const Points& tips);
   std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
   std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
