@@ -6,6 +6,7 @@ import math
 import os
 import struct
 import sys
+import tomllib
 
 import bpy
 import numpy as np
@@ -77,9 +78,40 @@ def in_gltf(thing, graph):
 
 
 def scale_in(file):
+    return document_in(file)[0]["nodes"][0]["scale"][0]
+
+
+def document_in(file):
     with open(file, "rb") as glb:
-        length = struct.unpack("<12xI4x", glb.read(20))[0]
-        return json.loads(glb.read(length))["nodes"][0]["scale"][0]
+        data = glb.read()
+    length = struct.unpack("<I", data[12:16])[0]
+    return json.loads(data[20:20 + length]), data[28 + length:]
+
+
+def order_in(file):
+    """The model's vertices in the order of Blender's importer: those that each primitive uses, one primitive after another."""
+    document, binary = document_in(file)
+    orders = []
+    for primitive in document["meshes"][document["nodes"][0]["mesh"]]["primitives"]:
+        accessor = document["accessors"][primitive["indices"]]
+        kind = {5123: "<u2", 5125: "<u4"}[accessor["componentType"]]
+        start = document["bufferViews"][accessor["bufferView"]].get("byteOffset", 0)
+        orders.append(np.unique(np.frombuffer(binary, dtype=kind, count=accessor["count"], offset=start)))
+    return np.concatenate(orders)
+
+
+def vertices_of_rest(thing):
+    """The shape of the first key, in the model's own axes and units."""
+    basis = thing.data.shape_keys.key_blocks[0]
+    places = np.empty(3 * len(basis.data))
+    basis.data.foreach_get("co", places)
+    places = places.reshape(-1, 3)
+    return np.stack([places[:, 0], places[:, 2], -places[:, 1]], axis=1)
+
+
+def read_obj(file):
+    with open(file) as text:
+        return np.array([[float(word) for word in line.split()[1:4]] for line in text if line.startswith("v ")])
 
 
 def farthest(places, wanted):
@@ -135,29 +167,34 @@ def judge_even(take, limit):
     """The frames of a file at 30 a second, against the sequence of meshes."""
     model = import_glb(take + "-even.glb")
     scale = scale_in(path(take + "-even.glb"))
+    order = order_in(path(take + "-even.glb"))
     worst = 0.0
     meshes = sorted(glob.glob(path(take + "-[0-9]*.ply")))
     for number in range(0, len(meshes), 7):
-        wanted = read_ply(meshes[number]) * scale
+        wanted = read_ply(meshes[number])[order] * scale
         places = in_gltf(model, go_to(number))
         worst = max(worst, farthest(places, wanted) / diagonal(wanted))
     say(f"{take}-even.glb: vertices, parts of the diagonal", worst, limit)
 
 
-def judge_replayed():
-    model = import_glb("type1.glb")
-    scale = scale_in(path("type1.glb"))
-    rows = read_csv("type1.csv")
-    worst, seen = 0.0, 0
-    for file in glob.glob(path("replayed-*.ply")):
-        time_s = float(os.path.basename(file)[len("replayed-"):-len(".ply")])
-        wanted = read_ply(file) * scale
+def judge_replayed(take, tips_every):
+    model = import_glb(take + ".glb")
+    scale = scale_in(path(take + ".glb"))
+    order = order_in(path(take + ".glb"))
+    rows = read_csv(take + ".csv")
+    rest = vertices_of_rest(model)
+    worst, most, seen = 0.0, 0.0, 0
+    for file in glob.glob(path(take + "-replayed-*.ply")):
+        time_s = float(os.path.basename(file)[len(take + "-replayed-"):-len(".ply")])
+        shape = read_ply(file)
         places = in_gltf(model, go_to((time_s - float(rows[0]["time_s"])) * FPS))
-        worst = max(worst, farthest(places, wanted) / diagonal(wanted))
+        worst = max(worst, farthest(places, shape[order] * scale) / diagonal(shape * scale))
+        most = max(most, farthest(shape[order], rest) / diagonal(shape))
         seen += 1
     assert seen > 2
-    say(f"type1.glb against {seen} shapes of nendo replay, parts of the diagonal", worst, NEAR)
-    judge_tips("type1.glb", rows, 0, 31)
+    print(f"nendo: {take}: vertices move by {most:.3f} of the diagonal", flush=True)
+    say(f"{take}.glb against {seen} shapes of nendo replay, parts of the diagonal", worst, NEAR)
+    judge_tips(take + ".glb", rows, 0, tips_every)
 
 
 def judge_cache(take, kind):
@@ -192,9 +229,50 @@ def judge_bvh(take):
     say(f"{take}-left.bvh, {take}-right.bvh: fingertips, centimetres", worst, 2e-3)
 
 
-def draw(name):
+def names_in(puppet):
+    """The functions of a puppet file, with their twins."""
+    with open(puppet, "rb") as file:
+        puppet = tomllib.load(file)
+    names = set()
+    for name, function in puppet["functions"].items():
+        names.add(name)
+        if function.get("least", 0) < 0:
+            names.add(name + "_negative")
+        if "mirror" in puppet and name.endswith("Left"):
+            names.add(name[:-len("Left")] + "Right")
+    return names
+
+
+def judge_functions(take, puppet, obj):
+    """The keys have the functions' names, each of them is played, and without them the shape is the model."""
+    global complaints
+    model = import_glb(take + "-even.glb")
+    keys = model.data.shape_keys.key_blocks
+    names = [key.name for key in keys[1:]]
+    wanted = names_in(puppet)
+    used = dict.fromkeys(names, 0.0)
+    for number in range(0, int(bpy.context.scene.frame_end) + 1, 3):
+        graph = go_to(number)
+        now = model.evaluated_get(graph).data.shape_keys.key_blocks
+        for name in names:
+            used[name] = max(used[name], now[name].value)
+    fine = len(names) == len(wanted) and set(names) == wanted
+    complaints += not fine
+    played = ", ".join(f"{name} to {used[name]:.2f}" for name in names)
+    print(f"nendo: {'' if fine else 'WRONG NAMES: '}{take}: {len(names)} keys: {played}", flush=True)
+    model.data.shape_keys.animation_data_clear()
+    for key in keys[1:]:
+        key.value = 0.0
+    shape = read_obj(obj)
+    rest = shape[order_in(path(take + "-even.glb"))] * scale_in(path(take + "-even.glb"))
+    say(f"{take}: at values of 0 the shape is the model's, parts of the diagonal",
+        farthest(in_gltf(model, go_to(0)), rest) / diagonal(rest), NEAR)
+    return used
+
+
+def draw(name, frame=40):
     import_glb(name)
-    go_to(40)
+    go_to(frame)
     scene = bpy.context.scene
     for place, energy in (((1.5, -2.0, 2.0), 90.0), ((-2.0, -1.0, 1.0), 40.0)):
         light = bpy.data.objects.new("light", bpy.data.lights.new("light", "POINT"))
@@ -217,7 +295,13 @@ def draw(name):
     print(f"nendo: picture: {scene.render.filepath}", flush=True)
 
 
-judge_replayed()
+judge_replayed("type1", 31)
+judge_replayed("face", 97)
+judge_replayed("stone", 97)
+used = judge_functions("face", "apps/models/face.puppet.toml", "apps/models/face.obj")
+complaints += min(used.values()) < 0.5  # sim:faces plays all
+used = judge_functions("stone", "tools/exports/moai.puppet.toml", MODEL)
+complaints += used["noseLift_negative"] < 0.5 or used["chinOut"] < 0.5
 judge_even("type1", NEAR)
 judge_even("linked", 1e-4 + NEAR)
 judge_even("type2", 1e-4 + NEAR)
@@ -229,5 +313,6 @@ judge_rigs("type2.glb", True)
 judge_rigs("gloves.glb", False)
 assert judge_tips.seen > 0
 draw("type1.glb")
+draw("face-even.glb", 60)
 print(f"nendo: {complaints} complaints", flush=True)
 sys.exit(1 if complaints else 0)
