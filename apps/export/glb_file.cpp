@@ -177,6 +177,20 @@ GlbFile::Index GlbFile::add_matrices(std::span<const float> sixteens) {
                       sixteens.size() / 16, "MAT4");
 }
 
+GlbFile::Index GlbFile::add_texcoords(std::span<const float> pairs) {
+  return add_accessor(add_view(std::as_bytes(pairs), Use::vertices), component_f32,
+                      pairs.size() / 2, "VEC2");
+}
+
+GlbFile::Index GlbFile::add_colours(std::span<const float> rgba) {
+  return add_accessor(add_view(std::as_bytes(rgba), Use::vertices), component_f32, rgba.size() / 4,
+                      "VEC4");
+}
+
+GlbFile::Index GlbFile::add_bytes(std::string_view bytes) {
+  return add_view(std::as_bytes(std::span(bytes.data(), bytes.size())), std::nullopt);
+}
+
 Result<std::uint64_t> GlbFile::write(const std::filesystem::path& path) const {
   Json document = json_;
   document["buffers"] = Json::array({{{"byteLength", bytes_}}});

@@ -51,6 +51,11 @@ public:
   Index add_joints(std::span<const std::uint8_t> fours);
   Index add_weights(std::span<const float> fours);
   Index add_matrices(std::span<const float> sixteens); ///< column by column
+  Index add_texcoords(std::span<const float> pairs);
+  Index add_colours(std::span<const float> rgba);
+
+  /// Adds bytes that are no numbers, such as an image, and returns the index of their bufferView.
+  Index add_bytes(std::string_view bytes);
 
   /// Writes the file atomically, replaces an existing one, and returns its size in bytes. Blocks.
   /// Errors: failed (larger than `most_bytes`, or it cannot be written).

@@ -164,8 +164,8 @@ Result<std::optional<Exported>> by_sums(const SumTake& take, Morphs& morphs, Mor
   report.keys = weights.empty() ? 0 : played->times_s.size();
   report.greatest_error = morphs.greatest_error() / diagonal;
   report.diagonal_m = diagonal / played->units_per_metre;
-  model.add_to(document.file, GltfModel::add_material(document.file), played->units_per_metre,
-               report);
+  model.add_to(document.file, GltfMaterials(take.source.model(version).look, document.file),
+               played->units_per_metre, report);
   auto done = finish(document, Json::array({model.node()}), *played, take.frames,
                      take.choice.rate_hz, take.path);
   if (!done) return done.error();
@@ -278,15 +278,14 @@ std::uint64_t weight_count(const Segments& segments) {
 }
 
 /// Adds the models of all segments, and tells what became of them.
-MorphReport add_models(const Segments& segments, const Played& played, double diagonal,
-                       Document& document) {
+MorphReport add_models(const Segments& segments, const GltfMaterials& materials,
+                       const Played& played, double diagonal, Document& document) {
   MorphReport report;
-  const auto material = GltfModel::add_material(document.file);
   for (const auto& segment : segments) {
     segment->animate(document);
     MorphReport own;
     own.greatest_error = segment->greatest_error() / diagonal;
-    segment->model().add_to(document.file, material, played.units_per_metre, own);
+    segment->model().add_to(document.file, materials, played.units_per_metre, own);
     report.targets += segment->model().target_count();
     report.keys += segment->key_count();
     report.greatest_error = std::max(report.greatest_error, own.greatest_error);
@@ -320,7 +319,9 @@ Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
   if (!played) return played.error();
   segments.back()->finish();
   if (weight_count(segments) > options.most_weights) return too_many_keys(path);
-  MorphReport report = add_models(segments, *played, diagonal, document);
+  MorphReport report = add_models(
+      segments, GltfMaterials(source.model(segments.front()->version()).look, document.file),
+      *played, diagonal, document);
   report.tolerance = tolerance / diagonal;
   report.diagonal_m = diagonal / played->units_per_metre;
   Json roots = Json::array();

@@ -3,13 +3,14 @@
 // targets, and the hands as skinned skeletons. Units are metres and y points up, as on the stage. A
 // node scales the model to the stage.
 //
-// - Vertices are those of the mesh, in its order. Faces with more than three corners become fans of
-//   triangles.
+// - Vertices are those of the mesh, in its order; behind them stand copies of those that have
+//   several texture coordinates. Faces with more than three corners become fans of triangles.
+// - Each material has a primitive, with its base colour and its texture. Vertices keep their
+//   colours.
 // - A take of a puppet of Type-1 is exact. Each function is a target that has its name, and a
 //   frame's weights are the values of the functions, from 0 to 1 (function_morphs.hpp).
 // - Any other take of Type-1 is exact. For each control vector it has targets along each axis and
-// against
-//   it (control_morphs.hpp).
+//   against it (control_morphs.hpp).
 // - All other takes (with commits, motion in several links, or Type-2) have key shapes
 //   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed.
 // - Where the model becomes another one, as when it is subdivided, each part of the take has a mesh

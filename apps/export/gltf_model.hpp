@@ -11,13 +11,15 @@
 #include "export/exported.hpp"
 #include "export/function_morphs.hpp"
 #include "export/glb_file.hpp"
+#include "export/gltf_materials.hpp"
 
 namespace nendo::exporting {
 
 class GltfModel {
 public:
-  /// Puts the rest shape into `file`. The mesh must have a vertex, and its vertices must fit in
-  /// floats.
+  /// Puts the rest shape into `file`, with a primitive for each material. The mesh must have a
+  /// vertex, and its vertices must fit in floats. A vertex with several texture coordinates is put
+  /// behind all others once more for each further one, for glTF has one for each vertex.
   GltfModel(const deform::Mesh& mesh, GlbFile& file);
 
   /// Adds two targets for each axis of each influence that reaches a vertex: one along the axis and
@@ -44,16 +46,24 @@ public:
   /// Returns the index of the model's node.
   GlbFile::Index node() const noexcept { return node_; }
   /// Adds node and mesh to the document. Call it once, after everything else.
-  void add_to(GlbFile& file, GlbFile::Index material, double units_per_metre,
+  void add_to(GlbFile& file, const GltfMaterials& materials, double units_per_metre,
               const MorphReport& report) const;
-  /// Adds the material of all models, and returns its index.
-  static GlbFile::Index add_material(GlbFile& file);
 
 private:
+  struct Primitive {
+    std::uint32_t material; ///< of the look
+    GlbFile::Json json;
+  };
+  std::vector<std::uint32_t> split_at_seams(const deform::Mesh& mesh,
+                                            std::vector<float>& texcoords);
+  Eigen::Matrix3Xf with_copies(const Eigen::Matrix3Xf& of_vertices) const;
+  void add_primitives(const deform::Mesh& mesh, const std::vector<std::uint32_t>& corner_vertices,
+                      const GlbFile::Json& attributes, GlbFile& file);
   void add_target(const Eigen::Matrix3Xf& way, std::string name, GlbFile& file);
 
   GlbFile::Index node_ = 0;
-  GlbFile::Json primitive_;
+  std::vector<Primitive> primitives_;
+  std::vector<std::uint32_t> copies_; ///< of each vertex behind the mesh's, which one it is
   GlbFile::Json targets_ = GlbFile::Json::array();
   GlbFile::Json names_ = GlbFile::Json::array();
   std::vector<float> target_values_;                      ///< of functions

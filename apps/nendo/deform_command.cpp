@@ -187,7 +187,7 @@ void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "deform", "Deforms a mesh by control vectors from a file, without gloves or clock");
-  command.add_option("MESH", options->mesh, "OBJ or PLY file").required();
+  command.add_option("MESH", options->mesh, "OBJ, PLY or glTF file").required();
   command
       .add_option("--vectors", options->vectors,
                   "CSV file: x,y,z,dx,dy,dz[,radius], a control vector a line")

@@ -182,7 +182,8 @@ void add(cli::Command& program) {
   cli::Command command =
       program.add_command("picture", "Draws a model or a recording as a PNG, without a screen");
   command
-      .add_option("FILE", options->file, "OBJ or PLY file, or what `nendo run --record` recorded")
+      .add_option("FILE", options->file,
+                  "OBJ, PLY or glTF file, or what `nendo run --record` recorded")
       .required();
   command.add_option("--out", options->out, "Where to write the picture, .png").required();
   command.add_option("--view", options->view,

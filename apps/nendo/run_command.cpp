@@ -239,7 +239,7 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", run_options.mesh,
-                     "OBJ or PLY file to shape; without it, the shipped Moai");
+                     "OBJ, PLY or glTF file to shape; without it, the shipped Moai");
   command.add_option("--puppet", run_options.puppet_file,
                      "A puppet file, or face: what each finger does to the model, in place of "
                      "hands that touch it");

@@ -151,7 +151,7 @@ void add(cli::Command& program) {
   command.add_option("--left", arguments->run.left, "GLOVE on the left hand; without any, two sim");
   command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
   command.add_option("MODEL,--mesh", arguments->run.mesh,
-                     "OBJ or PLY file; without it, the shipped Moai");
+                     "OBJ, PLY or glTF file; without it, the shipped Moai");
   command.add_option("--mode", arguments->mode, "type1 or type2");
   command.add_option("--changes", arguments->changes_a_minute,
                      "Changes the radius so many times a minute, in every other second, and counts "

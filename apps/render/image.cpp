@@ -61,28 +61,28 @@ Result<void> write_png(const std::filesystem::path& path, const Image& image) {
   return replace_file(path, contents);
 }
 
-Result<Image> read_png(const std::filesystem::path& path) {
-  const auto contents = read_file(path, most_png_bytes, "picture");
-  if (!contents) return contents.error();
+Result<Image> decode_png(std::string_view contents, const std::string& name) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_memory(&header, contents->data(), contents->size()) == 0)
-    return Error{Errc::bad_input, path.string() + ": not a PNG picture: " + header.message};
+  if (png_image_begin_read_from_memory(&header, contents.data(), contents.size()) == 0)
+    return Error{Errc::bad_input, name + ": not a PNG picture: " + header.message};
   if (header.width > Size::most || header.height > Size::most) {
     png_image_free(&header);
-    return Error{Errc::bad_input, path.string() + ": more than " + std::to_string(Size::most) +
+    return Error{Errc::bad_input, name + ": more than " + std::to_string(Size::most) +
                                       " pixels wide or high; use a smaller picture"};
   }
   header.format = PNG_FORMAT_RGB;
-  Image image({static_cast<int>(header.width), static_cast<int>(header.height)});
-  std::vector<Pixel> pixels(image.pixels().size());
+  const Size size{static_cast<int>(header.width), static_cast<int>(header.height)};
+  std::vector<Pixel> pixels(std::size_t{header.width} * header.height);
   if (png_image_finish_read(&header, nullptr, pixels.data(), 0, nullptr) == 0)
-    return Error{Errc::bad_input, path.string() + ": a damaged picture: " + header.message};
-  for (int y = 0; y < image.size().height; ++y)
-    for (int x = 0; x < image.size().width; ++x)
-      image.at(x, y) =
-          pixels[static_cast<std::size_t>(y) * header.width + static_cast<std::size_t>(x)];
-  return image;
+    return Error{Errc::bad_input, name + ": a damaged picture: " + header.message};
+  return Image(size, std::move(pixels));
+}
+
+Result<Image> read_png(const std::filesystem::path& path) {
+  const auto contents = read_file(path, most_png_bytes, "picture");
+  if (!contents) return contents.error();
+  return decode_png(*contents, path.string());
 }
 
 } // namespace nendo::render

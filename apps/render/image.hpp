@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -30,6 +31,8 @@ std::optional<Size> size_named(std::string_view text) noexcept;
 class Image {
 public:
   explicit Image(Size size, Pixel colour = {255, 255, 255});
+  /// Takes the pixels row by row from the top. There must be as many as the size says.
+  Image(Size size, std::vector<Pixel> pixels) : size_(size), pixels_(std::move(pixels)) {}
 
   Size size() const noexcept { return size_; }
   Pixel& at(int x, int y) noexcept { return pixels_[index(x, y)]; }
@@ -55,6 +58,8 @@ private:
 Result<void> write_png(const std::filesystem::path& path, const Image& image);
 /// Reads a PNG file. Blocks. Error: bad_input (no PNG, or too large).
 Result<Image> read_png(const std::filesystem::path& path);
+/// Does the same with the file's contents; `name` is what errors call it.
+Result<Image> decode_png(std::string_view contents, const std::string& name);
 
 /// Writes words in a plain upright stroke font. `height` is the height of capitals above the
 /// baseline in pixels, and (x, y) is where the baseline begins. A character that the font does not

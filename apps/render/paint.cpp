@@ -1,9 +1,12 @@
 #include "render/paint.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace nendo::render {
 
+using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 namespace {
@@ -21,6 +24,32 @@ bool is_drawn(const deform::Material& material) {
 Vector3f colour_of(const deform::Material* material, bool has_more) {
   if (material != nullptr && material->colour) return material->colour->head<3>();
   return has_more ? Vector3f(Vector3f::Ones()) : clay; // white is coloured by what is on it
+}
+
+using Textures = std::vector<std::shared_ptr<const TextureImage>>;
+
+/// Of each material, its texture, decoded; null if there is none.
+Textures textures_of(const deform::Mesh& mesh) {
+  Textures decoded(mesh.look.textures.size());
+  Textures of_materials(mesh.look.materials.size());
+  if (mesh.corner_texcoords.empty()) return of_materials;
+  // A small file can be a large picture, and a model can have many.
+  std::size_t left = std::size_t{1} << 29; // pixels
+  std::vector<bool> tried(decoded.size(), false);
+  for (std::size_t at = 0; at < of_materials.size(); ++at) {
+    const std::uint32_t number = mesh.look.materials[at].texture;
+    if (number == deform::no_index) continue;
+    const deform::Texture& texture = mesh.look.textures[number];
+    if (!tried[number] && texture.contents && left > 0) {
+      tried[number] = true;
+      if (auto image = decode_picture(*texture.contents)) {
+        left -= std::min(left, image->pixels().size());
+        decoded[number] = std::make_shared<const TextureImage>(*std::move(image));
+      }
+    }
+    of_materials[at] = decoded[number];
+  }
+  return of_materials;
 }
 
 /// Faces by their material's number plus one, and 0 without one, in order.
@@ -47,31 +76,53 @@ Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
   auto faces = faces_by_material(mesh, false);
   const auto is_empty = [](const auto& some) { return some.empty(); };
   if (std::all_of(faces.begin(), faces.end(), is_empty)) faces = faces_by_material(mesh, true);
+  const Textures textures = textures_of(mesh);
+  const bool textured = std::any_of(textures.begin(), textures.end(),
+                                    [](const auto& texture) { return texture != nullptr; });
   corners.clear();
   for (std::size_t at = 0; at < faces.size(); ++at) {
+    const auto texture = at == 0 ? nullptr : textures[at - 1];
     Coat coat{corners.size() / 3, 0,
-              colour_of(at == 0 ? nullptr : &look.materials[at - 1], !vertex_colours_.empty())};
+              colour_of(at == 0 ? nullptr : &look.materials[at - 1],
+                        !vertex_colours_.empty() || texture != nullptr),
+              texture};
     for (const std::uint32_t face : faces[at]) {
       const std::uint32_t begin = mesh.face_starts[face];
       for (std::uint32_t corner = begin + 2; corner < mesh.face_starts[face + 1]; ++corner)
-        for (const std::uint32_t of : {begin, corner - 1, corner})
+        for (const std::uint32_t of : {begin, corner - 1, corner}) {
           corners.push_back(mesh.face_corners[of]);
+          if (textured)
+            texcoords_.emplace_back(mesh.texcoords.col(mesh.corner_texcoords[of]).cast<float>());
+        }
     }
     coat.count = corners.size() / 3 - coat.first;
     if (coat.count == 0) continue;
     coat_of_.insert(coat_of_.end(), coat.count, static_cast<std::uint32_t>(coats_.size()));
-    coats_.push_back(coat);
+    coats_.push_back(std::move(coat));
   }
 }
 
 Vector3f Paint::colour_at(std::size_t triangle, const std::array<std::uint32_t, 3>& vertices,
-                          const std::array<float, 3>& shares) const noexcept {
-  const Vector3f& base = coats_[coat_of_[triangle]].colour;
-  if (vertex_colours_.empty()) return base;
-  Vector3f mixed = Vector3f::Zero();
-  for (std::size_t k = 0; k < 3; ++k)
-    mixed += shares[k] * vertex_colours_[vertices[k]];
-  return base.cwiseProduct(mixed);
+                          const std::array<float, 3>& shares, float samples) const noexcept {
+  const Coat& coat = coats_[coat_of_[triangle]];
+  Vector3f colour = coat.colour;
+  if (!vertex_colours_.empty()) {
+    Vector3f mixed = Vector3f::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      mixed += shares[k] * vertex_colours_[vertices[k]];
+    colour = colour.cwiseProduct(mixed);
+  }
+  if (!coat.texture) return colour;
+  const Vector2f* const uv = &texcoords_[3 * triangle];
+  const Vector2f place = shares[0] * uv[0] + shares[1] * uv[1] + shares[2] * uv[2];
+  const Vector2f along = uv[1] - uv[0];
+  const Vector2f across = uv[2] - uv[0];
+  const Size size = coat.texture->image().size();
+  const float area = 0.5F * std::abs(along.x() * across.y() - along.y() * across.x());
+  const float pixels =
+      std::sqrt(area * static_cast<float>(size.width) * static_cast<float>(size.height));
+  return colour.cwiseProduct(
+      coat.texture->colour_at(place, samples > 0.0F ? pixels / samples : 0.0F));
 }
 
 } // namespace nendo::render

@@ -9,6 +9,8 @@
 
 #include <nendo/deform/mesh.hpp>
 
+#include "render/texture_image.hpp"
+
 namespace nendo::render {
 
 /// Triangles that follow each other and have one base colour.
@@ -16,6 +18,7 @@ struct Coat {
   std::size_t first = 0;                            ///< triangle
   std::size_t count = 0;                            ///< of triangles
   Eigen::Vector3f colour = Eigen::Vector3f::Ones(); ///< linear
+  std::shared_ptr<const TextureImage> texture{};    ///< multiplies the colour; may be null
 };
 
 /// Never changes once it is made, so threads may share it.
@@ -30,15 +33,19 @@ public:
   /// Returns one linear colour for each vertex, which multiplies the coat's; empty if all are
   /// white.
   const std::vector<Eigen::Vector3f>& vertex_colours() const noexcept { return vertex_colours_; }
+  /// Returns the texture coordinates of each triangle's corners; empty if no coat has a texture.
+  const std::vector<Eigen::Vector2f>& texcoords() const noexcept { return texcoords_; }
   /// Returns the linear colour of a place in a triangle. `vertices` are its corners, and `shares`
-  /// their shares, whose sum is 1.
+  /// their shares, whose sum is 1. `samples` is how many samples of the picture fit along a side of
+  /// a square as large as the triangle.
   Eigen::Vector3f colour_at(std::size_t triangle, const std::array<std::uint32_t, 3>& vertices,
-                            const std::array<float, 3>& shares) const noexcept;
+                            const std::array<float, 3>& shares, float samples) const noexcept;
 
 private:
   std::vector<Coat> coats_;
   std::vector<std::uint32_t> coat_of_; ///< of each triangle
   std::vector<Eigen::Vector3f> vertex_colours_;
+  std::vector<Eigen::Vector2f> texcoords_;
 };
 
 } // namespace nendo::render

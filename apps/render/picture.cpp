@@ -104,9 +104,14 @@ ShadedPlace place_of(const Hit& hit, const Seen& seen) {
   return at;
 }
 
-Vector3f painted_colour(const Hit& hit, const Surface& surface) {
+/// footprint_m: the size of a sample at that place.
+Vector3f painted_colour(const Hit& hit, const Surface& surface, float footprint_m) {
   const std::uint32_t* const corner = &surface.corners[hit.triangle];
-  return surface.paint->colour_at(hit.triangle / 3, {corner[0], corner[1], corner[2]}, hit.shares);
+  const Vector3f& first = surface.places[corner[0]];
+  const float area =
+      0.5F * (surface.places[corner[1]] - first).cross(surface.places[corner[2]] - first).norm();
+  return surface.paint->colour_at(hit.triangle / 3, {corner[0], corner[1], corner[2]}, hit.shares,
+                                  std::sqrt(area) / footprint_m);
 }
 
 struct View3d {
@@ -152,7 +157,9 @@ Vector3f opaque_colour(const View3d& view, const Hit& hit, float height) {
   const auto& maps = view.lighting->maps();
   const ShadedPlace at = place_of(hit, seen);
   Material material = seen.surface->material;
-  if (seen.surface->paint) material.colour = painted_colour(hit, *seen.surface);
+  if (seen.surface->paint)
+    material.colour =
+        painted_colour(hit, *seen.surface, view.projection.footprint_m(1.0F / hit.inverse_depth));
   if (hit.surface < view.grounds_from) return shade(at, material, view.projection.eye(), maps);
   return ground_brightness(at, material, view.projection.footprint_m(1.0F / hit.inverse_depth),
                            maps) *

@@ -9,7 +9,8 @@ void HoldTracker::follow(const flow::Frame& frame) noexcept {
 }
 
 void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& scene_frame) {
-  scene_frame.held = frame.held;
+  const bool is_puppet = frame.function_count > 0; // which fingertips do not touch
+  scene_frame.held = frame.held && !is_puppet;
   for (std::size_t slot = 0; slot < scene_frame.hands.size(); ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];
     scene_frame.hands[slot].reset();

@@ -29,8 +29,8 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
 }
 
 flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
-                              const std::vector<flow::HandInput>& inputs,
-                              const deform::Mesh& model) {
+                              const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
+                              bool is_puppet) {
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : inputs) {
     const Side glove = hand.first.side;
@@ -38,7 +38,8 @@ flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
     tips[flow::Placement::index_of(hand.side)] =
         hand.skeleton(glove).pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
   }
-  flow::Placement placement = flow::place_hands(model, tips);
+  flow::Placement placement =
+      is_puppet ? flow::place_player(model) : flow::place_hands(model, tips);
   for (const auto& hand : open) {
     if (hand.T_stage_wrist)
       placement.T_stage_wrist[flow::Placement::index_of(hand.side)] = *hand.T_stage_wrist;
@@ -108,7 +109,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 
   if (options.puppet)
     if (const auto fine = set_rig(options, model, loop_options); !fine) return fine.error();
-  const auto placement = placement_for(hands, inputs, model);
+  const auto placement = placement_for(hands, inputs, model, options.puppet.has_value());
   PlacedSetup setup{inputs, placement, loop_options};
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {

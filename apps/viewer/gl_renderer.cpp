@@ -109,6 +109,7 @@ void GlRenderer::set_model(const deform::BlockLayout& layout, const render::Scen
   glBindVertexArray(vertex_array_);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, model_indices_);
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes_of(corners_), corners_.data(), GL_STATIC_DRAW);
+  textures_.set(*paint_, corners_);
   whole_ = false;
   blocks_sent_ = 0;
 }
@@ -176,15 +177,23 @@ void GlRenderer::use_material(const render::Material& material) const {
   set(program_, "unlit", material.opacity > 0.0F ? 0 : 1);
 }
 
-// One call for each colour.
+// One call for each colour. Where there is a texture, a vertex has several texture coordinates, so
+// each corner is drawn by itself, and the shader looks up its vertex.
 void GlRenderer::draw_model() const {
   set(program_, "vertex_colours", paint_->vertex_colours().empty() ? 0 : 1);
-  for (const render::Coat& coat : paint_->coats()) {
+  for (std::size_t at = 0; at < paint_->coats().size(); ++at) {
+    const render::Coat& coat = paint_->coats()[at];
+    const auto count = static_cast<GLsizei>(3 * coat.count);
     set(program_, "colour", coat.colour);
+    const bool textured = textures_.use(at);
+    set(program_, "textured", textured ? 1 : 0);
     const std::size_t offset = 3 * coat.first * sizeof(std::uint32_t);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * coat.count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(offset));
+    if (textured)
+      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * coat.first), count);
+    else
+      glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
   }
+  set(program_, "textured", 0);
   set(program_, "vertex_colours", 0);
 }
 
@@ -257,6 +266,7 @@ void GlRenderer::use_model() const {
   set(program_, "block_places", 0);
   set(program_, "block_normals", 1);
   set(program_, "block_colours", 2);
+  textures_.bind(program_);
   for (std::size_t which = 0; which < 3; ++which) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(which));
     glBindTexture(GL_TEXTURE_BUFFER, model_textures_[which]);

@@ -13,6 +13,7 @@
 #include "render/camera.hpp"
 #include "render/image.hpp"
 #include "render/scene.hpp"
+#include "viewer/model_textures.hpp"
 #include "viewer/shadow_map.hpp"
 
 namespace nendo::viewer {
@@ -66,6 +67,7 @@ private:
   std::vector<Eigen::Vector3f> places_, normals_, new_normals_;
   std::vector<float> block_;
   Eigen::AlignedBox3f box_; ///< of the whole model, in the scene
+  ModelTextures textures_;
   ShadowMap shadows_;
   Eigen::Vector3f offset_ = Eigen::Vector3f::Zero();
   float scale_ = 1.0F;

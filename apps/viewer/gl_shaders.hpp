@@ -10,6 +10,9 @@ uniform samplerBuffer block_places;   // 64 x, 64 y, 64 z, and again
 uniform samplerBuffer block_normals;
 uniform samplerBuffer block_colours;
 uniform bool vertex_colours;
+uniform bool textured; // then vertices are counted by corners
+uniform usamplerBuffer corner_places;
+uniform samplerBuffer corner_texcoords;
 uniform float scale;
 uniform vec3 offset;
 layout(location = 0) in vec3 given_place;
@@ -20,13 +23,16 @@ out vec3 place;
 centroid out vec3 within;
 centroid out vec3 normal;
 centroid out vec3 tint;
+centroid out vec2 texcoord;
 vec3 of_block(samplerBuffer blocks) {
-  int at = gl_VertexID / 64 * 192 + gl_VertexID % 64;
+  int vertex = textured ? int(texelFetch(corner_places, gl_VertexID).r) : gl_VertexID;
+  int at = vertex / 64 * 192 + vertex % 64;
   return vec3(texelFetch(blocks, at).r, texelFetch(blocks, at + 64).r, texelFetch(blocks, at + 128).r);
 }
 void main() {
   place = from_blocks ? scale * of_block(block_places) + offset : given_place;
   normal = from_blocks ? of_block(block_normals) : given_normal;
+  texcoord = textured ? texelFetch(corner_texcoords, gl_VertexID).rg : vec2(0.0);
   tint = vertex_colours ? of_block(block_colours) : vec3(1.0);
   within = place;
   gl_Position = clip_of_world * vec4(place, 1.0);
@@ -44,6 +50,9 @@ in vec3 place;
 centroid in vec3 within;
 centroid in vec3 normal;
 centroid in vec3 tint;
+centroid in vec2 texcoord;
+uniform bool textured;
+uniform sampler2D picture;
 out vec4 shown;
 vec3 screen(vec3 linear) {
   vec3 soft = mix(linear, 0.8 + (linear - 0.8) / (1.0 + (linear - 0.8) / 0.2), greaterThan(linear, vec3(0.8)));
@@ -91,6 +100,10 @@ void main() {
   if (facets) n = normalize(side);
   float across = 1.0 - clamp(dot(n, sight), 0.0, 1.0);
   float part = mix(opacity, rim_opacity, across * across * across);
+  vec3 own = colour * tint;
+  // Its rows begin at the top, and texture coordinates at the bottom.
+  vec3 seen = texture(picture, vec2(texcoord.x, 1.0 - texcoord.y)).rgb;
+  if (textured) own *= seen;
   if (unlit) { shown = vec4(screen(colour), part); return; }
   vec3 light = vec3(0.54 * (0.71 + 0.29 * n.y));
   float lit = dot(n, key) > -0.12 ? lit_part(n) : 0.0;
@@ -98,7 +111,7 @@ void main() {
   light += max(0.0, (dot(n, fill) + 0.3) / 1.3) * vec3(0.22, 0.27, 0.34);
   light += across * across * max(0.0, (dot(n, rim) + 0.2) / 1.2) * vec3(0.62, 0.66, 0.72);
   float highlight = pow(max(0.0, dot(n, normalize(key + sight))), 32.0);
-  shown = vec4(screen(colour * tint * light + gloss * lit * highlight * vec3(1.42, 1.35, 1.25)), part);
+  shown = vec4(screen(own * light + gloss * lit * highlight * vec3(1.42, 1.35, 1.25)), part);
 }
 )";
 

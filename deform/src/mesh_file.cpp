@@ -6,6 +6,7 @@
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
+#include "gltf_document.hpp"
 #include "mesh_formats.hpp"
 #include "model_folder.hpp"
 #include "mtl_file.hpp"
@@ -38,9 +39,11 @@ Result<Mesh> parse_text(std::string_view text, std::string_view name, const Mode
   if (text.empty()) return bad_file(name, "is empty");
   if (text.size() > most_file_bytes) return bad_file(name, "is larger than 4 GiB");
   text = without_mark(text);
-  auto mesh = is_ply(text) ? parse_ply(text, name) : parse_obj_in(text, name, folder);
+  auto mesh = is_gltf(text)  ? parse_gltf(text, name, folder)
+              : is_ply(text) ? parse_ply(text, name)
+                             : parse_obj_in(text, name, folder);
   if (mesh && mesh->vertices.cols() == 0)
-    return bad_file(name, "has no vertices, so it is no OBJ or PLY mesh");
+    return bad_file(name, "has no vertices, so it is no OBJ, PLY or glTF mesh");
   return mesh;
 }
 

@@ -21,6 +21,10 @@ struct ObjModel {
 Result<ObjModel> parse_obj(std::string_view text, std::string_view name);
 Result<Mesh> parse_ply(std::string_view text, std::string_view name);
 
+class ModelFolder;
+/// Reads a glTF, binary or JSON. `folder` has the other files that it names; null: there are none.
+Result<Mesh> parse_gltf(std::string_view text, std::string_view name, const ModelFolder* folder);
+
 /// Returns the mesh as OBJ. `library` names the file with its materials; it is left out if empty.
 std::string obj_text(const Mesh& mesh, std::string_view library);
 /// Returns the mesh as binary little-endian PLY, with coordinates in double.

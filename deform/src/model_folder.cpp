@@ -34,8 +34,8 @@ std::optional<std::string> name_in_folder(std::string_view named) {
   if (slashed.ends_with('/') || last.empty() || last == "." || last == "..") return std::nullopt;
   if (!leads_out) return name;
   // "C:skin.png": the drive is no part of the name.
-  if (last.size() > 1 && last[1] == ':') last.remove_prefix(2);
-  if (last.empty()) return std::nullopt;
+  last.remove_prefix(last.rfind(':') + 1); // of npos, 0
+  if (last.empty() || last == "." || last == "..") return std::nullopt;
   return std::string(last);
 }
 

@@ -5,12 +5,17 @@
 
 namespace nendo::deform {
 
+// In double, so that the float is the same from every machine's pow().
 inline float linear_of(float encoded) noexcept {
-  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+  const auto value = static_cast<double>(encoded);
+  return static_cast<float>(value <= 0.04045 ? value / 12.92
+                                             : std::pow((value + 0.055) / 1.055, 2.4));
 }
 
 inline float encoded_of(float linear) noexcept {
-  return linear <= 0.0031308F ? linear * 12.92F : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+  const auto value = static_cast<double>(linear);
+  return static_cast<float>(value <= 0.0031308 ? value * 12.92
+                                               : 1.055 * std::pow(value, 1.0 / 2.4) - 0.055);
 }
 
 } // namespace nendo::deform

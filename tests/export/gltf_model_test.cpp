@@ -31,7 +31,7 @@ TEST_SUITE("gltf_model") {
     const auto weights = model.add_control_targets(morphs, file);
     const auto targets = static_cast<Eigen::Index>(model.target_count());
     REQUIRE(targets > 10);
-    model.add_to(file, GltfModel::add_material(file), 1.0, {});
+    model.add_to(file, GltfMaterials(source->model(0).look, file), 1.0, {});
     REQUIRE(file.write(motion.path("model.glb")));
     const Glb glb(test::file_bytes(motion.path("model.glb")));
     const auto& mesh = glb.json["meshes"][0];

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <memory>
 #include <numbers>
+#include <string>
 
 #include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
@@ -11,6 +15,7 @@
 #include "render/picture.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/scene_window.hpp"
@@ -249,6 +254,20 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
       if (mesh.vertices(1, vertex) > 0.0) mesh.look.vertex_colours(1, vertex) = 0.2F;
     for (std::uint32_t face = 0; face < mesh.face_count(); ++face)
       mesh.look.face_materials.push_back(face % 7 == 0 ? 2 : face / 300 % 2);
+    // A texture on the second, that turns its blue into green on one side.
+    Image picture({64, 64}, {255, 255, 255});
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 32; ++x)
+        picture.at(x, y) = {255, 60, 0};
+    const test::TemporaryFolder folder;
+    REQUIRE(write_png(folder.path() / "t.png", picture));
+    std::ifstream file(folder.path() / "t.png", std::ios::binary);
+    mesh.look.textures = {
+        {"t.png", std::make_shared<const std::string>(std::istreambuf_iterator<char>(file),
+                                                      std::istreambuf_iterator<char>())}};
+    mesh.look.materials[1] = {"b", Eigen::Vector4f(0.4F, 0.4F, 0.6F, 1.0F), 0, true};
+    mesh.texcoords = (mesh.vertices.topRows<2>() / 2.0).array() + 0.5;
+    mesh.corner_texcoords = mesh.face_corners;
     Look look(mesh);
     look.window->parts().ground = false;
     const Image image = look.picture();

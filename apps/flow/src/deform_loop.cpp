@@ -198,6 +198,7 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   }
   if (!rig_) return;
   play_rig();
+  frame.function_count = static_cast<std::uint32_t>(rig_->values().size());
   for (std::size_t at = 0; at < rig_->values().size(); ++at)
     frame.functions[at] = static_cast<float>(rig_->values()[at]);
 }

@@ -189,4 +189,33 @@ Placement place_hands(const deform::Mesh& model,
   return placement;
 }
 
+Placement place_player(const deform::Mesh& model, double model_size_m) {
+  constexpr double aside_m = 0.04;  // from the model's side to the wrist
+  constexpr double before_m = 0.06; // the model's front
+  constexpr double height_m = 0.01; // of the wrist above the model's foot
+  constexpr double forward_rad = 0.35;
+  constexpr double inwards_rad = 0.25;
+  Placement placement;
+  const Vector3d low = model.vertices.rowwise().minCoeff();
+  const Vector3d high = model.vertices.rowwise().maxCoeff();
+  const double size = (high - low).maxCoeff();
+  placement.units_per_metre = size > 0.0 ? size / model_size_m : 1.0;
+  for (const Side side : {Side::left, Side::right}) {
+    const double outwards = outwards_of(side);
+    Matrix3d upright; // the back of the hand to the viewer, fingers up
+    upright.col(1) = Vector3d::UnitZ();
+    upright.col(2) = -Vector3d::UnitY();
+    upright.col(0) = upright.col(1).cross(upright.col(2));
+    Isometry3d& T = placement.T_stage_wrist[Placement::index_of(side)];
+    T.linear() = (Eigen::AngleAxisd(-forward_rad, Vector3d::UnitX()) *
+                  Eigen::AngleAxisd(outwards * inwards_rad, Vector3d::UnitZ()))
+                     .toRotationMatrix() *
+                 upright;
+    const double side_x = outwards > 0.0 ? high.x() : low.x();
+    T.translation() = Vector3d(side_x, low.y(), high.z()) / placement.units_per_metre +
+                      Vector3d(outwards * aside_m, height_m, before_m);
+  }
+  return placement;
+}
+
 } // namespace nendo::flow

@@ -45,7 +45,8 @@ std::vector<deform::FollowingPart> following_parts(const Puppet& puppet, const M
     const Vector3d place = model.vertices.col(vertex);
     const auto takes =
         std::find_if(puppet.parts.begin(), puppet.parts.end(), [&](const PuppetPart& part) {
-          return !part.inside || is_in(*part.inside, place);
+          return vertex >= part.first && vertex <= part.last &&
+                 (!part.inside || is_in(*part.inside, place));
         });
     if (takes != puppet.parts.end())
       parts[static_cast<std::size_t>(takes - puppet.parts.begin())].vertices.push_back(vertex);

@@ -211,13 +211,20 @@ private:
   }
 
   void part(const toml::table& table) {
-    reader_.allow_only(table, {"inside", "points"});
+    reader_.allow_only(table, {"vertices", "inside", "points"});
     PuppetPart& read = puppet_.parts.emplace_back();
     if (table.get("inside") != nullptr) {
       const toml::array* const box = reader_.array(table, "inside");
       if (box == nullptr) return;
       if (box->size() != 2) return reader_.complain(table, "inside must be two corners of a box");
       read.inside = {place((*box)[0], "a corner"), place((*box)[1], "a corner")};
+    }
+    if (const toml::node* const range = table.get("vertices")) {
+      const auto numbers = reader_.numbers<2>(*range, "vertices");
+      if (!(numbers[0] >= 0.0 && numbers[1] >= numbers[0] && numbers[1] < 4294967295.0))
+        return reader_.complain(table, "vertices must be the first and the last of them");
+      read.first = static_cast<std::uint32_t>(numbers[0]);
+      read.last = static_cast<std::uint32_t>(numbers[1]);
     }
     if (table.get("points") == nullptr) return;
     const toml::array* const points = reader_.array(table, "points");

@@ -1,6 +1,7 @@
 #pragma once
-// Reads and writes OBJ and PLY (ASCII, or binary of either byte order). Files are not trusted:
-// every count is checked against the bytes that are there before anything is allocated.
+// Reads OBJ, PLY (ASCII, or binary of either byte order) and glTF, and writes OBJ and PLY. Files
+// are not trusted: every count is checked against the bytes that are there before anything is
+// allocated.
 
 #include <filesystem>
 #include <span>
@@ -11,16 +12,21 @@
 
 namespace nendo::deform {
 
-/// Parses a PLY, which begins with "ply", or else an OBJ. It keeps vertices, faces of any size and
-/// vertices' colours, and of an OBJ texture coordinates, materials' names, groups and objects. It
-/// drops normals, because they change. `name` is what error messages call the file. Error:
-/// bad_input with the line or the byte offset, for example if there are no vertices, a coordinate
-/// is not finite, an index is wrong, or the file is cut off.
+/// Parses a PLY, which begins with "ply", a glTF, which begins with "glTF" or "{", or else an OBJ.
+/// It keeps vertices, faces of any size and vertices' colours, and of an OBJ texture coordinates,
+/// materials' names, groups and objects. Of a glTF (Khronos specification 2.0) it takes all meshes
+/// of the default scene in the places of their nodes, with materials, textures and texture
+/// coordinates; each node is an object. Vertices of a mesh that have the same place, normal and
+/// colour become one, because glTF splits them where texture coordinates meet. Normals are dropped,
+/// because they change. `name` is what error messages call the file. Error: bad_input with the
+/// line, the byte offset or the part of the document, for example if there are no vertices, a
+/// coordinate is not finite, an index is wrong, or the file is cut off.
 Result<Mesh> parse_mesh(std::span<const std::byte> bytes, std::string_view name);
 
-/// Reads and parses a file, and the materials (MTL) and textures that it names. Those are read from
-/// the file's own folder and below it, and from nowhere else; a model may lack them. Blocks for as
-/// long as the disk does. Error: bad_input, also when the file is missing or cannot be read.
+/// Reads and parses a file, and the materials (MTL), textures and buffers that it names. Those are
+/// read from the file's own folder and below it, and from nowhere else; a model may lack materials
+/// and textures. Blocks for as long as the disk does. Error: bad_input, also when the file is
+/// missing or cannot be read.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 /// Writes OBJ or PLY (binary little-endian), by the ending of the path. It writes a temporary file

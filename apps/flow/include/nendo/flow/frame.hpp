@@ -71,8 +71,10 @@ struct Frame {
   deform::FieldSequence fields;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   std::uint32_t model = 0;   ///< the version of the model that `shape` is of
-  /// The values of a puppet's functions, in their order; 0 without a puppet.
+  /// The values of a puppet's functions, in their order, and how many there are; 0 without a
+  /// puppet.
   std::array<float, puppet::Puppet::most_functions> functions{};
+  std::uint32_t function_count = 0;
   /// The deformed vertices, which DeformLoop::layout(model) turns into points. The stamps tell
   /// which blocks differ from those of an earlier frame of the same version.
   deform::BlockShape shape;

@@ -40,4 +40,8 @@ Placement place_hands(const deform::Mesh& model,
                       const std::array<std::optional<Fingertips>, 2>& tips_wrist,
                       const PlacementOptions& options = {});
 
+/// Places the hands of a puppet's player before the model and beside it, as the player sees them:
+/// backs towards the viewer, fingers up and a little forward. Nothing is searched for.
+Placement place_player(const deform::Mesh& model, double model_size_m = 0.46);
+
 } // namespace nendo::flow

@@ -55,6 +55,8 @@ struct Function {
 /// Vertices that belong to no part of the surface that a point stands on, such as teeth.
 struct PuppetPart {
   std::optional<deform::Box> inside{}; ///< only those in here, model units; otherwise all
+  std::uint32_t first = 0;             ///< only those from this one
+  std::uint32_t last = 0xFFFFFFFF;     ///< up to this one
   std::vector<std::size_t> points;     ///< that they follow by an affine map; empty: the surface
 };
 

@@ -1,0 +1,76 @@
+#include "export/gltf_materials.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace nendo::exporting {
+namespace {
+
+using Json = GlbFile::Json;
+
+const Eigen::Vector4f clay(0.72F, 0.56F, 0.44F, 1.0F);
+
+/// The media type of a picture that glTF allows, or nullptr.
+const char* media_type_of(std::string_view contents) noexcept {
+  if (contents.starts_with("\x89PNG\r\n\x1A\n")) return "image/png";
+  if (contents.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
+  return nullptr;
+}
+
+std::string without_ending(const std::string& file) {
+  return std::filesystem::path(file).stem().string();
+}
+
+/// Of each texture of the look, its index in the file.
+std::vector<std::optional<GlbFile::Index>> add_textures(const deform::Appearance& look,
+                                                        GlbFile& file) {
+  std::vector<std::optional<GlbFile::Index>> indices;
+  for (const deform::Texture& texture : look.textures) {
+    const char* const type = texture.contents ? media_type_of(*texture.contents) : nullptr;
+    indices.emplace_back();
+    if (type == nullptr) continue;
+    const auto image = file.add("images", {{"name", without_ending(texture.file)},
+                                           {"mimeType", type},
+                                           {"bufferView", file.add_bytes(*texture.contents)}});
+    indices.back() = file.add("textures", {{"source", image}});
+  }
+  return indices;
+}
+
+Json material_named(const std::string& name, const Eigen::Vector4f& colour) {
+  Json material{{"name", name},
+                {"doubleSided", true},
+                {"pbrMetallicRoughness",
+                 {{"baseColorFactor", {colour[0], colour[1], colour[2], colour[3]}},
+                  {"metallicFactor", 0.0},
+                  {"roughnessFactor", 0.8}}}};
+  if (colour[3] < 1.0F) material["alphaMode"] = "BLEND";
+  return material;
+}
+
+} // namespace
+
+GltfMaterials::GltfMaterials(const deform::Appearance& look, GlbFile& file) {
+  const auto textures = add_textures(look, file);
+  for (const deform::Material& given : look.materials) {
+    const bool has_texture = given.texture != deform::no_index && textures[given.texture];
+    Eigen::Vector4f colour =
+        given.colour.value_or(has_texture ? Eigen::Vector4f(Eigen::Vector4f::Ones()) : clay);
+    if (!given.drawn) colour[3] = 0.0F;
+    Json material = material_named(given.name, colour);
+    if (has_texture)
+      material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *textures[given.texture]}};
+    indices_.push_back(file.add("materials", std::move(material)));
+  }
+  const auto& of_face = look.face_materials;
+  if (!of_face.empty() &&
+      std::find(of_face.begin(), of_face.end(), deform::no_index) == of_face.end())
+    return;
+  const bool coloured = look.vertex_colours.cols() > 0; // they multiply it
+  plain_ = file.add("materials", coloured ? material_named("white", Eigen::Vector4f::Ones())
+                                          : material_named("clay", clay));
+}
+
+} // namespace nendo::exporting
