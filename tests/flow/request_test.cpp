@@ -143,8 +143,7 @@ TEST_SUITE("request") {
     }
   }
 
-  TEST_CASE(
-      "what hands have pulled with a puppet along the surface is taken back in the same way") {
+  TEST_CASE("what a puppet has pulled along the surface is taken back in the same way") {
     const auto puppet = puppet::parse_puppet("version = 1\nmodel = \"ball.obj\"\n"
                                              "[points]\nnose = { at = [0, 0, 1], radius = 1 }\n"
                                              "[functions.poke]\ninput = \"left.index_flexion\"\n"
@@ -161,16 +160,16 @@ TEST_SUITE("request") {
     const Points committed = person.shape();
     person.move(12, 25);
     const Points pulled = person.shape();
-    REQUIRE(pulled != committed);
+    REQUIRE((pulled != committed));
     const Frame& back = person.ask(Request::undo, 25);
-    CHECK(person.shape() == committed);
+    CHECK((person.shape() == committed));
     CHECK(back.held);
     CHECK(back.redo_steps == 1);
     person.ask(Request::redo, 25);
-    CHECK(person.shape() == pulled);
+    CHECK((person.shape() == pulled));
     person.ask(Request::undo, 25);
     person.ask(Request::undo, 25);
-    CHECK(person.shape() == test.model.vertices);
+    CHECK((person.shape() == test.model.vertices));
     CHECK(person.bend(25).redo_steps == 2);
   }
 
