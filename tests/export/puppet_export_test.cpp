@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "export/control_morphs.hpp"
 #include "export/gltf_export.hpp"
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"
