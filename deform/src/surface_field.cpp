@@ -82,6 +82,20 @@ VectorXd affine_coordinates(const Mesh& mesh, const SurfaceSetup& setup,
   return system.completeOrthogonalDecomposition().solve(wanted);
 }
 
+/// Shepard's weights (1968): the inverse squares of the distances, whose sum is made 1.
+VectorXd weights_by_nearness(const Mesh& mesh, const SurfaceSetup& setup,
+                             const std::vector<Index>& points, std::uint32_t vertex) {
+  constexpr double least = 1e-12; // of the squared radius; a vertex may be where a point is
+  VectorXd weights(static_cast<Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const SurfacePoint& point = setup.points[static_cast<std::size_t>(points[k])];
+    const double squared =
+        (point.place.in(mesh.vertices) - mesh.vertices.col(vertex)).squaredNorm();
+    weights[static_cast<Index>(k)] = 1.0 / (squared + least * point.radius * point.radius);
+  }
+  return weights / weights.sum();
+}
+
 } // namespace
 
 SurfaceField::Coefficients::Coefficients(Index points)
@@ -150,7 +164,9 @@ private:
       if (!reached_.empty()) add_functions(vertex, nearest_reached(mesh_, reached_, vertex));
       return;
     }
-    const VectorXd coordinates = affine_coordinates(mesh_, setup_, part.points, vertex);
+    const VectorXd coordinates = part.is_affine
+                                     ? affine_coordinates(mesh_, setup_, part.points, vertex)
+                                     : weights_by_nearness(mesh_, setup_, part.points, vertex);
     for (std::size_t k = 0; k < part.points.size(); ++k)
       add(vertex, functions_.cols() + part.points[k], coordinates[static_cast<Index>(k)]);
   }

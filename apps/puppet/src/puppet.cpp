@@ -37,9 +37,11 @@ std::vector<std::uint32_t> vertices_without_points(const Mesh& model,
 std::vector<deform::FollowingPart> following_parts(const Puppet& puppet, const Mesh& model,
                                                    const std::vector<SurfacePlace>& places) {
   std::vector<deform::FollowingPart> parts(puppet.parts.size());
-  for (std::size_t part = 0; part < parts.size(); ++part)
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    parts[part].is_affine = puppet.parts[part].is_affine;
     for (const std::size_t point : puppet.parts[part].points)
       parts[part].points.push_back(static_cast<Eigen::Index>(point));
+  }
   if (parts.empty()) return parts;
   for (const std::uint32_t vertex : vertices_without_points(model, places)) {
     const Vector3d place = model.vertices.col(vertex);

@@ -211,7 +211,7 @@ private:
   }
 
   void part(const toml::table& table) {
-    reader_.allow_only(table, {"vertices", "inside", "points"});
+    reader_.allow_only(table, {"vertices", "inside", "points", "near"});
     PuppetPart& read = puppet_.parts.emplace_back();
     if (table.get("inside") != nullptr) {
       const toml::array* const box = reader_.array(table, "inside");
@@ -226,17 +226,21 @@ private:
       read.first = static_cast<std::uint32_t>(numbers[0]);
       read.last = static_cast<std::uint32_t>(numbers[1]);
     }
-    if (table.get("points") == nullptr) return;
-    const toml::array* const points = reader_.array(table, "points");
+    if (table.get("points") == nullptr && table.get("near") == nullptr) return;
+    read.is_affine = table.get("points") != nullptr;
+    read_part_points(table, read.is_affine ? "points" : "near", read);
+    if (read.is_affine && read.points.size() < 4)
+      reader_.complain(table, "a part turns with four points or more, which are not in one plane; "
+                              "near = [...] takes any number, without turning");
+  }
+  void read_part_points(const toml::table& table, std::string_view key, PuppetPart& read) {
+    const toml::array* const points = reader_.array(table, key);
     if (points == nullptr) return;
     for (const toml::node& node : *points) {
       const auto name = node.value<std::string>();
-      if (!name) return reader_.complain(node, "points must be names in quotes");
+      if (!name) return reader_.complain(node, std::string(key) + " must be names in quotes");
       read.points.push_back(point_named(node, *name));
     }
-    if (read.points.size() < 4)
-      reader_.complain(table, "a part follows four points or more, which are not in one plane; "
-                              "without points, it follows the surface");
   }
   void mask(const toml::table& table) {
     reader_.allow_only(table, {"at", "radius"});

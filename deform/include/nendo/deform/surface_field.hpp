@@ -27,9 +27,12 @@ struct SurfacePoint {
 /// Vertices that no function reaches along the surface, because they belong to another part of it.
 struct FollowingPart {
   std::vector<std::uint32_t> vertices;
-  /// The start points that they follow by an affine map: where these turn, the part turns. Empty:
-  /// each vertex moves as the nearest one of the surface that the functions reach.
+  /// The start points that they follow. Empty: each vertex moves as the nearest one of the surface
+  /// that the functions reach.
   std::vector<Eigen::Index> points;
+  /// By an affine map: where the points turn, the part turns. Otherwise each vertex moves as the
+  /// mean of the points, weighted by nearness.
+  bool is_affine = true;
 };
 
 struct SurfaceSetup {

@@ -57,7 +57,8 @@ struct PuppetPart {
   std::optional<deform::Box> inside{}; ///< only those in here, model units; otherwise all
   std::uint32_t first = 0;             ///< only those from this one
   std::uint32_t last = 0xFFFFFFFF;     ///< up to this one
-  std::vector<std::size_t> points;     ///< that they follow by an affine map; empty: the surface
+  std::vector<std::size_t> points;     ///< that they follow; empty: the surface
+  bool is_affine = true;               ///< deform::FollowingPart::is_affine
 };
 
 /// What stays as it is, within a radius of a place.
