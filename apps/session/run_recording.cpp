@@ -88,7 +88,10 @@ recording::Setup RunRecorder::setup_now() const {
                                     placed_.setup.options,
                                     std::string(deform::simd_names().front()),
                                     {}};
-  if (options_.puppet) setup.loop->puppet = options_.puppet->text;
+  if (const auto& rig = placed_.setup.options.rig) {
+    setup.loop->puppet = rig->puppet().text;
+    setup.loop->puppet_starts = rig->starts();
+  }
   return setup;
 }
 

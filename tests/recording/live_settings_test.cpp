@@ -25,10 +25,10 @@ namespace {
 std::unique_ptr<RecordedLoop> loop_of(unsigned seed) {
   constexpr std::array actions{SwitchAction::none, SwitchAction::toggle, SwitchAction::commit,
                                SwitchAction::grab};
-  return std::make_unique<RecordedLoop>(seed % 2 == 0 ? Mode::type1 : Mode::type2,
-                                        seed % 3 == 0 ? FilterKind::one_euro : FilterKind::off,
-                                        seed % 5 == 0, seed % 4 >= 2,
-                                        actions[seed % actions.size()]);
+  return std::make_unique<RecordedLoop>(
+      seed % 2 == 0 ? Mode::type1 : Mode::type2,
+      seed % 3 == 0 ? FilterKind::one_euro : FilterKind::off, seed % 5 == 0, seed % 4 >= 2,
+      actions[seed % actions.size()], seed % 4 == 1 ? test::ball_puppet : nullptr);
 }
 
 using Shapes = std::vector<deform::Points>;

@@ -49,7 +49,37 @@ struct LoopFixture {
   std::optional<CountScale> adapt = std::nullopt;
   flow::InputLog* input_log = nullptr;
   std::optional<deform::InjectiveOptions> injective = std::nullopt;
+  const char* puppet = nullptr; ///< the text of its file; null: hands that touch the model
 };
+
+/// A puppet of the ball: two twins, a function that turns three points, one that listens to a
+/// fingertip, a pin.
+inline constexpr const char* ball_puppet = R"(
+version = 1
+model = "ball.obj"
+mirror = "x"
+[points]
+northLeft = { at = [0.5, 0.5, 0.7], radius = 0.9 }
+south = { at = [0.0, -0.6, 0.8], radius = 0.8 }
+east = { vertex = 40, radius = 0.7 }
+pinned = { at = [0.0, 0.0, 1.0], radius = 0.5, pin = true }
+[functions.growLeft]
+input = "left.index_flexion"
+travel_deg = 30
+curve = "ease"
+least = -0.5
+move = { northLeft = [0.2, 0.1, 0.1] }
+[functions.turn]
+input = "right.middle_flexion"
+travel_deg = -40
+least = -1
+turn = { degrees = 20, axis = [1, 0, 0], through = [0, 0, 0], points = { south = 1, east = 0.5 } }
+[functions.push]
+input = "right.ring_tip_z"
+travel_m = 0.02
+least = -2
+move = { east = [0.0, 0.1, 0.2], south = [0.05, 0.0, 0.0] }
+)";
 
 /// Returns settings of which some, chosen at random, differ from these.
 template <class Random>
@@ -95,6 +125,9 @@ struct LoopUnderTest {
       inputs.back().wearer.adapt = fixture.adapt;
     }
     placement = flow::place_hands(model, tips);
+    if (fixture.puppet != nullptr)
+      options.rig = std::make_shared<const puppet::Rig>(
+          *puppet::parse_puppet(fixture.puppet, "a test's puppet"), model);
     options.input_log = fixture.input_log;
     options.sculptor.deformer.injective = fixture.injective;
     options.rate_hz = fixture.rate_hz;
@@ -103,6 +136,7 @@ struct LoopUnderTest {
     options.sculptor.mode = mode;
     options.sculptor.deformer.undo_bytes = std::size_t{4} << 20;
     options.sculptor.deformer.supports = deform::one_radius(0.5);
+    if (options.rig) options.sculptor.deformer.supports = options.rig->supports();
     options.sculptor.piece_length = 0.02;
     options.sculptor.deformer.csrbf.merge_fraction = 0.05;
     loop = std::make_unique<flow::DeformLoop>(model, placement, inputs, options);

@@ -42,6 +42,10 @@ inline recording::Setup setup_of(const LoopUnderTest& test) {
   }
   setup.loop = recording::LoopSetup{"ball.obj", recording::sum_of(test.model.vertices),
                                     test.placement, test.options, "AVX2"};
+  if (test.options.rig) {
+    setup.loop->puppet = test.options.rig->puppet().text;
+    setup.loop->puppet_starts = test.options.rig->starts();
+  }
   return setup;
 }
 
@@ -57,14 +61,16 @@ struct RecordedLoop {
 
   explicit RecordedLoop(flow::Mode mode, hand::FilterKind filter = hand::FilterKind::off,
                         bool adapts = false, bool injective = false,
-                        flow::SwitchAction action = flow::SwitchAction::none)
+                        flow::SwitchAction action = flow::SwitchAction::none,
+                        const char* puppet = nullptr)
       : test(mode,
              {.rings_of_ball = 16,
               .switch_action = action,
               .filter = filter,
               .adapt = adapts ? std::optional(CountScale{}) : std::nullopt,
               .input_log = &input_log,
-              .injective = injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt}),
+              .injective = injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt,
+              .puppet = puppet}),
         setup(setup_of(test)) {}
 
   void record(recording::RecorderOptions options = {}) {

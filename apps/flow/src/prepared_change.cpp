@@ -103,16 +103,15 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
   if (settings == asked_.settings) return true;
   PreparedChange& change = next_change();
   if (!change.settings) change.before = asked_;
-  // Settings that the loop has not taken are as if nobody had asked for them.
-  if (settings == change.before.settings) {
-    asked_ = change.before;
-    change.settings.reset();
-  } else {
-    auto wanted = setup_for(change.before, settings);
-    if (!wanted) return false;
-    asked_ = *std::move(wanted);
-    change.settings = settings;
+  auto wanted = setup_for(change.before, settings);
+  if (!wanted) {
+    offer_change(); // what there was before
+    return false;
   }
+  asked_ = *std::move(wanted);
+  // Settings that the loop has not taken are as if nobody had asked for them.
+  change.settings.reset();
+  if (settings != change.before.settings) change.settings = settings;
   if (change.settings || change.model)
     shaping_.prepare(asked_, *asked_model_, change.ready);
   else
@@ -134,9 +133,9 @@ std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
                                                    const LoopSettings& settings) const {
   const int hands = options_.rig ? 0 : static_cast<int>(hands_.size());
   SculptorSetup setup = with_settings(before, first_, settings, hands, units_per_metre_);
-  setup.options.surface = before.options.surface; // that of `first_` may be another version's
+  setup.options.surface = asked_.options.surface; // others may be another version's
   const bool same =
-      settings.kernel == before.settings.kernel && settings.radius_m == before.settings.radius_m;
+      settings.kernel == asked_.settings.kernel && settings.radius_m == asked_.settings.radius_m;
   if (!same && !set_surface(setup.options, *asked_model_)) return std::nullopt;
   return setup;
 }

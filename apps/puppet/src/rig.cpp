@@ -1,6 +1,7 @@
 #include <nendo/puppet/rig.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -49,6 +50,15 @@ Rig::Rig(Puppet puppet, const deform::Mesh& model) : puppet_(std::move(puppet)) 
   starts_.resize(3, static_cast<Index>(places.size()));
   for (std::size_t at = 0; at < places.size(); ++at)
     starts_.col(static_cast<Index>(at)) = places[at].in(model.vertices);
+  place_vectors();
+}
+
+Rig::Rig(Puppet puppet, Points starts) : puppet_(std::move(puppet)), starts_(std::move(starts)) {
+  assert(static_cast<std::size_t>(starts_.cols()) == puppet_.points.size());
+  place_vectors();
+}
+
+void Rig::place_vectors() {
   for (const Function& function : puppet_.functions) {
     Points& vectors = vectors_.emplace_back(Points::Zero(3, starts_.cols()));
     for (const Move& move : function.moves) {

@@ -24,7 +24,9 @@ Result<std::shared_ptr<const puppet::Rig>> rig_of(const LoopSetup& loop,
   if (!read) return read.error();
   if (model.face_corners.empty())
     return Error{Errc::bad_input, "the model has no face, and a puppet needs a surface"};
-  return std::make_shared<const puppet::Rig>(*std::move(read), model);
+  if (static_cast<std::size_t>(loop.puppet_starts.cols()) != read->points.size())
+    return Error{Errc::bad_input, "the recorded puppet has other points than its text"};
+  return std::make_shared<const puppet::Rig>(*std::move(read), loop.puppet_starts);
 }
 
 } // namespace

@@ -196,6 +196,9 @@ void put_puppet(ByteWriter& writer, const LoopSetup& loop) {
   writer.u16_le(static_cast<std::uint16_t>(loop.options.function_values.size()));
   for (const double value : loop.options.function_values)
     writer.f64_le(value);
+  writer.u16_le(static_cast<std::uint16_t>(loop.puppet_starts.cols()));
+  for (const double coordinate : loop.puppet_starts.reshaped())
+    writer.f64_le(coordinate);
 }
 
 bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
@@ -209,9 +212,13 @@ bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
   std::vector<double> values(checked.count(puppet::Puppet::most_functions));
   for (double& value : values)
     value = checked.number(-most_value, most_value);
+  deform::Points starts(3, static_cast<Eigen::Index>(checked.count(puppet::Puppet::most_points)));
+  for (double& coordinate : starts.reshaped())
+    coordinate = checked.number(-largest_number, largest_number);
   if (!checked.fine()) return false;
   loop->puppet.assign(reinterpret_cast<const char*>(text.data()), text.size());
   loop->options.function_values = std::move(values);
+  loop->puppet_starts = std::move(starts);
   return true;
 }
 

@@ -18,6 +18,9 @@ class Rig {
 public:
   /// The model must have a face. Allocates.
   Rig(Puppet puppet, const deform::Mesh& model);
+  /// Makes it of the places of the points, 3 by #points, as they were on the model at first: on one
+  /// that was subdivided, the nearest places may be others.
+  Rig(Puppet puppet, deform::Points starts);
 
   const Puppet& puppet() const noexcept { return puppet_; }
   const deform::Points& starts() const noexcept { return starts_; } ///< 3 by #points, at rest
@@ -28,6 +31,8 @@ public:
   deform::Supports supports() const; ///< a radius for each point, for distances through the air
 
 private:
+  void place_vectors();
+
   Puppet puppet_;
   deform::Points starts_;
   std::vector<deform::Points> vectors_; ///< of each function

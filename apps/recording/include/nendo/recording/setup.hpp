@@ -37,7 +37,8 @@ struct LoopSetup {
   std::uint32_t subdivisions = 0;
   /// The shape at first, in the blocks of the model's layout; empty: the model.
   std::vector<deform::VertexBlock> rest{};
-  std::string puppet{}; ///< the text of its file; empty: the hands touch the model
+  std::string puppet{};           ///< the text of its file; empty: the hands touch the model
+  deform::Points puppet_starts{}; ///< puppet::Rig::starts()
 };
 
 struct Setup {

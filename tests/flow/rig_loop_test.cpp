@@ -1,0 +1,113 @@
+// A loop that plays a puppet.
+
+#include <algorithm>
+#include <chrono>
+
+#include <doctest/doctest.h>
+
+#include "support/flow_fixtures.hpp"
+#include "support/restraint.hpp"
+
+namespace rig_loop_test {
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::flow;
+using test::LoopUnderTest;
+
+namespace {
+
+LoopUnderTest puppet_loop(Mode mode = Mode::type1) {
+  return LoopUnderTest(mode, {.puppet = test::ball_puppet});
+}
+
+} // namespace
+
+TEST_SUITE("rig_loop") {
+  TEST_CASE("relaxed hands leave the model as it is, bit for bit, and bent ones move it") {
+    auto test = puppet_loop();
+    CHECK(test.loop->grab_status() == deform::FieldStatus::ok);
+    const HostTime now = HostClock::now();
+    for (std::uint64_t tick = 0; tick < 10; ++tick) {
+      test.bend(0, now + tick * 11ms);
+      const Frame& frame = test.frame_after_tick(tick);
+      CHECK(test.vertices_of(frame) == test.model.vertices);
+      CHECK(frame.function_count == 4); // growRight is growLeft's twin
+    }
+    test.bend(25, now + 200ms);
+    const Frame& bent = test.frame_after_tick(11);
+    CHECK((test.vertices_of(bent) - test.model.vertices).cwiseAbs().maxCoeff() > 0.02);
+    CHECK(bent.fields.fields().empty()); // which tell nothing of ways along a surface
+    test.bend(0, now + 300ms);
+    CHECK(
+        (test.vertices_of(test.frame_after_tick(12)) - test.model.vertices).cwiseAbs().maxCoeff() <
+        1e-6);
+  }
+
+  TEST_CASE("hands that let go leave the shape, and take hold again wherever they are then") {
+    auto test = puppet_loop();
+    HostTime now = HostClock::now();
+    std::uint64_t tick = 0;
+    const auto after = [&](int counts) {
+      test.bend(counts, now += 11ms);
+      return test.vertices_of(test.frame_after_tick(tick++));
+    };
+    after(0);
+    const deform::Points bent = after(20);
+    test.commands.try_push(Request::let_go);
+    CHECK((after(20) - bent).cwiseAbs().maxCoeff() < 1e-6);
+    CHECK((after(0) - bent).cwiseAbs().maxCoeff() < 1e-6); // as one lifts a mouse
+    test.commands.try_push(Request::grab);
+    CHECK((after(0) - bent).cwiseAbs().maxCoeff() < 1e-6);
+    CHECK((after(10) - bent).cwiseAbs().maxCoeff() > 5e-3);
+    CHECK((after(0) - bent).cwiseAbs().maxCoeff() < 1e-6);
+  }
+
+  TEST_CASE("no function leaves its limits, however far a hand bends") {
+    auto test = puppet_loop();
+    HostTime now = HostClock::now();
+    for (std::uint64_t tick = 0; tick < 40; ++tick) {
+      test.bend(static_cast<int>(tick % 2) * 60, now += 11ms);
+      const Frame& frame = test.frame_after_tick(tick);
+      const auto& functions = test.options.rig->puppet().functions;
+      for (std::size_t at = 0; at < functions.size(); ++at) {
+        CHECK(static_cast<double>(frame.functions[at]) <= functions[at].most + 1e-6);
+        CHECK(static_cast<double>(frame.functions[at]) >= functions[at].least - 1e-6);
+      }
+    }
+  }
+
+  TEST_CASE("a tick of a puppet allocates nothing, frees nothing and takes no lock") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      auto test = puppet_loop(mode);
+      test::RestraintCounts counts;
+      const HostTime begin = HostClock::now();
+      {
+        const test::Restraint restraint;
+        for (std::uint64_t tick = 0; tick < 500; ++tick) {
+          test.bend(static_cast<int>(tick % 50), begin + tick * 11ms);
+          if (tick % 40 == 0) test.commands.try_push(requests[(tick / 40) % requests.size()]);
+          test.frame_after_tick(tick);
+        }
+        counts = restraint.counts();
+      }
+      CAPTURE(name_of(mode));
+      CHECK(counts.allocations == 0);
+      CHECK(counts.frees == 0);
+      CHECK(counts.locks == 0);
+    }
+  }
+
+  TEST_CASE("type 2 with distances through the air plays it, too") {
+    auto test = puppet_loop(Mode::type2);
+    HostTime now = HostClock::now();
+    for (std::uint64_t tick = 0; tick < 40; ++tick) {
+      test.bend(static_cast<int>(tick), now += 11ms);
+      test.frame_after_tick(tick);
+    }
+    const Frame& frame = test.loop->frames().front();
+    CHECK((test.vertices_of(frame) - test.model.vertices).cwiseAbs().maxCoeff() > 0.02);
+  }
+}
+
+} // namespace rig_loop_test
