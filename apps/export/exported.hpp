@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -14,9 +15,20 @@
 
 namespace nendo::exporting {
 
+/// What the morph targets of a model are.
+enum class MorphBasis : std::uint8_t {
+  key_shapes,
+  control_vectors, ///< exact
+  functions,       ///< of a puppet; exact
+};
+
+/// "key shapes", "control vectors" or "functions".
+std::string_view name_of(MorphBasis basis) noexcept;
+
 /// How a model's motion became morph targets.
 struct MorphReport {
-  bool by_control_vectors = false; ///< otherwise by key shapes
+  MorphBasis basis = MorphBasis::key_shapes;
+  bool has_puppet = false; ///< in the take, whatever the basis is
   std::size_t targets = 0;
   std::size_t models = 1;  ///< one after another, where the model became another one
   std::size_t keys = 0;    ///< moments between which weights are interpolated

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "export/control_morphs.hpp"
+#include "export/function_morphs.hpp"
 #include "export/gltf_model.hpp"
 #include "export/hand_rig.hpp"
 #include "export/key_shapes.hpp"
@@ -127,40 +128,76 @@ Result<Exported> hands_alone(takes::FrameSource& source, const Choice& choice,
   return finish(document, Json::array(), *played, *frames, choice.rate_hz, path);
 }
 
+/// What an exact export needs to know of its frames, which must be of one version of the model.
+struct SumTake {
+  takes::FrameSource& source;
+  ChosenFrames& frames;
+  const Choice& choice;
+  const GltfOptions& options;
+  const std::filesystem::path& path;
+};
+
+/// Exports shapes that are weighted sums of targets. `add_targets` puts them into the model, and
+/// returns the weights of all frames. Nothing, if not all shapes are such sums.
+template <class Morphs, class AddTargets>
+Result<std::optional<Exported>> by_sums(const SumTake& take, Morphs& morphs, MorphBasis basis,
+                                        const AddTargets& add_targets) {
+  const std::uint32_t version = take.source.frame().model;
+  const auto played = play(take.frames, take.options.hands,
+                           [&](const flow::Frame& frame, float, const deform::Points& vertices) {
+                             return morphs.add(frame, vertices);
+                           });
+  if (!played) return played.error();
+  if (!played->to_the_end) return std::optional<Exported>();
+  Document document(take.options);
+  GltfModel model(take.source.model(version), document.file);
+  const std::vector<float> weights = add_targets(model, document.file);
+  if (!weights.empty()) {
+    const auto times = document.file.add_scalars(played->times_s, true);
+    document.animate(model.node(), "weights", "LINEAR", times,
+                     document.file.add_scalars(weights, false));
+  }
+  const double diagonal = take.source.layout(version).diagonal();
+  MorphReport report;
+  report.basis = basis;
+  report.targets = model.target_count();
+  report.keys = weights.empty() ? 0 : played->times_s.size();
+  report.greatest_error = morphs.greatest_error() / diagonal;
+  report.diagonal_m = diagonal / played->units_per_metre;
+  model.add_to(document.file, GltfMaterials(take.source.model(version).look, document.file),
+               played->units_per_metre, report);
+  auto done = finish(document, Json::array({model.node()}), *played, take.frames,
+                     take.choice.rate_hz, take.path);
+  if (!done) return done.error();
+  done->morphs = report;
+  return std::optional<Exported>(*std::move(done));
+}
+
+/// Nothing, if the take is not linear in the functions of a puppet.
+Result<std::optional<Exported>> by_functions(takes::FrameSource& source, const Choice& choice,
+                                             const GltfOptions& options,
+                                             const std::filesystem::path& path) {
+  auto frames = ChosenFrames::make(source, choice);
+  if (!frames) return frames.error();
+  auto morphs = FunctionMorphs::make(*source.puppet(), source.layout(source.frame().model));
+  if (!morphs) return std::optional<Exported>();
+  return by_sums({source, *frames, choice, options, path}, *morphs, MorphBasis::functions,
+                 [&](GltfModel& model, GlbFile& file) {
+                   model.add_function_targets(*morphs, file);
+                   return morphs->weights();
+                 });
+}
+
 /// Nothing, if the take is not linear in control vectors.
 Result<std::optional<Exported>> by_control_vectors(takes::FrameSource& source, const Choice& choice,
                                                    const GltfOptions& options,
                                                    const std::filesystem::path& path) {
   auto frames = ChosenFrames::make(source, choice);
   if (!frames) return frames.error();
-  const std::uint32_t version = source.frame().model;
-  ControlMorphs morphs(source.layout(version));
-  const auto played = play(*frames, options.hands,
-                           [&](const flow::Frame& frame, float, const deform::Points& vertices) {
-                             return morphs.add(frame, vertices);
-                           });
-  if (!played) return played.error();
-  if (!played->to_the_end) return std::optional<Exported>();
-  Document document(options);
-  GltfModel model(source.model(version), document.file);
-  const auto weights = model.add_control_targets(morphs, document.file);
-  if (!weights.empty()) {
-    const auto times = document.file.add_scalars(played->times_s, true);
-    document.animate(model.node(), "weights", "LINEAR", times,
-                     document.file.add_scalars(weights, false));
-  }
-  MorphReport report;
-  report.by_control_vectors = true;
-  report.targets = model.target_count();
-  report.keys = weights.empty() ? 0 : played->times_s.size();
-  report.greatest_error = morphs.greatest_error() / source.layout(version).diagonal();
-  report.diagonal_m = source.layout(version).diagonal() / played->units_per_metre;
-  model.add_to(document.file, GltfMaterials(source.model(version).look, document.file),
-               played->units_per_metre, report);
-  auto done = finish(document, Json::array({model.node()}), *played, *frames, choice.rate_hz, path);
-  if (!done) return done.error();
-  done->morphs = report;
-  return std::optional<Exported>(*std::move(done));
+  ControlMorphs morphs(source.layout(source.frame().model));
+  return by_sums(
+      {source, *frames, choice, options, path}, morphs, MorphBasis::control_vectors,
+      [&](GltfModel& model, GlbFile& file) { return model.add_control_targets(morphs, file); });
 }
 
 /// Consecutive frames of one version of the model, which have a mesh of their own.
@@ -295,21 +332,48 @@ Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
   return done;
 }
 
+/// Opens the frames, and exports them in the first way that gives all their shapes.
+Result<Exported> export_model(const OpenFrames& open, const Choice& choice,
+                              const GltfOptions& options, const std::filesystem::path& path,
+                              std::unique_ptr<takes::FrameSource> source) {
+  if (source->has_one_model()) {
+    std::vector<decltype(&by_functions)> ways{by_control_vectors};
+    if (source->puppet()) ways.insert(ways.begin(), by_functions);
+    for (const auto way : ways) {
+      auto exact = way(*source, choice, options, path);
+      if (!exact) return exact.error();
+      if (*exact) return *std::move(*exact);
+      auto again = open();
+      if (!again) return again.error();
+      source = *std::move(again);
+    }
+  }
+  return by_key_shapes(*source, choice, options, path);
+}
+
 } // namespace
+
+std::string_view name_of(MorphBasis basis) noexcept {
+  switch (basis) {
+  case MorphBasis::functions:
+    return "functions";
+  case MorphBasis::control_vectors:
+    return "control vectors";
+  case MorphBasis::key_shapes:
+    break;
+  }
+  return "key shapes";
+}
 
 Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path) {
   auto source = open();
   if (!source) return source.error();
   if ((*source)->model(0).vertices.cols() == 0) return hands_alone(**source, choice, options, path);
-  if ((*source)->has_one_model()) {
-    auto exact = by_control_vectors(**source, choice, options, path);
-    if (!exact) return exact.error();
-    if (*exact) return *std::move(*exact);
-    source = open();
-    if (!source) return source.error();
-  }
-  return by_key_shapes(**source, choice, options, path);
+  const bool has_puppet = (*source)->puppet().has_value();
+  auto done = export_model(open, choice, options, path, *std::move(source));
+  if (done && done->morphs) done->morphs->has_puppet = has_puppet;
+  return done;
 }
 
 } // namespace nendo::exporting

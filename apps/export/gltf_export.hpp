@@ -5,11 +5,13 @@
 //
 // - Vertices are those of the mesh, in its order; behind them stand copies of those that have
 //   several texture coordinates. Faces with more than three corners become fans of triangles.
-// - Each material has a primitive, with its base colour and its texture. Colours of vertices
-// follow.
-// - A take of Type-1 is exact. For each control vector it has targets along each axis and against
-//   it (control_morphs.hpp).
-// - Any other take (with commits, motion in several links, or Type-2) has key shapes
+// - Each material has a primitive, with its base colour and its texture. Vertices keep their
+//   colours.
+// - A take of a puppet of Type-1 is exact. Each function is a target that has its name, and a
+//   frame's weights are the values of the functions, from 0 to 1 (function_morphs.hpp).
+// - Any other take of Type-1 is exact. For each control vector it has targets along each axis and
+//   against it (control_morphs.hpp).
+// - All other takes (with commits, motion in several links, or Type-2) have key shapes
 //   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed.
 // - Where the model becomes another one, as when it is subdivided, each part of the take has a mesh
 //   of its own. Its node is shown in its time by an animation of its scale, which is 0 otherwise.
@@ -37,10 +39,11 @@ struct GltfOptions {
   std::uint64_t most_weights = std::uint64_t{1} << 28;
 };
 
-/// Exports the frames to `path`. It reads them once, or twice if they turn out not to be linear in
-/// control vectors. The file is kept in memory until it is written. Blocks. Errors: those of
-/// `open`, ChosenFrames::make(), ChosenFrames::next() and GlbFile::write(); bad_input (numbers that
-/// 32-bit floats cannot hold, or there is neither a model nor a hand), failed (too many weights).
+/// Exports the frames to `path`. It reads them once, and once more for each kind of targets of
+/// which their shapes turn out not to be sums. The file is kept in memory until it is written.
+/// Blocks. Errors: those of `open`, ChosenFrames::make(), ChosenFrames::next() and
+/// GlbFile::write(); bad_input (numbers that 32-bit floats cannot hold, or there is neither a model
+/// nor a hand), failed (too many weights).
 Result<Exported> export_gltf(const OpenFrames& open, const Choice& choice,
                              const GltfOptions& options, const std::filesystem::path& path);
 

@@ -166,6 +166,13 @@ std::vector<float> GltfModel::add_control_targets(const ControlMorphs& morphs, G
   return weights;
 }
 
+void GltfModel::add_function_targets(const FunctionMorphs& morphs, GlbFile& file) {
+  for (const FunctionMorphs::Target& target : morphs.targets()) {
+    add_target(target.way, target.name, file);
+    target_values_.push_back(target.value);
+  }
+}
+
 void GltfModel::add_key_target(const Eigen::Matrix3Xf& way, GlbFile& file) {
   if (way.isZero(0.0F)) {
     key_targets_.emplace_back(std::nullopt);
@@ -192,8 +199,9 @@ void GltfModel::add_to(GlbFile& file, const GltfMaterials& materials, double uni
   Json mesh{{"name", "model"}};
   if (target_count() > 0) mesh["weights"] = std::vector<float>(target_count(), 0.0F);
   mesh["extras"] = {{"targetNames", names_},
-                    {"morphs", report.by_control_vectors ? "control vectors" : "key shapes"},
+                    {"morphs", name_of(report.basis)},
                     {"greatestError", report.greatest_error}};
+  if (!target_values_.empty()) mesh["extras"]["targetValues"] = target_values_;
   mesh["primitives"] = Json::array();
   for (const Primitive& part : primitives_) {
     Json primitive = part.json;

@@ -1,5 +1,5 @@
 #pragma once
-// Puts the model into a glTF document: its rest shape, and morph targets of either kind.
+// Puts the model into a glTF document: its rest shape, and morph targets of each kind.
 
 #include <cstdint>
 #include <optional>
@@ -9,6 +9,7 @@
 
 #include "export/control_morphs.hpp"
 #include "export/exported.hpp"
+#include "export/function_morphs.hpp"
 #include "export/glb_file.hpp"
 #include "export/gltf_materials.hpp"
 
@@ -25,6 +26,10 @@ public:
   /// one against it, because Blender and other programs do not accept negative weights. Returns the
   /// weights of all targets, moment by moment, from 0 to 1.
   std::vector<float> add_control_targets(const ControlMorphs& morphs, GlbFile& file);
+
+  /// Adds the targets of all functions, which have their names. In the mesh's extras,
+  /// "targetValues" are the values of the functions at weights of 1.
+  void add_function_targets(const FunctionMorphs& morphs, GlbFile& file);
 
   /// Adds the next key's shape, as displacements from the rest shape (3 by #vertices). A shape that
   /// equals the latest one, or the rest shape, does not get a target of its own.
@@ -61,6 +66,7 @@ private:
   std::vector<std::uint32_t> copies_; ///< of each vertex behind the mesh's, which one it is
   GlbFile::Json targets_ = GlbFile::Json::array();
   GlbFile::Json names_ = GlbFile::Json::array();
+  std::vector<float> target_values_;                      ///< of functions
   Eigen::Matrix3Xf latest_;                               ///< of the targets
   std::vector<std::optional<std::uint32_t>> key_targets_; ///< nothing means the rest shape
 };

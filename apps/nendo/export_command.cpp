@@ -228,14 +228,22 @@ void print_json(const std::string& format, const exporting::Exported& done) {
   if (!done.begin_s.empty()) line["begin_s"] = done.begin_s;
   line["result"] = done.files.empty() ? std::string() : done.files.front();
   if (done.morphs) {
-    line["morphs"] = {{"by", done.morphs->by_control_vectors ? "control vectors" : "key shapes"},
+    line["morphs"] = {{"by", name_of(done.morphs->basis)},
                       {"models", done.morphs->models},
                       {"targets", done.morphs->targets},
                       {"keys", done.morphs->keys},
                       {"greatest_error", done.morphs->greatest_error}};
-    if (!done.morphs->by_control_vectors) line["morphs"]["tolerance"] = done.morphs->tolerance;
+    if (done.morphs->basis == exporting::MorphBasis::key_shapes)
+      line["morphs"]["tolerance"] = done.morphs->tolerance;
   }
   cli::print_line(line);
+}
+
+/// Tells why the targets of a puppet's take have not the names of its functions.
+void print_no_functions(const exporting::MorphReport& morphs) {
+  if (morphs.has_puppet)
+    std::cout << "the targets are not named after the puppet's functions, because the shapes are "
+                 "not sums of them (undo, reset, type 2, changed settings or another model)\n";
 }
 
 void print_morphs(const exporting::MorphReport& morphs) {
@@ -243,10 +251,14 @@ void print_morphs(const exporting::MorphReport& morphs) {
     std::cout << fmt::format("{} meshes, one after another: each is shown in its time, where the "
                              "model became another one\n",
                              morphs.models);
-  if (morphs.by_control_vectors) {
-    std::cout << fmt::format("{} morph targets of the control vectors; no vertex of any frame is "
-                             "off by more than {:.1e} of the model's diagonal\n",
-                             morphs.targets, morphs.greatest_error);
+  if (morphs.basis != exporting::MorphBasis::key_shapes) {
+    const bool named = morphs.basis == exporting::MorphBasis::functions;
+    std::cout << fmt::format(
+        "{} morph targets{}; no vertex of any frame is off by more than "
+        "{:.1e} of the model's diagonal\n",
+        morphs.targets, named ? ", named after the puppet's functions" : " of the control vectors",
+        morphs.greatest_error);
+    if (!named) print_no_functions(morphs);
     return;
   }
   std::cout << fmt::format(
@@ -254,6 +266,7 @@ void print_morphs(const exporting::MorphReport& morphs) {
       "{:.2g} mm on the stage (--tolerance); the worst vertex is off by {:.2g} %\n",
       morphs.targets, 100.0 * morphs.tolerance, 1e3 * morphs.tolerance * morphs.diagonal_m,
       100.0 * morphs.greatest_error);
+  print_no_functions(morphs);
 }
 
 void print(const exporting::Exported& done, bool samples) {

@@ -2,9 +2,19 @@
 // The frames of a take, one after another and without a clock. They come from a recording, whose
 // loop runs again, or from a timeline of edited keys.
 
+#include <optional>
+
 #include <nendo/flow/frame.hpp>
+#include <nendo/flow/sculptor.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::takes {
+
+/// The puppet that makes the shapes of the frames, on the first version of the model.
+struct PlayedPuppet {
+  const puppet::Rig& rig;
+  const flow::SculptorOptions& sculptor; ///< as of the latest frame
+};
 
 class FrameSource {
 public:
@@ -15,6 +25,8 @@ public:
   virtual const deform::BlockLayout& layout(std::uint32_t version) const = 0; ///< of its shapes
   /// Tells whether all frames are of the first version.
   virtual bool has_one_model() const { return true; }
+  /// Returns the puppet, or nothing if the hands touch the model. It refers to this source.
+  virtual std::optional<PlayedPuppet> puppet() const { return std::nullopt; }
   virtual double rate_hz() const = 0;    ///< of the frames, as far as it is even
   virtual double duration_s() const = 0; ///< time_s() of the last frame
   /// Makes the next frame. Returns false if there is none. May block and allocate.

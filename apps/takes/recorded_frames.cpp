@@ -57,6 +57,12 @@ Result<std::unique_ptr<RecordedFrames>> RecordedFrames::open(const std::filesyst
   return frames;
 }
 
+std::optional<PlayedPuppet> RecordedFrames::puppet() const {
+  const flow::DeformLoop& loop = replay_->loop();
+  if (loop.rig() == nullptr) return std::nullopt;
+  return PlayedPuppet{*loop.rig(), loop.sculptor_options()};
+}
+
 bool RecordedFrames::next() {
   while (const auto entry = reader_.next()) {
     if (!replay_->feed(*entry)) continue;

@@ -26,6 +26,7 @@ public:
     return replay_->loop().layout(version);
   }
   bool has_one_model() const override { return has_one_model_; }
+  std::optional<PlayedPuppet> puppet() const override;
   double rate_hz() const override { return rate_hz_; }
   double duration_s() const override { return duration_s_; }
   bool next() override;

@@ -58,7 +58,7 @@ TEST_SUITE("gltf_export") {
     REQUIRE(done);
     REQUIRE(done->morphs);
     CHECK(done->morphs->models == 2);
-    CHECK_FALSE(done->morphs->by_control_vectors);
+    CHECK(done->morphs->basis == MorphBasis::key_shapes);
     const Glb glb = read(motion);
     REQUIRE(glb.json["meshes"].size() == 4);           // with two hands
     CHECK(glb.json["scenes"][0]["nodes"].size() == 6); // two of each hand
@@ -85,7 +85,7 @@ TEST_SUITE("gltf_export") {
     const auto done = export_it(motion);
     REQUIRE(done);
     REQUIRE(done->morphs);
-    CHECK(done->morphs->by_control_vectors);
+    CHECK(done->morphs->basis == MorphBasis::control_vectors);
     CHECK(done->morphs->targets >= 20);
     CHECK(done->morphs->targets <= 60);
     CHECK(done->frames == motion.shapes.size());
@@ -115,7 +115,7 @@ TEST_SUITE("gltf_export") {
       for (const double tolerance : {1e-3, 1e-4}) {
         const auto done = export_it(recorded, {}, {.tolerance = tolerance});
         REQUIRE(done);
-        CHECK_FALSE(done->morphs->by_control_vectors);
+        CHECK(done->morphs->basis == MorphBasis::key_shapes);
         const double off = farthest_off(recorded, read(recorded));
         CHECK(off <= done->morphs->greatest_error + readers_rounding);
         CHECK(done->morphs->greatest_error <= tolerance + 1e-6);

@@ -143,6 +143,36 @@ TEST_SUITE("request") {
     }
   }
 
+  TEST_CASE("what a puppet has pulled along the surface is taken back in the same way") {
+    const auto puppet = puppet::parse_puppet("version = 1\nmodel = \"ball.obj\"\n"
+                                             "[points]\nnose = { at = [0, 0, 1], radius = 1 }\n"
+                                             "[functions.poke]\ninput = \"left.index_flexion\"\n"
+                                             "travel_deg = 90\nmove = { nose = [0, 0, 0.3] }\n",
+                                             "test");
+    REQUIRE(puppet);
+    Person person(Mode::type1);
+    auto& test = person.test;
+    test.options.rig = std::make_shared<const puppet::Rig>(*puppet, test.model);
+    test.options.sculptor.deformer.supports = test.options.rig->supports();
+    test.loop = std::make_unique<DeformLoop>(test.model, test.placement, test.inputs, test.options);
+    person.move(0, 12);
+    person.ask(Request::commit, 12);
+    const Points committed = person.shape();
+    person.move(12, 25);
+    const Points pulled = person.shape();
+    REQUIRE((pulled != committed));
+    const Frame& back = person.ask(Request::undo, 25);
+    CHECK((person.shape() == committed));
+    CHECK(back.held);
+    CHECK(back.redo_steps == 1);
+    person.ask(Request::redo, 25);
+    CHECK((person.shape() == pulled));
+    person.ask(Request::undo, 25);
+    person.ask(Request::undo, 25);
+    CHECK((person.shape() == test.model.vertices));
+    CHECK(person.bend(25).redo_steps == 2);
+  }
+
   TEST_CASE("a pull is taken back before a change of settings that came before it") {
     Person person(Mode::type1);
     person.move(0, 12);

@@ -131,6 +131,32 @@ TEST_SUITE("export_command") {
     CHECK(diagonal_m < 0.8 * 1.74);
   }
 
+  TEST_CASE("a puppet's targets are named, and where they cannot be, that is said") {
+    const test::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+    for (const std::string mode : {"type1", "type2"}) {
+      CAPTURE(mode);
+      const auto ran = test::nendo({"run", "--puppet", "face", "--left", "sim:faces", "--right",
+                                    "sim:faces", "--mode", mode, "--duration", "1.5", "--out",
+                                    path(mode + ".ply"), "--record", path(mode + ".nendo")});
+      CAPTURE(ran.err);
+      REQUIRE(ran.exit_code == 0);
+      const auto done = test::nendo({"export", path(mode + ".nendo"), "--out", path("face.glb")});
+      CAPTURE(done.out);
+      REQUIRE(done.exit_code == 0);
+      const bool named = done.out.find("12 morph targets, named after the puppet's functions") !=
+                         std::string::npos;
+      const bool says_why =
+          done.out.find("not named after the puppet's functions, because") != std::string::npos;
+      CHECK(named == (mode == "type1"));
+      CHECK(says_why == (mode == "type2"));
+      const test::Glb glb(contents(path("face.glb")));
+      const std::vector<std::string> names = glb.json["meshes"][0]["extras"]["targetNames"];
+      const auto is_there = std::count(names.begin(), names.end(), "mouthSmileLeft") == 1;
+      CHECK(is_there == (mode == "type1"));
+    }
+  }
+
   TEST_CASE("what nendo record wrote comes out: every sample, and the hands") {
     const test::TemporaryFolder folder;
     const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };

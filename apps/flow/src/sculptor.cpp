@@ -1,5 +1,6 @@
 #include <nendo/flow/sculptor.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace nendo::flow {
@@ -133,6 +134,15 @@ const deform::FieldSequence& Sculptor::fields() const noexcept {
   return std::visit(
       [](const auto& deformer) -> const deform::FieldSequence& { return deformer.fields(); },
       deformer_);
+}
+
+bool Sculptor::moves_anything() const noexcept {
+  if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
+    return surface->is_moved();
+  const auto all = fields().fields();
+  return std::any_of(all.begin(), all.end(), [](const deform::CsrbfField& field) {
+    return !field.coefficients.isZero(0.0) || !field.polynomial.isZero(0.0);
+  });
 }
 
 deform::ChainReport Sculptor::report() const noexcept {

@@ -13,13 +13,6 @@ namespace {
 // What is shaped between changes that are less than this apart is one step for undo.
 constexpr HostClock::duration one_step = std::chrono::seconds(1);
 
-bool moves_anything(const deform::FieldSequence& sequence) noexcept {
-  const auto fields = sequence.fields();
-  return std::any_of(fields.begin(), fields.end(), [](const deform::CsrbfField& field) {
-    return !field.coefficients.isZero(0.0) || !field.polynomial.isZero(0.0);
-  });
-}
-
 void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
   stats.most_links = std::max(stats.most_links, chain.links);
   stats.most_bound = std::max(stats.most_bound, chain.whole_bound);
@@ -68,10 +61,9 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   frame.fields.follow(sculptor_->fields());
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  const bool leads = !sculptor_->is_along_surface();
-  if (!leads) ++leaps_;
-  const bool moves = !leads || moves_anything(frame.fields);
-  shaped_ = moves || (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
+  if (sculptor_->is_along_surface()) ++leaps_;
+  shaped_ = sculptor_->moves_anything() ||
+            (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_->commit(tips))) {
     ++stats.commits;

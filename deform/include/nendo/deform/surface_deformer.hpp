@@ -36,11 +36,12 @@ public:
   /// Always empty: no formula of a place tells what happens there.
   const FieldSequence& fields() const noexcept { return fields_; }
   ChainReport report() const noexcept { return {}; }
+  /// Tells whether the last apply() moved anything.
+  bool is_moved() const noexcept { return !coefficients_.all.isZero(0.0F); }
 
 private:
   void absorb() noexcept;
   void take_hold(const Points& starts) noexcept;
-  bool is_moved() const noexcept { return !coefficients_.all.isZero(0.0F); }
 
   SculptedShape* shape_;
   std::shared_ptr<const SurfaceField> field_;

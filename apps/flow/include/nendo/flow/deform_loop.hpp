@@ -151,6 +151,8 @@ public:
   /// Returns the settings that were asked for last, and their sculptor's options.
   const LoopSettings& settings() const noexcept { return asked_.settings; }
   const SculptorOptions& sculptor_options() const noexcept { return asked_.options; }
+  /// Returns the puppet that the hands play; null if they touch the model.
+  const puppet::Rig* rig() const noexcept { return options_.rig.get(); }
   /// Tells whether the loop has yet to take a change.
   bool is_changing();
 

@@ -92,6 +92,8 @@ public:
   /// Returns the fields of the last update: for type 1 they lead from the rest shape to this shape,
   /// for type 2 from the shape before.
   const deform::FieldSequence& fields() const noexcept;
+  /// Tells whether the last update() moved anything.
+  bool moves_anything() const noexcept;
   /// Returns what the last update() needed to stay injective; all 0 if that is not asked for.
   deform::ChainReport report() const noexcept;
 

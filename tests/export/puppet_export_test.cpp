@@ -1,0 +1,230 @@
+// A recorded puppet as a `.glb`, read back by the tests' own reader. The shapes to compare with are
+// those of the loop that was recorded; the exporter replays it.
+
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "export/control_morphs.hpp"
+#include "export/gltf_export.hpp"
+#include "support/glb_reader.hpp"
+#include "support/recorded_motion.hpp"
+
+namespace puppet_export_test {
+
+using namespace nendo;
+using namespace nendo::exporting;
+using nendo::test::Glb;
+
+namespace {
+
+/// On the ball of the tests. One function goes below 0, one above 1, and one is of a joint that the
+/// test leaves alone. A puppet has its functions in the order of their names.
+std::string puppet_text(const std::string& distance) {
+  return "version = 1\nmodel = \"ball.obj\"\ndistance = \"" + distance + "\"\n" + R"(
+[points]
+nose = { at = [0, 0, 1], radius = 0.9 }
+ear = { at = [1, 0, 0], radius = 1.1 }
+crown = { at = [0, 1, 0], radius = 0.7, pin = true }
+[functions.earWiggle]
+input = "left.middle_flexion"
+travel_deg = -30
+least = -0.8
+move = { ear = [0.3, 0.05, 0], nose = [0, 0, 0.04] }
+[functions.idle]
+input = "left.wrist_yaw"
+travel_deg = 20
+move = { ear = [0, 0, 0.3] }
+[functions.nod]
+input = "left.little_flexion"
+travel_deg = 10
+most = 1.6
+turn = { degrees = 12, axis = [1, 0, 0], through = [0, 0, 0], points = { nose = 1, ear = 0.5 } }
+[functions.poke]
+input = "right.index_flexion"
+travel_deg = 25
+curve = "ease"
+move = { nose = [0.1, -0.1, 0.25] }
+)";
+}
+
+const std::vector<std::string> names{"earWiggle", "earWiggle_negative", "idle", "nod", "poke"};
+/// Of each target: its function, and the function's value at a weight of 1.
+const std::vector<std::size_t> functions{0, 0, 1, 2, 3};
+const std::vector<double> unit_values{1.0, -1.0, 1.0, 1.6, 1.0};
+
+struct PuppetMotion {
+  std::string distance = "surface";
+  flow::Mode mode = flow::Mode::type1;
+  std::optional<flow::Request> request{}; ///< halfway, while the hands are bent
+};
+
+/// Hands bend and stretch, and the frames are kept as they were made.
+struct RecordedPuppet {
+  explicit RecordedPuppet(const PuppetMotion& motion) : played(motion.mode) {
+    const auto puppet = puppet::parse_puppet(puppet_text(motion.distance), "test");
+    if (!puppet) throw std::runtime_error(puppet.error().message);
+    auto& test = played.test;
+    test.options.rig = std::make_shared<const puppet::Rig>(*puppet, test.model);
+    test.options.sculptor.deformer.supports = test.options.rig->supports();
+    test.loop =
+        std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
+    played.setup = test::setup_of(test);
+    played.setup.loop->puppet = puppet->text;
+    played.record();
+    constexpr std::uint64_t ticks = 60;
+    for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+      const HostTime woke = played.setup.begun_host + (tick + 1) * std::chrono::milliseconds(10);
+      const double turn = 6.283185307179586 * static_cast<double>(tick) / (ticks - 1);
+      test.bend(static_cast<int>(30.0 * (1.0 - std::cos(turn))), woke);
+      if (motion.request && tick == ticks / 2) test.commands.try_push(*motion.request);
+      test.loop->tick(tick, woke, woke);
+      test.loop->frames().update();
+      const flow::Frame& frame = test.loop->frames().front();
+      times_s.push_back(seconds_between(played.setup.begun_host, woke));
+      shapes.push_back(test.vertices_of(frame));
+      values.push_back(frame.functions);
+    }
+    if (!played.end()) throw std::runtime_error("not recorded");
+  }
+
+  Result<Exported> export_it(const Choice& choice = {}) const {
+    const auto open = [this]() -> Result<std::unique_ptr<takes::FrameSource>> {
+      auto frames = takes::RecordedFrames::open(played.path, played.test.model);
+      if (!frames) return frames.error();
+      return std::unique_ptr<takes::FrameSource>(*std::move(frames));
+    };
+    return export_gltf(open, choice, {.tolerance = 1e-3}, path());
+  }
+  std::filesystem::path path() const { return played.folder.path() / "take.glb"; }
+  Glb read() const { return Glb(test::file_bytes(path())); }
+  const deform::Points& rest() const { return played.test.model.vertices; }
+  double diagonal() const { return deform::diagonal_of(rest()); }
+  double since_first_s(std::size_t frame) const { return times_s[frame] - times_s[0]; }
+
+  /// Of all frames, in parts of the diagonal.
+  double farthest_off(const Glb& glb) const {
+    double worst = 0.0;
+    for (std::size_t at = 0; at < shapes.size(); ++at)
+      worst = std::max(worst, test::farthest(glb.vertices(0, since_first_s(at)), shapes[at]));
+    return worst / diagonal();
+  }
+
+  test::RecordedLoop played;
+  std::vector<double> times_s;
+  std::vector<deform::Points> shapes;
+  std::vector<decltype(flow::Frame::functions)> values;
+};
+
+std::vector<std::string> target_names(const Glb& glb) {
+  return glb.json["meshes"][0]["extras"]["targetNames"];
+}
+
+} // namespace
+
+TEST_SUITE("puppet_export") {
+  TEST_CASE("each function of a puppet is a target with its name, and its values are the weights") {
+    for (const std::string distance : {"surface", "air"}) {
+      CAPTURE(distance);
+      const RecordedPuppet take({.distance = distance});
+      const auto done = take.export_it();
+      REQUIRE(done);
+      REQUIRE(done->morphs);
+      CHECK(done->morphs->basis == MorphBasis::functions);
+      CHECK(done->morphs->targets == names.size());
+      const Glb glb = take.read();
+      CHECK(target_names(glb) == names);
+      CHECK(glb.json["meshes"][0]["extras"]["targetValues"].size() == names.size());
+      double most = 0.0;
+      std::vector<double> lowest(4, 0.0), highest(4, 0.0);
+      for (std::size_t at = 0; at < take.shapes.size(); ++at) {
+        const auto weights = glb.animated(0, "weights", take.since_first_s(at), {});
+        REQUIRE(weights.size() == static_cast<Eigen::Index>(names.size()));
+        CHECK(weights.minCoeff() >= 0.0); // Blender takes no others
+        CHECK(weights.maxCoeff() <= 1.0);
+        std::vector<double> values(4, 0.0);
+        for (std::size_t target = 0; target < names.size(); ++target)
+          values[functions[target]] +=
+              unit_values[target] * weights[static_cast<Eigen::Index>(target)];
+        for (std::size_t function = 0; function < 4; ++function) {
+          const auto value = static_cast<double>(take.values[at][function]);
+          CHECK(values[function] == doctest::Approx(value).epsilon(1e-5));
+          lowest[function] = std::min(lowest[function], value);
+          highest[function] = std::max(highest[function], value);
+        }
+        most = std::max(most, test::farthest(take.shapes[at], take.rest()));
+      }
+      CHECK(lowest[0] < -0.7);
+      CHECK(highest[1] == 0.0); // nothing moves it
+      CHECK(highest[2] > 1.2);
+      CHECK(highest[3] > 0.9);
+      CHECK(most > 0.05 * take.diagonal());
+      const double off = take.farthest_off(glb);
+      MESSAGE(distance << ": off by " << off << " of the diagonal");
+      CHECK(off < ControlMorphs::most_error);
+      CHECK(off < done->morphs->greatest_error + 1e-7);
+    }
+  }
+
+  TEST_CASE("at a value of 0 the shape is the rest, and at 1 a point is where its function says") {
+    const RecordedPuppet take(PuppetMotion{});
+    REQUIRE(take.export_it());
+    const Glb glb = take.read();
+    const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+    const Eigen::Matrix3Xd rest = glb.accessor(primitive["attributes"]["POSITION"]);
+    CHECK(test::farthest(rest, take.rest()) < 1e-7 * take.diagonal());
+    for (const double weight : glb.json["meshes"][0]["weights"])
+      CHECK(weight == 0.0);
+    const auto way = [&](std::size_t target) -> Eigen::Matrix3Xd {
+      return glb.accessor(primitive["targets"][target]["POSITION"].get<std::size_t>());
+    };
+    // Vertex 0 of the ball is where the nose is.
+    CHECK((way(4).col(0) - Eigen::Vector3d(0.1, -0.1, 0.25)).norm() < 1e-6);
+    CHECK((way(0).col(0) - Eigen::Vector3d(0.0, 0.0, 0.04)).norm() < 1e-6);
+    CHECK((way(0) + way(1)).isZero(0.0));
+    CHECK(way(2).col(0).norm() < 1e-6);
+    CHECK(way(2).colwise().norm().maxCoeff() > 0.25); // unused, and yet there
+    // Behind all radii nothing moves: vertex 1 is opposite.
+    for (std::size_t target = 0; target < names.size(); ++target)
+      CHECK(way(target).col(1).isZero(0.0));
+  }
+
+  TEST_CASE("a commit along the surface leaves the functions as they are") {
+    const RecordedPuppet take({.request = flow::Request::commit});
+    const auto done = take.export_it();
+    REQUIRE(done);
+    CHECK(done->morphs->basis == MorphBasis::functions);
+    CHECK(take.farthest_off(take.read()) < ControlMorphs::most_error);
+  }
+
+  TEST_CASE("shapes that are no sums of the functions are told, and are as near as is asked for") {
+    for (const PuppetMotion& motion :
+         {PuppetMotion{.request = flow::Request::undo}, PuppetMotion{.mode = flow::Mode::type2},
+          PuppetMotion{.distance = "air", .request = flow::Request::commit}}) {
+      const RecordedPuppet take(motion);
+      const auto done = take.export_it();
+      REQUIRE(done);
+      REQUIRE(done->morphs);
+      CHECK(done->morphs->has_puppet);
+      CHECK(done->morphs->basis == MorphBasis::key_shapes);
+      const Glb glb = take.read();
+      CHECK(target_names(glb) != names);
+      CHECK(take.farthest_off(glb) < 1.01e-3);
+    }
+  }
+
+  TEST_CASE("a part of a take that begins in the middle has the same targets") {
+    const RecordedPuppet take(PuppetMotion{});
+    const auto done = take.export_it({.from_s = 0.295, .to_s = 0.5});
+    REQUIRE(done);
+    CHECK(done->morphs->basis == MorphBasis::functions);
+    const Glb glb = take.read();
+    CHECK(target_names(glb) == names);
+    const double off = test::farthest(glb.vertices(0, 0.0), take.shapes[29]);
+    CHECK(off < ControlMorphs::most_error * take.diagonal());
+    CHECK(test::farthest(take.shapes[29], take.rest()) > 0.05 * take.diagonal());
+  }
+}
+
+} // namespace puppet_export_test
