@@ -15,7 +15,8 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes, x "
       "resets; " +
       std::string("[ and ] make the brush smaller, larger; m the other mode, n the next kernel, ") +
-      "i never folds, or may; e makes the model finer; t records; . marks the moment; s saves; " +
+      "i never folds, or may; e makes the model finer; t records; . marks the moment; of a puppet, "
+      ", and ' let go of it by the left and the right hand, y plays both sides by one; s saves; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
 
@@ -31,6 +32,9 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == 't') commands.try_push(flow::SetRecording{!status.recording});
   if (*key == 'e') commands.try_push(flow::Subdivide{});
   if (*key == '.') commands.try_push(flow::Mark{});
+  if (*key == ',') clutch(Side::left, status.frame, commands);
+  if (*key == '\'') clutch(Side::right, status.frame, commands);
+  if (*key == 'y') commands.try_push(flow::SetSymmetry{!status.frame.symmetric});
   if (*key == 's') commands.try_push(flow::SaveShape{});
   if (*key == 'k') commands.try_push(flow::SaveRecording{});
   if (*key == 'q') commands.try_push(flow::EndRun{});
@@ -61,6 +65,11 @@ void RunKeys::step(flow::Request request, std::uint64_t steps, flow::CommandRing
   if (steps == 0)
     report(request == flow::Request::undo ? "there is nothing to undo"
                                           : "there is nothing to redo");
+}
+
+void RunKeys::clutch(Side side, const flow::Frame& frame, flow::CommandRing& commands) {
+  const bool holds = frame.let_go[flow::Placement::index_of(side)];
+  commands.try_push(flow::SetClutch{side, puppet::RigPlayer::all_fingers, holds});
 }
 
 void RunKeys::report(const std::string& message) {

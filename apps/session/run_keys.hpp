@@ -22,6 +22,7 @@ public:
   void report(const std::string& message) override;
 
 private:
+  static void clutch(Side side, const flow::Frame& frame, flow::CommandRing& commands);
   void step(flow::Request request, std::uint64_t steps, flow::CommandRing& commands);
   void change(char key, const flow::LoopSettings& in_force, flow::CommandRing& commands);
 

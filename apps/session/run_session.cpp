@@ -162,10 +162,17 @@ private:
     if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
     if (std::holds_alternative<flow::Subdivide>(command)) models_.subdivide();
     if (std::holds_alternative<flow::Mark>(command)) mark();
+    if (flow::is_for_puppet(command)) play_otherwise(command);
     ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
     saving_.add(command);
   }
 
+  void play_otherwise(const flow::Command& command) noexcept {
+    if (!options_.puppet)
+      report("there is no puppet here, and fingertips touch the model; g lets go of it");
+    else if (!loop_commands_.try_push(command))
+      report("the loop does not answer, so it was not told how to play the puppet");
+  }
   void mark() noexcept {
     const bool marks = recorder_.is_recording() && loop_commands_.try_push(flow::Mark{});
     if (marks) ++marks_;

@@ -19,6 +19,8 @@ constexpr std::array key_table{
     KeyLine{"r, ctrl y", "redo what was undone; ctrl shift z, too"},
     KeyLine{"x", "reset: back to the model as it was loaded"},
     KeyLine{"t", "a take: record from here on, and end that"},
+    KeyLine{",, '", "of a puppet: the left hand, the right hand lets go, takes hold again"},
+    KeyLine{"y", "of a puppet: one hand plays both sides, or each its own"},
     KeyLine{".", "mark this moment in the recording"},
     KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
     KeyLine{"s", "save the model as it is now"},
@@ -88,6 +90,12 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
   if (pressed(GLFW_KEY_U)) step(Request::undo, frame, commands);
   if (pressed(GLFW_KEY_R)) step(Request::redo, frame, commands);
   if (pressed(GLFW_KEY_T)) commands.emplace_back(flow::SetRecording{!gauges.recording});
+  for (const auto& [key, side] :
+       {std::pair{GLFW_KEY_COMMA, Side::left}, {GLFW_KEY_APOSTROPHE, Side::right}})
+    if (pressed(key))
+      commands.emplace_back(flow::SetClutch{side, puppet::RigPlayer::all_fingers,
+                                            frame.let_go[flow::Placement::index_of(side)]});
+  if (pressed(GLFW_KEY_Y)) commands.emplace_back(flow::SetSymmetry{!frame.symmetric});
   if (pressed(GLFW_KEY_PERIOD)) commands.emplace_back(flow::Mark{});
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_E)) commands.emplace_back(flow::Subdivide{});

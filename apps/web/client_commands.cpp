@@ -1,5 +1,7 @@
 #include "web/client_commands.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <span>
@@ -83,6 +85,38 @@ std::optional<flow::Command> wrist_in(Words words) noexcept {
   return move;
 }
 
+std::optional<bool> switch_in(std::string_view word) noexcept {
+  if (word == "on") return true;
+  if (word == "off") return false;
+  return std::nullopt;
+}
+
+std::optional<flow::Command> clutch_in(Words words) noexcept {
+  constexpr std::array<std::string_view, 6> fingers{"thumb", "index",  "middle",
+                                                    "ring",  "little", "wrist"};
+  const auto hand = words.next();
+  const auto finger = words.next();
+  const auto holds = switch_in(words.next());
+  if ((hand != "left" && hand != "right") || !holds || !words.are_over()) return std::nullopt;
+  flow::SetClutch clutch{hand == "left" ? Side::left : Side::right, puppet::RigPlayer::all_fingers,
+                         *holds};
+  if (finger == "all") return clutch;
+  const auto* const found = std::find(fingers.begin(), fingers.end(), finger);
+  if (found == fingers.end()) return std::nullopt;
+  clutch.finger = static_cast<std::uint8_t>(found - fingers.begin());
+  return clutch;
+}
+
+std::optional<flow::Command> role_in(Words words) noexcept {
+  std::array<double, 1> function{};
+  if (!words.take(function)) return std::nullopt;
+  const auto input = puppet::HandSignal::named(words.next());
+  const bool exists = function[0] >= 0.0 && function[0] < puppet::Puppet::most_functions &&
+                      function[0] == std::floor(function[0]);
+  if (!input || !exists || !words.are_over()) return std::nullopt;
+  return flow::SetRole{static_cast<std::uint16_t>(function[0]), *input};
+}
+
 } // namespace
 
 std::optional<flow::Command> parse_command(std::string_view text) noexcept {
@@ -97,6 +131,12 @@ std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   const auto first = words.next();
   if (first == "settings") return settings_in(words);
   if (first == "wrist") return wrist_in(words);
+  if (first == "clutch") return clutch_in(words);
+  if (first == "role") return role_in(words);
+  if (first == "symmetry") {
+    const auto on = switch_in(words.next());
+    if (on && words.are_over()) return flow::SetSymmetry{*on};
+  }
   return std::nullopt;
 }
 

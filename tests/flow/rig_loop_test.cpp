@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -61,6 +63,64 @@ TEST_SUITE("rig_loop") {
     CHECK((after(0) - bent).cwiseAbs().maxCoeff() < 1e-6);
     CHECK((after(10) - bent).cwiseAbs().maxCoeff() > 5e-3);
     CHECK((after(0) - bent).cwiseAbs().maxCoeff() < 1e-6);
+  }
+
+  TEST_CASE("a finger, or a hand, lets go of its functions while the others go on") {
+    auto test = puppet_loop();
+    HostTime now = HostClock::now();
+    std::uint64_t tick = 0;
+    const auto after = [&](int counts) {
+      test.bend(counts, now += 11ms);
+      const auto& functions = test.frame_after_tick(tick++).functions;
+      return std::vector<double>(functions.begin(), functions.begin() + 4);
+    };
+    const auto& functions = test.options.rig->puppet().functions;
+    after(0);
+    const auto bent = after(12);
+    test.commands.try_push(SetClutch{Side::right, 2, false}); // the middle finger
+    const auto more = after(20);
+    for (std::size_t at = 0; at < functions.size(); ++at)
+      CHECK((more[at] == bent[at]) == (functions[at].name == "turn"));
+    test.commands.try_push(SetClutch{Side::right, puppet::RigPlayer::all_fingers, false});
+    const auto left_only = after(5);
+    CHECK(test.loop->frames().front().let_go == std::array{false, true});
+    for (std::size_t at = 0; at < functions.size(); ++at)
+      CHECK((left_only[at] == more[at]) == (functions[at].input.side() == Side::right));
+    test.commands.try_push(SetClutch{Side::right, puppet::RigPlayer::all_fingers, true});
+    const auto again = after(5); // wherever the hand is, nothing leaps
+    for (std::size_t at = 0; at < functions.size(); ++at)
+      CHECK(again[at] == doctest::Approx(left_only[at]).epsilon(1e-6));
+    CHECK(test.loop->frames().front().let_go == std::array{false, false});
+  }
+
+  TEST_CASE("one hand plays both sides, and a function listens to another finger") {
+    auto test = puppet_loop();
+    HostTime now = HostClock::now();
+    const auto& functions = test.options.rig->puppet().functions;
+    const auto number_of = [&](std::string_view name) {
+      return static_cast<std::size_t>(
+          std::find_if(functions.begin(), functions.end(),
+                       [&](const auto& function) { return function.name == name; }) -
+          functions.begin());
+    };
+    const std::size_t left = number_of("growLeft"), right = number_of("growRight");
+    test.commands.try_push(SetSymmetry{true});
+    test.frame_after_tick(0);
+    test.rings[0]->try_push(test::bent_sample(Side::left, 15, now + 11ms));
+    const Frame& both = test.frame_after_tick(1);
+    CHECK(both.symmetric);
+    CHECK(both.functions[left] > 0.1F);
+    CHECK(both.functions[right] == both.functions[left]);
+    test.commands.try_push(SetSymmetry{false});
+    const auto role = puppet::HandSignal::named("right.thumb_flexion");
+    REQUIRE(role);
+    test.commands.try_push(SetRole{static_cast<std::uint16_t>(left), *role});
+    const float before = test.frame_after_tick(2).functions[left];
+    test.rings[0]->try_push(test::bent_sample(Side::left, 0, now + 33ms));
+    CHECK(test.frame_after_tick(3).functions[left] == before);
+    test.rings[1]->try_push(test::bent_sample(Side::right, 15, now + 44ms));
+    CHECK(test.frame_after_tick(4).functions[left] > before);
+    CHECK(test.loop->frames().front().functions[right] > 0.1F); // its own hand again
   }
 
   TEST_CASE("no function leaves its limits, however far a hand bends") {

@@ -41,7 +41,7 @@ TEST_SUITE("demo") {
     const auto what = test::nendo({"demo", "cube"});
     CHECK(what.exit_code == 2);
     CHECK(is_one_line_about(what.err, "cube"));
-    const auto duration = test::nendo({"demo", what, "--duration", "0"});
+    const auto duration = test::nendo({"demo", "--duration", "0"});
     CHECK(duration.exit_code == 2);
     CHECK(is_one_line_about(duration.err, "--duration"));
     const auto ending = test::nendo({"demo", "--picture", "moai.txt"});

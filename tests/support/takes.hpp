@@ -86,6 +86,21 @@ struct RecordedLoop {
   }
 };
 
+/// Of how a puppet is played: who lets go, who takes hold, what listens to what.
+template <class Random>
+flow::Command any_role(Random& random) {
+  const Side side = random() % 2 == 0 ? Side::left : Side::right;
+  const auto number = static_cast<std::uint8_t>(random() % 43);
+  if (random() % 3 == 0)
+    return flow::SetRole{static_cast<std::uint16_t>(random() % 6),
+                         *puppet::HandSignal::numbered(side, number)};
+  if (random() % 2 == 0) return flow::SetSymmetry{random() % 2 == 0};
+  const bool all = random() % 2 == 0;
+  return flow::SetClutch{
+      side, all ? puppet::RigPlayer::all_fingers : static_cast<std::uint8_t>(random() % 6),
+      random() % 3 > 0};
+}
+
 /// Plays what people do: hands bend and move at random, requests are made, a switch is turned now
 /// and then, and ticks find several samples or none. With `changes`, settings and models are
 /// changed, too.
@@ -124,6 +139,8 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
           Eigen::AngleAxisd(1e-3 * static_cast<double>(random() % 20), Eigen::Vector3d::UnitX()));
       played.test.commands.try_push(flow::WristMove::to(side, wrist));
     }
+    if (played.test.options.rig && of_changes() % 12 == 0)
+      played.test.commands.try_push(any_role(of_changes));
     if (changes && of_changes() % 10 == 0)
       loop.change_settings(any_settings(loop.settings(), of_changes));
     if (changes) maker.turn(loop);

@@ -33,6 +33,19 @@ TEST_SUITE("client_commands") {
     CHECK(parsed_as<flow::SaveShape>("save"));
     CHECK(parsed_as<flow::Mark>("mark"));
     CHECK_FALSE(parse_command("mark 1"));
+    CHECK(parsed_as<flow::SetClutch>("clutch left all off") ==
+          flow::SetClutch{Side::left, puppet::RigPlayer::all_fingers, false});
+    CHECK(parsed_as<flow::SetClutch>("clutch right ring on") ==
+          flow::SetClutch{Side::right, 3, true});
+    CHECK(parsed_as<flow::SetSymmetry>("symmetry on") == flow::SetSymmetry{true});
+    CHECK(parsed_as<flow::SetRole>("role 3 left.index_flexion") ==
+          flow::SetRole{3, *puppet::HandSignal::named("left.index_flexion")});
+    for (const auto* wrong :
+         {"clutch left all", "clutch both all on", "clutch left toe on", "clutch left all maybe",
+          "symmetry", "symmetry yes", "symmetry on on", "role 3", "role 64 left.index_flexion",
+          "role 1.5 left.index_flexion", "role -1 left.index_flexion", "role 3 left.tail",
+          "role 3 left.index_flexion now"})
+      CHECK_FALSE(parse_command(wrong));
     CHECK(parsed_as<flow::SaveRecording>("keep"));
   }
 

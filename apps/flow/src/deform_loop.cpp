@@ -101,7 +101,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   }
   if (options.rig) {
     rig_.emplace(options.rig);
-    rig_->set_asked(options.function_values);
+    rig_->set_state(options.rig_state);
     rig_->take_hold(hand_states());
   }
   compute_hands(frames_.back());
@@ -174,11 +174,21 @@ void DeformLoop::apply(const Command& command) noexcept {
   const auto* const request = std::get_if<Request>(&command);
   const auto* const move = std::get_if<WristMove>(&command);
   if (!is_for_loop(command) || (move != nullptr && !move->is_usable())) return;
+  if (is_for_puppet(command) && !rig_) return;
   if (options_.input_log != nullptr) options_.input_log->command(command);
   if (request != nullptr) return shaping_.ask(*request);
+  if (is_for_puppet(command)) return set_rig(command);
   if (move == nullptr) return; // a mark is only logged
   for (Hand& hand : hands_)
     if (hand.slot == Placement::index_of(move->side)) hand.T_stage_wrist = move->pose();
+}
+
+void DeformLoop::set_rig(const Command& command) noexcept {
+  if (const auto* clutch = std::get_if<SetClutch>(&command))
+    rig_->set_clutch(clutch->side, clutch->finger, clutch->holds, hand_states());
+  if (const auto* role = std::get_if<SetRole>(&command))
+    rig_->set_input(role->function, role->input, hand_states());
+  if (const auto* symmetry = std::get_if<SetSymmetry>(&command)) rig_->set_symmetric(symmetry->on);
 }
 
 void DeformLoop::compute_hands(Frame& frame) noexcept {
@@ -198,6 +208,9 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
   }
   if (!rig_) return;
   play_rig();
+  for (const Side side : {Side::left, Side::right})
+    frame.let_go[Placement::index_of(side)] = rig_->has_let_go(side);
+  frame.symmetric = rig_->state().symmetric;
   frame.function_count = static_cast<std::uint32_t>(rig_->values().size());
   for (std::size_t at = 0; at < rig_->values().size(); ++at)
     frame.functions[at] = static_cast<float>(rig_->values()[at]);

@@ -79,7 +79,7 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   }
   place_tips();
   switch_on_ = false;
-  if (rig_) std::copy(rig_->asked().begin(), rig_->asked().end(), state.function_values.begin());
+  if (rig_) state.rig = rig_->state(); // which has room for it
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
   state.held = shaping_.is_held();
   state.shape.follow(shaping_.sculptor().rest());
@@ -147,7 +147,7 @@ void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   begins.log = log;
   begins.state.placement.units_per_metre = units_per_metre_;
   begins.state.shape = like;
-  if (rig_) begins.state.function_values.resize(rig_->asked().size());
+  if (rig_) begins.state.rig.functions.resize(rig_->values().size());
   change.log = std::move(begins);
   offer_change();
 }

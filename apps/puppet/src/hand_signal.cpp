@@ -1,5 +1,6 @@
 #include <nendo/puppet/hand_signal.hpp>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -53,6 +54,13 @@ std::string HandSignal::name() const {
 
 bool HandSignal::is_angle() const noexcept {
   return number_ < first_tip;
+}
+
+std::uint8_t HandSignal::finger() const noexcept {
+  if (number_ < fingers.size()) return number_;
+  if (number_ >= first_tip) return static_cast<std::uint8_t>((number_ - first_tip) / 3);
+  // Four angles of the thumb, four of each finger, then palm and wrist.
+  return std::min(static_cast<std::uint8_t>((number_ - fingers.size()) / 4), no_finger);
 }
 
 double HandSignal::of(const HandState& hand) const noexcept {

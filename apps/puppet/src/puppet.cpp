@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <nendo/base/files.hpp>
 #include <nendo/deform/triangles.hpp>
@@ -90,6 +91,14 @@ SurfacePlace nearest_in_middle(const Mesh& model, const Vector3d& at) {
 }
 
 } // namespace
+
+std::string twin_of(const std::string& name) {
+  constexpr std::string_view left = "Left", right = "Right";
+  for (const auto& [ending, other] : {std::pair{left, right}, std::pair{right, left}})
+    if (name.ends_with(ending))
+      return name.substr(0, name.size() - ending.size()) + std::string(other);
+  return name;
+}
 
 Result<Puppet> read_puppet(const std::filesystem::path& path) {
   constexpr std::size_t most_bytes = std::size_t{1} << 20;

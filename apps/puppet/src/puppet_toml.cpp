@@ -19,18 +19,9 @@ namespace {
 
 constexpr double largest = 1e9; // of lengths, model units
 constexpr std::string_view left = "Left";
-constexpr std::string_view right = "Right";
 
 Vector3d vector_of(const std::array<double, 3>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
-}
-
-/// "browLeft" is the twin of "browRight". Other names have none, and are their own.
-std::string twin_of(const std::string& name) {
-  for (const auto& [ending, other] : {std::pair{left, right}, std::pair{right, left}})
-    if (name.ends_with(ending))
-      return name.substr(0, name.size() - ending.size()) + std::string(other);
-  return name;
 }
 
 class PuppetReader {

@@ -76,28 +76,79 @@ deform::Supports Rig::supports() const {
 }
 
 RigPlayer::RigPlayer(std::shared_ptr<const Rig> rig)
-    : rig_(std::move(rig)), holds_(rig_->puppet().functions.size()), asked_(holds_.size(), 0.0),
-      values_(holds_.size(), 0.0) {}
+    : rig_(std::move(rig)), holds_(rig_->puppet().functions.size()), values_(holds_.size(), 0.0) {
+  const auto& functions = rig_->puppet().functions;
+  for (const Function& function : functions) {
+    const auto twin = std::find_if(functions.begin(), functions.end(), [&](const Function& other) {
+      return other.name == twin_of(function.name);
+    });
+    const auto own = static_cast<std::size_t>(&function - functions.data());
+    twins_.push_back(twin == functions.end() ? own
+                                             : static_cast<std::size_t>(twin - functions.begin()));
+    state_.functions.push_back({0.0, function.input, true});
+  }
+}
+
+void RigPlayer::take_hold(std::size_t function, const Hands& hands) noexcept {
+  FunctionState& state = state_.functions[function];
+  const HandState* const hand = hands[static_cast<std::size_t>(state.input.side())];
+  if (hand == nullptr) return;
+  state.asked = within_reach(rig_->puppet().functions[function], state.asked);
+  holds_[function] = {state.input.of(*hand), state.asked};
+}
 
 void RigPlayer::take_hold(const Hands& hands) noexcept {
-  for (std::size_t at = 0; at < holds_.size(); ++at) {
-    const Function& function = rig_->puppet().functions[at];
-    const HandState* const hand = hands[static_cast<std::size_t>(function.input.side())];
-    if (hand == nullptr) continue;
-    asked_[at] = within_reach(function, asked_[at]);
-    holds_[at] = {function.input.of(*hand), asked_[at]};
-  }
+  for (std::size_t at = 0; at < holds_.size(); ++at)
+    take_hold(at, hands);
 }
 
 void RigPlayer::follow(const Hands& hands) noexcept {
   for (std::size_t at = 0; at < holds_.size(); ++at) {
-    const Function& function = rig_->puppet().functions[at];
-    const HandState* const hand = hands[static_cast<std::size_t>(function.input.side())];
-    if (hand == nullptr) continue;
-    const double moved = (function.input.of(*hand) - holds_[at].signal) / function.travel;
-    asked_[at] = holds_[at].value + moved;
-    values_[at] = limited(function, asked_[at]);
+    FunctionState& state = state_.functions[at];
+    const HandState* const hand = hands[static_cast<std::size_t>(state.input.side())];
+    if (hand == nullptr || !state.held) continue;
+    const double moved =
+        (state.input.of(*hand) - holds_[at].signal) / rig_->puppet().functions[at].travel;
+    state.asked = holds_[at].value + moved;
   }
+  set_values();
+}
+
+void RigPlayer::set_values() noexcept {
+  const auto& functions = rig_->puppet().functions;
+  for (std::size_t at = 0; at < values_.size(); ++at)
+    values_[at] = limited(functions[at], state_.functions[at].asked);
+  if (!state_.symmetric) return;
+  for (std::size_t at = 0; at < values_.size(); ++at)
+    if (std::abs(values_[twins_[at]]) > std::abs(values_[at])) values_[at] = values_[twins_[at]];
+}
+
+void RigPlayer::set_clutch(Side side, std::uint8_t finger, bool holds,
+                           const Hands& hands) noexcept {
+  for (std::size_t at = 0; at < holds_.size(); ++at) {
+    FunctionState& state = state_.functions[at];
+    const bool is_meant =
+        state.input.side() == side && (finger == all_fingers || finger == state.input.finger());
+    if (!is_meant || state.held == holds) continue;
+    state.held = holds;
+    take_hold(at, hands);
+  }
+}
+
+void RigPlayer::set_input(std::size_t function, HandSignal input, const Hands& hands) noexcept {
+  if (function >= holds_.size()) return;
+  state_.functions[function].input = input;
+  take_hold(function, hands);
+}
+
+void RigPlayer::set_symmetric(bool on) noexcept {
+  state_.symmetric = on;
+  set_values();
+}
+
+bool RigPlayer::has_let_go(Side side) const noexcept {
+  return std::none_of(state_.functions.begin(), state_.functions.end(),
+                      [&](const auto& state) { return state.input.side() == side && state.held; });
 }
 
 void RigPlayer::write(Points& points) const noexcept {
@@ -106,13 +157,11 @@ void RigPlayer::write(Points& points) const noexcept {
     if (values_[at] != 0.0) points += values_[at] * rig_->vectors_of(at);
 }
 
-void RigPlayer::set_asked(std::span<const double> values) noexcept {
-  const std::size_t count = std::min(values.size(), values_.size());
-  for (std::size_t at = 0; at < count; ++at) {
-    const Function& function = rig_->puppet().functions[at];
-    asked_[at] = within_reach(function, values[at]);
-    values_[at] = limited(function, asked_[at]);
-  }
+void RigPlayer::set_state(const RigState& state) noexcept {
+  if (state.functions.size() != holds_.size()) return;
+  std::copy(state.functions.begin(), state.functions.end(), state_.functions.begin());
+  state_.symmetric = state.symmetric;
+  set_values();
 }
 
 } // namespace nendo::puppet

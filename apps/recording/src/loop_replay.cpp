@@ -101,6 +101,12 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     exact_ = commands_.try_push(*request) && exact_;
   } else if (const auto* move = std::get_if<flow::WristMove>(&entry)) {
     exact_ = commands_.try_push(*move) && exact_;
+  } else if (const auto* clutch = std::get_if<flow::SetClutch>(&entry)) {
+    exact_ = commands_.try_push(*clutch) && exact_;
+  } else if (const auto* role = std::get_if<flow::SetRole>(&entry)) {
+    exact_ = commands_.try_push(*role) && exact_;
+  } else if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&entry)) {
+    exact_ = commands_.try_push(*symmetry) && exact_;
   } else if (const auto* settings = std::get_if<flow::LoopSettings>(&entry)) {
     exact_ = loop_->change_settings(*settings) && exact_;
   } else if (std::holds_alternative<flow::HoldStill>(entry)) {

@@ -120,6 +120,12 @@ private:
       put(*model);
     } else if (const auto* mark = std::get_if<flow::Mark>(&command)) {
       put(*mark);
+    } else if (const auto* clutch = std::get_if<flow::SetClutch>(&command)) {
+      put(*clutch);
+    } else if (const auto* role = std::get_if<flow::SetRole>(&command)) {
+      put(*role);
+    } else if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command)) {
+      put(*symmetry);
     }
   }
   void add(const flow::LoggedTick& tick) {

@@ -36,7 +36,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.placement = state.placement;
   loop.options.sculptor = state.sculptor.options;
   loop.options.held = state.held;
-  loop.options.function_values = state.function_values;
+  loop.options.rig_state = state.rig;
   loop.subdivisions = state.subdivisions;
   loop.options.settings = state.sculptor.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));

@@ -190,34 +190,67 @@ bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loo
   return usable;
 }
 
+void put_signal(ByteWriter& writer, const puppet::HandSignal& signal) {
+  writer.u8(static_cast<std::uint8_t>(signal.side()));
+  writer.u8(signal.number());
+}
+
+std::optional<puppet::HandSignal> read_signal(ByteReader& reader) {
+  const std::uint8_t side = reader.u8();
+  const std::uint8_t number = reader.u8();
+  if (side > static_cast<std::uint8_t>(Side::right)) return std::nullopt;
+  return puppet::HandSignal::numbered(static_cast<Side>(side), number);
+}
+
 void put_puppet(ByteWriter& writer, const LoopSetup& loop) {
   writer.u32_le(static_cast<std::uint32_t>(loop.puppet.size()));
   writer.bytes(std::as_bytes(std::span(loop.puppet)));
-  writer.u16_le(static_cast<std::uint16_t>(loop.options.function_values.size()));
-  for (const double value : loop.options.function_values)
-    writer.f64_le(value);
+  const puppet::RigState& state = loop.options.rig_state;
+  writer.u16_le(static_cast<std::uint16_t>(state.functions.size()));
+  for (const puppet::FunctionState& function : state.functions) {
+    writer.f64_le(function.asked);
+    put_signal(writer, function.input);
+    writer.u8(static_cast<std::uint8_t>(function.held));
+  }
+  writer.u8(static_cast<std::uint8_t>(state.symmetric));
   writer.u16_le(static_cast<std::uint16_t>(loop.puppet_starts.cols()));
   for (const double coordinate : loop.puppet_starts.reshaped())
     writer.f64_le(coordinate);
 }
 
-bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
+namespace {
+
+puppet::RigState read_rig_state(ByteReader& reader, CheckedReader& checked) {
   constexpr double most_value = 1e9;
+  puppet::RigState state;
+  state.functions.resize(checked.count(puppet::Puppet::most_functions));
+  for (puppet::FunctionState& function : state.functions) {
+    function.asked = checked.number(-most_value, most_value);
+    const auto input = read_signal(reader);
+    checked.require(input.has_value());
+    function.input = input.value_or(puppet::HandSignal{});
+    function.held = reader.u8() != 0;
+  }
+  state.symmetric = reader.u8() != 0;
+  return state;
+}
+
+} // namespace
+
+bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
   constexpr std::uint32_t most_text = std::uint32_t{1} << 20;
   CheckedReader checked(reader);
   const std::uint32_t size = reader.u32_le();
   if (!loop || !loop->puppet.empty() || size == 0 || size > most_text || size > reader.remaining())
     return false;
   const auto text = reader.take(size);
-  std::vector<double> values(checked.count(puppet::Puppet::most_functions));
-  for (double& value : values)
-    value = checked.number(-most_value, most_value);
+  puppet::RigState state = read_rig_state(reader, checked);
   deform::Points starts(3, static_cast<Eigen::Index>(checked.count(puppet::Puppet::most_points)));
   for (double& coordinate : starts.reshaped())
     coordinate = checked.number(-largest_number, largest_number);
   if (!checked.fine()) return false;
   loop->puppet.assign(reinterpret_cast<const char*>(text.data()), text.size());
-  loop->options.function_values = std::move(values);
+  loop->options.rig_state = std::move(state);
   loop->puppet_starts = std::move(starts);
   return true;
 }

@@ -61,6 +61,9 @@ private:
 void put_head(ByteWriter& writer, const Setup& setup);
 void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& hand);
 void put_loop(ByteWriter& writer, const LoopSetup& loop);
+/// Writes which signal of which hand it is; read_signal() returns nothing if there is no such one.
+void put_signal(ByteWriter& writer, const puppet::HandSignal& signal);
+std::optional<puppet::HandSignal> read_signal(ByteReader& reader);
 void put_puppet(ByteWriter& writer, const LoopSetup& loop);
 /// Writes some of the blocks of the shape at first. A chunk has at most most_blocks_of_chunk.
 void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks);

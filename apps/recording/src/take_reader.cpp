@@ -15,6 +15,8 @@ constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
 constexpr std::size_t wrist_bytes = 57;
 constexpr std::size_t model_bytes = 5;
+constexpr std::size_t clutch_bytes = 3;
+constexpr std::size_t role_bytes = 4;
 
 struct EntryWriter {
   ByteWriter& writer;
@@ -53,6 +55,21 @@ struct EntryWriter {
     writer.u8(static_cast<std::uint8_t>(change.source));
   }
   void operator()(const flow::Mark&) const { driver::put_entry_head(writer, EntryKind::mark, 0); }
+  void operator()(const flow::SetClutch& clutch) const {
+    driver::put_entry_head(writer, EntryKind::clutch, clutch_bytes);
+    writer.u8(static_cast<std::uint8_t>(clutch.side));
+    writer.u8(clutch.finger);
+    writer.u8(static_cast<std::uint8_t>(clutch.holds));
+  }
+  void operator()(const flow::SetRole& role) const {
+    driver::put_entry_head(writer, EntryKind::role, role_bytes);
+    writer.u16_le(role.function);
+    put_signal(writer, role.input);
+  }
+  void operator()(const flow::SetSymmetry& symmetry) const {
+    driver::put_entry_head(writer, EntryKind::symmetry, 1);
+    writer.u8(static_cast<std::uint8_t>(symmetry.on));
+  }
   void operator()(const Gap& gap) const {
     driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
     writer.u64_le(gap.entries);
@@ -100,6 +117,25 @@ std::optional<Entry> model_of(ByteReader& reader) {
     return std::nullopt;
   change.source = static_cast<flow::ModelSource>(source);
   return change;
+}
+
+std::optional<Entry> clutch_of(ByteReader& reader) {
+  flow::SetClutch clutch;
+  const std::uint8_t side = reader.u8();
+  clutch.finger = reader.u8();
+  clutch.holds = reader.u8() != 0;
+  if (reader.overrun() || side > static_cast<std::uint8_t>(Side::right)) return std::nullopt;
+  clutch.side = static_cast<Side>(side);
+  return clutch;
+}
+
+std::optional<Entry> role_of(ByteReader& reader) {
+  flow::SetRole role;
+  role.function = reader.u16_le();
+  const auto input = read_signal(reader);
+  if (!input || reader.overrun()) return std::nullopt;
+  role.input = *input;
+  return role;
 }
 
 std::optional<Ending> ending_of(std::span<const std::byte> payload) {
@@ -238,6 +274,13 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
     entry = model_of(reader);
   } else if (record.is(EntryKind::mark)) {
     entry = flow::Mark{};
+  } else if (record.is(EntryKind::clutch)) {
+    entry = clutch_of(reader);
+  } else if (record.is(EntryKind::role)) {
+    entry = role_of(reader);
+  } else if (record.is(EntryKind::symmetry)) {
+    const flow::SetSymmetry symmetry{reader.u8() != 0};
+    if (!reader.overrun()) entry = symmetry;
   } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

@@ -38,6 +38,9 @@ public:
   }
   void operator()(const flow::HoldStill&) {}
   void operator()(const flow::ChangeModel&) { ++summary_.model_changes; }
+  void operator()(const flow::SetClutch&) {}
+  void operator()(const flow::SetRole&) {}
+  void operator()(const flow::SetSymmetry&) {}
   void operator()(const flow::Mark&) { ++marks_due_; }
   void operator()(const flow::LoggedTick& tick) {
     for (; marks_due_ > 0; --marks_due_)

@@ -27,6 +27,9 @@ enum class EntryKind : std::uint8_t {
   hold_still = 7,
   model = 8,
   mark = 9,
+  clutch = 10,
+  role = 11,
+  symmetry = 12,
 };
 
 /// One entry of an input log: its kind and what it holds.

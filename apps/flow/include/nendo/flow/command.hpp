@@ -11,6 +11,7 @@
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/request.hpp>
 #include <nendo/flow/wrist_move.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
 
@@ -40,6 +41,26 @@ struct SaveRecording {
 struct Mark {
   friend bool operator==(const Mark&, const Mark&) = default;
 };
+/// Lets a hand, or one of its fingers, let go of the functions of a puppet that it plays, or take
+/// hold of them again (puppet::RigPlayer::set_clutch()).
+struct SetClutch {
+  Side side = Side::left;
+  std::uint8_t finger = puppet::RigPlayer::all_fingers;
+  bool holds = true;
+  friend bool operator==(const SetClutch&, const SetClutch&) = default;
+};
+/// Lets a function of a puppet listen to another signal. Those that a puppet has not are passed
+/// over.
+struct SetRole {
+  std::uint16_t function = 0; ///< of puppet::Puppet::functions
+  puppet::HandSignal input;
+  friend bool operator==(const SetRole&, const SetRole&) = default;
+};
+/// One hand plays both sides of a puppet, or each plays its own.
+struct SetSymmetry {
+  bool on = false;
+  friend bool operator==(const SetSymmetry&, const SetSymmetry&) = default;
+};
 /// Ends the run, which then writes its shape.
 struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
@@ -65,17 +86,24 @@ struct ChangeModel {
 /// A loop obeys Request and WristMove at the beginning of its next tick, and logs a Mark. All
 /// others are obeyed by the code that runs the loop. HoldStill and ChangeModel only tell a log what
 /// the loop did.
-using Command = std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape,
-                             SaveRecording, EndRun, Subdivide, HoldStill, ChangeModel, Mark>;
+using Command =
+    std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
+                 Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.
 using CommandRing = SpscRing<Command>;
 
+/// Tells whether it is about how a puppet is played.
+constexpr bool is_for_puppet(const Command& command) noexcept {
+  return std::holds_alternative<SetClutch>(command) || std::holds_alternative<SetRole>(command) ||
+         std::holds_alternative<SetSymmetry>(command);
+}
+
 /// Tells whether a running loop obeys the command by itself.
 constexpr bool is_for_loop(const Command& command) noexcept {
   return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command) ||
-         std::holds_alternative<Mark>(command);
+         std::holds_alternative<Mark>(command) || is_for_puppet(command);
 }
 
 } // namespace nendo::flow

@@ -79,8 +79,7 @@ struct LoopOptions : PaceOptions {
   /// A puppet: the hands play its functions, which move its points, in place of touching the model
   /// with their fingertips. The supports are then those of the points. It must be of this model.
   std::shared_ptr<const puppet::Rig> rig{};
-  /// RigPlayer::asked() at first; what is not told is 0.
-  std::vector<double> function_values{};
+  puppet::RigState rig_state{}; ///< of its player at first
   /// The settings at first, if settings_of() the sculptor and the filter would tell them less
   /// exactly.
   std::optional<LoopSettings> settings{};
@@ -212,6 +211,7 @@ private:
   void give_back_change() noexcept;
   void place_tips() noexcept;
   void play_rig() noexcept;
+  void set_rig(const Command& command) noexcept;
   puppet::RigPlayer::Hands hand_states() noexcept;
   ModelVersion* version_numbered(std::uint32_t number) const noexcept;
   bool set_surface(SculptorOptions& sculptor, const ModelVersion& model) const;

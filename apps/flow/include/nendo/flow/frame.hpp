@@ -75,6 +75,8 @@ struct Frame {
   /// puppet.
   std::array<float, puppet::Puppet::most_functions> functions{};
   std::uint32_t function_count = 0;
+  std::array<bool, 2> let_go{}; ///< by side: that hand has let go of all that it plays
+  bool symmetric = false;       ///< one hand plays both sides
   /// The deformed vertices, which DeformLoop::layout(model) turns into points. The stamps tell
   /// which blocks differ from those of an earlier frame of the same version.
   deform::BlockShape shape;

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <optional>
-#include <vector>
 
 #include <nendo/flow/input_log.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/shaping.hpp>
 #include <nendo/hand/range_adaptation.hpp>
+#include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
 
@@ -21,8 +21,8 @@ struct LoopState {
   Placement placement{};                                       ///< without the gaps
   bool held = true;
   SculptorSetup sculptor{};
-  std::uint32_t subdivisions = 0;        ///< of the model with which the loop began
-  std::vector<double> function_values{}; ///< puppet::RigPlayer::asked()
+  std::uint32_t subdivisions = 0; ///< of the model with which the loop began
+  puppet::RigState rig{};         ///< of a puppet's player
   deform::BlockShape shape;
 };
 

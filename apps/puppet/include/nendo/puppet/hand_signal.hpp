@@ -37,6 +37,9 @@ public:
   Side side() const noexcept { return side_; }
   std::uint8_t number() const noexcept { return number_; }
   bool is_angle() const noexcept; ///< radians; otherwise metres
+  static constexpr std::uint8_t no_finger = 5;
+  /// Returns the finger to which it belongs, 0 thumb to 4 little finger; no_finger: palm or wrist.
+  std::uint8_t finger() const noexcept;
   /// Returns its value. Wait-free; no allocation.
   double of(const HandState& hand) const noexcept;
   friend bool operator==(const HandSignal&, const HandSignal&) = default;

@@ -80,6 +80,9 @@ struct Puppet {
   static constexpr std::size_t most_functions = 64;
 };
 
+/// Returns "browRight" for "browLeft", and the other way round; other names are their own twins.
+std::string twin_of(const std::string& name);
+
 /// Parses a puppet file. What `mirror = "x"` asks for is in the result: points and functions whose
 /// names end with Left have twins that end with Right. Error: bad_input, with the line.
 Result<Puppet> parse_puppet(std::string_view text, std::string_view name);

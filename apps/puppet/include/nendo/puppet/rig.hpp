@@ -38,6 +38,19 @@ private:
   std::vector<deform::Points> vectors_; ///< of each function
 };
 
+/// What a player of a rig needs to go on where another one is.
+struct FunctionState {
+  double asked = 0.0; ///< of the function by its hand, before its limits
+  HandSignal input;
+  bool held = true; ///< the hand moves it
+  friend bool operator==(const FunctionState&, const FunctionState&) = default;
+};
+struct RigState {
+  std::vector<FunctionState> functions; ///< none: as the puppet file says, at 0
+  bool symmetric = false;
+  friend bool operator==(const RigState&, const RigState&) = default;
+};
+
 /// Plays a rig. For one thread; the functions neither allocate nor wait, but for the constructor.
 class RigPlayer {
 public:
@@ -53,24 +66,37 @@ public:
   /// Writes where the points are, 3 by #points, model units.
   void write(deform::Points& points) const noexcept;
 
+  /// Lets a hand, or one of its fingers, let go of its functions, which then keep their values, or
+  /// take hold of them again. finger: HandSignal::finger(), or all_fingers.
+  static constexpr std::uint8_t all_fingers = 255;
+  void set_clutch(Side side, std::uint8_t finger, bool holds, const Hands& hands) noexcept;
+  /// Lets that function listen to another signal, from its present value on.
+  void set_input(std::size_t function, HandSignal input, const Hands& hands) noexcept;
+  /// While it is on, functions that are twins (...Left, ...Right) have the same value: that which
+  /// is farther from 0. So one hand plays both sides.
+  void set_symmetric(bool on) noexcept;
+
   const Rig& rig() const noexcept { return *rig_; }
   /// Returns the value of each function.
   std::span<const double> values() const noexcept { return values_; }
-  /// Returns what the hands ask of each function, before its limits: what another player needs to
-  /// go on from here.
-  std::span<const double> asked() const noexcept { return asked_; }
-  /// Sets that of the first functions. Call take_hold() then.
-  void set_asked(std::span<const double> values) noexcept;
+  const RigState& state() const noexcept { return state_; }
+  /// Goes on from that state, if it is one of as many functions. Call take_hold() then.
+  void set_state(const RigState& state) noexcept;
+  /// Tells whether nothing of that hand is held.
+  bool has_let_go(Side side) const noexcept;
 
 private:
   struct Hold {
     double signal = 0.0; ///< at which the hand took hold
     double value = 0.0;  ///< that it had asked for until then
   };
+  void take_hold(std::size_t function, const Hands& hands) noexcept;
+  void set_values() noexcept;
 
   std::shared_ptr<const Rig> rig_;
+  std::vector<std::size_t> twins_; ///< of each function; itself, if it has none
   std::vector<Hold> holds_;
-  std::vector<double> asked_;
+  RigState state_;
   std::vector<double> values_;
 };
 

@@ -28,7 +28,8 @@ struct Gap {
 
 using Entry =
     std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
-                 flow::HoldStill, flow::ChangeModel, flow::Mark, flow::LoggedTick, Gap>;
+                 flow::HoldStill, flow::ChangeModel, flow::Mark, flow::SetClutch, flow::SetRole,
+                 flow::SetSymmetry, flow::LoggedTick, Gap>;
 
 /// What a recorder writes at the end of a recording.
 struct Ending {
