@@ -106,6 +106,10 @@ TEST_SUITE("puppet file") {
     CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 90\ncurve = \"x\""), "curve"));
     CHECK(refuses(replaced(whole, "version = 1", "version = 2"), "version"));
     CHECK(refuses(replaced(whole, "pin = true", "pin = 1"), "pin"));
+    CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 90\nmost = 1e300"), "most"));
+    CHECK(refuses(whole + "turn = { degrees = 1e300, axis = [1, 0, 0], through = [0, 0, 0], "
+                          "points = { tip = 1e300 } }\n",
+                  "degrees"));
   }
 
   TEST_CASE("points and signals that there are not are named") {
