@@ -164,8 +164,8 @@ Eigen::VectorXd SurfaceGraph::distances(const SurfacePlace& from, double limit) 
     next.push({length, vertex});
   };
   const Vector3d place = from.in(vertices_);
-  for (const std::uint32_t corner : from.corners)
-    reach(corner, (vertices_.col(corner) - place).norm());
+  for (const std::uint32_t vertex : about(from))
+    reach(vertex, (vertices_.col(vertex) - place).norm());
   while (!next.empty()) {
     const auto [length, vertex] = next.top();
     next.pop();
@@ -174,6 +174,29 @@ Eigen::VectorXd SurfaceGraph::distances(const SurfacePlace& from, double limit) 
       reach(ways_[at].to, length + ways_[at].length);
   }
   return distance;
+}
+
+std::vector<std::uint32_t> SurfaceGraph::about(const SurfacePlace& place) const {
+  constexpr double least_weight = 1e-9;
+  std::vector<std::uint32_t> vertices;
+  for (std::size_t k = 0; k < place.corners.size(); ++k)
+    if (place.weights[k] > least_weight &&
+        std::find(vertices.begin(), vertices.end(), place.corners[k]) == vertices.end())
+      vertices.push_back(place.corners[k]);
+  const std::size_t corners = vertices.size();
+  if (corners < 2) return vertices;
+  const auto leads_to = [&](std::uint32_t from, std::uint32_t to) {
+    return std::any_of(ways_.data() + starts_[from], ways_.data() + starts_[from + 1],
+                       [&](const Way& way) { return way.to == to; });
+  };
+  for (std::size_t at = starts_[vertices[0]]; at < starts_[vertices[0] + 1]; ++at) {
+    const std::uint32_t to = ways_[at].to;
+    bool is_common = true;
+    for (std::size_t k = 1; k < corners && is_common; ++k)
+      is_common = to != vertices[k] && leads_to(vertices[k], to);
+    if (is_common) vertices.push_back(to);
+  }
+  return vertices;
 }
 
 std::vector<std::uint32_t> SurfaceGraph::parts() const {

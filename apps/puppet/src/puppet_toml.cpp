@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double largest = 1e9; // of lengths, model units
+constexpr double largest = 1e9;       // of lengths, model units
+constexpr double largest_value = 1e3; // of functions, and of a point's part in a turn
 constexpr std::string_view left = "Left";
 
 Vector3d vector_of(const std::array<double, 3>& numbers) {
@@ -154,6 +155,8 @@ private:
     read.most = number_or(table, "most", 1.0);
     if (!(read.least <= 0.0 && read.most >= 0.0 && read.least < read.most))
       reader_.complain(table, read.name + ": least must be at most 0, and most at least 0");
+    if (read.least < -largest_value || read.most > largest_value)
+      reader_.complain(table, read.name + ": least and most must be within -1000 and 1000");
     const std::string curve = table.get("curve") ? reader_.text(table, "curve") : "linear";
     read.eases = curve == "ease";
     if (curve != "linear" && curve != "ease")
@@ -169,6 +172,8 @@ private:
     reader_.allow_only(*table, {"degrees", "axis", "through", "points"});
     Move turn;
     const double turn_rad = from_degrees(reader_.number(*table, "degrees"));
+    if (!(std::abs(turn_rad) <= from_degrees(360.0)))
+      reader_.complain(*table, "degrees must be within -360 and 360");
     turn.axis = place(*table, "axis");
     turn.through = place(*table, "through");
     if (!(turn.axis.norm() > 1e-9)) reader_.complain(*table, "the axis has no direction");
@@ -177,7 +182,10 @@ private:
     if (points == nullptr) return;
     for (const auto& [key, node] : *points) {
       turn.point = point_named(node, key.str());
-      turn.turn_rad = turn_rad * reader_.number(node, key.str());
+      const double part = reader_.number(node, key.str());
+      if (!(std::abs(part) <= largest_value))
+        reader_.complain(node, std::string(key.str()) + " must be within -1000 and 1000");
+      turn.turn_rad = turn_rad * part;
       read.moves.push_back(turn);
     }
   }

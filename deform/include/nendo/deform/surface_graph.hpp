@@ -49,6 +49,11 @@ private:
     std::uint32_t to;
     double length;
   };
+  /// The vertices that a straight way leads to: those of the place's face or edge, and those that
+  /// are neighbours of all of these. On an edge, that is both sides of it, so that places which are
+  /// mirror images have ways that are.
+  std::vector<std::uint32_t> about(const SurfacePlace& place) const;
+
   const Points& vertices_;
   std::vector<std::size_t> starts_; ///< of each vertex's ways
   std::vector<Way> ways_;

@@ -1,0 +1,139 @@
+// The laws of puppet files.
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include <nendo/base/units.hpp>
+#include <nendo/puppet/puppet.hpp>
+
+namespace puppet_file_test {
+
+using namespace nendo;
+using nendo::puppet::parse_puppet;
+
+namespace {
+
+const std::string head = "version = 1\nmodel = \"m.obj\"\nmirror = \"x\"\n";
+const std::string points = "[points]\n"
+                           "tip = { at = [0.0, 1.0, 0.0], radius = 2.0 }\n"
+                           "cornerLeft = { vertex = 7, radius = 1.5 }\n"
+                           "still = { at = [0.0, 0.0, 0.0], radius = 1.0, pin = true }\n";
+const std::string smile =
+    "[functions.smileLeft]\ninput = \"right.index_flexion\"\ntravel_deg = 90\n"
+    "move = { cornerLeft = [1.0, 2.0, 3.0], tip = [0.5, 0.0, 0.0] }\n";
+const std::string whole = head + points + smile;
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), by);
+}
+
+/// The message of a text that must be refused with one line that begins with the name.
+std::string refusal(const std::string& text) {
+  const auto parsed = parse_puppet(text, "p.toml");
+  REQUIRE_FALSE(parsed);
+  CHECK(parsed.error().code == Errc::bad_input);
+  CHECK(parsed.error().message.starts_with("p.toml:"));
+  CHECK(parsed.error().message.find('\n') == std::string::npos);
+  return parsed.error().message;
+}
+
+bool refuses(const std::string& text, std::string_view with) {
+  const std::string message = refusal(text);
+  INFO(message);
+  return message.find(with) != std::string::npos;
+}
+
+} // namespace
+
+TEST_SUITE("puppet file") {
+  TEST_CASE("a mirrored file has twins of what is named Left: other hand, other side") {
+    const auto parsed = parse_puppet(whole, "p.toml");
+    REQUIRE(parsed);
+    REQUIRE(parsed->points.size() == 4);
+    CHECK(parsed->points[3].name == "cornerRight");
+    CHECK(parsed->points[3].is_mirrored);
+    CHECK(parsed->points[3].radius == 1.5);
+    REQUIRE(parsed->functions.size() == 2);
+    const auto& left = parsed->functions[0];
+    const auto& right = parsed->functions[1];
+    CHECK(left.name == "smileLeft");
+    CHECK(right.name == "smileRight");
+    CHECK(left.input.name() == "right.index_flexion");
+    CHECK(right.input.name() == "left.index_flexion");
+    CHECK(right.travel == doctest::Approx(from_degrees(90.0)));
+    REQUIRE(right.moves.size() == left.moves.size());
+    for (std::size_t at = 0; at < left.moves.size(); ++at) {
+      const Eigen::Vector3d flipped = left.moves[at].vector.cwiseProduct(Eigen::Vector3d(-1, 1, 1));
+      CHECK(right.moves[at].vector == flipped);
+      const bool is_middle = parsed->points[left.moves[at].point].name == "tip";
+      CHECK((right.moves[at].point == left.moves[at].point) == is_middle);
+    }
+  }
+
+  TEST_CASE("without mirror, there are no twins") {
+    const auto parsed = parse_puppet(replaced(whole, "mirror = \"x\"\n", ""), "p.toml");
+    REQUIRE(parsed);
+    CHECK(parsed->points.size() == 3);
+    CHECK(parsed->functions.size() == 1);
+  }
+
+  TEST_CASE("a twin that the file has itself stays as it is") {
+    const auto parsed = parse_puppet(
+        replaced(whole, "tip =", "cornerRight = { vertex = 9, radius = 4.0 }\ntip ="), "p.toml");
+    REQUIRE(parsed);
+    CHECK(parsed->points.size() == 4);
+    for (const auto& point : parsed->points)
+      if (point.name == "cornerRight") CHECK(point.radius == 4.0);
+  }
+
+  TEST_CASE("unknown keys are refused, wherever they stand") {
+    CHECK(refuses("colour = 1\n" + whole, "'colour'"));
+    CHECK(refuses(replaced(whole, "radius = 2.0", "radius = 2.0, size = 1"), "'size'"));
+    CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 90\nspeed = 2"), "'speed'"));
+  }
+
+  TEST_CASE("values of a wrong type or range are refused by name") {
+    CHECK(refuses(replaced(whole, "radius = 2.0", "radius = \"2\""), "radius"));
+    CHECK(refuses(replaced(whole, "radius = 2.0", "radius = -2.0"), "radius"));
+    CHECK(refuses(replaced(whole, "radius = 2.0", "radius = inf"), "radius"));
+    CHECK(refuses(replaced(whole, "vertex = 7", "vertex = -7"), "vertex"));
+    CHECK(refuses(replaced(whole, "[0.0, 1.0, 0.0]", "[0.0, 1.0]"), "at"));
+    CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 0"), "travel"));
+    CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 90\nleast = 0.5"), "least"));
+    CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 90\ncurve = \"x\""), "curve"));
+    CHECK(refuses(replaced(whole, "version = 1", "version = 2"), "version"));
+    CHECK(refuses(replaced(whole, "pin = true", "pin = 1"), "pin"));
+    CHECK(refuses(replaced(whole, "travel_deg = 90", "travel_deg = 90\nmost = 1e300"), "most"));
+    CHECK(refuses(whole + "turn = { degrees = 1e300, axis = [1, 0, 0], through = [0, 0, 0], "
+                          "points = { tip = 1e300 } }\n",
+                  "degrees"));
+  }
+
+  TEST_CASE("points and signals that there are not are named") {
+    CHECK(refuses(replaced(whole, "move = { cornerLeft", "move = { cornerLift"), "'cornerLift'"));
+    CHECK(refuses(replaced(whole, "right.index_flexion", "right.toe_flexion"),
+                  "'right.toe_flexion'"));
+    CHECK(refuses(replaced(whole, "right.index_flexion", "index_flexion"), "'index_flexion'"));
+  }
+
+  TEST_CASE("nothing moves a pin") {
+    CHECK(refuses(replaced(whole, "tip = [0.5", "still = [0.5"), "pin"));
+  }
+
+  TEST_CASE("names are plain, since they go into messages and captions") {
+    CHECK(refuses(replaced(whole, "tip =", "\"a b\" ="), "letters"));
+    CHECK(refuses(replaced(whole, "[functions.smileLeft]", "[functions.\"\\n\"]"), "letters"));
+  }
+
+  TEST_CASE("a file without points, functions or a model is refused") {
+    CHECK(refuses(head + points, "functions"));
+    CHECK(refuses(head + smile, "points"));
+    CHECK(refuses(replaced(whole, "model = \"m.obj\"\n", ""), "model"));
+    CHECK(refuses("[points", ""));
+  }
+}
+
+} // namespace puppet_file_test
