@@ -18,7 +18,10 @@ constexpr float ambient_light = 0.25F;
 /// The diffuse light of one lamp beside the camera, on whichever side of the surface it falls.
 Vector3f lit_vertex(const Surface& surface, std::size_t at, const Vector3f& lamp) {
   const float diffuse = std::abs(surface.normals[at].dot(lamp));
-  const Pixel pixel = encoded((ambient_light + diffuse) * surface.material.colour);
+  const bool painted = surface.paint && !surface.paint->coats().empty();
+  const Vector3f& colour = // of several, the first: a vertex has but one
+      painted ? surface.paint->coats().front().colour : surface.material.colour;
+  const Pixel pixel = encoded((ambient_light + diffuse) * colour);
   return {static_cast<float>(pixel[0]), static_cast<float>(pixel[1]), static_cast<float>(pixel[2])};
 }
 

@@ -116,7 +116,6 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
     commands.emplace_back(flow::SaveRecording{});
   if (button("Subdivide", "More vertices for finer strokes; undo takes it back (e)"))
     commands.emplace_back(flow::Subdivide{});
-  if (button("Mark", "Mark this moment in the recording (.)")) commands.emplace_back(flow::Mark{});
   if (button(gauges.recording ? "End recording" : "Record", "A recording from here on (t)"))
     commands.emplace_back(flow::SetRecording{!gauges.recording});
   told = note.empty() ? gauges.report : note;

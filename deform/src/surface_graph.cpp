@@ -87,9 +87,11 @@ Vector3d SurfacePlace::in(const Points& vertices) const {
   return place;
 }
 
-SurfacePlace nearest_place(const Mesh& mesh, const Vector3d& to) {
+SurfacePlace nearest_place(const Mesh& mesh, const Vector3d& to,
+                           std::span<const std::uint32_t> parts, std::uint32_t part) {
   NearPlace best;
   for_each_cut(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+    if (!parts.empty() && parts[corners[0]] != part) return;
     const Points& at = mesh.vertices;
     const Vector3d weights =
         nearest_weights(at.col(corners[0]), at.col(corners[1]), at.col(corners[2]), to);

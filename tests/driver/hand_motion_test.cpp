@@ -25,8 +25,8 @@ using nendo::driver::Motion;
 TEST_SUITE("hand_motion") {
   namespace {
   constexpr double degree = std::numbers::pi / 180.0;
-  constexpr std::array motions{Motion::rest, Motion::wave, Motion::pinch, Motion::grasp,
-                               Motion::sculpt};
+  constexpr std::array motions{Motion::rest,  Motion::wave,   Motion::pinch,
+                               Motion::grasp, Motion::sculpt, Motion::faces};
   constexpr std::array sides{Side::left, Side::right};
 
   constexpr std::array<std::array<Sensor, 3>, 4> fingers{

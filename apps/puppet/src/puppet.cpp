@@ -110,11 +110,19 @@ Result<Puppet> read_puppet(const std::filesystem::path& path) {
 std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model) {
   const auto vertices = static_cast<std::uint32_t>(model.vertices.cols());
   std::vector<SurfacePlace> places;
+  // A twin is on the same part of the surface: beside the skin of a lid there are lashes and eyes.
+  const auto parts = deform::SurfaceGraph(model).parts();
   for (const PuppetPoint& point : puppet.points) {
     const bool at_vertex = point.vertex && *point.vertex < vertices;
     Vector3d at = at_vertex ? Vector3d(model.vertices.col(*point.vertex)) : point.at;
-    if (point.is_mirrored) at.x() = -at.x();
-    if (at_vertex && !point.is_mirrored)
+    if (point.is_mirrored) {
+      const std::uint32_t of =
+          at_vertex ? *point.vertex : deform::nearest_place(model, at).corners[0];
+      at.x() = -at.x();
+      places.push_back(deform::nearest_place(model, at, parts, parts[of]));
+      continue;
+    }
+    if (at_vertex)
       places.push_back(SurfacePlace::at_vertex(*point.vertex));
     else if (at.x() == 0.0)
       places.push_back(nearest_in_middle(model, at));

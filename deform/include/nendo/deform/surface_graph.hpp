@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <nendo/deform/mesh.hpp>
@@ -26,7 +27,9 @@ struct SurfacePlace {
 
 /// Returns the place of the mesh's faces that is nearest to `to`, in model units. The mesh must
 /// have a face.
-SurfacePlace nearest_place(const Mesh& mesh, const Eigen::Vector3d& to);
+/// With `parts` (SurfaceGraph::parts()), only of that part, which must have a face.
+SurfacePlace nearest_place(const Mesh& mesh, const Eigen::Vector3d& to,
+                           std::span<const std::uint32_t> parts = {}, std::uint32_t part = 0);
 
 /// The ways along a surface: its edges, the diagonals of its faces, and the straight lines across
 /// an edge between two triangles. The shortest of them (Dijkstra 1959) are longer than true
