@@ -127,7 +127,7 @@ TEST_SUITE("texture_image") {
     CHECK(between.x() == doctest::Approx((bright + dark) / 2.0));
     // From afar, one colour.
     const auto far = texture.colour_at({0.5F, 0.9F}, 1000.0F);
-    CHECK(far.x() == doctest::Approx(far.z()));
+    CHECK(far.x() == doctest::Approx(static_cast<double>(far.z())));
     for (const float strange :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 3e38F})
       CHECK(texture.colour_at({strange, strange}, strange).allFinite());
