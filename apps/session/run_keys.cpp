@@ -15,8 +15,8 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes, x "
       "resets; " +
       std::string("[ and ] make the brush smaller, larger; m the other mode, n the next kernel, ") +
-      "i never folds, or may; e makes the model finer; t records; . marks the moment; of a puppet, "
-      ", and ' let go of it by the left and the right hand, y plays both sides by one; s saves; " +
+      "i never folds, or may; e makes the model finer; t records; . marks the moment; s saves; "
+      "comma and quote let one hand go of a puppet, y plays both its sides by one; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
 
