@@ -124,8 +124,9 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
 bool DeformLoop::set_surface(SculptorOptions& sculptor, const ModelVersion& model) const {
   if (!options_.rig) return true;
   auto surface = surface_for(*options_.rig, model.mesh, model.layout(), sculptor.deformer);
-  if (surface) sculptor.surface = *std::move(surface);
-  return static_cast<bool>(surface);
+  if (!surface) return false;
+  sculptor.surface = *std::move(surface);
+  return true;
 }
 
 /// Nothing, if nothing can be done with the settings.
