@@ -125,4 +125,23 @@ private:
   std::optional<Error> error_;
 };
 
+/// Parses a text of version 1 and has read(reader, root) take it apart. Returns the first error, of
+/// the text or of the reader, or nothing. `name` is what errors call the text.
+template <class Read>
+std::optional<Error> read_toml(std::string_view text, std::string_view name, const Read& read) {
+  toml::table root;
+  TomlReader reader(name);
+  try {
+    root = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    reader.complain(error.source().begin.line, std::string(error.description()) + "; mend it");
+    return reader.error();
+  }
+  const toml::node* const version = reader.find(root, "version");
+  if (version != nullptr && version->value_exact<std::int64_t>() != 1)
+    reader.complain(*version, "is of a version that this program does not know; it reads 1");
+  if (!reader.error()) read(reader, root);
+  return reader.error();
+}
+
 } // namespace nendo::config

@@ -184,20 +184,12 @@ Timeline read_root(TomlReader& reader, const toml::table& root) {
 } // namespace
 
 Result<Timeline> parse_timeline(std::string_view text, std::string_view name) {
-  toml::table root;
-  TomlReader reader(name);
-  try {
-    root = toml::parse(text, name);
-  } catch (const toml::parse_error& error) {
-    reader.complain(error.source().begin.line, std::string(error.description()) + "; mend it");
-    return *reader.error();
-  }
-  const toml::node* const version = reader.find(root, "version");
-  if (version != nullptr && version->value_exact<std::int64_t>() != 1)
-    reader.complain(*version, "is of a version that this program does not know; it reads 1");
   Timeline timeline;
-  if (!reader.error()) timeline = read_root(reader, root);
-  if (reader.error()) return *reader.error();
+  const auto error =
+      config::read_toml(text, name, [&](TomlReader& reader, const toml::table& root) {
+        timeline = read_root(reader, root);
+      });
+  if (error) return *error;
   return timeline;
 }
 
