@@ -1,6 +1,7 @@
 #include <nendo/flow/sculptor.hpp>
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace nendo::flow {
@@ -30,6 +31,19 @@ Deformer make(Points rest, Eigen::Index control_points, const SculptorOptions& o
   return Type1Deformer(std::move(rest), control_points, options.deformer);
 }
 
+/// Of type 1 or of type 2, whose functions have other names.
+template <class Of1, class Of2>
+auto either(Deformer& deformer, const Of1& of_type1, const Of2& of_type2) {
+  return std::visit(
+      [&](auto& one) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(one)>, Type2Deformer>)
+          return of_type2(one);
+        else
+          return of_type1(one);
+      },
+      deformer);
+}
+
 } // namespace
 
 std::string_view name_of(Mode mode) noexcept {
@@ -50,33 +64,35 @@ Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
     : deformer_(make(shape, control_points, options)) {}
 
 FieldStatus Sculptor::grab(const Points& tips) noexcept {
-  if (auto* type2 = std::get_if<Type2Deformer>(&deformer_)) return type2->begin(tips);
-  return grab_on(tips);
+  return either(
+      deformer_, [&](auto& type1) { return type1.grab(tips); },
+      [&](Type2Deformer& type2) { return type2.begin(tips); });
 }
 
 FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
-  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->apply(tips, out);
-  if (auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
-    return surface->apply(tips, out);
-  auto* type2 = std::get_if<Type2Deformer>(&deformer_);
-  const FieldStatus status = type2->stroke_to(tips).status;
-  out.follow(type2->shape());
-  return status;
+  return either(
+      deformer_, [&](auto& type1) { return type1.apply(tips, out); },
+      [&](Type2Deformer& type2) {
+        const FieldStatus status = type2.stroke_to(tips).status;
+        out.follow(type2.shape());
+        return status;
+      });
 }
 
 FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
-  auto* type2 = std::get_if<Type2Deformer>(&deformer_);
-  if (type2 == nullptr) return update(tips, out);
-  const FieldStatus status = type2->end_at(tips).status;
-  out.follow(type2->shape());
-  return status;
+  return either(
+      deformer_, [&](auto& type1) { return type1.apply(tips, out); },
+      [&](Type2Deformer& type2) {
+        const FieldStatus status = type2.end_at(tips).status;
+        out.follow(type2.shape());
+        return status;
+      });
 }
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
-  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->commit(tips);
-  if (auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
-    return surface->commit(tips);
-  return std::get_if<Type2Deformer>(&deformer_)->begin(tips);
+  return either(
+      deformer_, [&](auto& type1) { return type1.commit(tips); },
+      [&](Type2Deformer& type2) { return type2.begin(tips); });
 }
 
 FieldStatus Sculptor::grab_on(const Points& tips) noexcept {
@@ -96,10 +112,9 @@ FieldStatus Sculptor::undo(const Points& tips) noexcept {
 }
 
 FieldStatus Sculptor::take_back(const Points& tips) noexcept {
-  if (auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->take_back(tips);
-  if (auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
-    return surface->take_back(tips);
-  return std::get_if<Type2Deformer>(&deformer_)->undo(tips);
+  return either(
+      deformer_, [&](auto& type1) { return type1.take_back(tips); },
+      [&](Type2Deformer& type2) { return type2.undo(tips); });
 }
 
 FieldStatus Sculptor::redo(const Points& tips) noexcept {
