@@ -106,27 +106,17 @@ private:
       save_last_minute();
   }
   void add(const flow::Command& command) {
-    if (const auto* request = std::get_if<flow::Request>(&command)) {
-      put(*request);
-      ++recorded_.requests;
-    } else if (const auto* move = std::get_if<flow::WristMove>(&command)) {
-      put(*move);
-    } else if (const auto* change = std::get_if<flow::ChangeSettings>(&command)) {
-      put(change->settings);
-      settings_ = change->settings;
-    } else if (const auto* still = std::get_if<flow::HoldStill>(&command)) {
-      put(*still);
-    } else if (const auto* model = std::get_if<flow::ChangeModel>(&command)) {
-      put(*model);
-    } else if (const auto* mark = std::get_if<flow::Mark>(&command)) {
-      put(*mark);
-    } else if (const auto* clutch = std::get_if<flow::SetClutch>(&command)) {
-      put(*clutch);
-    } else if (const auto* role = std::get_if<flow::SetRole>(&command)) {
-      put(*role);
-    } else if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command)) {
-      put(*symmetry);
-    }
+    std::visit([this](const auto& one) { add_one(one); }, command);
+  }
+  void add_one(const flow::ChangeSettings& change) {
+    put(change.settings);
+    settings_ = change.settings;
+  }
+  /// What decides a shape, and marks, are entries; others do not come from a loop.
+  template <class Command>
+  void add_one(const Command& command) {
+    if constexpr (std::is_same_v<Command, flow::Request>) ++recorded_.requests;
+    if constexpr (is_entry<Command>) put(command);
   }
   void add(const flow::LoggedTick& tick) {
     note_lost(tick.lost);

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -30,6 +31,12 @@ using Entry =
     std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
                  flow::HoldStill, flow::ChangeModel, flow::Mark, flow::SetClutch, flow::SetRole,
                  flow::SetSymmetry, flow::LoggedTick, Gap>;
+
+template <class One, class Of = Entry>
+inline constexpr bool is_entry = false;
+/// Tells whether that type is one of an Entry's.
+template <class One, class... Types>
+inline constexpr bool is_entry<One, std::variant<Types...>> = (std::is_same_v<One, Types> || ...);
 
 /// What a recorder writes at the end of a recording.
 struct Ending {
