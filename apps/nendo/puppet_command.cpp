@@ -54,8 +54,7 @@ Result<OpenRig> open_rig(const std::string& name) {
   if (!file) return file.error();
   auto model = deform::read_mesh(file->model);
   if (!model) return model.error();
-  if (model->face_corners.empty())
-    return Error{Errc::bad_input, file->model + ": has no face, and a puppet needs a surface"};
+  if (const auto fits = puppet::check_fits(file->puppet, *model); !fits) return fits.error();
   OpenRig open{*std::move(file), *std::move(model), nullptr};
   auto shapes = puppet::RigShapes::make(
       std::make_shared<const puppet::Rig>(open.file.puppet, open.model), open.model);

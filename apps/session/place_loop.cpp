@@ -73,14 +73,14 @@ namespace {
 /// Puts the puppet into the options. Error: bad_input, naming its file.
 Result<void> set_rig(const RunOptions& options, const deform::Mesh& model,
                      flow::LoopOptions& loop) {
-  if (model.face_corners.empty())
-    return Error{Errc::bad_input, options.mesh + ": has no face, and a puppet needs a surface"};
+  if (const auto fits = puppet::check_fits(*options.puppet, model); !fits) return fits;
   loop.rig = std::make_shared<const puppet::Rig>(*options.puppet, model);
   loop.sculptor.deformer.supports = loop.rig->supports();
-  const auto surface = flow::surface_for(*loop.rig, model, deform::BlockLayout(model.vertices),
-                                         loop.sculptor.deformer);
+  auto surface = flow::surface_for(*loop.rig, model, deform::BlockLayout(model.vertices),
+                                   loop.sculptor.deformer);
   if (!surface)
     return Error{surface.error().code, options.puppet_file + ": " + surface.error().message};
+  loop.sculptor.surface = *std::move(surface);
   return {};
 }
 

@@ -1,6 +1,5 @@
 #include "web/client_commands.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -92,8 +91,6 @@ std::optional<bool> switch_in(std::string_view word) noexcept {
 }
 
 std::optional<flow::Command> clutch_in(Words words) noexcept {
-  constexpr std::array<std::string_view, 6> fingers{"thumb", "index",  "middle",
-                                                    "ring",  "little", "wrist"};
   const auto hand = words.next();
   const auto finger = words.next();
   const auto holds = switch_in(words.next());
@@ -101,10 +98,11 @@ std::optional<flow::Command> clutch_in(Words words) noexcept {
   flow::SetClutch clutch{hand == "left" ? Side::left : Side::right, puppet::RigPlayer::all_fingers,
                          *holds};
   if (finger == "all") return clutch;
-  const auto* const found = std::find(fingers.begin(), fingers.end(), finger);
-  if (found == fingers.end()) return std::nullopt;
-  clutch.finger = static_cast<std::uint8_t>(found - fingers.begin());
-  return clutch;
+  clutch.finger = puppet::HandSignal::no_finger;
+  if (finger == "wrist") return clutch;
+  for (clutch.finger = 0; clutch.finger < hand::finger_count; ++clutch.finger)
+    if (finger == name_of(static_cast<hand::Finger>(clutch.finger))) return clutch;
+  return std::nullopt;
 }
 
 std::optional<flow::Command> role_in(Words words) noexcept {

@@ -184,6 +184,25 @@ TEST_SUITE("rig") {
     }
   }
 
+  TEST_CASE("a puppet of another model, or of one without faces, does not fit") {
+    deform::Mesh mesh = ball();
+    const auto last = static_cast<std::uint32_t>(mesh.vertices.cols() - 1);
+    auto puppet = parse_puppet(text, "test");
+    REQUIRE(puppet);
+    puppet->points[1].vertex = last;
+    CHECK(check_fits(*puppet, mesh));
+    puppet->points[1].vertex = last + 1;
+    const auto other = check_fits(*puppet, mesh);
+    REQUIRE_FALSE(other);
+    CHECK(other.error().code == Errc::bad_input);
+    CHECK(other.error().message.find("no vertex " + std::to_string(last + 1)) != std::string::npos);
+    CHECK(other.error().message.find("'" + puppet->points[1].name + "'") != std::string::npos);
+    puppet->points[1].vertex = last;
+    mesh.face_corners.clear();
+    mesh.face_starts = {0};
+    CHECK_FALSE(check_fits(*puppet, mesh));
+  }
+
   TEST_CASE("points that are too near to each other are named") {
     std::string file = text;
     file.insert(file.find("foot ="), "crown = { at = [0.0, 1.0, 0.0], radius = 1.2 }\n");

@@ -30,7 +30,7 @@ SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
                       options.settings
                           ? *options.settings
                           : settings_of(options.sculptor, hand.filter, units_per_metre)};
-  if (!options.rig) return setup;
+  if (!options.rig || setup.options.surface) return setup;
   if (auto surface =
           surface_for(*options.rig, model.mesh, model.layout(), options.sculptor.deformer))
     setup.options.surface = *std::move(surface);
@@ -102,7 +102,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   if (options.rig) {
     rig_.emplace(options.rig);
     rig_->set_state(options.rig_state);
-    rig_->take_hold(hand_states());
+    rig_->take_hold(hands_now());
   }
   compute_hands(frames_.back());
   grab_status_ = shaping_.begin(tips_);
@@ -185,9 +185,9 @@ void DeformLoop::apply(const Command& command) noexcept {
 
 void DeformLoop::set_rig(const Command& command) noexcept {
   if (const auto* clutch = std::get_if<SetClutch>(&command))
-    rig_->set_clutch(clutch->side, clutch->finger, clutch->holds, hand_states());
+    rig_->set_clutch(clutch->side, clutch->finger, clutch->holds, hands_now());
   if (const auto* role = std::get_if<SetRole>(&command))
-    rig_->set_input(role->function, role->input, hand_states());
+    rig_->set_input(role->function, role->input, hands_now());
   if (const auto* symmetry = std::get_if<SetSymmetry>(&command)) rig_->set_symmetric(symmetry->on);
 }
 
@@ -202,7 +202,10 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     shown.present = true;
     shown.silent = hand.silent;
     shown.samples = stats_.samples[hand.slot];
-    if (rig_) continue;
+    if (rig_) {
+      hand_states_[hand.slot] = {hand.angles, shown.pose, hand.T_stage_wrist};
+      continue;
+    }
     tips_.middleCols<5>(column) = units_per_metre_ * shown.pose.fingertip_positions();
     column += 5;
   }
@@ -216,19 +219,24 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     frame.functions[at] = static_cast<float>(rig_->values()[at]);
 }
 
-puppet::RigPlayer::Hands DeformLoop::hand_states() noexcept {
+puppet::RigPlayer::Hands DeformLoop::played_hands() const noexcept {
   puppet::RigPlayer::Hands states{};
-  for (const Hand& hand : hands_) {
-    hand_states_[hand.slot] = {hand.angles, hand.pose(), hand.T_stage_wrist};
+  for (const Hand& hand : hands_)
     states[hand.slot] = &hand_states_[hand.slot];
-  }
   return states;
+}
+
+/// The same, where they are now, and not when the tick computed them.
+puppet::RigPlayer::Hands DeformLoop::hands_now() noexcept {
+  for (const Hand& hand : hands_)
+    hand_states_[hand.slot] = {hand.angles, hand.pose(), hand.T_stage_wrist};
+  return played_hands();
 }
 
 /// Hands that have let go move nothing, and take hold again where they are then, as one lifts a
 /// mouse.
 void DeformLoop::play_rig() noexcept {
-  const auto hands = hand_states();
+  const auto hands = played_hands();
   if (shaping_.is_held())
     rig_->follow(hands);
   else

@@ -49,7 +49,7 @@ void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
 }
 
 void DeformLoop::place_tips() noexcept {
-  if (rig_) return rig_->take_hold(hand_states()); // the points stay where they are
+  if (rig_) return rig_->take_hold(hands_now()); // the points stay where they are
   Eigen::Index column = 0;
   for (const Hand& hand : hands_) {
     tips_.middleCols<5>(column) = units_per_metre_ * hand.pose().fingertip_positions();

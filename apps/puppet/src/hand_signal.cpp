@@ -1,7 +1,6 @@
 #include <nendo/puppet/hand_signal.hpp>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <nendo/hand/angle.hpp>
@@ -9,9 +8,12 @@
 namespace nendo::puppet {
 namespace {
 
-constexpr std::array<std::string_view, 5> fingers{"thumb", "index", "middle", "ring", "little"};
-constexpr std::size_t first_tip = fingers.size() + hand::angle_count;
-constexpr std::size_t count = first_tip + 3 * fingers.size();
+constexpr std::size_t first_tip = hand::finger_count + hand::angle_count;
+constexpr std::size_t count = first_tip + 3 * hand::finger_count;
+
+std::string finger_name(std::size_t finger) {
+  return std::string(hand::name_of(static_cast<hand::Finger>(finger)));
+}
 
 double flexion(const hand::JointAngles& angles, std::size_t finger) noexcept {
   if (finger == 0) return angles.thumb_mcp_flexion_rad + angles.thumb_ip_flexion_rad;
@@ -20,10 +22,10 @@ double flexion(const hand::JointAngles& angles, std::size_t finger) noexcept {
 }
 
 std::string name_of(std::size_t number) {
-  if (number < fingers.size()) return std::string(fingers[number]) + "_flexion";
-  if (number < first_tip) return std::string(hand::angle_names[number - fingers.size()]);
+  if (number < hand::finger_count) return finger_name(number) + "_flexion";
+  if (number < first_tip) return std::string(hand::angle_names[number - hand::finger_count]);
   const std::size_t tip = number - first_tip;
-  return std::string(fingers[tip / 3]) + "_tip_" + "xyz"[tip % 3];
+  return finger_name(tip / 3) + "_tip_" + "xyz"[tip % 3];
 }
 
 } // namespace
@@ -57,15 +59,15 @@ bool HandSignal::is_angle() const noexcept {
 }
 
 std::uint8_t HandSignal::finger() const noexcept {
-  if (number_ < fingers.size()) return number_;
+  if (number_ < hand::finger_count) return number_;
   if (number_ >= first_tip) return static_cast<std::uint8_t>((number_ - first_tip) / 3);
   // Four angles of the thumb, four of each finger, then palm and wrist.
-  return std::min(static_cast<std::uint8_t>((number_ - fingers.size()) / 4), no_finger);
+  return std::min(static_cast<std::uint8_t>((number_ - hand::finger_count) / 4), no_finger);
 }
 
 double HandSignal::of(const HandState& hand) const noexcept {
-  if (number_ < fingers.size()) return flexion(hand.angles, number_);
-  if (number_ < first_tip) return hand.angles[hand::angle_at(number_ - fingers.size())];
+  if (number_ < hand::finger_count) return flexion(hand.angles, number_);
+  if (number_ < first_tip) return hand.angles[hand::angle_at(number_ - hand::finger_count)];
   const std::size_t tip = number_ - first_tip;
   const Eigen::Vector3d world =
       hand.pose.fingertip_positions().col(static_cast<Eigen::Index>(tip / 3));

@@ -24,9 +24,8 @@ bool is_in(const deform::Box& box, const Vector3d& place) {
 }
 
 /// Vertices on parts of the surface where no point stands.
-std::vector<std::uint32_t> vertices_without_points(const Mesh& model,
+std::vector<std::uint32_t> vertices_without_points(const std::vector<std::uint32_t>& parts,
                                                    const std::vector<SurfacePlace>& places) {
-  const auto parts = deform::SurfaceGraph(model).parts();
   std::set<std::uint32_t> with_points;
   for (const SurfacePlace& place : places)
     with_points.insert(parts[place.corners[0]]);
@@ -37,8 +36,10 @@ std::vector<std::uint32_t> vertices_without_points(const Mesh& model,
 }
 
 /// A vertex belongs to the first part that takes it.
-std::vector<deform::FollowingPart> following_parts(const Puppet& puppet, const Mesh& model,
-                                                   const std::vector<SurfacePlace>& places) {
+std::vector<deform::FollowingPart>
+following_parts(const Puppet& puppet, const Mesh& model,
+                const std::vector<std::uint32_t>& parts_of_surface,
+                const std::vector<SurfacePlace>& places) {
   std::vector<deform::FollowingPart> parts(puppet.parts.size());
   for (std::size_t part = 0; part < parts.size(); ++part) {
     parts[part].is_affine = puppet.parts[part].is_affine;
@@ -46,7 +47,7 @@ std::vector<deform::FollowingPart> following_parts(const Puppet& puppet, const M
       parts[part].points.push_back(static_cast<Eigen::Index>(point));
   }
   if (parts.empty()) return parts;
-  for (const std::uint32_t vertex : vertices_without_points(model, places)) {
+  for (const std::uint32_t vertex : vertices_without_points(parts_of_surface, places)) {
     const Vector3d place = model.vertices.col(vertex);
     const auto takes =
         std::find_if(puppet.parts.begin(), puppet.parts.end(), [&](const PuppetPart& part) {
@@ -90,28 +91,11 @@ SurfacePlace nearest_in_middle(const Mesh& model, const Vector3d& at) {
   return best;
 }
 
-} // namespace
-
-std::string twin_of(const std::string& name) {
-  constexpr std::string_view left = "Left", right = "Right";
-  for (const auto& [ending, other] : {std::pair{left, right}, std::pair{right, left}})
-    if (name.ends_with(ending))
-      return name.substr(0, name.size() - ending.size()) + std::string(other);
-  return name;
-}
-
-Result<Puppet> read_puppet(const std::filesystem::path& path) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 20;
-  const auto text = read_file(path, most_bytes, "puppet");
-  if (!text) return text.error();
-  return parse_puppet(*text, path.string());
-}
-
-std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model) {
+/// A twin is on the same part of the surface: beside the skin of a lid there are lashes and eyes.
+std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model,
+                                    const std::vector<std::uint32_t>& parts) {
   const auto vertices = static_cast<std::uint32_t>(model.vertices.cols());
   std::vector<SurfacePlace> places;
-  // A twin is on the same part of the surface: beside the skin of a lid there are lashes and eyes.
-  const auto parts = deform::SurfaceGraph(model).parts();
   for (const PuppetPoint& point : puppet.points) {
     const bool at_vertex = point.vertex && *point.vertex < vertices;
     Vector3d at = at_vertex ? Vector3d(model.vertices.col(*point.vertex)) : point.at;
@@ -132,14 +116,49 @@ std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model) {
   return places;
 }
 
+} // namespace
+
+std::string twin_of(const std::string& name) {
+  constexpr std::string_view left = "Left", right = "Right";
+  for (const auto& [ending, other] : {std::pair{left, right}, std::pair{right, left}})
+    if (name.ends_with(ending))
+      return name.substr(0, name.size() - ending.size()) + std::string(other);
+  return name;
+}
+
+Result<Puppet> read_puppet(const std::filesystem::path& path) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 20;
+  const auto text = read_file(path, most_bytes, "puppet");
+  if (!text) return text.error();
+  return parse_puppet(*text, path.string());
+}
+
+Result<void> check_fits(const Puppet& puppet, const Mesh& model) {
+  if (model.face_corners.empty())
+    return Error{Errc::bad_input, puppet.model + ": has no face, and a puppet needs a surface"};
+  const auto vertices = static_cast<std::uint32_t>(model.vertices.cols());
+  for (const PuppetPoint& point : puppet.points)
+    if (point.vertex && *point.vertex >= vertices)
+      return Error{Errc::bad_input, puppet.model + ": has no vertex " +
+                                        std::to_string(*point.vertex) + ", where the point '" +
+                                        point.name + "' is to be; they go from 0 to " +
+                                        std::to_string(vertices - 1)};
+  return {};
+}
+
+std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model) {
+  return places_on(puppet, model, deform::SurfaceGraph(model).parts());
+}
+
 deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
                                    deform::Wendland kernel) {
   deform::SurfaceSetup setup;
   setup.kernel = kernel;
-  const auto places = places_on(puppet, model);
+  const auto parts = deform::SurfaceGraph(model).parts();
+  const auto places = places_on(puppet, model, parts);
   for (std::size_t at = 0; at < places.size(); ++at)
     setup.points.push_back({places[at], puppet.points[at].radius, puppet.points[at].name});
-  setup.parts = following_parts(puppet, model, places);
+  setup.parts = following_parts(puppet, model, parts, places);
   if (puppet.masks.empty()) return setup;
   setup.mask = Eigen::VectorXd::Ones(model.vertices.cols());
   for (const Mask& mask : puppet.masks)

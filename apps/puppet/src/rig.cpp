@@ -68,6 +68,12 @@ void Rig::place_vectors() {
   }
 }
 
+void Rig::place(std::span<const double> values, Points& points) const {
+  points = starts_;
+  for (std::size_t at = 0; at < values.size(); ++at)
+    if (values[at] != 0.0) points += values[at] * vectors_[at];
+}
+
 deform::Supports Rig::supports() const {
   std::vector<deform::OwnSupport> own;
   for (std::size_t at = 0; at < puppet_.points.size(); ++at)
@@ -149,12 +155,6 @@ void RigPlayer::set_symmetric(bool on) noexcept {
 bool RigPlayer::has_let_go(Side side) const noexcept {
   return std::none_of(state_.functions.begin(), state_.functions.end(),
                       [&](const auto& state) { return state.input.side() == side && state.held; });
-}
-
-void RigPlayer::write(Points& points) const noexcept {
-  points = rig_->starts();
-  for (std::size_t at = 0; at < values_.size(); ++at)
-    if (values_[at] != 0.0) points += values_[at] * rig_->vectors_of(at);
 }
 
 void RigPlayer::set_state(const RigState& state) noexcept {

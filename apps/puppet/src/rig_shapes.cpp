@@ -51,9 +51,8 @@ Result<std::unique_ptr<RigShapes>> RigShapes::make(std::shared_ptr<const Rig> ri
 }
 
 Points RigShapes::at(std::span<const double> values) {
-  Points ends = parts_->rig->starts();
-  for (std::size_t at = 0; at < values.size(); ++at)
-    if (values[at] != 0.0) ends += values[at] * parts_->rig->vectors_of(at);
+  Points ends;
+  parts_->rig->place(values, ends);
   if (parts_->along)
     parts_->along->apply(ends, parts_->out);
   else

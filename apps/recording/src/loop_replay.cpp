@@ -1,7 +1,10 @@
 #include <nendo/recording/loop_replay.hpp>
 
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <nendo/deform/undo_memory.hpp>
 
@@ -16,24 +19,34 @@ bool points_exist(const deform::Supports& supports, Eigen::Index points) {
                      [&](const auto& own) { return own.point < points; });
 }
 
-/// Returns null if the hands touch the model.
-Result<std::shared_ptr<const puppet::Rig>> rig_of(const LoopSetup& loop,
-                                                  const deform::Mesh& model) {
-  if (loop.puppet.empty()) return std::shared_ptr<const puppet::Rig>();
+/// Puts the recorded puppet, if there is one, into the options.
+Result<void> set_rig(const LoopSetup& loop, const deform::Mesh& model, flow::LoopOptions& options) {
+  if (loop.puppet.empty()) return {};
   auto read = puppet::parse_puppet(loop.puppet, "the recorded puppet");
   if (!read) return read.error();
-  if (model.face_corners.empty())
-    return Error{Errc::bad_input, "the model has no face, and a puppet needs a surface"};
+  if (const auto fits = puppet::check_fits(*read, model); !fits) return fits;
   if (static_cast<std::size_t>(loop.puppet_starts.cols()) != read->points.size())
     return Error{Errc::bad_input, "the recorded puppet has other points than its text"};
-  auto rig = std::make_shared<const puppet::Rig>(*std::move(read), loop.puppet_starts);
-  if (!points_exist(loop.options.sculptor.deformer.supports, rig->starts().cols()))
+  options.rig = std::make_shared<const puppet::Rig>(*std::move(read), loop.puppet_starts);
+  if (!points_exist(options.sculptor.deformer.supports, options.rig->starts().cols()))
     return Error{Errc::bad_input, std::string(without_loop)};
-  // The loop would do without a field along the surface, and make another shape than the recorded.
-  const auto surface = flow::surface_for(*rig, model, deform::BlockLayout(model.vertices),
-                                         loop.options.sculptor.deformer);
+  auto surface = flow::surface_for(*options.rig, model, deform::BlockLayout(model.vertices),
+                                   options.sculptor.deformer);
   if (!surface) return Error{Errc::bad_input, "the recorded puppet: " + surface.error().message};
-  return std::shared_ptr<const puppet::Rig>(std::move(rig));
+  options.sculptor.surface = *std::move(surface);
+  return {};
+}
+
+/// Returns the command that the entry is, if it is one.
+std::optional<flow::Command> command_in(const Entry& entry) {
+  return std::visit(
+      [](const auto& one) -> std::optional<flow::Command> {
+        if constexpr (std::is_constructible_v<flow::Command, decltype(one)>)
+          return flow::Command(one);
+        else
+          return std::nullopt;
+      },
+      entry);
 }
 
 } // namespace
@@ -41,10 +54,10 @@ Result<std::shared_ptr<const puppet::Rig>> rig_of(const LoopSetup& loop,
 Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
                                                      const deform::Mesh& model) {
   if (!setup.loop || setup.hands.empty()) return Error{Errc::bad_input, std::string(without_loop)};
-  auto rig = rig_of(*setup.loop, model);
-  if (!rig) return rig.error();
+  flow::LoopOptions options = setup.loop->options;
+  if (const auto fine = set_rig(*setup.loop, model, options); !fine) return fine.error();
   if (const auto tips = 5 * static_cast<Eigen::Index>(setup.hands.size());
-      !*rig && !points_exist(setup.loop->options.sculptor.deformer.supports, tips))
+      !options.rig && !points_exist(options.sculptor.deformer.supports, tips))
     return Error{Errc::bad_input, std::string(without_loop)};
   std::unique_ptr<LoopReplay> replay(new LoopReplay);
   std::vector<flow::HandInput> inputs = setup.hands;
@@ -52,9 +65,7 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
     replay->rings_.push_back(std::make_unique<SampleRing>(ring_size));
     input.ring = replay->rings_.back().get();
   }
-  flow::LoopOptions options = setup.loop->options;
   options.commands = &replay->commands_;
-  options.rig = *std::move(rig);
   options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
   const deform::BlockShape first(setup.loop->rest);
   const bool has_first = first.block_count() > 0;
@@ -97,16 +108,6 @@ bool LoopReplay::follow(const flow::ChangeModel& change) {
 bool LoopReplay::feed(const Entry& entry) noexcept {
   if (const auto* sample = std::get_if<driver::RecordedSample>(&entry)) {
     take(*sample);
-  } else if (const auto* request = std::get_if<flow::Request>(&entry)) {
-    exact_ = commands_.try_push(*request) && exact_;
-  } else if (const auto* move = std::get_if<flow::WristMove>(&entry)) {
-    exact_ = commands_.try_push(*move) && exact_;
-  } else if (const auto* clutch = std::get_if<flow::SetClutch>(&entry)) {
-    exact_ = commands_.try_push(*clutch) && exact_;
-  } else if (const auto* role = std::get_if<flow::SetRole>(&entry)) {
-    exact_ = commands_.try_push(*role) && exact_;
-  } else if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&entry)) {
-    exact_ = commands_.try_push(*symmetry) && exact_;
   } else if (const auto* settings = std::get_if<flow::LoopSettings>(&entry)) {
     exact_ = loop_->change_settings(*settings) && exact_;
   } else if (std::holds_alternative<flow::HoldStill>(entry)) {
@@ -117,7 +118,9 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);
     return true;
-  } else if (!std::holds_alternative<flow::Mark>(entry)) {
+  } else if (const auto command = command_in(entry); command && flow::is_for_loop(*command)) {
+    exact_ = commands_.try_push(*command) && exact_;
+  } else {
     exact_ = false; // a gap
   }
   return false;

@@ -78,6 +78,8 @@ struct LoopOptions : PaceOptions {
   std::optional<bool> held{};
   /// A puppet: the hands play its functions, which move its points, in place of touching the model
   /// with their fingertips. The supports are then those of the points. It must be of this model.
+  /// Where its distances are along the surface, sculptor.surface is surface_for() it, or null: the
+  /// loop then makes that itself.
   std::shared_ptr<const puppet::Rig> rig{};
   puppet::RigState rig_state{}; ///< of its player at first
   /// The settings at first, if settings_of() the sculptor and the filter would tell them less
@@ -212,7 +214,8 @@ private:
   void place_tips() noexcept;
   void play_rig() noexcept;
   void set_rig(const Command& command) noexcept;
-  puppet::RigPlayer::Hands hand_states() noexcept;
+  puppet::RigPlayer::Hands played_hands() const noexcept;
+  puppet::RigPlayer::Hands hands_now() noexcept;
   ModelVersion* version_numbered(std::uint32_t number) const noexcept;
   bool set_surface(SculptorOptions& sculptor, const ModelVersion& model) const;
   std::optional<SculptorSetup> setup_for(const SculptorSetup& before,

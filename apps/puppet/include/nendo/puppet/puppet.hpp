@@ -89,7 +89,9 @@ Result<Puppet> parse_puppet(std::string_view text, std::string_view name);
 /// Reads and parses a file. Errors: those of parse_puppet(), and bad_input if it cannot be read.
 Result<Puppet> read_puppet(const std::filesystem::path& path);
 
-/// Returns where the points are on that model, in their order. The model must have a face.
+/// Error: bad_input (the model has no face, or not the vertex of a point).
+Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);
+/// Returns where the points are on that model, in their order. It must fit (check_fits()).
 std::vector<deform::SurfacePlace> places_on(const Puppet& puppet, const deform::Mesh& model);
 /// Returns what the field along that model's surface is made of.
 deform::SurfaceSetup surface_setup(const Puppet& puppet, const deform::Mesh& model,

@@ -28,6 +28,9 @@ public:
   const deform::Points& vectors_of(std::size_t function) const noexcept {
     return vectors_[function];
   }
+  /// Writes where the points are, 3 by #points, model units, where the first functions have these
+  /// values and the others 0. Does not allocate if `points` has the right size.
+  void place(std::span<const double> values, deform::Points& points) const;
   deform::Supports supports() const; ///< a radius for each point, for distances through the air
 
 private:
@@ -63,8 +66,8 @@ public:
   void take_hold(const Hands& hands) noexcept;
   /// Follows the hands. Functions whose hand is not there keep their values.
   void follow(const Hands& hands) noexcept;
-  /// Writes where the points are, 3 by #points, model units.
-  void write(deform::Points& points) const noexcept;
+  /// Writes where the points are (Rig::place()).
+  void write(deform::Points& points) const noexcept { rig_->place(values_, points); }
 
   /// Lets a hand, or one of its fingers, let go of its functions, which then keep their values, or
   /// take hold of them again. finger: HandSignal::finger(), or all_fingers.
