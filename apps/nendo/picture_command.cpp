@@ -1,6 +1,7 @@
 // nendo picture: a PNG of a model, without a screen.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
 #include "render/picture.hpp"
+#include "takes/key_poses.hpp"
 #include "takes/take.hpp"
 
 namespace nendo::app::picture_command {
@@ -30,7 +32,7 @@ struct Options {
   std::uint32_t turntable = 0;
   std::uint32_t strip = 0;
   std::optional<double> time_s;
-  std::string times;    ///< in seconds, with commas; empty: not asked for
+  std::uint32_t key_poses = 0;
   std::string captions; ///< with commas; empty: none
   bool numbered = false;
 };
@@ -61,21 +63,21 @@ Result<Wanted> check(const Options& options) {
                "use front, back, left, right, side, top or AZIMUTH,ELEVATION in degrees");
   const auto size = size_named(options.size);
   if (!size) return bad("--size " + options.size, "use WIDTHxHEIGHT in pixels, 16 to 8192 each");
-  const auto moments = static_cast<std::uint32_t>(parts_of(options.times).size());
-  const std::uint32_t panels = std::max({1U, options.turntable, options.strip, moments});
-  if (moments > most_panels || (moments > 0 && (options.strip > 0 || options.turntable > 0)))
-    return bad("--times", "use up to " + std::to_string(most_panels) +
-                              " moments, and neither --strip nor --turntable");
+  const std::array counts{std::pair{"--turntable", options.turntable},
+                          std::pair{"--strip", options.strip},
+                          std::pair{"--key-poses", options.key_poses}};
+  std::uint32_t panels = 1;
+  for (const auto& [name, count] : counts) {
+    if (count == 0) continue;
+    if (count < 2 || count > most_panels)
+      return bad(name, "use 2 to " + std::to_string(most_panels) + " pictures");
+    if (panels > 1) return bad("--turntable, --strip and --key-poses", "give one of them");
+    panels = count;
+  }
   if (!options.captions.empty() && parts_of(options.captions).size() != panels)
     return bad("--captions", "use as many texts as there are pictures, with commas between them");
-  for (const auto& [name, count] :
-       {std::pair{"--turntable", options.turntable}, {"--strip", options.strip}})
-    if (count != 0 && (count < 2 || count > most_panels))
-      return bad(name, "use 2 to " + std::to_string(most_panels) + " pictures");
-  if (options.turntable > 0 && options.strip > 0)
-    return bad("--turntable and --strip", "give one of them");
   if (options.numbered && panels == 1)
-    return bad("--numbered", "is for --turntable, --strip and --times; leave it out");
+    return bad("--numbered", "is for --turntable, --strip and --key-poses; leave it out");
   const double pixels = 1.0 * size->width * size->height * panels;
   if (!options.numbered && pixels > 6e7)
     return bad("--size " + options.size, "too large for " + std::to_string(panels) +
@@ -85,29 +87,33 @@ Result<Wanted> check(const Options& options) {
   return Wanted{*view, *size};
 }
 
+Result<std::vector<double>> key_poses_of(const Options& options, const takes::Take& take) {
+  const auto frames = take.open();
+  if (!frames) return frames.error();
+  auto times = takes::key_poses(**frames, options.key_poses);
+  if (times.size() < options.key_poses)
+    return bad("--key-poses " + std::to_string(options.key_poses),
+               "only " + std::to_string(times.size()) + " moments of " + options.file + " differ");
+  return times;
+}
+
 // Returns the times of the take that are asked for.
 Result<std::vector<double>> times_of(const Options& options, const takes::Take& take) {
-  if ((options.time_s || options.strip > 0 || !options.times.empty()) && !(take.duration_s > 0.0))
-    return bad(options.file, "a mesh has no times; leave --time, --times and --strip out");
+  if ((options.time_s || options.strip > 0 || options.key_poses > 0) && !(take.duration_s > 0.0))
+    return bad(options.file, "a mesh has no times; leave --time, --strip and --key-poses out");
+  if (options.key_poses > 0) return key_poses_of(options, take);
   if (options.strip > 0) {
     std::vector<double> times;
     for (std::uint32_t at = 0; at < options.strip; ++at)
       times.push_back(take.duration_s * at / (options.strip - 1));
     return times;
   }
-  std::vector<double> times;
-  for (const auto& part : parts_of(options.times)) {
-    const auto time = to_finite_number(part);
-    if (!time) return bad("--times " + options.times, "use seconds with commas between them");
-    times.push_back(*time);
+  const double time = options.time_s.value_or(0.0);
+  if (!(time >= 0.0 && time <= take.duration_s)) {
+    return bad("--time", "use 0 to " + std::to_string(take.duration_s) + " s, which is how long " +
+                             options.file + " lasts");
   }
-  if (times.empty()) times.push_back(options.time_s.value_or(0.0));
-  for (const double time : times)
-    if (!(time >= 0.0 && time <= take.duration_s))
-      return bad(options.times.empty() ? "--time" : "--times",
-                 "use 0 to " + std::to_string(take.duration_s) + " s, which is how long " +
-                     options.file + " lasts");
-  return times;
+  return std::vector<double>{time};
 }
 
 std::string seconds_text(double time_s) {
@@ -217,8 +223,8 @@ void add(cli::Command& program) {
   command.add_option("--size", options->size, "WIDTHxHEIGHT in pixels, of each picture");
   command.add_option("--turntable", options->turntable, "So many pictures all round, on one sheet");
   command.add_duration("--time", options->time_s, "Of a recording: the moment, in seconds");
-  command.add_option("--times", options->times,
-                     "Of a recording: moments in seconds, with commas between them, on one sheet");
+  command.add_option("--key-poses", options->key_poses,
+                     "Of a recording: so many moments that differ the most, on one sheet");
   command.add_option("--captions", options->captions,
                      "Texts below the pictures, with commas between them");
   command.add_option("--strip", options->strip,

@@ -12,7 +12,11 @@ Result<PuppetFile> open_puppet(const std::string& name) {
   std::error_code ignored;
   if (!std::filesystem::exists(name, ignored)) {
     const auto shipped = cli::shipped_model(name + ".puppet.toml");
-    if (std::filesystem::exists(shipped, ignored)) file.path = shipped.string();
+    if (!std::filesystem::exists(shipped, ignored))
+      return Error{Errc::bad_input, name +
+                                        ": there is no such puppet; name a puppet file, or face, "
+                                        "moai or spot, which are shipped"};
+    file.path = shipped.string();
   }
   auto puppet = puppet::read_puppet(file.path);
   if (!puppet) return puppet.error();

@@ -21,7 +21,7 @@
 namespace nendo::takes {
 namespace {
 
-using OpenFrames = std::function<Result<std::unique_ptr<FrameSource>>()>;
+using OpenFrames = decltype(Take::open);
 
 /// The scenes of a take at any time. It plays on for a later time, and begins anew for an earlier
 /// one.
@@ -110,6 +110,7 @@ Result<Take> read_recording(const std::filesystem::path& path) {
     if (!frames) return frames.error();
     return std::unique_ptr<FrameSource>(*std::move(frames));
   };
+  take.open = open;
   const auto player = std::make_shared<ScenePlayer>(open);
   take.frame_at = [player](double time_s) { return player->at(time_s); };
   return take;
@@ -128,6 +129,7 @@ Result<Take> read_edited(const std::filesystem::path& path) {
     if (!anew) return anew.error();
     return std::unique_ptr<FrameSource>(*std::move(anew));
   };
+  take.open = open;
   const auto player = std::make_shared<ScenePlayer>(open, *std::move(frames));
   take.frame_at = [player](double time_s) { return player->at(time_s); };
   return take;

@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 
 #include <nendo/base/result.hpp>
 
 #include "render/scene_frame.hpp"
+#include "takes/frame_source.hpp"
 
 namespace nendo::takes {
 
@@ -18,6 +20,8 @@ struct Take {
   /// Makes the scene at a time from 0 to duration_s, in any order. May block. Errors: those of
   /// read_take().
   std::function<Result<render::SceneFrame>(double time_s)> frame_at;
+  /// Opens its frames from the beginning; null for a mesh. May block. Errors: those of read_take().
+  std::function<Result<std::unique_ptr<FrameSource>>()> open{};
 };
 
 /// Reads a take from a file. A timeline is known by its name, a mesh or a recording by its content.

@@ -74,6 +74,10 @@ TEST_SUITE("picture") {
     refused({"--size", "8192x8192", "--turntable", "9"}, "--size", 2);
     refused({"--turntable", "1"}, "--turntable", 2);
     refused({"--turntable", "4", "--strip", "4"}, "--strip", 2);
+    refused({"--strip", "3", "--key-poses", "3"}, "--key-poses", 2);
+    refused({"--key-poses", "1"}, "--key-poses", 2);
+    refused({"--key-poses", "3"}, "no times", 2);
+    refused({"--turntable", "2", "--captions", "one"}, "--captions", 2);
     refused({"--time", "1"}, "no times", 2);
     refused({"--numbered"}, "--numbered", 2);
     const auto missing = test::nendo({"picture", "no.obj", "--out", with.out});
@@ -105,6 +109,8 @@ TEST_SUITE("picture") {
     const auto strip = read_png(with.out);
     REQUIRE(strip);
     CHECK(strip->size().width > 192);
+    const auto plain = drawn({"--key-poses", "3"});
+    CHECK(drawn({"--key-poses", "3", "--captions", "a,b,c"}) != plain);
     const auto late = test::nendo({"picture", take, "--out", with.out, "--time", "9"});
     CHECK(late.exit_code == 2);
     CHECK(is_one_line_about(late.err, "--time"));

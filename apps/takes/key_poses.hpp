@@ -1,0 +1,17 @@
+#pragma once
+// The moments of a take that tell the most of it.
+
+#include <cstddef>
+#include <vector>
+
+#include "takes/frame_source.hpp"
+
+namespace nendo::takes {
+
+/// Returns the times of the first frame, and of those that differ the most from all that were
+/// chosen before: in the values of a puppet's functions, or else in the hands' joint angles
+/// (farthest-point sampling, Gonzalez 1985). At most `count` times, in their order; fewer if no
+/// other frame differs. Reads `frames` to the end. Blocks and allocates.
+std::vector<double> key_poses(FrameSource& frames, std::size_t count);
+
+} // namespace nendo::takes
