@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "brush/brush_stroke.hpp"
 #include "fingertip_curve.hpp"
 #include "sculpted_parts.hpp"
 #include "solver_room.hpp"
@@ -37,16 +38,22 @@ Type2Deformer::Type2Deformer(std::unique_ptr<SculptedShape> own, Eigen::Index co
 Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, double piece_length,
                              const DeformerOptions& options)
     : shape_(&shape), curve_(std::make_unique<FingertipCurve>(control_points, piece_length)),
-      current_(Points::Zero(3, control_points)), next_(current_), step_(current_),
-      rounded_(current_), supports_(rounded(options.supports, shape.layout())),
+      current_(Points::Zero(3, control_points)), next_(current_),
+      pulling_points_(pulling_points(options.brushes, control_points)),
+      pulling_(Points::Zero(3, static_cast<Eigen::Index>(pulling_points_.size()))), step_(pulling_),
+      rounded_(pulling_),
+      supports_(rounded(supports_of(pulling_points_, options.supports), shape.layout())),
       solver_(options.csrbf),
-      field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
+      field_(room_for_field(supports_, pulling_.cols(), options.csrbf.kernel)),
       fields_(most_fields(options), field_),
       evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
                                                   options.evaluation)) {
-  make_room(solver_, supports_, control_points);
+  if (options.brushes.rings && !options.brushes.are_all_pull())
+    brushes_ = std::make_unique<BrushStroke>(shape.layout(), control_points, options);
+  if (pulling_points_.empty()) return;
+  make_room(solver_, supports_, pulling_.cols());
   if (!options.injective) return;
-  chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
+  chain_.emplace(pulling_.cols(), supports_, options.csrbf, *options.injective);
   most_links_ = options.injective->most_links;
 }
 
@@ -62,6 +69,7 @@ FieldStatus Type2Deformer::begin(const Points& tips) {
 void Type2Deformer::release(bool is_step) noexcept {
   if (is_step) shape_->parts().keep();
   begun_ = false;
+  is_brushed_ = false;
   fields_.clear();
 }
 
@@ -77,7 +85,7 @@ FieldStatus Type2Deformer::take_hold(const Points& tips) {
   assert(tips.cols() == current_.cols());
   begun_ = false;
   if (!all_usable(tips)) return FieldStatus::not_finite;
-  const FieldStatus status = chain_ ? chain_->grab(tips) : FieldStatus::ok;
+  const FieldStatus status = chain_ ? chain_->grab(pulling(tips)) : FieldStatus::ok;
   if (!is_solved(status)) return status;
   current_ = tips;
   curve_->begin(tips);
@@ -115,23 +123,43 @@ FieldStatus Type2Deformer::redo(const Points& tips) {
 StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   assert(tips.cols() == current_.cols());
   report_ = {};
+  is_brushed_ = false;
   fields_.clear();
   if (!all_usable(tips)) return {FieldStatus::not_finite, 0};
   if (!begun_) return {begin(tips), 0};
   StrokeResult result;
   for (((*curve_).*lead)(tips); curve_->next_cut(next_); current_ = next_) {
-    const FieldStatus status = chain_ ? apply_links() : apply_piece();
+    const FieldStatus status = apply_piece();
     result.pieces += is_solved(status) ? 1 : 0;
     result.status = std::max(result.status, status); // ordered from good to bad
   }
   return result;
 }
 
+/// Those of the start points that pull.
+const Points& Type2Deformer::pulling(const Points& tips) {
+  for (Eigen::Index i = 0; i < pulling_.cols(); ++i)
+    pulling_.col(i) = tips.col(pulling_points_[static_cast<std::size_t>(i)]);
+  return pulling_;
+}
+
 /// From current_ to next_.
 FieldStatus Type2Deformer::apply_piece() {
-  for (Eigen::Index i = 0; i < current_.cols(); ++i)
-    rounded_.col(i) = shape_->layout().rounded(current_.col(i));
-  step_ = next_ - current_;
+  FieldStatus status = FieldStatus::ok;
+  if (!pulling_points_.empty()) status = chain_ ? apply_links() : pull_piece();
+  if (brushes_ && brushes_->go(current_, next_, shape_->parts().now)) {
+    is_brushed_ = true;
+    shape_->parts().is_changed = true;
+  }
+  return status;
+}
+
+FieldStatus Type2Deformer::pull_piece() {
+  step_ = pulling(next_);
+  pulling(current_);
+  step_ -= pulling_;
+  for (Eigen::Index i = 0; i < pulling_.cols(); ++i)
+    rounded_.col(i) = shape_->layout().rounded(pulling_.col(i));
   FieldStatus status = solver_.build(rounded_, supports_);
   if (is_solved(status)) status = solver_.solve(step_, field_);
   return is_solved(status) ? std::max(status, apply(field_)) : status;
@@ -146,7 +174,7 @@ FieldStatus Type2Deformer::apply(const CsrbfField& field) {
 
 /// Fingertips that are held stay where they are; the next piece tells them anew where to go.
 FieldStatus Type2Deformer::apply_links() {
-  FieldStatus status = chain_->from_here(next_, most_links_ - report_.links);
+  FieldStatus status = chain_->from_here(pulling(next_), most_links_ - report_.links);
   while (is_solved(status) && chain_->next())
     status = std::max(status, apply(chain_->field()));
   const ChainReport& piece = chain_->report();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include <nendo/deform/brush.hpp>
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/supports.hpp>
@@ -27,6 +28,8 @@ struct DeformerOptions {
   EvaluationOptions evaluation{};
   /// If set, the model never folds: each step is made in links that are injective.
   std::optional<InjectiveOptions> injective{};
+  /// What each start point does in type 2. Type 1 only pulls.
+  BrushOptions brushes{};
   /// Bytes of memory for undo(), of which a step takes 832, and 832 for each block of 64 vertices
   /// that it changed. 0 means that nothing can be undone. The memory of one more shape comes on
   /// top.

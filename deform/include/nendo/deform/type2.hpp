@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/field_sequence.hpp>
@@ -15,6 +16,7 @@
 namespace nendo::deform {
 
 class BlockEvaluator;
+class BrushStroke;
 class FingertipCurve;
 
 struct StrokeResult {
@@ -84,6 +86,9 @@ public:
   /// Returns the fields that the last call applied to the shape. Their centres are the fingertips
   /// rounded by BlockLayout::rounded().
   const FieldSequence& fields() const noexcept { return fields_; }
+  /// Tells whether a brush has changed the shape in the last call, so that fields() does not tell
+  /// all.
+  bool is_brushed() const noexcept { return is_brushed_; }
   /// Returns what the last call took, the worst of its pieces; all is 0 unless the deformer is
   /// injective.
   const ChainReport& report() const noexcept { return report_; }
@@ -96,6 +101,8 @@ private:
                 double piece_length, const DeformerOptions& options);
   FieldStatus take_hold(const Points& tips);
   StrokeResult follow(const Points& tips, Lead lead);
+  const Points& pulling(const Points& tips);
+  FieldStatus pull_piece();
   FieldStatus apply_piece();
   FieldStatus apply_links();
   FieldStatus apply(const CsrbfField& field);
@@ -103,10 +110,12 @@ private:
   std::unique_ptr<SculptedShape> own_; ///< null if it was given
   SculptedShape* shape_;
   std::unique_ptr<FingertipCurve> curve_;
-  Points current_; ///< where the curves have been cut last
-  Points next_;    ///< and where the piece leads
+  Points current_;                           ///< where the curves have been cut last
+  Points next_;                              ///< and where the piece leads
+  std::vector<Eigen::Index> pulling_points_; ///< whose brush is Brush::pull
+  Points pulling_;                           ///< those of some tips
   Points step_;
-  Points rounded_;    ///< current_, as float holds it
+  Points rounded_;    ///< current_ of those that pull, as float holds it
   Supports supports_; ///< with radii as float holds them
   CsrbfSolver solver_;
   CsrbfField field_;
@@ -115,6 +124,8 @@ private:
   std::optional<InjectiveChain> chain_;
   int most_links_ = 0;
   ChainReport report_;
+  std::unique_ptr<BrushStroke> brushes_; ///< null: all pull, or do nothing
+  bool is_brushed_ = false;
   bool begun_ = false;
 };
 

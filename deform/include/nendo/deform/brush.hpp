@@ -1,0 +1,44 @@
+#pragma once
+// What a fingertip does to the surface along its way in type 2. Sculpting programs know these
+// brushes; `pull` is the paper's Type-2, in which the surface follows the fingertip.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <nendo/deform/vertex_rings.hpp>
+
+namespace nendo::deform {
+
+/// Recordings keep the numbers, so new values are added at the end.
+enum class Brush : std::uint8_t {
+  pull,    ///< the surface follows the fingertip
+  none,    ///< nothing
+  push,    ///< the surface goes in, against its mean normal
+  inflate, ///< each vertex goes out, along its own normal
+  smooth,  ///< each vertex goes to the mean of its neighbours; the volume stays
+  flatten, ///< the surface becomes the plane that fits it best
+  twist,   ///< the surface turns about its mean normal
+  scale,   ///< the surface grows about the fingertip
+};
+inline constexpr std::uint8_t brush_count = 8;
+
+std::string_view name_of(Brush brush) noexcept;
+std::optional<Brush> brush_named(std::string_view name) noexcept;
+
+struct BrushOptions {
+  std::vector<Brush> of_points{}; ///< of each start point; empty: all pull
+  /// How much a brush does on a way of a given length, -1 to 1. At 1, push and inflate lead as far
+  /// as the fingertip goes, and on a way of one radius twist turns by one radian, scale grows by e,
+  /// and smooth and flatten do 86 % of what is left to do. Below 0 each does the opposite, but
+  /// smooth and flatten, which have none. Pull always leads all the way.
+  double strength = 0.5;
+  /// Of the model; needed if any brush is neither pull nor none.
+  std::shared_ptr<const VertexRings> rings{};
+
+  bool are_all_pull() const noexcept;
+};
+
+} // namespace nendo::deform

@@ -1,0 +1,30 @@
+#include <nendo/deform/brush.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace nendo::deform {
+
+namespace {
+
+constexpr std::array<std::string_view, brush_count> names{"pull",   "none",    "push",  "inflate",
+                                                          "smooth", "flatten", "twist", "scale"};
+
+} // namespace
+
+std::string_view name_of(Brush brush) noexcept {
+  return names[static_cast<std::size_t>(brush)];
+}
+
+std::optional<Brush> brush_named(std::string_view name) noexcept {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Brush>(found - names.begin());
+}
+
+bool BrushOptions::are_all_pull() const noexcept {
+  return std::all_of(of_points.begin(), of_points.end(),
+                     [](Brush brush) { return brush == Brush::pull; });
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,60 @@
+#pragma once
+// One dab of a brush: what it does to the vertices within its radius while the fingertip goes a
+// short way. Each vertex x is weighted by w(x) = psi(|x - c| / r), the paper's radial function
+// about the dab's centre c, so that a dab ends as smoothly as a field.
+
+#include <cstdint>
+#include <vector>
+
+#include <nendo/deform/brush.hpp>
+#include <nendo/deform/wendland.hpp>
+
+#include "../block_evaluator.hpp"
+
+namespace nendo::deform {
+
+/// Lengths and places are in the units of the shape in blocks.
+struct Dab {
+  Brush brush = Brush::push;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 1.0; ///< > 0
+  double way = 0.0;    ///< of the fingertip, times the strength; its sign tells which way
+};
+
+/// Belongs to one thread. dab() neither allocates nor waits. It looks at the bounds of all blocks,
+/// and at the triangles around each vertex within the radius.
+class BrushDabs {
+public:
+  /// Allocates 32 bytes a vertex.
+  BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel);
+
+  /// Changes the shape, with its bounds and stamps. Returns false, and changes nothing, if no
+  /// vertex is within reach or the result might not be finite.
+  bool dab(const Dab& dab, BoundedShape& shape) noexcept;
+
+private:
+  /// A vertex within the radius.
+  struct Reached {
+    std::uint32_t place = 0;
+    float weight = 0.0F;                              ///< w
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero(); ///< area_normal()
+    Eigen::Vector3f move = Eigen::Vector3f::Zero();
+  };
+
+  bool gather(const Dab& dab, const BoundedShape& shape) noexcept;
+  bool find_plane(const BlockShape& shape) noexcept;
+  void move_along_normals(double way) noexcept;
+  void smooth(const Dab& dab, const BlockShape& shape) noexcept;
+  void keep_volume() noexcept;
+  template <class MoveOf>
+  void move_each(const BlockShape& shape, const MoveOf& move_of) noexcept;
+  bool write(BoundedShape& shape) const noexcept;
+
+  std::shared_ptr<const VertexRings> rings_;
+  Wendland kernel_;
+  std::vector<Reached> reached_;                     ///< in block order
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< of the reached surface
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero(); ///< its mean, of unit length
+};
+
+} // namespace nendo::deform
