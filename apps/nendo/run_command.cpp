@@ -30,10 +30,11 @@ namespace {
 struct CommandOptions {
   session::RunOptions run;
   std::string radius;
-  std::string mode = "type1";
+  std::string mode; ///< empty: type1, or type2 with a brush
   std::string switch_action = "none";
   session::FilterArguments filter;
   session::KernelArguments kernel;
+  session::BrushArguments brush;
   session::LoopArguments loop;
   session::ViewOptions view;
   std::vector<std::string> publish;
@@ -85,8 +86,10 @@ Result<void> read_puppet(session::RunOptions& run) {
 Result<void> check(CommandOptions& options) {
   auto& run = options.run;
   const auto mode = flow::mode_named(options.mode);
-  if (!mode) return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
-  run.loop.sculptor.mode = *mode;
+  if (!mode && !options.mode.empty())
+    return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
+  run.loop.sculptor.mode = mode.value_or(flow::Mode::type1);
+  if (auto fine = options.brush.parse(options.mode, run.loop.sculptor); !fine) return fine;
   const auto action = flow::switch_action_named(options.switch_action);
   if (!action) {
     return Error{Errc::usage, "--switch " + options.switch_action +
@@ -242,11 +245,13 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
       "hands that touch it");
   command.add_option(
       "--mode", options.mode,
-      "type1: the rest shape follows the fingertips; type2: strokes along their paths");
+      "type1: the rest shape follows the fingertips; type2: strokes along their paths; without it, "
+      "type1, or type2 with a brush");
   command.add_option(
       "--radius", options.radius,
       "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix");
+  session::add_brush_options(command, options.brush);
   gloves::add_calibration_options(command, run_options.calibration);
   gloves::add_hand_length(command, run_options.length);
   session::add_kernel_options(command, options.kernel);

@@ -1,5 +1,7 @@
 #include "session/loop_options.hpp"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
@@ -152,6 +154,41 @@ void add_kernel_options(cli::Command& command, KernelArguments& arguments) {
                      "wendland-c0, wendland-c2, wendland-c4 or wendland-c6");
   command.add_option("--polynomial", arguments.polynomial,
                      "none, constant or linear; anything but none moves the whole model");
+}
+
+Result<void> BrushArguments::parse(const std::string& mode, flow::SculptorOptions& sculptor) const {
+  if (strength && !(std::abs(*strength) <= 1.0))
+    return Error{Errc::usage, "--strength: use -1 to 1; below 0 a brush does the opposite"};
+  if (brush.empty()) {
+    if (strength)
+      return Error{Errc::usage, "--strength: there is no brush; add --brush, as in "
+                                "--brush inflate"};
+    return {};
+  }
+  const auto brushes = flow::parse_brushes(brush);
+  if (!brushes) {
+    return Error{Errc::usage, "--brush " + brush +
+                                  ": use pull, none, push, inflate, smooth, flatten, twist or "
+                                  "scale, or five of them with commas between, thumb to little "
+                                  "finger"};
+  }
+  sculptor.brushes = *brushes;
+  sculptor.brush_strength = strength.value_or(sculptor.brush_strength);
+  if (sculptor.needs_rings() && mode == "type1")
+    return Error{Errc::usage,
+                 "--brush " + brush + ": fingers only pull in type 1; use --mode type2"};
+  if (mode.empty()) sculptor.mode = flow::Mode::type2;
+  return {};
+}
+
+void add_brush_options(cli::Command& command, BrushArguments& arguments) {
+  command.add_option("--brush", arguments.brush,
+                     "What a finger does along its way, in type 2: pull, none, push, inflate, "
+                     "smooth, flatten, twist or scale; or five with commas between, thumb to "
+                     "little finger");
+  command.add_option(
+      "--strength", arguments.strength,
+      "How much a brush does, -1 to 1, without it 0.5; below 0 it does the opposite");
 }
 
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants) {

@@ -56,6 +56,17 @@ struct KernelArguments {
 };
 void add_kernel_options(cli::Command& command, KernelArguments& arguments);
 
+/// The options --brush and --strength.
+struct BrushArguments {
+  std::string brush; ///< one name, or five with commas between; empty: pull
+  std::optional<double> strength;
+
+  /// Reads them into the sculptor, which is then of type 2 if `mode` is empty. Error: usage, naming
+  /// what can be used.
+  Result<void> parse(const std::string& mode, flow::SculptorOptions& sculptor) const;
+};
+void add_brush_options(cli::Command& command, BrushArguments& arguments);
+
 /// Returns an object for each right that was asked for, with name, wanted, granted, why and remedy.
 nlohmann::ordered_json grants_json(const std::vector<flow::Grant>& grants);
 

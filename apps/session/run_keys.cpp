@@ -14,8 +14,9 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
   cli::note(
       "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes, x "
       "resets; " +
-      std::string("[ and ] make the brush smaller, larger; m the other mode, n the next kernel, ") +
-      "i never folds, or may; e makes the model finer; t records; . marks the moment; s saves; "
+      std::string("[ and ] make the radii smaller, larger; m the other mode, n the next kernel, ") +
+      "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; e "
+      "makes the model finer; t records; . marks the moment; s saves; "
       "comma and quote let one hand go of a puppet, y plays both its sides by one; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
@@ -48,13 +49,17 @@ void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::Command
   if (key == 'm') wanted_.other_mode();
   if (key == 'n') wanted_.next_kernel();
   if (key == 'i') wanted_.toggle_folding();
+  if (key == 'w') wanted_.next_brush();
+  if (key == '-') wanted_.weaken();
+  if (key == '=') wanted_.strengthen();
   const auto command = wanted_.ask();
   if (!command) return;
   commands.try_push(*command);
   const auto [least, most] =
       std::minmax_element(wanted_.now.radius_m.begin(), wanted_.now.radius_m.end());
-  report(fmt::format("{}, {}, {}, radius {:.1f}{} cm", name_of(wanted_.now.mode),
-                     deform::name_of(wanted_.now.kernel),
+  report(fmt::format("{}, {} at strength {:g}, {}, {}, radius {:.1f}{} cm",
+                     name_of(wanted_.now.mode), flow::in_words(wanted_.now.brushes),
+                     wanted_.now.brush_strength, deform::name_of(wanted_.now.kernel),
                      wanted_.now.injective ? "never folds" : "may fold", 100.0 * *least,
                      *least == *most ? std::string() : fmt::format(" to {:.1f}", 100.0 * *most)));
 }

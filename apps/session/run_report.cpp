@@ -177,12 +177,22 @@ void print_published(const RunOutcome& outcome) {
   }
 }
 
+namespace {
+
+std::string brush_words(const flow::SculptorOptions& sculptor) {
+  if (sculptor.mode != flow::Mode::type2 || !sculptor.needs_rings()) return {};
+  return ", " + flow::in_words(sculptor.brushes) +
+         fmt::format(" at strength {:g}", sculptor.brush_strength);
+}
+
+} // namespace
+
 void print_summary_text(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
   const flow::SculptorOptions& sculptor = outcome.sculptor;
   std::cout << fmt::format("\nnendo run: {:.1f} s, {}, {}, radius {:.3g}\n", outcome.elapsed_s,
-                           flow::name_of(sculptor.mode),
+                           std::string(flow::name_of(sculptor.mode)) + brush_words(sculptor),
                            deform::name_of(sculptor.deformer.csrbf.kernel), outcome.radius);
   for (const auto& hand : hands)
     print_hand(hand, outcome);

@@ -122,6 +122,8 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
                     {"mode", flow::name_of(outcome.sculptor.mode)},
                     {"kernel", deform::name_of(outcome.sculptor.deformer.csrbf.kernel)},
                     {"radius", outcome.radius},
+                    {"brushes", flow::in_words(outcome.sculptor.brushes)},
+                    {"brush_strength", outcome.sculptor.brush_strength},
                     {"rate_hz", options.loop.rate_hz},
                     {"policy", flow::describe_policy(options.loop)},
                     {"threads", options.loop.sculptor.deformer.evaluation.threads},

@@ -72,17 +72,15 @@ public:
   /// Returns false if a timeline has no such settings.
   bool hear(const flow::LoopSettings& settings, const flow::LoopSettings& in_force) {
     if (settings.filter != in_force.filter) return false;
-    const bool is_undo =
-        awaited_ &&
-        awaited_->settings == settings; // which the timeline's player makes of the request
-    if (is_undo || settings == in_force) return true;
+    if (settings == in_force) return true;
     settings_ = settings;
     settings_->filter = {};
+    answers_step_ = awaited_ && awaited_->settings == settings;
     return true;
   }
 
-  /// A tick has run. `commits`: how many there were.
-  void see(const flow::LoggedTick& tick, const flow::Frame& frame, std::uint64_t commits) {
+  /// A tick has run.
+  void see(const flow::LoggedTick& tick, const flow::Frame& frame, const flow::LoopStats& stats) {
     if (!first_) first_ = tick;
     const double before_s = timeline_.duration_s;
     const double time_s = std::max(before_s, time_of(tick));
@@ -92,7 +90,7 @@ public:
       if (time_s > hand.keys.back().time_s) hand.keys.push_back(key);
     }
     timeline_.duration_s = time_s;
-    see_events(time_s, frame, commits);
+    see_events(time_s, frame, stats);
     if (std::exchange(is_still_, false)) still_at_s_ = time_s;
     awaited_ = frame.awaited;
   }
@@ -110,22 +108,26 @@ private:
   void add(double time_s, flow::Request request) { timeline_.events.push_back({time_s, request}); }
 
   // One that waits for settings, and those behind it, have not happened yet.
-  void add_steps(double time_s, const flow::Frame& frame) {
-    std::uint64_t done = frame.undos - std::exchange(undos_, frame.undos);
-    auto step = steps_.begin();
-    for (; step != steps_.end() && (!frame.awaited || done > 0); ++step, done -= done > 0 ? 1 : 0)
-      add(time_s, *step);
-    steps_.erase(steps_.begin(), step);
+  void add_steps(double time_s, const flow::Frame& frame, const flow::LoopStats& stats) {
+    const std::uint64_t all = stats.undos + stats.redos + stats.resets;
+    const bool is_done = std::exchange(done_, all) != all;
+    // The player makes the settings of the step that waited for them. If the undo took something
+    // else back that had come by then, they were a change like others, which ends all redo.
+    const bool is_step_over = is_done && !steps_.empty() &&
+                              (steps_.front() == flow::Request::redo || frame.redo_steps > 0);
+    if (std::exchange(answers_step_, false) && is_step_over) settings_.reset();
+    for (; steps_.size() > frame.steps_due; steps_.erase(steps_.begin()))
+      add(time_s, steps_.front());
   }
 
-  void see_events(double time_s, const flow::Frame& frame, std::uint64_t commits) {
-    add_steps(time_s, frame);
-    const bool committed = commits > commits_;
+  void see_events(double time_s, const flow::Frame& frame, const flow::LoopStats& stats) {
+    add_steps(time_s, frame, stats);
+    const bool committed = stats.commits > commits_;
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
     if (committed && !frame.held) add(time_s, flow::Request::let_go);
     if (settings_) timeline_.events.push_back({time_s, {}, std::exchange(settings_, {})});
-    commits_ = commits;
+    commits_ = stats.commits;
     held_ = frame.held;
   }
 
@@ -133,9 +135,10 @@ private:
   bool held_;
   bool on_grid_;
   std::uint64_t commits_ = 0;
-  std::uint64_t undos_ = 0;
+  std::uint64_t done_ = 0;                     ///< undos, redos and resets
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
+  bool answers_step_ = false;                  ///< an undo or a redo has waited for settings_
   bool is_still_ = false;                      ///< from the next tick on
   double still_at_s_ = 0.0;                    ///< the end of the last tick that shaped
   std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
@@ -183,8 +186,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     if (!(*replay)->feed(*entry)) continue;
     auto& frames = (*replay)->loop().frames();
     frames.update();
-    follower.see(std::get<flow::LoggedTick>(*entry), frames.front(),
-                 (*replay)->loop().stats().commits);
+    follower.see(std::get<flow::LoggedTick>(*entry), frames.front(), (*replay)->loop().stats());
     if (const std::string many = what_exceeds(made.timeline, most); !many.empty())
       return bad("has more than " + many + "; cut a part with `nendo recording cut`");
   }

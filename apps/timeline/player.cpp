@@ -17,6 +17,7 @@ flow::ShapingOptions shaping_options(const Timeline& timeline,
   options.most_requests = timeline.events.size() + 1;
   options.held = timeline.held;
   options.pull_is_step = timeline.pull_is_step;
+  options.changes_at_once = true;
   return options;
 }
 

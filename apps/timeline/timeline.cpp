@@ -48,6 +48,7 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, std::size_t h
   const auto& options = sculptor.deformer;
   if (!within(sculptor.piece_length, least_positive, largest))
     return "piece_length must be positive";
+  if (!within(sculptor.brush_strength, -1.0, 1.0)) return "brush_strength must lie within -1 and 1";
   if (options.supports.shared.empty() || !options.supports.are_usable())
     return "supports: radii and weights must be positive, and one at least must be shared";
   for (const auto& own : options.supports.own)

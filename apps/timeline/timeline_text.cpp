@@ -51,12 +51,24 @@ std::string supports_text(const deform::Supports& supports) {
   return line("shared", "[" + shared + "]") + line("own", "[" + own + "]");
 }
 
+std::string brush_names(const std::array<deform::Brush, 5>& brushes) {
+  std::string names;
+  for (const deform::Brush brush : brushes)
+    names += (names.empty() ? "" : ", ") + toml_string(name_of(brush));
+  return "[" + names + "]";
+}
+
+std::string brushes_lines(const flow::SculptorOptions& sculptor) {
+  return line("brushes", brush_names(sculptor.brushes)) +
+         line("brush_strength", decimal_text(sculptor.brush_strength));
+}
+
 std::string sculptor_text(const flow::SculptorOptions& sculptor) {
   const auto& options = sculptor.deformer;
   const auto word = [](std::string_view name) { return toml_string(name); };
   std::string text = "\n[sculptor]\n" + line("mode", word(name_of(sculptor.mode))) +
                      line("piece_length", decimal_text(sculptor.piece_length)) +
-                     line("kernel", word(name_of(options.csrbf.kernel))) +
+                     brushes_lines(sculptor) + line("kernel", word(name_of(options.csrbf.kernel))) +
                      line("polynomial", word(name_of(options.csrbf.polynomial))) +
                      line("merge_fraction", decimal_text(options.csrbf.merge_fraction)) +
                      line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
@@ -74,7 +86,9 @@ std::string settings_text(const flow::LoopSettings& settings) {
          ", kernel = " + toml_string(name_of(settings.kernel)) +
          ", injective = " + (settings.injective ? "true" : "false") +
          ", radius_m = " + list(settings.radius_m) +
-         ", piece_fraction = " + decimal_text(settings.piece_fraction) + " }";
+         ", piece_fraction = " + decimal_text(settings.piece_fraction) +
+         ", brushes = " + brush_names(settings.brushes) +
+         ", brush_strength = " + decimal_text(settings.brush_strength) + " }";
 }
 
 std::string key_text(const Key& key) {

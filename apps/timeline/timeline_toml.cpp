@@ -50,13 +50,32 @@ void read_injective(TomlReader& reader, const toml::table& table,
   options.injective->least_gap = reader.number(*injective, "least_gap");
 }
 
+/// Older files have none.
+void read_brushes(TomlReader& reader, const toml::table& table,
+                  std::array<deform::Brush, 5>& brushes, double& strength) {
+  if (table.get("brush_strength") != nullptr) strength = reader.number(table, "brush_strength");
+  const toml::node* const node = table.get("brushes");
+  if (node == nullptr) return;
+  const toml::array* const names = node->as_array();
+  if (names == nullptr || names->size() != brushes.size())
+    return reader.complain(*node, "brushes must be five names, thumb to little finger");
+  for (std::size_t finger = 0; finger < brushes.size(); ++finger) {
+    const auto name = (*names)[finger].value<std::string>();
+    const auto brush = name ? deform::brush_named(*name) : std::nullopt;
+    if (!brush) return reader.complain((*names)[finger], "this is no brush");
+    brushes[finger] = *brush;
+  }
+}
+
 void read_sculptor(TomlReader& reader, const toml::table& root, flow::SculptorOptions& sculptor) {
   const toml::table* const table = reader.table(root, "sculptor");
   if (table == nullptr) return;
   // order and storage stand in older files; they are ignored.
   reader.allow_only(*table, {"mode", "piece_length", "kernel", "polynomial", "merge_fraction",
-                             "order", "storage", "weight_bytes", "shared", "own", "injective"});
+                             "order", "storage", "weight_bytes", "shared", "own", "injective",
+                             "brushes", "brush_strength"});
   auto& options = sculptor.deformer;
+  read_brushes(reader, *table, sculptor.brushes, sculptor.brush_strength);
   sculptor.mode = reader.named(*table, "mode", flow::mode_named);
   sculptor.piece_length = reader.number(*table, "piece_length");
   options.csrbf.kernel = reader.named(*table, "kernel", deform::wendland_named);
@@ -116,7 +135,9 @@ flow::LoopSettings read_settings(TomlReader& reader, const toml::table& event) {
     reader.complain(event, "an event has a request or settings; make two events of it");
   const toml::table* const table = reader.table(event, "settings");
   if (table == nullptr) return settings;
-  reader.allow_only(*table, {"mode", "kernel", "injective", "radius_m", "piece_fraction"});
+  reader.allow_only(*table, {"mode", "kernel", "injective", "radius_m", "piece_fraction", "brushes",
+                             "brush_strength"});
+  read_brushes(reader, *table, settings.brushes, settings.brush_strength);
   settings.mode = reader.named(*table, "mode", flow::mode_named);
   settings.kernel = reader.named(*table, "kernel", deform::wendland_named);
   settings.injective = reader.truth(*table, "injective");

@@ -137,7 +137,34 @@ void LiveWindow::Panel::parts(SceneWindow& window) {
 }
 
 void LiveWindow::Panel::follow_settings(const flow::LoopSettings& in_force) {
-  if (wanted.follow(in_force) && !wanted.has_one_radius()) one_radius = false;
+  if (!wanted.follow(in_force)) return;
+  if (!wanted.has_one_radius()) one_radius = false;
+  if (!wanted.has_one_brush()) one_brush = false;
+}
+
+/// One for all fingers, or one for each. Whoever chooses one wants type 2, which has them.
+void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
+  ImGui::Checkbox("one brush for all fingers", &one_brush);
+  const auto before = chosen.brushes;
+  for (std::size_t finger = 0; finger < (one_brush ? 1 : finger_names.size()); ++finger) {
+    deform::Brush& brush = chosen.brushes[finger];
+    ImGui::PushID(static_cast<int>(finger));
+    if (ImGui::BeginCombo(one_brush ? "brush" : finger_names[finger], name_of(brush).data())) {
+      for (std::uint8_t number = 0; number < deform::brush_count; ++number) {
+        const auto one = static_cast<deform::Brush>(number);
+        if (ImGui::Selectable(name_of(one).data(), one == brush)) brush = one;
+      }
+      ImGui::EndCombo();
+    }
+    ImGui::PopID();
+  }
+  if (one_brush) chosen.brushes.fill(chosen.brushes[0]);
+  if (chosen.brushes != before) chosen.mode = flow::Mode::type2;
+  auto strength = static_cast<float>(chosen.brush_strength);
+  if (ImGui::SliderFloat("strength", &strength, -1.0F, 1.0F, "%.1f"))
+    chosen.brush_strength =
+        std::clamp(std::round(10.0 * static_cast<double>(strength)) / 10.0, -1.0, 1.0);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Below 0 a brush does the opposite (- and =)");
 }
 
 void LiveWindow::Panel::settings() {
@@ -152,6 +179,7 @@ void LiveWindow::Panel::settings() {
       if (ImGui::Selectable(kernel_words(kernel), kernel == chosen.kernel)) chosen.kernel = kernel;
     ImGui::EndCombo();
   }
+  brushes(chosen);
   ImGui::Checkbox("never folds", &chosen.injective);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("No field folds the surface (i)");
   ImGui::SameLine();

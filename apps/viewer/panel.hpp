@@ -37,6 +37,7 @@ struct LiveWindow::Panel {
   std::uint64_t last_tick = 0;
   bool keys_shown = false;
   bool one_radius = true;
+  bool one_brush = true;
   std::uint64_t history_shown = 0; ///< the list's version
   bool fold_asked = false;
   bool folded = false;
@@ -50,6 +51,7 @@ struct LiveWindow::Panel {
   void buttons(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
   static void parts(SceneWindow& window);
   void settings();
+  void brushes(flow::LoopSettings& chosen);
   /// Lists the steps of the history. A click goes there.
   void history(const flow::Frame& frame, Commands& commands);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;

@@ -26,6 +26,8 @@ constexpr std::array key_table{
     KeyLine{"s", "save the model as it is now"},
     KeyLine{"m, n", "the other mode, the next kernel"},
     KeyLine{"[, ]", "smaller radii, larger ones"},
+    KeyLine{"w", "the next brush of type 2"},
+    KeyLine{"-, =", "a weaker brush, a stronger one; below 0 the opposite"},
     KeyLine{"i", "the surface never folds, or may"},
     KeyLine{"e", "subdivide: the model gets more vertices for finer strokes"},
     KeyLine{"Home", "all of the model and the hands in the picture"},
@@ -41,6 +43,9 @@ void LiveWindow::Panel::settings_keys() {
   if (pressed(GLFW_KEY_LEFT_BRACKET, true)) wanted.reduce_radii();
   if (pressed(GLFW_KEY_RIGHT_BRACKET, true)) wanted.enlarge_radii();
   if (pressed(GLFW_KEY_I)) wanted.toggle_folding();
+  if (pressed(GLFW_KEY_W)) wanted.next_brush();
+  if (pressed(GLFW_KEY_MINUS, true)) wanted.weaken();
+  if (pressed(GLFW_KEY_EQUAL, true)) wanted.strengthen();
 }
 
 // The page's button is grey then, too; a key says why nothing happens.

@@ -57,7 +57,16 @@ std::optional<flow::Command> settings_in(Words words) noexcept {
   const auto filter = hand::filter_named(words.next());
   flow::LoopSettings settings;
   if (!mode || !kernel || !filter || (folds != "injective" && folds != "free")) return std::nullopt;
-  if (!words.take(settings.radius_m) || !words.are_over()) return std::nullopt;
+  if (!words.take(settings.radius_m)) return std::nullopt;
+  for (deform::Brush& brush : settings.brushes) {
+    const auto named = deform::brush_named(words.next());
+    if (!named) return std::nullopt;
+    brush = *named;
+  }
+  std::array<double, 1> strength{};
+  if (!words.take(strength) || !words.are_over()) return std::nullopt;
+  settings.brush_strength = strength[0];
+  if (!settings.are_usable()) return std::nullopt;
   for (const double radius_m : settings.radius_m)
     if (radius_m < min_radius_m || radius_m > max_radius_m) return std::nullopt;
   settings.mode = *mode;

@@ -142,6 +142,9 @@ SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) no
   message.flags = static_cast<std::uint8_t>((settings.injective ? 1U : 0U) | (filtered ? 2U : 0U) |
                                             (recorded ? 4U : 0U));
   std::copy(settings.radius_m.begin(), settings.radius_m.end(), message.radius_m);
+  for (std::size_t finger = 0; finger < settings.brushes.size(); ++finger)
+    message.brushes[finger] = static_cast<std::uint8_t>(settings.brushes[finger]);
+  message.brush_strength = settings.brush_strength;
   return message;
 }
 

@@ -68,7 +68,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 3;
+  std::uint32_t version = 4;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;
@@ -91,8 +91,11 @@ struct SettingsMessage {
   std::uint8_t flags = 0; ///< bit 0: injective; 1: the one-euro filter; 2: it is recorded
   std::uint32_t spare = 0;
   double radius_m[5]{};
+  std::uint8_t brushes[5]{};
+  std::uint8_t spare_too[3]{};
+  double brush_strength = 0.0;
 };
-static_assert(sizeof(SettingsMessage) == 48);
+static_assert(sizeof(SettingsMessage) == 64);
 
 /// Of the history's message.
 inline constexpr std::size_t history_head_bytes = 8;

@@ -74,6 +74,7 @@ def loop(b):
         o["settings"] = settings(b)
     o["subdivisions"] = b.take("I")
     o["pull_is_step"] = b.take("B")
+    o.update(brushes(b))
     return o
 
 
@@ -88,6 +89,10 @@ def settings(b):
     s = dict(zip(("mode", "kernel", "injective", "filter"), b.take("4B")))
     s.update({"radii": b.take("5d"), "piece": b.take("d"), "cutoffs": b.take("3d")})
     return s
+
+
+def brushes(b):
+    return {"brushes": b.take("5B"), "strength": b.take("d")}
 
 
 def head(b):
@@ -105,7 +110,7 @@ def sent(b):
 
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
-             6: settings, 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             6: lambda e: {**settings(e), **brushes(e)}, 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")
@@ -125,7 +130,7 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 5, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 6, crc32c(data[:12])), "header"
     at = 16
     number = 0
     readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "REST": rest, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}

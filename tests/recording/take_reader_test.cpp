@@ -110,6 +110,10 @@ Setup unusual_setup() {
   setup.loop->options.pull_is_step = false;
   setup.loop->options.settings = flow::LoopSettings{
       .mode = flow::Mode::type2, .radius_m = {0.1, 0.2, 0.3, 0.4, 0.5}, .piece_fraction = 0.07};
+  setup.loop->options.sculptor.brushes = {deform::Brush::push, deform::Brush::twist,
+                                          deform::Brush::none, deform::Brush::pull,
+                                          deform::Brush::scale};
+  setup.loop->options.sculptor.brush_strength = -0.25;
   setup.loop->rest.resize(2);
   setup.loop->rest[1].y[2] = -0.5F;
   setup.loop->rest[1].z[63] = 0.25F;
@@ -133,6 +137,14 @@ bool is_settings(const json& line, const flow::LoopSettings& settings) {
          line["piece"] == settings.piece_fraction &&
          line["cutoffs"] == std::array{filter.min_cutoff_hz, filter.beta_hz_per_rad_s,
                                        filter.derivative_cutoff_hz};
+}
+
+template <class OfBrushes>
+bool are_brushes(const json& line, const OfBrushes& options) {
+  std::array<int, 5> numbers{};
+  std::transform(options.brushes.begin(), options.brushes.end(), numbers.begin(),
+                 [](deform::Brush brush) { return static_cast<int>(brush); });
+  return line["brushes"] == numbers && line["strength"] == options.brush_strength;
 }
 
 } // namespace
@@ -197,6 +209,7 @@ TEST_SUITE("take_reader") {
     CHECK(lines[at]["held"] == 0);
     CHECK(lines[at]["pull_is_step"] == 0);
     CHECK(is_settings(lines[at]["settings"], *options.settings));
+    CHECK(are_brushes(lines[at], options.sculptor));
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");
     REQUIRE(lines[at]["blocks"].size() == 2);
@@ -215,6 +228,7 @@ TEST_SUITE("take_reader") {
       if (const auto* settings = std::get_if<flow::LoopSettings>(&*entry)) {
         ++changes;
         CHECK(is_settings(lines[at], *settings));
+        CHECK(are_brushes(lines[at], *settings));
       }
       if (const auto* tick = std::get_if<flow::LoggedTick>(&*entry)) {
         CHECK(lines[at]["tick"] == tick->number);
@@ -270,7 +284,8 @@ TEST_SUITE("take_reader") {
       Setup now, then;
       REQUIRE(read_setup_chunk(chunk->type, whole, now));
       CHECK(now.loop->options.pull_is_step);
-      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - 1), then));
+      constexpr std::size_t since = 1 + 13; // that rule, and since 1.6 the brushes
+      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - since), then));
       CHECK_FALSE(then.loop->options.pull_is_step);
       CHECK(then.loop->subdivisions == now.loop->subdivisions);
       ++loops;

@@ -94,6 +94,9 @@ flow::LoopSettings any_settings(const flow::LoopSettings& before, Random& random
   const double radius_m = 0.1 + 0.01 * static_cast<double>(random() % 20);
   if (random() % 2 == 0) settings.radius_m.fill(radius_m);
   if (random() % 4 == 0) settings.radius_m[random() % 5] = radius_m;
+  if (random() % 3 == 0)
+    settings.brushes[random() % 5] = static_cast<deform::Brush>(random() % deform::brush_count);
+  if (random() % 6 == 0) settings.brush_strength = -1.0 + 0.1 * static_cast<double>(random() % 21);
   return settings;
 }
 

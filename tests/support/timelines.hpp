@@ -50,7 +50,11 @@ inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys
                          flow::LoopSettings{.mode = flow::Mode::type2,
                                             .injective = true,
                                             .radius_m = {0.1, 0.2, 0.3, step(random), 0.5},
-                                            .piece_fraction = 0.07}});
+                                            .piece_fraction = 0.07,
+                                            .brushes = {deform::Brush::twist, deform::Brush::pull,
+                                                        deform::Brush::none, deform::Brush::smooth,
+                                                        deform::Brush::scale},
+                                            .brush_strength = -0.3}});
   return made;
 }
 

@@ -116,7 +116,10 @@ TEST_SUITE("player") {
   }
 
   TEST_CASE("so it does where settings change on the way, and changes are undone and redone") {
-    for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(8); ++seed) {
+    // Brushes have a part in the last ones only: where they crumple a surface, they make much of
+    // the last bits of the angles, which poses do not keep.
+    for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(24) + 2; ++seed) {
+      const bool brushes = static_cast<int>(seed) >= test::rounds(24);
       CAPTURE(seed);
       Taken taken(seed % 2 == 0 ? Mode::type1 : Mode::type2, seed % 4 == 3);
       auto& loop = *taken.live.test.loop;
@@ -129,6 +132,8 @@ TEST_SUITE("player") {
         taken.live.test.bend(bent, begin + tick * std::chrono::milliseconds(11));
         flow::LoopSettings settings = test::any_settings(loop.settings(), random);
         settings.filter = loop.settings().filter;
+        settings.brushes.fill(brushes ? deform::Brush::inflate : deform::Brush::pull);
+        settings.brush_strength = 0.1;
         if (random() % 15 == 0) loop.change_settings(settings);
         if (random() % 10 == 0)
           taken.live.test.commands.try_push(flow::requests[random() % flow::requests.size()]);

@@ -51,7 +51,7 @@ TEST_SUITE("client_commands") {
 
   TEST_CASE("settings are mode, kernel, whether it may fold, filter and five radii in metres") {
     const auto change = parsed_as<flow::ChangeSettings>(
-        "settings type2 c4 injective one-euro 0.1 0.125 0.08 1e-2 10");
+        "settings type2 c4 injective one-euro 0.1 0.125 0.08 1e-2 10 pull pull pull pull pull 0.5");
     REQUIRE(change);
     CHECK(change->settings.mode == flow::Mode::type2);
     CHECK(change->settings.kernel == deform::Wendland::c4);
@@ -60,9 +60,14 @@ TEST_SUITE("client_commands") {
     CHECK(change->settings.radius_m == std::array{0.1, 0.125, 0.08, 0.01, 10.0});
     CHECK(change->settings.are_usable());
     for (const auto* kernel : {"c0", "c2", "c6"}) {
-      const auto other = parsed_as<flow::ChangeSettings>("settings type1 " + std::string(kernel) +
-                                                         " free off 1 1 1 1 1");
+      const auto other =
+          parsed_as<flow::ChangeSettings>("settings type1 " + std::string(kernel) +
+                                          " free off 1 1 1 1 1 push none scale twist smooth -1");
       REQUIRE(other);
+      CHECK(other->settings.brushes == std::array{deform::Brush::push, deform::Brush::none,
+                                                  deform::Brush::scale, deform::Brush::twist,
+                                                  deform::Brush::smooth});
+      CHECK(other->settings.brush_strength == -1.0);
       CHECK_FALSE(other->settings.injective);
       CHECK(other->settings.filter.kind == hand::FilterKind::off);
     }
@@ -83,7 +88,7 @@ TEST_SUITE("client_commands") {
 
   TEST_CASE("whatever else is said is nothing: other words, spaces, numbers that are none or too "
             "large, too many of them and too few") {
-    const std::array<std::string, 49> wrong{
+    const std::array<std::string, 54> wrong{
         "",
         " ",
         "Grab",
@@ -95,31 +100,36 @@ TEST_SUITE("client_commands") {
         "format the disk",
         "settings",
         "settings ",
-        "settings type3 c2 free off 1 1 1 1 1",
-        "settings type1 c8 free off 1 1 1 1 1",
-        "settings type1 wendland-c2 free off 1 1 1 1 1",
+        "settings type3 c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c8 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 wendland-c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
         "settings type1 c2 free off",
-        "settings type1 c2 1 1 1 1 1",
-        "settings type1 c2 folds off 1 1 1 1 1",
-        "settings type1 c2 free kalman 1 1 1 1 1",
-        "settings type1 c2 off free 1 1 1 1 1",
-        "settings type1 c2 injective 1 1 1 1 1",
-        "settings type1 c2 free off 1 1 1 1",
-        "settings type1 c2 free off 1 1 1 1 1 1",
-        "settings type1 c2 free off 1 1 1 1 1 ",
-        "settings type1 c2 free off  1 1 1 1 1",
-        "settings  type1 c2 free off 1 1 1 1 1",
-        "settings type1 c2 free off 1 1 1 1 nan",
-        "settings type1 c2 free off 1 1 1 1 inf",
-        "settings type1 c2 free off 1 1 1 1 -1",
-        "settings type1 c2 free off 1 1 1 1 0",
-        "settings type1 c2 free off 1 1 1 1 0.0009",
-        "settings type1 c2 free off 1 1 1 1 10.1",
-        "settings type1 c2 free off 1 1 1 1 1e999",
-        "settings type1 c2 free off 1 1 1 1 0x1",
-        "settings type1 c2 free off 1 1 1 1 1,0",
-        "settings type1 c2 free off 1 1 1 1 1m",
-        "settings type1 c2 free off 1\t1 1 1 1",
+        "settings type1 c2 free off 1 1 1 1 1",
+        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull paint 0.5",
+        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull pull",
+        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull pull 1.5",
+        "settings type1 c2 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 folds off 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free kalman 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 off free 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 injective 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 1  pull pull pull pull pull 0.5",
+        "settings type1 c2 free off  1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings  type1 c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 nan pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 inf pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 -1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 0 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 0.0009 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 10.1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 1e999 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 0x1 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 1,0 pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1 1 1 1 1m pull pull pull pull pull 0.5",
+        "settings type1 c2 free off 1\t1 1 1 1 pull pull pull pull pull 0.5",
         std::string("settings type1 c2 free off 1 1 1 1 1\0", 37),
         "wrist",
         "wrist left",

@@ -20,7 +20,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 3;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 4;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
@@ -80,6 +80,8 @@ public:
   std::string name;
   // Of the latest settings message.
   std::array<double, 5> radius_m{};
+  std::array<std::uint8_t, 5> brushes{};
+  double strength = 0.0;
   unsigned mode = 0, kernel = 0;
   bool injective = false, filtered = false, recorded = false;
   int settings = 0; ///< how many came
@@ -154,6 +156,10 @@ private:
     in.at += 4;
     for (double& radius : radius_m)
       radius = in.take<double>();
+    for (std::uint8_t& brush : brushes)
+      brush = in.take<std::uint8_t>();
+    in.at += 3;
+    strength = in.take<double>();
   }
 
   void take_steps(Bytes& in) {

@@ -145,9 +145,12 @@ TEST_SUITE("run_web") {
     browser.follow_until([&] { return seen.settings > 0; });
     CHECK(seen.radius_m[0] == doctest::Approx(0.16)); // a fifth of the model's longest side
     CHECK(seen.mode == 1);
-    browser.ask("settings type2 c4 injective one-euro 0.1 0.1 0.1 0.1 0.05",
+    browser.ask("settings type2 c4 injective one-euro 0.1 0.1 0.1 0.1 0.05 "
+                "inflate none pull push scale -0.5",
                 [](const auto& now) { return now.mode == 2; });
     CHECK(seen.kernel == 2);
+    CHECK(seen.brushes == std::array<std::uint8_t, 5>{3, 1, 0, 2, 7});
+    CHECK(seen.strength == -0.5);
     CHECK(seen.injective);
     CHECK(seen.filtered);
     CHECK(seen.radius_m[0] == doctest::Approx(0.1));
@@ -161,7 +164,7 @@ TEST_SUITE("run_web") {
     browser.ask("undo", [&](const auto& now) { return now.undos > undos + 1; });
     browser.follow_until([&] { return seen.undoable + 1 == seen.steps.size(); });
     browser.ask("end recording", [](const auto& now) { return !now.recorded; });
-    browser.ask("settings type1 c2 free off 0.2 0.2 0.2 0.2 0.2",
+    browser.ask("settings type1 c2 free off 0.2 0.2 0.2 0.2 0.2 pull pull pull pull pull 0.5",
                 [](const auto& now) { return now.mode == 1; });
     CHECK_FALSE(seen.injective);
     browser.ask("record", [](const auto& now) { return now.recorded; });

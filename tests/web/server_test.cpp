@@ -163,7 +163,8 @@ TEST_SUITE("server") {
     server->present(streamed.stream, streamed.model);
     WebClient client(*server);
     REQUIRE(eventually([&] { return client.open_socket() == 101; }));
-    client.send_text("settings type2 c6 injective off 0.1 0.1 0.1 0.1 0.2");
+    client.send_text("settings type2 c6 injective off 0.1 0.1 0.1 0.1 0.2 "
+                     "pull pull pull pull pull 0.5");
     client.send_text("record");
     client.send_text("wrist left 1 2 3 0 0 0 1");
     client.send_text("wrist right 0 0 0 0 0 0 1");

@@ -13,9 +13,9 @@ bool LoopSettings::are_usable() const noexcept {
   const bool radii = std::all_of(radius_m.begin(), radius_m.end(), [](double radius) {
     return radius >= least_radius_m && radius <= most_radius_m; // false for NaN
   });
-  return radii && piece_fraction >= least_piece_fraction && piece_fraction <= most_piece_fraction &&
-         std::isfinite(filter.min_cutoff_hz) && std::isfinite(filter.beta_hz_per_rad_s) &&
-         std::isfinite(filter.derivative_cutoff_hz);
+  return radii && std::abs(brush_strength) <= 1.0 && piece_fraction >= least_piece_fraction &&
+         piece_fraction <= most_piece_fraction && std::isfinite(filter.min_cutoff_hz) &&
+         std::isfinite(filter.beta_hz_per_rad_s) && std::isfinite(filter.derivative_cutoff_hz);
 }
 
 LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
@@ -26,7 +26,9 @@ LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOpti
           .injective = deformer.injective.has_value(),
           .radius_m = radii_on_stage(deformer.supports, units_per_metre),
           .piece_fraction = sculptor.piece_length / deform::least_radius(deformer.supports),
-          .filter = filter};
+          .filter = filter,
+          .brushes = sculptor.brushes,
+          .brush_strength = sculptor.brush_strength};
 }
 
 double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept {
@@ -55,6 +57,8 @@ SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first
   deform::DeformerOptions& deformer = sculptor.deformer;
   sculptor.mode = wanted.mode;
   deformer.csrbf.kernel = wanted.kernel;
+  sculptor.brushes = wanted.brushes;
+  sculptor.brush_strength = wanted.brush_strength;
   if (wanted.injective != now.settings.injective) {
     deformer.injective.reset();
     if (wanted.injective) deformer.injective.emplace();

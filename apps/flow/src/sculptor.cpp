@@ -17,9 +17,24 @@ namespace {
 
 using Deformer = std::variant<Type1Deformer, Type2Deformer, deform::SurfaceDeformer>;
 
+constexpr Eigen::Index fingers = 5;
+
+/// With the brushes of so many fingertips.
+deform::DeformerOptions brushed(const SculptorOptions& options, Eigen::Index control_points) {
+  deform::DeformerOptions deformer = options.deformer;
+  if (!options.rings || control_points % fingers != 0) return deformer;
+  deform::BrushOptions& brushes = deformer.brushes;
+  for (Eigen::Index point = 0; point < control_points; ++point)
+    brushes.of_points.push_back(options.brushes[static_cast<std::size_t>(point % fingers)]);
+  brushes.strength = options.brush_strength;
+  brushes.rings = options.rings;
+  return deformer;
+}
+
 Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorOptions& options) {
   if (options.mode == Mode::type2)
-    return Type2Deformer(shape, control_points, options.piece_length, options.deformer);
+    return Type2Deformer(shape, control_points, options.piece_length,
+                         brushed(options, control_points));
   if (options.surface) return deform::SurfaceDeformer(shape, options.surface);
   return Type1Deformer(shape, control_points, options.deformer);
 }
@@ -27,7 +42,8 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
 /// Whose shape is its own: points.
 Deformer make(Points rest, Eigen::Index control_points, const SculptorOptions& options) {
   if (options.mode == Mode::type2)
-    return Type2Deformer(std::move(rest), control_points, options.piece_length, options.deformer);
+    return Type2Deformer(std::move(rest), control_points, options.piece_length,
+                         brushed(options, control_points));
   return Type1Deformer(std::move(rest), control_points, options.deformer);
 }
 
@@ -54,6 +70,35 @@ std::optional<Mode> mode_named(std::string_view name) noexcept {
   if (name == "type1") return Mode::type1;
   if (name == "type2") return Mode::type2;
   return std::nullopt;
+}
+
+std::optional<std::array<deform::Brush, 5>> parse_brushes(std::string_view text) noexcept {
+  std::array<deform::Brush, 5> brushes{};
+  std::size_t count = 0;
+  for (bool ended = false; !ended; ++count) {
+    const auto comma = text.find(',');
+    const auto brush = deform::brush_named(text.substr(0, comma));
+    if (!brush || count == brushes.size()) return std::nullopt;
+    brushes[count] = *brush;
+    ended = comma == std::string_view::npos;
+    if (!ended) text.remove_prefix(comma + 1);
+  }
+  if (count == 1) brushes.fill(brushes[0]);
+  if (count != 1 && count != brushes.size()) return std::nullopt;
+  return brushes;
+}
+
+std::string in_words(const std::array<deform::Brush, 5>& brushes) {
+  std::string words(deform::name_of(brushes[0]));
+  if (std::count(brushes.begin(), brushes.end(), brushes[0]) == fingers) return words;
+  for (std::size_t finger = 1; finger < brushes.size(); ++finger)
+    words += "," + std::string(deform::name_of(brushes[finger]));
+  return words;
+}
+
+bool SculptorOptions::needs_rings() const noexcept {
+  return std::any_of(brushes.begin(), brushes.end(),
+                     [](deform::Brush brush) { return brush != deform::Brush::pull; });
 }
 
 Sculptor::Sculptor(Points rest, Eigen::Index control_points, const SculptorOptions& options)
@@ -151,9 +196,16 @@ const deform::FieldSequence& Sculptor::fields() const noexcept {
       deformer_);
 }
 
+bool Sculptor::is_told_by_fields() const noexcept {
+  const auto* type2 = std::get_if<Type2Deformer>(&deformer_);
+  if (type2 != nullptr) return !type2->is_brushed();
+  return !std::holds_alternative<deform::SurfaceDeformer>(deformer_);
+}
+
 bool Sculptor::moves_anything() const noexcept {
   if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
     return surface->is_moved();
+  if (!is_told_by_fields()) return true;
   const auto all = fields().fields();
   return std::any_of(all.begin(), all.end(), [](const deform::CsrbfField& field) {
     return !field.coefficients.isZero(0.0) || !field.polynomial.isZero(0.0);

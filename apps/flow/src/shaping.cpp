@@ -20,13 +20,24 @@ void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
   if (chain.held_pairs > 0) ++stats.held_apart_ticks;
 }
 
+/// On that version of the model. Allocates.
+std::unique_ptr<Sculptor> sculptor_on(ModelVersion& model, Eigen::Index control_points,
+                                      SculptorOptions options) {
+  if (options.needs_rings()) {
+    if (!model.rings)
+      model.rings = std::make_shared<const deform::VertexRings>(model.mesh, model.layout());
+    options.rings = model.rings;
+  }
+  return std::make_unique<Sculptor>(model.shape, control_points, options);
+}
+
 } // namespace
 
 Shaping::Shaping(ModelVersion& model, Eigen::Index control_points, const ShapingOptions& options)
-    : model_(&model),
-      sculptor_(std::make_unique<Sculptor>(model.shape, control_points, options.sculptor.options)),
+    : model_(&model), sculptor_(sculptor_on(model, control_points, options.sculptor.options)),
       still_tips_(Points::Zero(3, control_points)), pull_is_step_(options.pull_is_step),
-      held_(options.held), hold_wanted_(held_), settings_(options.sculptor.settings) {
+      changes_at_once_(options.changes_at_once), held_(options.held), hold_wanted_(held_),
+      settings_(options.sculptor.settings) {
   steps_due_.reserve(options.most_requests);
 }
 
@@ -47,7 +58,9 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
     if (held_) ++stats.grabs;
   }
   const FieldStatus status =
-      held_ && !is_still_ ? shape_by_hands(tips, frame, stats, completes) : show_rest(frame);
+      held_ && !is_still_
+          ? shape_by_hands(tips, frame, stats, completes || (awaited_ && changes_at_once_))
+          : show_rest(frame);
   frame.held = held_;
   tell(frame, stats);
   return status;
@@ -61,7 +74,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   frame.fields.follow(sculptor_->fields());
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  if (sculptor_->is_along_surface()) ++leaps_;
+  if (!sculptor_->is_told_by_fields()) ++leaps_;
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
   // What cannot be committed now stays held, and is tried again at the next tick.
@@ -99,6 +112,7 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   frame.undo_steps = undo_steps();
   frame.redo_steps = steps_to_redo();
   frame.awaited = awaited_;
+  frame.steps_due = static_cast<std::uint32_t>(steps_due_.size());
   list_steps(frame.steps);
   frame.steps.in_hand = is_in_hand();
 }
@@ -124,7 +138,7 @@ void Shaping::make_room(Frame& frame) noexcept {
 
 void Shaping::prepare(const SculptorSetup& setup, ModelVersion& model, ReadySculptor& ready) const {
   ready.model = &model;
-  ready.sculptor = std::make_unique<Sculptor>(model.shape, still_tips_.cols(), setup.options);
+  ready.sculptor = sculptor_on(model, still_tips_.cols(), setup.options);
   ready.settings = setup.settings;
   ready.room.fill(ready.sculptor->fields());
 }

@@ -5,8 +5,9 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, 9> step_names{
-    "stroke", "reset", "mode", "kernel", "radius", "folding", "filter", "settings", "subdivide"};
+constexpr std::array<std::string_view, 10> step_names{"stroke",    "reset",   "mode",   "kernel",
+                                                      "radius",    "folding", "filter", "settings",
+                                                      "subdivide", "brush"};
 
 } // namespace
 
@@ -27,6 +28,10 @@ StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) n
   with = before;
   with.injective = after.injective;
   if (with == after) return StepKind::folding;
+  with = before;
+  with.brushes = after.brushes;
+  with.brush_strength = after.brush_strength;
+  if (with == after) return StepKind::brush;
   with = before;
   with.filter = after.filter;
   return with == after ? StepKind::filter : StepKind::settings;

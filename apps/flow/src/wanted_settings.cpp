@@ -1,6 +1,7 @@
 #include <nendo/flow/wanted_settings.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace nendo::flow {
 
@@ -26,6 +27,19 @@ void WantedSettings::next_kernel() noexcept {
   now.kernel = kernels[static_cast<std::size_t>(at - kernels.begin() + 1) % kernels.size()];
 }
 
+void WantedSettings::next_brush() noexcept {
+  auto brush =
+      static_cast<std::uint8_t>((static_cast<int>(now.brushes[1]) + 1) % deform::brush_count);
+  if (static_cast<deform::Brush>(brush) == deform::Brush::none) ++brush;
+  now.brushes.fill(static_cast<deform::Brush>(brush));
+  now.mode = Mode::type2;
+}
+
+/// In whole tenths, so that it comes back to where it was.
+void WantedSettings::add_strength(double more) noexcept {
+  now.brush_strength = std::clamp(std::round(10.0 * (now.brush_strength + more)) / 10.0, -1.0, 1.0);
+}
+
 void WantedSettings::scale_radii(double factor) noexcept {
   for (double& radius_m : now.radius_m)
     radius_m = std::clamp(factor * radius_m, least_radius_m, most_radius_m);
@@ -34,6 +48,11 @@ void WantedSettings::scale_radii(double factor) noexcept {
 bool WantedSettings::has_one_radius() const noexcept {
   return std::all_of(now.radius_m.begin(), now.radius_m.end(),
                      [this](double radius_m) { return radius_m == now.radius_m[0]; });
+}
+
+bool WantedSettings::has_one_brush() const noexcept {
+  return std::all_of(now.brushes.begin(), now.brushes.end(),
+                     [this](deform::Brush brush) { return brush == now.brushes[0]; });
 }
 
 } // namespace nendo::flow

@@ -133,6 +133,21 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   if (options.settings) put_settings(writer, *options.settings);
   writer.u32_le(loop.subdivisions);
   writer.u8(static_cast<std::uint8_t>(options.pull_is_step));
+  put_brushes(writer, options.sculptor.brushes, options.sculptor.brush_strength);
+}
+
+void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength) {
+  for (const deform::Brush brush : brushes)
+    writer.u8(static_cast<std::uint8_t>(brush));
+  writer.f64_le(strength);
+}
+
+bool read_brushes(ByteReader& reader, std::array<deform::Brush, 5>& brushes, double& strength) {
+  CheckedReader checked(reader);
+  for (deform::Brush& brush : brushes)
+    brush = checked.one_of(deform::Brush::scale);
+  strength = checked.number(-1.0, 1.0);
+  return checked.fine();
 }
 
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings) {
@@ -287,6 +302,14 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
   if (reader.remaining() > 0) read.subdivisions = reader.u32_le(); // since 1.4
   checked.require(read.subdivisions <= most_subdivisions);
   options.pull_is_step = reader.remaining() > 0 && reader.u8() != 0; // since 1.5
+  if (reader.remaining() > 0) {                                      // since 1.6
+    checked.require(
+        read_brushes(reader, options.sculptor.brushes, options.sculptor.brush_strength));
+    if (options.settings) {
+      options.settings->brushes = options.sculptor.brushes;
+      options.settings->brush_strength = options.sculptor.brush_strength;
+    }
+  }
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

@@ -72,6 +72,10 @@ inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
 /// Writes settings, as they stand in a loop's chunk and in entries.
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t settings_bytes = 76;
+/// Writes what stands behind them since format 1.6.
+void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength);
+inline constexpr std::size_t brushes_bytes = 5 + 8;
+bool read_brushes(ByteReader& reader, std::array<deform::Brush, 5>& brushes, double& strength);
 /// Returns nothing if they are not usable.
 std::optional<flow::LoopSettings> read_settings(ByteReader& reader);
 

@@ -43,8 +43,9 @@ struct EntryWriter {
       writer.f64_le(number);
   }
   void operator()(const flow::LoopSettings& settings) const {
-    driver::put_entry_head(writer, EntryKind::settings, settings_bytes);
+    driver::put_entry_head(writer, EntryKind::settings, settings_bytes + brushes_bytes);
     put_settings(writer, settings);
+    put_brushes(writer, settings.brushes, settings.brush_strength);
   }
   void operator()(const flow::HoldStill&) const {
     driver::put_entry_head(writer, EntryKind::hold_still, 0);
@@ -267,7 +268,11 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
   } else if (record.is(EntryKind::wrist)) {
     entry = wrist_of(reader);
   } else if (record.is(EntryKind::settings)) {
-    if (const auto settings = read_settings(reader)) entry = *settings;
+    auto settings = read_settings(reader);
+    const bool fine =
+        reader.remaining() == 0 || // before 1.6
+        (settings && read_brushes(reader, settings->brushes, settings->brush_strength));
+    if (settings && fine) entry = *settings;
   } else if (record.is(EntryKind::hold_still)) {
     entry = flow::HoldStill{};
   } else if (record.is(EntryKind::model)) {

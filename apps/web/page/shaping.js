@@ -4,12 +4,13 @@ const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
 const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
 
 // Radii to a micrometre: they have been in other units meanwhile.
-const isSame = (a, b) => ['mode', 'kernel', 'injective', 'filtered'].every(part => a[part] === b[part]) &&
-  a.radii.every((radius, at) => Math.abs(radius - b.radii[at]) < 1e-6)
+const isSame = (a, b) => ['mode', 'kernel', 'injective', 'filtered', 'strength'].every(part => a[part] === b[part]) &&
+  a.brushes.every((brush, at) => brush === b.brushes[at]) && a.radii.every((radius, at) => Math.abs(radius - b.radii[at]) < 1e-6)
 
 class Shaping {
   constructor(ask) {
     Object.assign(this, { ask, live: false, wanted: null, due: false, askedAt: -Infinity })
+    element('brush').append(...BRUSHES.map(name => new Option(name)))
     this.sliders = FINGERS.map((finger, at) => this.makeSlider(finger, at))
     element('shaping').addEventListener('input', event => this.choose(event.target))
     element('shaping').addEventListener('submit', event => event.preventDefault())
@@ -27,11 +28,12 @@ class Shaping {
   follow(settings) {
     const first = !this.wanted
     if (!first && (this.due || performance.now() - this.askedAt < PATIENCE) && !isSame(this.wanted, settings)) return
-    this.wanted = { ...settings, radii: [...settings.radii] }
+    this.wanted = { ...settings, radii: [...settings.radii], brushes: [...settings.brushes] }
     if (first) element('one-radius').checked = settings.radii.every(radius => radius === settings.radii[0])
     else if (settings.radii.some(radius => radius !== settings.radii[0])) element('one-radius').checked = false
     document.querySelector(`[name=mode][value="${settings.mode}"]`).checked = true
     element('kernel').value = settings.kernel
+    this.showBrush()
     element('injective').checked = settings.injective
     element('filtered').checked = settings.filtered
     this.sliders.forEach(({ range, at }) => { range.value = 100 * settings.radii[at] })
@@ -48,8 +50,8 @@ class Shaping {
   }
   send() {
     if (!this.due || !this.live) return
-    const { mode, kernel, injective, filtered, radii } = this.wanted
-    this.ask(`settings type${mode} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')}`)
+    const { mode, kernel, injective, filtered, radii, brushes, strength } = this.wanted
+    this.ask(`settings type${mode} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')} ${brushes.join(' ')} ${strength}`)
     Object.assign(this, { due: false, askedAt: performance.now() })
   }
   choose(input) {
@@ -59,12 +61,40 @@ class Shaping {
     const one = element('one-radius').checked
     if (input.name === 'mode') wanted.mode = Number(input.value)
     if (input.id === 'kernel') wanted.kernel = input.value
+    if (input.id === 'brush' && input.value) {
+      wanted.brushes.fill(input.value)
+      this.useStrokes()
+    }
+    if (input.id === 'strength') wanted.strength = Number(input.value)
     if (input.id === 'injective' || input.id === 'filtered') wanted[input.id] = input.checked
     if (slider) wanted.radii[slider.at] = Number(input.value) / 100
     if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
     this.change()
   }
   otherMode() { document.querySelector('[name=mode]:not(:checked)').click() }
+  // Brushes are of type 2.
+  useStrokes() {
+    this.wanted.mode = 2
+    document.querySelector('[name=mode][value="2"]').checked = true
+  }
+  // Fingers that have several show none.
+  showBrush() {
+    const { brushes, strength } = this.wanted
+    element('brush').value = brushes.every(brush => brush === brushes[0]) ? brushes[0] : ''
+    element('strength').value = strength
+  }
+  nextBrush() {
+    const select = element('brush')
+    do select.selectedIndex = (select.selectedIndex + 1) % select.length
+    while (select.value === 'none')
+    this.choose(select)
+  }
+  strengthen(more) {
+    if (!this.wanted) return
+    this.wanted.strength = Math.min(1, Math.max(-1, Math.round(10 * (this.wanted.strength + more)) / 10))
+    this.showBrush()
+    this.change()
+  }
   nextKernel() {
     const select = element('kernel')
     select.selectedIndex = (select.selectedIndex + 1) % select.length

@@ -1,6 +1,7 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
 const MODEL_HEAD = 88, BONE_BYTES = 28, UPDATE_HEAD = 112
+const BRUSHES = ['pull', 'none', 'push', 'inflate', 'smooth', 'flatten', 'twist', 'scale']
 const KERNELS = ['c0', 'c2', 'c4', 'c6']
 // Of each joint, whose place hangs on it; the wrist's on none.
 const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
@@ -12,7 +13,7 @@ function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
   if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (view.getUint32(8, true) !== 3) throw new Error('this server speaks another version; reload the page')
+  if (view.getUint32(8, true) !== 4) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
   const flags = view.getUint8(82), bones = [null, null]
   let places = MODEL_HEAD
@@ -48,11 +49,12 @@ function readSettings(buffer) {
   const view = new DataView(buffer), flags = view.getUint8(3)
   return {
     mode: view.getUint8(1), kernel: KERNELS[view.getUint8(2)], injective: (flags & 1) !== 0, filtered: (flags & 2) !== 0,
+    brushes: [48, 49, 50, 51, 52].map(at => BRUSHES[view.getUint8(at)]), strength: view.getFloat64(56, true),
     recorded: (flags & 4) !== 0, radii: [8, 16, 24, 32, 40].map(at => view.getFloat64(at, true)),
   }
 }
 
-const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide']
+const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush']
 function readSteps(buffer) {
   const view = new DataView(buffer), count = view.getUint8(1)
   const steps = Array.from({ length: count }, (_, n) => ({ kind: STEPS[view.getUint32(8 + 8 * n, true)] || 'step', at: view.getFloat32(12 + 8 * n, true) }))

@@ -9,7 +9,7 @@
 #include <nendo/deform/brush.hpp>
 #include <nendo/deform/wendland.hpp>
 
-#include "../block_evaluator.hpp"
+#include "block_evaluator.hpp"
 
 namespace nendo::deform {
 

@@ -57,6 +57,7 @@ struct Frame {
   std::uint64_t redo_steps = 0;
   StepList steps; ///< the names of the last of them
   std::optional<Awaited> awaited;
+  std::uint32_t steps_due = 0; ///< undos, redos and resets that wait, the first for `awaited`
   bool held = true; ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};

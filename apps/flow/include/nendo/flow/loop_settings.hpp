@@ -16,6 +16,9 @@ struct LoopSettings {
   std::array<double, 5> radius_m{}; ///< of each finger, on the stage, thumb to little finger
   double piece_fraction = 0.05;     ///< the length of a piece of type 2, in least radii
   hand::FilterOptions filter{};     ///< of both hands
+  /// Of each finger, thumb to little finger, in type 2 (SculptorOptions::brushes).
+  std::array<deform::Brush, 5> brushes{};
+  double brush_strength = deform::BrushOptions{}.strength; ///< -1 to 1
 
   static constexpr double least_radius_m = 1e-9;
   static constexpr double most_radius_m = 1e9;

@@ -8,6 +8,7 @@
 
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/subdivision.hpp>
+#include <nendo/deform/vertex_rings.hpp>
 
 namespace nendo::flow {
 
@@ -28,6 +29,8 @@ struct ModelVersion {
 
   const std::uint32_t number; ///< 0: the model with which the loop began
   const deform::Mesh mesh;    ///< before the hands; a reset goes back to it
+  /// Made when a brush first needs them, by the thread that asks for changes; the loop never looks.
+  std::shared_ptr<const deform::VertexRings> rings{};
 
   // What follows belongs to the loop's thread while the loop has this version, and to the thread
   // that asks for changes otherwise.

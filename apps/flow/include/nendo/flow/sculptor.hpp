@@ -2,12 +2,15 @@
 // One interface for the two ways of deforming, so that the loop need not know which of them it
 // runs.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 
+#include <nendo/deform/brush.hpp>
 #include <nendo/deform/surface_deformer.hpp>
 #include <nendo/deform/type1.hpp>
 #include <nendo/deform/type2.hpp>
@@ -23,12 +26,25 @@ std::optional<Mode> mode_named(std::string_view name) noexcept;
 
 struct SculptorOptions {
   Mode mode = Mode::type1;
-  double piece_length = 0.05; ///< of a cut of type 2, in model units
-  deform::DeformerOptions deformer;
+  double piece_length = 0.05;       ///< of a cut of type 2, in model units
+  deform::DeformerOptions deformer; ///< but for its brushes
+  /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
+  std::array<deform::Brush, 5> brushes{};
+  double brush_strength = deform::BrushOptions{}.strength;
+  /// Of the model; needed by some brushes (needs_rings()).
+  std::shared_ptr<const deform::VertexRings> rings{};
   /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
   /// the surface, where all distances would have to be measured anew at each piece.
   std::shared_ptr<const deform::SurfaceField> surface{};
+
+  /// Tells whether a brush does something that needs the triangles about each vertex.
+  bool needs_rings() const noexcept;
 };
+
+/// Reads the name of a brush, or five with commas between. Returns nothing if it is neither.
+std::optional<std::array<deform::Brush, 5>> parse_brushes(std::string_view text) noexcept;
+/// Returns such a text.
+std::string in_words(const std::array<deform::Brush, 5>& brushes);
 
 class Sculptor {
 public:
@@ -41,10 +57,9 @@ public:
     return std::holds_alternative<deform::Type2Deformer>(deformer_) ? Mode::type2 : Mode::type1;
   }
 
-  /// Tells whether it measures distances along the surface, so that fields() tells nothing.
-  bool is_along_surface() const noexcept {
-    return std::holds_alternative<deform::SurfaceDeformer>(deformer_);
-  }
+  /// Tells whether fields() tells all that the last update did: not where distances are along the
+  /// surface, nor where a brush has changed something.
+  bool is_told_by_fields() const noexcept;
 
   /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
   deform::FieldStatus grab(const deform::Points& tips) noexcept;

@@ -20,6 +20,9 @@ struct ShapingOptions {
   std::size_t most_requests = 64; ///< in one tick
   bool held = true;               ///< at first
   bool pull_is_step = true;       ///< as LoopOptions::pull_is_step
+  /// What an undo or a redo awaits (Frame::awaited) comes in the same tick, whose shape() therefore
+  /// completes the stroke.
+  bool changes_at_once = false;
 };
 
 /// Another sculptor, made before it is needed.
@@ -134,6 +137,7 @@ private:
   deform::Points still_tips_; ///< where the hands stopped, if is_still_
   bool is_still_ = false;
   bool pull_is_step_;
+  bool changes_at_once_;
   bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< what is asked for; follows at the next tick that can
   bool commit_due_ = false;

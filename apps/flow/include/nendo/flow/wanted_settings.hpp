@@ -30,14 +30,21 @@ public:
 
   void other_mode() noexcept;
   void next_kernel() noexcept;
+  /// Gives all fingers the next brush, none left out; brushes are of type 2.
+  void next_brush() noexcept;
   void toggle_folding() noexcept { now.injective = !now.injective; }
   /// Make all radii larger, or smaller, by a tenth, within the range.
   void enlarge_radii() noexcept { scale_radii(1.1); }
   void reduce_radii() noexcept { scale_radii(1.0 / 1.1); }
   bool has_one_radius() const noexcept; ///< for all fingers
+  bool has_one_brush() const noexcept;
+  /// Make the brushes stronger, or weaker and then their opposites, by a tenth of the most.
+  void strengthen() noexcept { add_strength(0.1); }
+  void weaken() noexcept { add_strength(-0.1); }
 
 private:
   void scale_radii(double factor) noexcept;
+  void add_strength(double more) noexcept;
 
   LoopSettings asked_;
   HostTime asked_at_{};
