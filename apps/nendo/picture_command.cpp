@@ -33,7 +33,8 @@ struct Options {
   std::uint32_t strip = 0;
   std::optional<double> time_s;
   std::uint32_t key_poses = 0;
-  std::string captions; ///< with commas; empty: none
+  std::string captions;      ///< with commas; empty: none
+  std::uint32_t columns = 0; ///< 0: as many as make the sheet nearly square
   bool numbered = false;
 };
 
@@ -76,6 +77,9 @@ Result<Wanted> check(const Options& options) {
   }
   if (!options.captions.empty() && parts_of(options.captions).size() != panels)
     return bad("--captions", "use as many texts as there are pictures, with commas between them");
+  if (options.columns > panels)
+    return bad("--columns " + std::to_string(options.columns),
+               "use at most as many as there are pictures");
   if (options.numbered && panels == 1)
     return bad("--numbered", "is for --turntable, --strip and --key-poses; leave it out");
   const double pixels = 1.0 * size->width * size->height * panels;
@@ -171,7 +175,8 @@ std::vector<Panel> draw_turntable(const std::vector<Scene>& scenes, std::uint32_
 
 Result<void> write_panels(const Options& options, const std::vector<Panel>& panels) {
   if (panels.size() == 1) return write_png(options.out, panels.front().image);
-  if (!options.numbered) return write_png(options.out, contact_sheet(panels));
+  if (!options.numbered)
+    return write_png(options.out, contact_sheet(panels, static_cast<int>(options.columns)));
   const std::filesystem::path out(options.out);
   for (std::size_t at = 0; at < panels.size(); ++at) {
     char number[32];
@@ -229,6 +234,7 @@ void add(cli::Command& program) {
                      "Texts below the pictures, with commas between them");
   command.add_option("--strip", options->strip,
                      "Of a recording: so many moments from its begin to its end, on one sheet");
+  command.add_option("--columns", options->columns, "Pictures in a row of the sheet");
   command.add_flag("--numbered", options->numbered,
                    "In place of a sheet: files of their own, FILE-00.png and so on");
   command.on_chosen([options] {

@@ -212,6 +212,16 @@ TEST_SUITE("hand_motion") {
     }
   }
 
+  TEST_CASE("after ten seconds, and after two, a sculpting hand's wrist pulls far out") {
+    for (const Side side : sides) {
+      for (std::uint32_t seed = 0; seed < 300; ++seed) {
+        const HandMotion hand(Motion::sculpt, side, seed);
+        for (const double time_s : {2.3, 10.0})
+          CHECK(angle(hand.at(time_s), Sensor::wrist_pitch) < -30.0);
+      }
+    }
+  }
+
   TEST_CASE("a sculpting hand presses, pulls, and never stands still") {
     for (const Side side : sides) {
       const HandMotion hand(Motion::sculpt, side, 1);

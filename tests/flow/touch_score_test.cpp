@@ -41,10 +41,12 @@ TEST_SUITE("touch_score") {
         all_in += *least > 0.5 ? 1 : 0;
         all_out += *most < -0.5 ? 1 : 0;
         for (std::size_t k = 0; k < 5; ++k) {
-          const auto others = std::count_if(depths.begin(), depths.end(),
-                                            [](double depth) { return std::abs(depth) > 0.25; });
-          alone_in[k] += depths[k] > 0.5 && others == 1 ? 1 : 0;
-          alone_out[k] += depths[k] < -0.5 && others == 1 ? 1 : 0;
+          const auto others = [&](double away) {
+            return std::count_if(depths.begin(), depths.end(),
+                                 [=](double depth) { return std::abs(depth) > away; });
+          };
+          alone_in[k] += depths[k] > 0.5 && others(0.25) == 1 ? 1 : 0;
+          alone_out[k] += depths[k] < -0.15 && others(0.06) == 1 ? 1 : 0; // without the wrist
           CHECK(std::abs(depths[k]) <= 1.0);
         }
         farthest = std::max(farthest, score.way(t));
@@ -54,6 +56,14 @@ TEST_SUITE("touch_score") {
       CHECK(all_in > 0);
       CHECK(all_out > 0);
       CHECK(farthest == 1.0);
+    });
+  }
+
+  TEST_CASE("after ten seconds all fingers hold what they have pulled out") {
+    for_every_score([](const TouchScore& score) {
+      for (const Finger finger : fingers)
+        for (double t = 9.5; t < 10.6; t += 0.1)
+          CHECK(score.depth(finger, t) == -1.0);
     });
   }
 

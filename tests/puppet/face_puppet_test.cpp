@@ -44,7 +44,7 @@ bool has(const Puppet& puppet, std::string_view function) {
 
 TEST_SUITE("face puppet") {
   TEST_CASE("each shipped puppet passes its check, by ten fingers or more") {
-    for (const char* const name : {"face", "moai", "spot"}) {
+    for (const char* const name : {"face", "face689", "moai", "spot"}) {
       CAPTURE(name);
       const auto puppet = read_puppet(models + name + ".puppet.toml");
       REQUIRE_MESSAGE(puppet, (puppet ? "" : puppet.error().message));

@@ -259,6 +259,7 @@ TEST_SUITE("run_session") {
   TEST_CASE(
       "settings change while one loop runs, and a recording of all of it ends with its shape") {
     Run run;
+    run.options.left = run.options.right = "sim:grasp"; // moves after the last undo, too
     run.options.recording.file = (run.folder.path() / "take.nendo").string();
     REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
     flow::LoopSettings smaller = other_settings;

@@ -66,7 +66,7 @@ hand::AngleLimits comfortable_limits() noexcept {
   narrow(Angle::middle_mcp_abduction, 0, 0); // which no glove measures
   narrow(Angle::ring_mcp_abduction, -20, 2);
   narrow(Angle::little_mcp_abduction, -40, -2);
-  narrow(Angle::wrist_pitch, -40, 40);
+  narrow(Angle::wrist_pitch, -60, 40);
   narrow(Angle::wrist_yaw, -20, 15);
   return limits;
 }
@@ -124,6 +124,7 @@ private:
 
   void take_hold();
   hand::FingertipTargets targets(double time_s) const noexcept;
+  double carried_rad(double time_s) const noexcept;
   hand::InverseSolution freely(double time_s) const noexcept;
   void find_postures();
   void solve_keys(double step_s);
@@ -180,8 +181,24 @@ void Planner::take_hold() {
   }
 }
 
+/// How far the wrist is stretched for what all fingers pull together, on average: fingers alone do
+/// not reach far out.
+double Planner::carried_rad(double time_s) const noexcept {
+  constexpr double tip_reach_m = 0.16; // from the wrist to the fingertips
+  double sum_m = 0.0;
+  int count = 0;
+  for (const Finger finger : all_fingers) {
+    if (!plan_.fingers[static_cast<std::size_t>(finger)].touches) continue;
+    sum_m += std::max(0.0, -plan_.target(finger, time_s).depth_m);
+    ++count;
+  }
+  return count == 0 ? 0.0 : -sum_m / (count * tip_reach_m);
+}
+
 hand::InverseSolution Planner::freely(double time_s) const noexcept {
-  return hand::inverse_kinematics(skeleton_, plan_.T_stage_wrist, targets(time_s), grip_, inverse_);
+  JointAngles start = grip_;
+  start.wrist_pitch_rad += carried_rad(time_s);
+  return hand::inverse_kinematics(skeleton_, plan_.T_stage_wrist, targets(time_s), start, inverse_);
 }
 
 hand::FingertipTargets Planner::targets(double time_s) const noexcept {
@@ -205,6 +222,11 @@ hand::InverseSolution Planner::solve(double time_s, const JointAngles& from) con
     options.limits.low[angle] = options.limits.high[angle] =
         a.angles[angle] + part * (b.angles[angle] - a.angles[angle]);
   }
+  const double before_rad = carried_rad(a.time_s);
+  const double carried =
+      carried_rad(time_s) - before_rad - part * (carried_rad(b.time_s) - before_rad);
+  options.limits.low.wrist_pitch_rad += carried;
+  options.limits.high.wrist_pitch_rad += carried;
   return hand::inverse_kinematics(skeleton_, plan_.T_stage_wrist, targets(time_s), from, options);
 }
 

@@ -7,6 +7,9 @@
 namespace nendo::flow {
 namespace {
 
+// Of a stroke that is held so long, its corners are extremes, too.
+constexpr double long_hold_s = 1.5;
+
 double within_period(double time_s, double period_s) noexcept {
   return time_s - period_s * std::floor(time_s / period_s);
 }
@@ -49,14 +52,21 @@ TouchScore::TouchScore(Side side, std::uint32_t seed) {
     glides_.push_back({now_s, time_s, from, to});
     now_s += time_s + 0.2 * beat_s;
   };
+  // Far out, for so long that whoever stops after ten seconds has it in his picture.
+  const auto pull_far = [&](double begin_s) {
+    now_s = std::max(now_s, begin_s);
+    for (Strokes& strokes : strokes_)
+      strokes.push_back({now_s + 0.1 * between(0.0, 1.0), 1.5, 2.4, 1.3, -1.0});
+    now_s += 5.4;
+  };
   now_s = beat_s * between(0.4, 0.8);
-  one_by_one(1.0, 1.1);
+  one_by_one(1.0, 1.0);
   glide(0.0, 0.5);
+  pull_far(7.2);
   together(1.0, 2.0);
   together(0.7, 1.4);
   glide(0.5, 1.0);
-  one_by_one(-1.0, 1.0);
-  together(-1.0, 2.0);
+  one_by_one(-0.25, 1.0);
   glide(1.0, 0.0);
   together(1.0, 2.4);
   period_s_ = now_s;
@@ -88,8 +98,13 @@ double TouchScore::way(double time_s) const noexcept {
 std::vector<double> TouchScore::extremes_s() const {
   std::vector<double> times_s{0.0};
   for (const Strokes& strokes : strokes_) {
-    for (const TouchStroke& stroke : strokes)
+    for (const TouchStroke& stroke : strokes) {
       times_s.push_back(stroke.apex_s());
+      if (stroke.hold_s < long_hold_s) continue;
+      const double held_s = stroke.begin_s + stroke.rise_s;
+      times_s.insert(times_s.end(),
+                     {stroke.begin_s, held_s, held_s + stroke.hold_s, stroke.end_s()});
+    }
   }
   for (const TouchGlide& glide : glides_)
     times_s.push_back(glide.begin_s + glide.length_s);

@@ -170,11 +170,13 @@ Pose grasp(const Character& hand, double time_s) noexcept {
   return add;
 }
 
+// The wrist does most: it carries the fingertips, and with them what they hold, far out of the
+// model and back into it. After ten seconds the hand pulls for the second time.
 Pose sculpt(const Character& hand, double time_s) noexcept {
   constexpr double period_s = 8.0;
   constexpr double knead_hz = 1.1;
-  const auto pressing = [](double at) { return plateau(at, 0.02, 0.18, 0.52, 0.64); };
-  const auto pulling = [](double at) { return plateau(at, 0.62, 0.74, 0.86, 0.99); };
+  const auto pulling = [](double at) { return plateau(at, 0.04, 0.16, 0.42, 0.54); };
+  const auto pressing = [](double at) { return plateau(at, 0.52, 0.68, 0.86, 0.99); };
   const double cycle = time_s * hand.tempo / period_s + hand.phase;
   Pose add{};
   for (std::size_t k = 0; k < fingers.size(); ++k) {
@@ -190,20 +192,23 @@ Pose sculpt(const Character& hand, double time_s) noexcept {
   const double press = pressing(cycle);
   const double pull = pulling(cycle);
   for (const Sensor gap : finger_pairs)
-    slot(add, gap) = 5.0 * pull - 2.0 * press;
+    slot(add, gap) = 2.0 * press - 5.0 * pull;
   const double knead = press * sine(knead_hz * time_s + 0.5);
   slot(add, Sensor::thumb_roll) = 8.0 * press - 5.0 * pull + 2.0 * knead;
   slot(add, Sensor::thumb_mcp) = 8.0 * press - 5.0 * pull + 3.0 * knead;
   slot(add, Sensor::thumb_ip) = 10.0 * press - 6.0 * pull + 3.0 * knead;
   slot(add, Sensor::thumb_abduction) = 8.0 * pull - 4.0 * press;
   slot(add, Sensor::palm_arch) = 6.0 * press - 3.0 * pull;
+  slot(add, Sensor::wrist_pitch) = 14.0 * press - 42.0 * pull;
+  slot(add, Sensor::wrist_yaw) = 14.0 * pull - 8.0 * press;
   return add;
 }
 
 /// How far each finger of both hands bends for an expression, 0 to 1, and how far the index finger
 /// moves away from the middle finger. Left hand first; thumb to little finger, then the spread.
 using Bends = std::array<std::array<double, 6>, 2>;
-constexpr std::size_t expression_count = 6;
+constexpr std::size_t expression_count = 7;
+constexpr std::size_t talk = 5;
 constexpr std::array<Bends, expression_count> expressions{{
     {{{0, 1, 0, 0, 0, 0}, {0.3, 1, 0, 0, 0, 0}}},         // smile
     {{{0, 0, 1, 1, 0, 0}, {0, 0, 1, 1, 0, 0}}},           // frown
@@ -211,6 +216,7 @@ constexpr std::array<Bends, expression_count> expressions{{
     {{{0, 0.15, 0, 0, 0.5, 0}, {0.15, 0.9, 0, 0, 0, 1}}}, // wink
     {{{1, 0, 0, 0.2, 0, 0}, {0.15, 0, 0, 0.2, 0, 0}}},    // pout
     {{{0.25, 0, 0, 0, 0.3, 0}, {0.45, 0, 0, 0, 0.3, 0}}}, // talk: the thumbs go to and fro
+    {{{0, 1, 0, 0, 0.8, 0}, {0.8, 1, 0, 0, 0.8, 0}}},     // laugh
 }};
 
 Pose faces(Side side, double time_s) noexcept {
@@ -223,7 +229,7 @@ Pose faces(Side side, double time_s) noexcept {
   const auto number = static_cast<std::size_t>(cycle) % expression_count;
   const double size = plateau(cycle, 0.05, 0.35, 0.7, 1.0);
   std::array<double, 6> bend = expressions[number][side == Side::left ? 0 : 1];
-  if (number + 1 == expression_count)
+  if (number == talk)
     bend[0] *= side == Side::left ? swell(0.5 * talk_hz * time_s) : swell(talk_hz * time_s);
   slot(add, Sensor::thumb_mcp) = 15.0 * size * bend[0];
   slot(add, Sensor::thumb_ip) = 25.0 * size * bend[0];
@@ -267,8 +273,8 @@ Pose gesture(Motion motion, Side side, const Character& hand, double time_s) noe
     return faces(side, time_s); // of hands that have learned to bend each finger alone
   }
   couple_ring_and_little(add);
-  slot(add, Sensor::wrist_pitch) = 6.0 * sine(0.11 * time_s * hand.tempo + hand.phase);
-  slot(add, Sensor::wrist_yaw) = 3.0 * sine(0.17 * time_s * hand.tempo + hand.phase);
+  slot(add, Sensor::wrist_pitch) += 6.0 * sine(0.11 * time_s * hand.tempo + hand.phase);
+  slot(add, Sensor::wrist_yaw) += 3.0 * sine(0.17 * time_s * hand.tempo + hand.phase);
   return add;
 }
 

@@ -17,8 +17,8 @@ enum class Motion : std::uint8_t {
   wave,   ///< wide flexion running from finger to finger
   pinch,  ///< the thumb meets each finger in turn
   grasp,  ///< the whole hand closes and opens
-  sculpt, ///< press in, knead, pull out: cycles of about 8 s
-  faces,  ///< what makes a puppet smile, frown, wonder, wink, pout and talk, 1.6 s each
+  sculpt, ///< pull far out by the wrist, press in, knead: cycles of about 8 s
+  faces,  ///< what makes a puppet smile, frown, wonder, wink, pout, talk, laugh, 1.6 s each
 };
 
 /// Returns the motion that one of motion_names() (simulated_glove.hpp) names. Error: usage, naming

@@ -20,7 +20,7 @@ namespace nendo::flow {
 struct TouchOptions {
   std::uint32_t seed = 1; ///< of the order of fingers, the tempo and the way of gliding
   double press_m = 0.020;
-  double pull_m = 0.012;
+  double pull_m = 0.090;
   double glide_m = 0.012;
 };
 
