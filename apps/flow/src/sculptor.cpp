@@ -151,6 +151,13 @@ const deform::FieldSequence& Sculptor::fields() const noexcept {
       deformer_);
 }
 
+void Sculptor::tell(deform::SurfaceMove& move) const noexcept {
+  if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
+    surface->tell(move);
+  else
+    move.clear();
+}
+
 bool Sculptor::moves_anything() const noexcept {
   if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
     return surface->is_moved();

@@ -59,6 +59,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   const FieldStatus status = commits || completes ? sculptor_->finish(tips, frame.shape)
                                                   : sculptor_->update(tips, frame.shape);
   frame.fields.follow(sculptor_->fields());
+  sculptor_->tell(frame.surface);
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
   if (sculptor_->is_along_surface()) ++leaps_;
@@ -77,6 +78,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
 FieldStatus Shaping::show_rest(Frame& frame) noexcept {
   frame.shape.follow(sculptor_->rest());
   frame.fields.clear();
+  frame.surface.clear();
   frame.chain = {};
   return FieldStatus::ok;
 }
@@ -96,6 +98,7 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   stats.forgotten_steps = sculptor_->forgotten_steps();
   frame.commits = stats.commits + otherwise_ended_;
   frame.undos = stats.undos + stats.redos + stats.resets + leaps_;
+  frame.leaps = leaps_;
   frame.undo_steps = undo_steps();
   frame.redo_steps = steps_to_redo();
   frame.awaited = awaited_;
