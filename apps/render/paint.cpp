@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/deform/drawn_faces.hpp>
+
 namespace nendo::render {
 
 using Eigen::Vector2f;
@@ -14,12 +16,6 @@ namespace {
 // Warm, while the hands are cool, so that one is told from the other at a glance, also without
 // seeing red from green.
 const Vector3f clay(0.50F, 0.235F, 0.135F);
-
-constexpr float least_opacity = 0.5F;
-
-bool is_drawn(const deform::Material& material) {
-  return material.drawn && (!material.colour || (*material.colour)[3] >= least_opacity);
-}
 
 Vector3f colour_of(const deform::Material* material, bool has_more) {
   if (material != nullptr && material->colour) return material->colour->head<3>();
@@ -52,19 +48,6 @@ Textures textures_of(const deform::Mesh& mesh) {
   return of_materials;
 }
 
-/// Faces by their material's number plus one, and 0 without one, in order.
-std::vector<std::vector<std::uint32_t>> faces_by_material(const deform::Mesh& mesh, bool all) {
-  const deform::Appearance& look = mesh.look;
-  std::vector<std::vector<std::uint32_t>> faces(look.materials.size() + 1);
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const deform::Material* const material = look.material_of(face);
-    if (!all && material != nullptr && !is_drawn(*material)) continue;
-    const std::size_t at = material == nullptr ? 0 : look.face_materials[face] + std::size_t{1};
-    faces[at].push_back(static_cast<std::uint32_t>(face));
-  }
-  return faces;
-}
-
 } // namespace
 
 Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
@@ -73,9 +56,7 @@ Paint::Paint(const deform::Mesh& mesh, std::vector<std::uint32_t>& corners) {
   if (colours.cols() == mesh.vertices.cols())
     for (Eigen::Index vertex = 0; vertex < colours.cols(); ++vertex)
       vertex_colours_.emplace_back(colours.col(vertex).head<3>());
-  auto faces = faces_by_material(mesh, false);
-  const auto is_empty = [](const auto& some) { return some.empty(); };
-  if (std::all_of(faces.begin(), faces.end(), is_empty)) faces = faces_by_material(mesh, true);
+  const auto faces = deform::drawn_faces(mesh);
   const Textures textures = textures_of(mesh);
   const bool textured = std::any_of(textures.begin(), textures.end(),
                                     [](const auto& texture) { return texture != nullptr; });

@@ -4,6 +4,7 @@
 
 #include "cli/cli.hpp"
 #include "web/model_message.hpp"
+#include "web/weights_message.hpp"
 
 namespace nendo::session {
 namespace {
@@ -24,7 +25,9 @@ Result<void> BrowserView::begin(const LoopStart& start) {
   if (auto fine = check(layout); !fine) return fine;
   streams_.begin(stream_for(layout));
   server_->set_settings(placed_->loop->settings(), false);
-  server_->present(streams_.now(), message_for(layout, start.model));
+  pictures_ = web::pictures_of(start.model);
+  server_->present(streams_.now(), message_for(layout, start.model), pictures_);
+  follow_weights();
   return {};
 }
 
@@ -36,7 +39,7 @@ Result<void> BrowserView::prepare(const flow::ModelVersion& version) {
 }
 
 Result<void> BrowserView::settle() {
-  if (streams_.settle()) server_->present(streams_.now(), std::move(next_model_));
+  if (streams_.settle()) server_->present(streams_.now(), std::move(next_model_), pictures_);
   return {};
 }
 
@@ -50,7 +53,8 @@ Result<void> BrowserView::check(const deform::BlockLayout& layout) const {
 
 std::shared_ptr<web::FrameStream> BrowserView::stream_for(const deform::BlockLayout& layout) const {
   const FrameCapacity most = frame_capacity(*placed_);
-  return std::make_shared<web::FrameStream>(layout, most.fields, most.functions);
+  return std::make_shared<web::FrameStream>(
+      layout, web::FrameStream::Capacity{most.fields, most.functions, most.vectors});
 }
 
 std::vector<std::byte> BrowserView::message_for(const deform::BlockLayout& layout,
@@ -67,11 +71,20 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
   server_->set_gloves(gloves);
   server_->set_settings(status.frame.settings, status.recording);
   server_->set_steps(status.frame.steps);
+  follow_weights();
   while (auto command = server_->next_command()) {
     if (auto* const change = std::get_if<flow::ChangeSettings>(&*command))
       keep_numbers(status.frame.settings, change->settings);
     commands.try_push(*command);
   }
+}
+
+// The loop makes another field of a puppet when radii, kernel or model change.
+void BrowserView::follow_weights() {
+  const auto& surface = placed_->loop->sculptor_options().surface;
+  if (!surface || surface->number() == weights_) return;
+  weights_ = surface->number();
+  server_->add_weights(weights_, web::weights_message(*surface));
 }
 
 Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,

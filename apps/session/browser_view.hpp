@@ -28,13 +28,17 @@ public:
   void report(const std::string& message) override { server_->report(message); }
 
 private:
-  std::unique_ptr<web::Server> server_;
   Result<void> check(const deform::BlockLayout& layout) const;
   std::shared_ptr<web::FrameStream> stream_for(const deform::BlockLayout& layout) const;
   std::vector<std::byte> message_for(const deform::BlockLayout& layout,
                                      const deform::Mesh& mesh) const;
 
+  std::unique_ptr<web::Server> server_;
   VersionTarget<web::FrameStream> streams_;
+  void follow_weights();
+
+  std::uint64_t weights_ = 0;         ///< deform::SurfaceField::number() of those given last
+  web::Pictures pictures_;            ///< of all versions of the model
   std::vector<std::byte> next_model_; ///< message of the version that was prepared last
   const PlacedLoop* placed_ = nullptr;
   std::string model_name_;

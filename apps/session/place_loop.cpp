@@ -128,7 +128,7 @@ FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);
   const int links = deformer.injective.value_or(deform::InjectiveOptions{}).most_links;
   return {static_cast<std::size_t>(std::max(links, deform::Type2Deformer::most_pieces)),
-          static_cast<std::size_t>(functions)};
+          static_cast<std::size_t>(functions), static_cast<std::size_t>(rig ? 2 * points : 0)};
 }
 
 } // namespace nendo::session

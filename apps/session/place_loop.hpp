@@ -41,6 +41,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 struct FrameCapacity {
   std::size_t fields = 0;
   std::size_t functions = 0; ///< of each field
+  std::size_t vectors = 0;   ///< of deform::SurfaceMove
 };
 FrameCapacity frame_capacity(const PlacedLoop& placed);
 

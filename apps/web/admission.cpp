@@ -44,12 +44,13 @@ Admission admit(const HttpRequest& request, std::string_view token) noexcept {
   if (request.count("Origin") > 0 && !(origin && is_same_origin(*origin, *host)))
     return refuse(403, "this is no other page's to use");
   if (request.path == "/") return {200, Resource::page, {}};
-  if (request.path != "/model" && request.path != "/ws") return refuse(404, "nothing of that name");
+  if (request.path != "/model" && request.path != "/picture" && request.path != "/ws")
+    return refuse(404, "nothing of that name");
   const auto given = request.parameter("token");
   if (!given || !equal_in_constant_time(*given, token))
     return refuse(403, "the token is another one: use the whole address that nendo printed");
   if (request.path == "/ws") return admit_socket(request);
-  return {200, Resource::model, {}};
+  return {200, request.path == "/model" ? Resource::model : Resource::picture, {}};
 }
 
 } // namespace nendo::web

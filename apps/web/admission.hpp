@@ -8,7 +8,7 @@
 
 namespace nendo::web {
 
-enum class Resource { page, model, socket };
+enum class Resource { page, model, picture, socket };
 
 struct Admission {
   int status = 200; ///< 200 if granted, otherwise the status of the refusal
@@ -17,7 +17,7 @@ struct Admission {
 };
 
 /// Decides about a request. Host must be a numeric address or localhost, against DNS rebinding.
-/// Origin, if there is one, must be the same host. The model and the WebSocket need `?token=`. The
+/// Origin, if there is one, must be the same host. All but the page need `?token=`. The
 /// request for a WebSocket must conform to RFC 6455, section 4.2.1.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
 

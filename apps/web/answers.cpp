@@ -6,6 +6,7 @@
 #include <sys/random.h>
 
 #include "web/page.hpp"
+#include "web/pictures.hpp"
 
 namespace nendo::web {
 namespace {
@@ -56,6 +57,10 @@ std::string page_head(std::size_t bytes, std::string_view nonce, std::string_vie
 
 std::string model_head(std::size_t bytes) {
   return head_of(200, "application/octet-stream", bytes) + "\r\n";
+}
+
+std::string picture_head(std::string_view picture) {
+  return head_of(200, is_png(picture) ? "image/png" : "image/jpeg", picture.size()) + "\r\n";
 }
 
 std::string switching_head(std::string_view accept) {

@@ -13,6 +13,8 @@ std::string refusal(int status, std::string_view why);
 /// host: that of the request, which must have been checked.
 std::string page_head(std::size_t bytes, std::string_view nonce, std::string_view host);
 std::string model_head(std::size_t bytes);
+/// Returns the head of the answer with that picture , PNG or JPEG.
+std::string picture_head(std::string_view picture);
 std::string switching_head(std::string_view accept);
 
 /// Returns the page with the nonce in its place.

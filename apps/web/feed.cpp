@@ -26,6 +26,10 @@ float max_late(std::span<const Record> records) noexcept {
 
 } // namespace
 
+void Feed::look_at(std::span<const Record> records) noexcept {
+  if (!records.empty()) needed_ = records.back().weights;
+}
+
 void Feed::shape_sent(std::uint64_t number) noexcept {
   lacks_shape_ = false;
   base_ = shape_ = number;
@@ -46,7 +50,8 @@ std::span<const Record> Feed::unseen(std::span<const Record> records) noexcept {
 
 bool Feed::can_follow(std::span<const Record> records) const noexcept {
   return !lacks_shape_ && std::none_of(records.begin(), records.end(), [&](const Record& record) {
-    return record.discontinuous && record.number > shape_;
+    return (record.discontinuous && record.number > shape_) ||
+           (record.weights != 0 && record.weights != weights_);
   });
 }
 

@@ -21,9 +21,17 @@ struct FeedCounters {
 
 class Feed {
 public:
+  /// Must be called with the records before update() or skip() is.
+  void look_at(std::span<const Record> records) noexcept;
+  /// Returns the weights that the client must be sent first (Record::weights); 0: none.
+  std::uint64_t wanted_weights() const noexcept { return needed_ == weights_ ? 0 : needed_; }
+  /// Must be called when the client has been sent those weights, in place of those that it had.
+  void weights_sent(std::uint64_t weights) noexcept { weights_ = weights; }
   /// Returns whether the client needs a shape: at first, when it has missed steps, and when its
-  /// rounding errors may have become too large.
-  bool wants_shape() const noexcept { return lacks_shape_ || drift_ >= 1.0; }
+  /// rounding errors may have become too large. It needs none as long as it lacks weights.
+  bool wants_shape() const noexcept {
+    return wanted_weights() == 0 && (lacks_shape_ || drift_ >= 1.0);
+  }
   /// Must be called when the client has been sent the shape after that frame.
   void shape_sent(std::uint64_t number) noexcept;
 
@@ -39,8 +47,10 @@ private:
   bool can_follow(std::span<const Record> records) const noexcept;
 
   bool lacks_shape_ = true;
-  std::uint64_t base_ = 0;  ///< the last frame that the client knows
-  std::uint64_t shape_ = 0; ///< the frame whose shape was sent last
+  std::uint64_t needed_ = 0;  ///< the weights that the newest step needs
+  std::uint64_t weights_ = 0; ///< that the client has
+  std::uint64_t base_ = 0;    ///< the last frame that the client knows
+  std::uint64_t shape_ = 0;   ///< the frame whose shape was sent last
   double drift_ = 0.0;
   std::uint64_t skipped_ = 0;
 };

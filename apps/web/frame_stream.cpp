@@ -15,6 +15,7 @@ struct FrameStream::RecordHead {
   std::uint32_t head_bytes = 0;
   std::uint64_t number = 0;
   double drift = 0.0;
+  std::uint64_t weights = 0;
   std::uint8_t undone = 0;
   std::uint8_t bakes = 0;
   std::uint8_t spare[6]{};
@@ -39,12 +40,13 @@ bool is_type1(const flow::Frame& frame) noexcept {
 
 } // namespace
 
-FrameStream::FrameStream(const deform::BlockLayout& layout, std::size_t max_fields,
-                         std::size_t max_functions)
+FrameStream::FrameStream(const deform::BlockLayout& layout, const Capacity& capacity)
     : origin_(layout.origin()), unit_(layout.unit()), vertices_(layout.vertex_count()),
       max_drift_(std::pow(max_drift * layout.diagonal() / layout.unit(), 2)), rest_(layout.pack()),
       record_((sizeof(RecordHead) + sizeof(UpdateHead) + 2 * hand_bytes + step_head_bytes +
-               max_fields * field_bytes(max_functions) + sizeof(Chunk) - 1) /
+               std::max(capacity.fields * field_bytes(capacity.functions),
+                        vectors_bytes(capacity.vectors)) +
+               sizeof(Chunk) - 1) /
                   sizeof(Chunk) * sizeof(Chunk),
               std::byte{1}),
       ring_(std::max(min_chunks, min_records * (record_.size() / sizeof(Chunk)))),
@@ -56,9 +58,10 @@ FrameStream::FrameStream(const deform::BlockLayout& layout, std::size_t max_fiel
 
 void FrameStream::show(const flow::Frame& frame) noexcept {
   ++number_;
-  const bool undone = frame.undos != undos_;
+  const std::uint64_t undos = frame.undos - frame.leaps; // clients follow along the surface
+  const bool undone = undos != undos_;
   const bool committed = frame.commits != commits_;
-  undos_ = frame.undos;
+  undos_ = undos;
   commits_ = frame.commits;
   // In both cases this frame's shape is the rest shape from now on: a commit makes it so, as does a
   // change of settings, and after an undo the hands have not moved it yet.
@@ -76,13 +79,19 @@ void FrameStream::copy_shape(const flow::Frame& frame) noexcept {
 
 // Errors of many steps have either sign, so their squares add up.
 double FrameStream::drift_of(const flow::Frame& frame) const noexcept {
+  const auto drift_by = [this](double largest, double terms) {
+    const double error = float_error * largest * std::sqrt(terms) + rounding_error;
+    return error * error / max_drift_;
+  };
+  const deform::SurfaceMove& surface = frame.surface;
+  if (surface.field != 0)
+    return drift_by(
+        static_cast<double>(surface.vectors.leftCols(surface.count).cwiseAbs().maxCoeff()),
+        surface.count);
   double drift = 0.0;
-  for (const deform::CsrbfField& field : frame.fields.fields()) {
-    const double largest = field.coefficients.cwiseAbs().maxCoeff() / unit_;
-    const double overlap = std::sqrt(static_cast<double>(field.centres.cols()));
-    const double error = float_error * largest * overlap + rounding_error;
-    drift += error * error / max_drift_;
-  }
+  for (const deform::CsrbfField& field : frame.fields.fields())
+    drift += drift_by(field.coefficients.cwiseAbs().maxCoeff() / unit_,
+                      static_cast<double>(field.centres.cols()));
   return drift;
 }
 
@@ -97,10 +106,11 @@ void FrameStream::push(const flow::Frame& frame, bool undone, bool committed) no
   for (const flow::HandFrame& hand : frame.hands)
     if (hand.present) write_hand(hand, out);
   head.head_bytes = static_cast<std::uint32_t>(out.used() - sizeof head);
-  write_step(bakes ? StepKind::bake : StepKind::draw, frame.fields, origin_, unit_, out);
+  write_step(bakes ? StepKind::bake : StepKind::draw, frame, origin_, unit_, out);
   head.bytes = static_cast<std::uint32_t>(out.used());
   head.undone = undone ? 1 : 0;
   head.drift = bakes ? drift_of(frame) : 0.0;
+  head.weights = frame.surface.field;
   head.bakes = bakes ? 1 : 0;
   std::memcpy(record_.data(), &head, sizeof head);
   const std::size_t chunks = (out.used() + sizeof(Chunk) - 1) / sizeof(Chunk);
@@ -128,6 +138,7 @@ void FrameStream::take(std::vector<Record>& records) {
     record.number = head.number;
     record.discontinuous = head.undone != 0 || head.number != taken_ + 1;
     record.drift = head.drift;
+    record.weights = head.weights;
     record.bakes = head.bakes != 0;
     const auto body = std::span(incoming_).subspan(sizeof head, wanted - sizeof head);
     const auto record_head = body.first(head.head_bytes);

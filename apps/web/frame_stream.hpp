@@ -25,15 +25,23 @@ struct Record {
   /// The rounding errors that a client, which adds up in float, may collect by this step, as a
   /// share of the allowed errors. When the shares add up to 1, the client needs a fresh shape.
   double drift = 0.0;
+  /// deform::SurfaceField::number() of the weights that the step needs; 0: of none.
+  std::uint64_t weights = 0;
   std::vector<std::byte> head; ///< head and hands of an update message, with `steps` 0
   std::vector<std::byte> step; ///< one step of an update message
 };
 
 class FrameStream final : public flow::FrameSink {
 public:
-  /// layout: that of a loop that has not begun yet. max_fields: of one frame; max_functions: of one
-  /// field, whatever the settings become. Allocates all that show() needs.
-  FrameStream(const deform::BlockLayout& layout, std::size_t max_fields, std::size_t max_functions);
+  /// The most that a frame may have, whatever the settings become.
+  struct Capacity {
+    std::size_t fields = 0;
+    std::size_t functions = 0; ///< of each field
+    std::size_t vectors = 0;   ///< of deform::SurfaceMove
+  };
+
+  /// layout: that of a loop that has not begun yet. Allocates all that show() needs.
+  FrameStream(const deform::BlockLayout& layout, const Capacity& capacity);
 
   /// Writes a record while the stream is active. Copies the changed blocks of the shape if the
   /// shape was requested, after a commit and after an undo. Called in the tick; wait-free.

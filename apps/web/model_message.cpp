@@ -2,21 +2,11 @@
 
 #include <array>
 
-#include <nendo/deform/triangles.hpp>
-
+#include "web/model_paint.hpp"
 #include "web/wire.hpp"
 
 namespace nendo::web {
 namespace {
-
-// The corners of all triangles, as the vertices' places in the blocks.
-std::vector<std::uint32_t> corners_of(const deform::BlockLayout& layout, const deform::Mesh& mesh) {
-  const std::vector<std::uint32_t> place_of = layout.places();
-  std::vector<std::uint32_t> corners;
-  for (const std::uint32_t vertex : deform::corners_of_triangles(mesh))
-    corners.push_back(place_of[vertex]);
-  return corners;
-}
 
 using Hands = std::array<const flow::HandInput*, 2>; ///< by flow::Placement::index_of(side)
 
@@ -34,16 +24,20 @@ void write_bones(const hand::HandSkeleton& skeleton, WireWriter& out) {
   }
 }
 
-ModelHead head_of(const deform::BlockLayout& layout, const Hands& hands, const ModelFacts& facts) {
+ModelHead head_of(const deform::BlockLayout& layout, const ModelPaint& paint, const Hands& hands,
+                  const ModelFacts& facts) {
   ModelHead head;
+  head.triangles = static_cast<std::uint32_t>(paint.corners.size() / 3);
+  head.coats = static_cast<std::uint32_t>(paint.coats.size());
   head.vertices = static_cast<std::uint32_t>(layout.vertex_count());
   head.name_bytes = static_cast<std::uint32_t>(facts.name.size());
   head.rate_hz = facts.rate_hz;
   head.unit = layout.unit();
   head.units_per_metre = facts.units_per_metre;
   head.diagonal = layout.diagonal();
-  head.flags =
-      static_cast<std::uint8_t>((hands[0] != nullptr ? 1U : 0U) | (hands[1] != nullptr ? 2U : 0U));
+  head.flags = static_cast<std::uint8_t>(
+      (hands[0] != nullptr ? 1U : 0U) | (hands[1] != nullptr ? 2U : 0U) |
+      (paint.colours.empty() ? 0U : 4U) | (paint.texcoords.empty() ? 0U : 8U));
   for (std::size_t axis = 0; axis < 3; ++axis)
     head.origin[axis] = layout.origin()[static_cast<Eigen::Index>(axis)];
   return head;
@@ -54,15 +48,15 @@ ModelHead head_of(const deform::BlockLayout& layout, const Hands& hands, const M
 std::vector<std::byte> model_message(const deform::BlockLayout& layout, const deform::Mesh& mesh,
                                      std::span<const flow::HandInput> hands,
                                      const ModelFacts& facts) {
-  const auto corners = corners_of(layout, mesh);
+  const ModelPaint paint = paint_of(mesh, layout);
   Hands by_side{};
   for (const flow::HandInput& hand : hands)
     by_side[flow::Placement::index_of(hand.side)] = &hand;
-  ModelHead head = head_of(layout, by_side, facts);
-  head.triangles = static_cast<std::uint32_t>(corners.size() / 3);
-  std::vector<std::byte> message(sizeof head + hands.size() * bones_bytes +
-                                 16 * layout.vertex_count() + 4 * corners.size() +
-                                 facts.name.size());
+  const ModelHead head = head_of(layout, paint, by_side, facts);
+  std::vector<std::byte> message(
+      sizeof head + hands.size() * bones_bytes + 16 * layout.vertex_count() +
+      4 * paint.corners.size() + sizeof(CoatHead) * paint.coats.size() +
+      8 * paint.texcoords.size() + 6 * paint.colours.size() + facts.name.size());
   WireWriter out(message);
   out.put(head);
   for (const flow::HandInput* hand : by_side) {
@@ -76,12 +70,16 @@ std::vector<std::byte> model_message(const deform::BlockLayout& layout, const de
     for (const auto* axis : {&block.x, &block.y, &block.z})
       out.put((*axis)[at % deform::block_size]);
   }
-  for (const std::uint32_t vertex : layout.order())
-    out.put(vertex);
-  for (const std::uint32_t corner : corners)
-    out.put(corner);
-  for (const char c : facts.name)
-    out.put(c);
+  const auto put_all = [&out](const auto& values) {
+    for (const auto& value : values)
+      out.put(value);
+  };
+  put_all(layout.order());
+  put_all(paint.corners);
+  put_all(paint.coats);
+  put_all(paint.texcoords);
+  put_all(paint.colours);
+  put_all(facts.name);
   return message;
 }
 

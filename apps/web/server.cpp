@@ -38,8 +38,13 @@ std::string Server::url() const {
   return "http://" + work_->endpoint.authority() + "/#" + work_->token;
 }
 
-void Server::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model) {
-  work_->present(std::move(stream), std::move(model));
+void Server::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
+                     Pictures pictures) {
+  work_->present(std::move(stream), std::move(model), std::move(pictures));
+}
+
+void Server::add_weights(std::uint64_t number, std::vector<std::byte> message) {
+  work_->add_weights(number, std::move(message));
 }
 
 std::optional<flow::Command> Server::next_command() noexcept {
@@ -75,7 +80,7 @@ void Server::set_gloves(const GloveStates& gloves) noexcept {
 ServerCounters Server::counters() const noexcept {
   const auto& counts = work_->counts;
   return {counts.clients,      counts.accepted, counts.refused,     counts.dropped, counts.updates,
-          counts.update_bytes, counts.shapes,   counts.shape_bytes, counts.skipped};
+          counts.update_bytes, counts.shapes,   counts.shape_bytes, counts.weights, counts.skipped};
 }
 
 } // namespace nendo::web

@@ -18,6 +18,7 @@
 #include "web/endpoint.hpp"
 #include "web/frame_stream.hpp"
 #include "web/glove_state.hpp"
+#include "web/pictures.hpp"
 
 namespace nendo::web {
 
@@ -52,6 +53,7 @@ struct ServerCounters {
   std::uint64_t update_bytes = 0;
   std::uint64_t shapes = 0; ///< shape messages to all clients, and their bytes
   std::uint64_t shape_bytes = 0;
+  std::uint64_t weights = 0; ///< weights messages to all clients
   std::uint64_t skipped = 0; ///< frames that clients missed because their queues were full
 };
 
@@ -77,10 +79,14 @@ public:
   /// send.
   std::string url() const;
 
-  /// Serves another loop, which must not have begun yet, by its frames and its model_message().
-  /// Clients of the previous loop are closed with code 1012 and may connect again. Any thread may
-  /// call it; does not wait for the network.
-  void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model);
+  /// Serves another loop, which must not have begun yet, by its frames, its model_message() and its
+  /// pictures_of(). Clients of the previous loop are closed with code 1012 and may connect again.
+  /// Any thread may call it; does not wait for the network.
+  void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
+               Pictures pictures = {});
+  /// Adds a weights_message(), by its number (Record::weights). It keeps the last ones, and the one
+  /// that frames need. Any thread may call it; does not wait for the network.
+  void add_weights(std::uint64_t number, std::vector<std::byte> message);
   /// Returns the next command of any client, in the order in which they came, or nothing if there
   /// is none now. Only one thread may call it; wait-free.
   std::optional<flow::Command> next_command() noexcept;

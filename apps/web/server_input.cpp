@@ -6,6 +6,7 @@
 #include "web/answers.hpp"
 #include "web/client_commands.hpp"
 #include "web/handshake.hpp"
+#include "web/pictures.hpp"
 #include "web/server_work.hpp"
 
 namespace nendo::web {
@@ -43,10 +44,22 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
     refuse(connection, 503, "the loop has not begun; try again in a second", now);
   } else if (admission.resource == Resource::model) {
     connection.answer(model_head(presented_.model->size()), presented_.model, now);
+  } else if (admission.resource == Resource::picture) {
+    send_picture(connection, head.request, now);
   } else {
     open_socket(connection, head.request, now);
     connection.incoming().erase(0, head.bytes);
   }
+}
+
+void Server::Work::send_picture(Connection& connection, const HttpRequest& request, HostTime now) {
+  const auto number = picture_number(request.parameter("number").value_or(""));
+  if (!number || *number >= presented_.pictures.size() || !presented_.pictures[*number]) {
+    refuse(connection, 404, "the model has no picture of that number", now);
+    return;
+  }
+  const SharedBytes picture = shared_bytes(*presented_.pictures[*number]);
+  connection.answer(picture_head(*presented_.pictures[*number]), picture, now);
 }
 
 void Server::Work::open_socket(Connection& connection, const HttpRequest& request, HostTime now) {

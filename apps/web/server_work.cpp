@@ -21,6 +21,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds frame_period(8);
 /// How often deadlines are looked at.
 constexpr milliseconds deadline_period(250);
+constexpr std::size_t most_weights = 3;
 
 std::string report_message(const std::string& text) {
   return std::string{static_cast<char>(MessageType::report), 0, 0, 0} + text;
@@ -48,14 +49,26 @@ void Server::Work::wake() noexcept {
   [[maybe_unused]] const ssize_t written = ::write(waker_.get(), &one, sizeof one);
 }
 
-void Server::Work::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model) {
+void Server::Work::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
+                           Pictures pictures) {
   {
     const std::scoped_lock lock(mutex_);
     write_loop(++loops_, offsetof(ModelHead, loop), model);
     next_ = Presented{std::move(stream),
-                      std::make_shared<const std::vector<std::byte>>(std::move(model)), loops_};
+                      std::make_shared<const std::vector<std::byte>>(std::move(model)),
+                      std::move(pictures), loops_};
   }
   wake();
+}
+
+// What the loop was asked for last may be refused, so that it goes on with older ones.
+void Server::Work::add_weights(std::uint64_t number, std::vector<std::byte> message) {
+  const std::scoped_lock lock(mutex_);
+  weights_.push_back({number, std::make_shared<const std::vector<std::byte>>(std::move(message))});
+  if (weights_.size() <= most_weights) return;
+  weights_.erase(std::find_if(weights_.begin(), weights_.end(), [this](const Weights& some) {
+    return some.number != weights_in_use_;
+  }));
 }
 
 void Server::Work::report(std::string message) {
@@ -225,6 +238,10 @@ void Server::Work::send_frames(HostTime now) {
   const SharedBytes bytes =
       shape ? std::make_shared<const std::vector<std::byte>>(std::move(shape->message)) : nullptr;
   feed_counters_.lost = presented_.stream->lost();
+  if (!records_.empty() && records_.back().weights != 0) {
+    const std::scoped_lock lock(mutex_);
+    weights_in_use_ = records_.back().weights;
+  }
   for (std::size_t slot = 0; slot < gloves.size(); ++slot) {
     const SharedGloveState& shared = gloves[slot];
     feed_counters_.gloves[slot] = {{shared.delivered, shared.missed, shared.refused, shared.bad},
@@ -241,13 +258,31 @@ void Server::Work::send_frames(HostTime now) {
   if (shape_wanted) presented_.stream->request_shape();
 }
 
+// They are no longer than a shape or two, and count as one.
+void Server::Work::send_weights(Connection& client, HostTime now) {
+  const std::uint64_t wanted = client.feed.wanted_weights();
+  if (wanted == 0 || client.has_queued_shape()) return;
+  SharedBytes message;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const Weights& some : weights_)
+      if (some.number == wanted) message = some.message;
+  }
+  if (!message) return; // it is not there yet
+  client.send(Opcode::binary, message, true, now);
+  client.feed.weights_sent(wanted);
+  ++counts.weights;
+}
+
 void Server::Work::send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,
                                const SharedBytes& bytes, HostTime now) {
+  client.feed.look_at(records_);
   if (!client.accepts_updates()) {
     client.feed.skip(records_);
     counts.skipped += records_.size();
     return;
   }
+  send_weights(client, now);
   if (shape && client.feed.wants_shape() && !client.has_queued_shape()) {
     client.send(Opcode::binary, bytes, true, now);
     client.feed.shape_sent(shape->number);

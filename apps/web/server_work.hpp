@@ -23,7 +23,9 @@ public:
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model);
+  void present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
+               Pictures pictures);
+  void add_weights(std::uint64_t number, std::vector<std::byte> message);
   void report(std::string message);
   void set_settings(const flow::LoopSettings& settings, bool recorded);
   void set_steps(const flow::StepList& steps);
@@ -42,7 +44,7 @@ public:
   std::array<SharedGloveState, 2> gloves; ///< by flow::Placement::index_of(side)
   struct Counts {
     std::atomic<std::uint64_t> clients{0}, accepted{0}, refused{0}, dropped{0}, updates{0},
-        update_bytes{0}, shapes{0}, shape_bytes{0}, skipped{0};
+        update_bytes{0}, shapes{0}, shape_bytes{0}, weights{0}, skipped{0};
   } counts;
 
 private:
@@ -50,7 +52,14 @@ private:
   struct Presented {
     std::shared_ptr<FrameStream> stream;
     SharedBytes model;
+    Pictures pictures;
     std::uint16_t loop = 0; ///< its number within the run, which stands in the model and in shapes
+  };
+
+  /// A weights message, and its number.
+  struct Weights {
+    std::uint64_t number = 0;
+    SharedBytes message;
   };
 
   void run();
@@ -65,10 +74,12 @@ private:
   void serve(Connection& connection, short events, HostTime now);
   void read_head(Connection& connection, HostTime now);
   void open_socket(Connection& connection, const HttpRequest& request, HostTime now);
+  void send_picture(Connection& connection, const HttpRequest& request, HostTime now);
   void read_socket(Connection& connection, HostTime now);
   void handle(Connection& connection, const std::string& text, HostTime now);
   void refuse(Connection& connection, int status, std::string_view why, HostTime now);
   void send_frames(HostTime now);
+  void send_weights(Connection& client, HostTime now);
   void send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,
                    const SharedBytes& bytes, HostTime now);
   void drop_expired(HostTime now);
@@ -76,7 +87,7 @@ private:
 
   const ServerLimits limits_;
   Descriptor listener_, waker_;
-  std::mutex mutex_;              ///< guards the next seven
+  std::mutex mutex_;              ///< guards the next nine
   std::optional<Presented> next_; ///< set by present() and not taken yet
   std::uint16_t loops_ = 0;
   std::string report_; ///< the newest one; empty if it has been sent
@@ -84,6 +95,8 @@ private:
   std::uint64_t steps_version_ = 0;
   Facts facts_; ///< as messages; null before they are known
   bool recorded_ = false;
+  std::vector<Weights> weights_; ///< the newest last
+  std::uint64_t weights_in_use_ = 0;
   Presented presented_;
   std::list<Connection> connections_; ///< the oldest first
   std::vector<pollfd> polled_;

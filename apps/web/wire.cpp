@@ -15,11 +15,6 @@ float microseconds(HostClock::duration time) noexcept {
   return static_cast<float>(1e6 * to_seconds(time));
 }
 
-// Numbers that are not finite or too large for float become some that a client can draw.
-float as_float(double value) noexcept {
-  return std::isfinite(value) ? static_cast<float>(std::clamp(value, -1e30, 1e30)) : 0.0F;
-}
-
 // The largest part of a unit quaternion follows from the other three, which are within 1/sqrt(2).
 // Each of them is sent in 15 bits. The highest bits of the first two words say which part is left
 // out.
@@ -103,6 +98,14 @@ void write_field(const deform::CsrbfField& field, const deform::CsrbfField* befo
   }
 }
 
+void write_vectors(const deform::SurfaceMove& move, WireWriter& out) noexcept {
+  out.put(static_cast<std::uint16_t>(move.count));
+  out.put(static_cast<std::uint32_t>(move.field));
+  for (Eigen::Index at = 0; at < static_cast<Eigen::Index>(move.count); ++at)
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      out.put(as_float(static_cast<double>(move.vectors(axis, at))));
+}
+
 void write_turn(const Eigen::Isometry3d& pose, WireWriter& out) noexcept {
   for (const std::uint16_t word : packed(pose.linear()))
     out.put(word);
@@ -110,15 +113,22 @@ void write_turn(const Eigen::Isometry3d& pose, WireWriter& out) noexcept {
 
 } // namespace
 
+float as_float(double value) noexcept {
+  return std::isfinite(value) ? static_cast<float>(std::clamp(value, -1e30, 1e30)) : 0.0F;
+}
+
 UpdateHead head_of(const flow::Frame& frame) noexcept {
   UpdateHead head;
-  head.state = static_cast<std::uint8_t>((frame.held ? 1U : 0U) | (frame.steps.in_hand ? 8U : 0U));
+  head.state = static_cast<std::uint8_t>(
+      (frame.held ? 1U : 0U) | (frame.steps.in_hand ? 8U : 0U) | (frame.let_go[0] ? 16U : 0U) |
+      (frame.let_go[1] ? 32U : 0U) | (frame.symmetric ? 64U : 0U) |
+      (frame.function_count > 0 ? 128U : 0U));
   head.status = static_cast<std::uint8_t>(frame.status);
   head.tick = frame.tick;
   head.ticks = frame.ticks_run;
   head.missed = frame.missed;
   head.commits = static_cast<std::uint32_t>(frame.commits);
-  head.undos = static_cast<std::uint32_t>(frame.undos);
+  head.undos = static_cast<std::uint32_t>(frame.undos - frame.leaps);
   head.late_us = head.most_late_us = microseconds(frame.woke - frame.scheduled);
   head.since_last_us = microseconds(frame.since_last);
   head.links = static_cast<std::uint32_t>(std::max(0, frame.chain.links));
@@ -172,11 +182,16 @@ void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept {
     if (rotation_is_sent(static_cast<hand::Joint>(joint))) write_turn(hand.pose.joints[joint], out);
 }
 
-void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,
-                double unit, WireWriter& out) noexcept {
-  const auto all = fields.fields();
+void write_step(StepKind kind, const flow::Frame& frame, const Eigen::Vector3d& origin, double unit,
+                WireWriter& out) noexcept {
   out.put(static_cast<std::uint8_t>(kind));
-  out.put(std::uint8_t{0});
+  if (frame.surface.field != 0) {
+    out.put(StepContent::vectors);
+    write_vectors(frame.surface, out);
+    return;
+  }
+  const auto all = frame.fields.fields();
+  out.put(StepContent::fields);
   out.put(static_cast<std::uint16_t>(all.size()));
   for (std::size_t at = 0; at < all.size(); ++at)
     write_field(all[at], at > 0 ? &all[at - 1] : nullptr, origin, unit, out);

@@ -9,8 +9,7 @@
 #include <span>
 #include <vector>
 
-#include <nendo/deform/field_sequence.hpp>
-#include <nendo/deform/vertex_blocks.hpp>
+#include <nendo/deform/material.hpp>
 #include <nendo/flow/frame.hpp>
 
 namespace nendo::web {
@@ -22,14 +21,18 @@ enum class MessageType : std::uint8_t {
   update = 2,
   report = 3,
   settings = 4,
-  history = 5
+  history = 5,
+  weights = 6
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
+enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
 
 /// The head of an update message, in PROTOCOL.md's order and without gaps.
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
   /// Bit 0: the hands hold the model; 1, 2: left, right is uncalibrated; 3: StepList::in_hand.
+  /// Of a puppet: 4, 5: left, right has let go of it; 6: one hand plays both sides; 7: there is
+  /// one.
   std::uint8_t state = 0;
   /// Bits 0, 1: left, right is there; 2, 3: silent; 4, 5: other bones. And of the history: 6, 7:
   /// there is something to undo, to redo.
@@ -78,10 +81,32 @@ struct ModelHead {
   double units_per_metre = 1.0;
   double diagonal = 0.0;
   std::uint16_t loop = 0; ///< the number of the loop within its server; the server sets it
-  std::uint8_t flags = 0; ///< bits 0, 1: left, right hand's bones follow
-  std::uint8_t spare[5]{};
+  /// Bits 0, 1: left, right hand's bones follow; 2: vertices' colours; 3: texture coordinates.
+  std::uint8_t flags = 0;
+  std::uint8_t spare = 0;
+  std::uint32_t coats = 0;
 };
 static_assert(sizeof(ModelHead) == 88);
+
+/// Triangles that follow each other and look alike, in the model message.
+struct CoatHead {
+  std::uint32_t triangles = 0;
+  std::uint32_t texture = deform::no_index;
+  std::uint32_t has_colour = 0; ///< 0: `colour` is white because the material tells none
+  float colour[3]{1.0F, 1.0F, 1.0F};
+};
+static_assert(sizeof(CoatHead) == 24);
+
+/// The head of the weights message.
+struct WeightsHead {
+  std::uint8_t type = static_cast<std::uint8_t>(MessageType::weights);
+  std::uint8_t spare = 0;
+  std::uint16_t vectors = 0;
+  std::uint32_t number = 0; ///< the last bits of deform::SurfaceField::number()
+  std::uint32_t vertices = 0;
+  std::uint32_t terms = 0;
+};
+static_assert(sizeof(WeightsHead) == 16);
 
 /// The settings message, in PROTOCOL.md's order and without gaps.
 struct SettingsMessage {
@@ -118,6 +143,10 @@ inline constexpr std::size_t hand_bytes = 12 + sent_rotations * 6;
 /// glove that may replace it. Each joint has its position and rotation in the axes of its parent.
 inline constexpr std::size_t bones_bytes = 2 * hand::joint_count * 7 * 4;
 inline constexpr std::size_t step_head_bytes = 4;
+/// Returns the bytes of a step's content, if it is so many vectors for the weights.
+constexpr std::size_t vectors_bytes(std::size_t vectors) noexcept {
+  return 4 + vectors * 12;
+}
 
 /// Returns the most bytes that a field of that many functions takes.
 constexpr std::size_t field_bytes(std::size_t functions) noexcept {
@@ -142,14 +171,18 @@ private:
   std::size_t used_ = 0;
 };
 
+/// Returns what a client can draw: numbers that are not finite or too large for float are replaced.
+float as_float(double value) noexcept;
+
 UpdateHead head_of(const flow::Frame& frame) noexcept;
 SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept;
 /// Returns the message with the steps of the history. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
-/// Writes a step. `origin` and `unit` are those of the loop's BlockLayout. Functions whose
-/// coefficient is zero are left out, and so are centres that follow from the previous field.
-void write_step(StepKind kind, const deform::FieldSequence& fields, const Eigen::Vector3d& origin,
-                double unit, WireWriter& out) noexcept;
+/// Writes the frame's step: the vectors of its surface, if it has one, or else its fields. `origin`
+/// and `unit` are those of the loop's BlockLayout. Functions whose coefficient is zero are left
+/// out, and so are centres that follow from the previous field.
+void write_step(StepKind kind, const flow::Frame& frame, const Eigen::Vector3d& origin, double unit,
+                WireWriter& out) noexcept;
 
 } // namespace nendo::web

@@ -201,6 +201,12 @@ SurfaceField::make(const Mesh& mesh, const BlockLayout& layout, const SurfaceSet
   }
   builder.fill();
   builder.take(field->starts_, field->entries_);
+  for (const Entry& entry : field->entries_)
+    field->columns_.push_back(entry.column);
+  std::sort(field->columns_.begin(), field->columns_.end());
+  field->columns_.erase(std::unique(field->columns_.begin(), field->columns_.end()),
+                        field->columns_.end());
+  field->number_ = BlockShape::new_stamp();
   field->unit_ = layout.unit();
   field->order_ = layout.order();
   return std::shared_ptr<const SurfaceField>(std::move(field));
@@ -225,6 +231,34 @@ Eigen::MatrixXf SurfaceField::weights() const {
     }
   }
   return all;
+}
+
+SurfaceField::Terms SurfaceField::terms() const {
+  std::vector<std::uint32_t> vector_of(static_cast<std::size_t>(2 * point_count()));
+  for (std::uint32_t at = 0; at < columns_.size(); ++at)
+    vector_of[columns_[at]] = at;
+  Terms terms;
+  terms.starts.push_back(0);
+  for (std::size_t place = 0; place < order_.size(); ++place) {
+    const std::size_t block = place / block_size;
+    for (std::size_t at = starts_[block]; at < starts_[block + 1]; ++at) {
+      const float value = entries_[at].values[place % block_size];
+      if (value == 0.0F) continue;
+      terms.of_vector.push_back(vector_of[entries_[at].column]);
+      terms.values.push_back(value);
+    }
+    terms.starts.push_back(static_cast<std::uint32_t>(terms.values.size()));
+  }
+  return terms;
+}
+
+void SurfaceField::tell(const Coefficients& by, SurfaceMove& move) const {
+  move.field = number_;
+  move.count = static_cast<std::uint32_t>(columns_.size());
+  if (move.vectors.cols() < static_cast<Index>(columns_.size()))
+    move.vectors.resize(3, static_cast<Index>(columns_.size()));
+  for (std::size_t at = 0; at < columns_.size(); ++at)
+    move.vectors.col(static_cast<Index>(at)) = by.all.col(columns_[at]);
 }
 
 void SurfaceField::solve(const Points& vectors, Coefficients& coefficients) const noexcept {

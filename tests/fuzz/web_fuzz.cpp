@@ -8,6 +8,7 @@
 
 #include "web/admission.hpp"
 #include "web/client_commands.hpp"
+#include "web/pictures.hpp"
 #include "web/socket_frames.hpp"
 
 using namespace nendo::web;
@@ -33,6 +34,8 @@ void check_head(std::string_view bytes) {
     require(!name.empty() && is_within(name, bytes) && is_within(value, bytes));
   const Admission admission = admit(head.request, "0123456789abcdef0123456789abcdef");
   require(admission.status == 200 || !admission.why.empty());
+  const auto number = picture_number(head.request.parameter("number").value_or(""));
+  require(!number || *number <= 999'999);
   const bool needs_token = admission.status == 200 && admission.resource != Resource::page;
   require(!needs_token || head.request.query.find("0123456789abcdef") != std::string_view::npos);
 }

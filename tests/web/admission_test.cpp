@@ -46,6 +46,7 @@ TEST_SUITE("admission") {
     CHECK(answer({}).status == 200);
     CHECK(answer({}).resource == Resource::socket);
     CHECK(answer({.path = "/model"}).resource == Resource::model);
+    CHECK(answer({.path = "/picture"}).resource == Resource::picture);
     CHECK(answer({.host = "localhost:9", .origin = "http://localhost:9"}).status == 200);
     CHECK(answer({.host = "[::1]:9", .origin = "http://[::1]:9"}).status == 200);
     CHECK(answer({.origin = ""}).status == 200); // no browser says none for a WebSocket
@@ -58,7 +59,7 @@ TEST_SUITE("admission") {
   }
 
   TEST_CASE("another page's origin is refused for whatever it asks") {
-    for (const auto* path : {"/", "/model", "/ws"})
+    for (const auto* path : {"/", "/model", "/picture", "/ws"})
       for (const auto* origin :
            {"http://evil.example", "null", "https://127.0.0.1:8080", "http://127.0.0.1:8081",
             "http://127.0.0.1", "http://127.0.0.1:8080.evil.example", "http://localhost:8080"}) {
@@ -68,14 +69,14 @@ TEST_SUITE("admission") {
   }
 
   TEST_CASE("a name for this host is refused, even where the origin agrees: DNS rebinding") {
-    for (const auto* path : {"/", "/model", "/ws"})
+    for (const auto* path : {"/", "/model", "/picture", "/ws"})
       CHECK(
           answer({.path = path, .host = "evil.example:8080", .origin = "http://evil.example:8080"})
               .status == 403);
   }
 
   TEST_CASE("model and socket are nobody's without the token") {
-    for (const auto* path : {"/model", "/ws"})
+    for (const auto* path : {"/model", "/picture", "/ws"})
       for (const auto& given : {std::string(), std::string("x"), std::string(token) + "0",
                                 std::string(token).substr(1), std::string(32, '0')})
         CHECK(answer({.path = path, .token_given = given}).status == 403);
@@ -85,6 +86,8 @@ TEST_SUITE("admission") {
     CHECK(answer({.method = "POST"}).status == 405);
     CHECK(answer({.path = "/etc/passwd"}).status == 404);
     CHECK(answer({.path = "/../ws"}).status == 404);
+    CHECK(answer({.path = "/picture/0"}).status == 404);
+    CHECK(answer({.path = "/pictures"}).status == 404);
     CHECK(answer({.version = "8"}).status == 426);
     CHECK(answer({.upgrade = "h2c"}).status == 426);
     CHECK(answer({.key = "short"}).status == 400);

@@ -1,6 +1,7 @@
 // Whoever follows the steps has the loop's shape: the law that the page lives by, with a client
 // that was written from PROTOCOL.md alone.
 
+#include <map>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -8,6 +9,7 @@
 #include "following_client.hpp"
 #include "streamed_loop.hpp"
 #include "web/feed.hpp"
+#include "web/weights_message.hpp"
 
 namespace follow_test {
 
@@ -23,6 +25,8 @@ struct Followed {
   StreamedLoop& streamed;
   Feed feed;
   FollowingClient client;
+  std::map<std::uint64_t, std::vector<std::byte>> weights; ///< messages, by their number
+  bool has_weights = true;                                 ///< false: they are on their way yet
 
   explicit Followed(StreamedLoop& loop) : streamed(loop), client(loop.model) {
     streamed.stream->set_active(true);
@@ -32,9 +36,17 @@ struct Followed {
     std::vector<Record> records;
     streamed.stream->take(records);
     const auto shape = streamed.stream->take_shape();
+    if (const auto& surface = streamed.test.loop->sculptor_options().surface)
+      weights.try_emplace(surface->number(), weights_message(*surface));
+    feed.look_at(records);
     if (!room) {
       feed.skip(records);
       return;
+    }
+    if (const auto wanted = feed.wanted_weights(); wanted != 0 && has_weights) {
+      REQUIRE(weights.contains(wanted));
+      CHECK(client.take(weights[wanted]));
+      feed.weights_sent(wanted);
     }
     if (shape && feed.wants_shape()) {
       CHECK(client.take(shape->message));
@@ -48,7 +60,9 @@ struct Followed {
   double gap(const deform::Points& shape) const {
     return (client.vertices() - shape).cwiseAbs().maxCoeff() / client.diagonal;
   }
-  bool is_up_to_date() const { return client.follows() && !feed.wants_shape(); }
+  bool is_up_to_date() const {
+    return client.follows() && !feed.wants_shape() && feed.wanted_weights() == 0;
+  }
 };
 
 const std::array<std::pair<flow::Mode, bool>, 4> ways{{{flow::Mode::type1, false},
@@ -59,6 +73,13 @@ const std::array<std::pair<flow::Mode, bool>, 4> ways{{{flow::Mode::type1, false
 StreamedLoop loop_of(const std::pair<flow::Mode, bool>& way) {
   if (way.second) return StreamedLoop(way.first, {.injective = deform::InjectiveOptions{}});
   return StreamedLoop(way.first);
+}
+
+/// With a mask, whose border cuts through what its functions reach.
+StreamedLoop puppet_loop(flow::Mode mode) {
+  static const std::string text =
+      std::string(test::ball_puppet) + "[[masks]]\nat = [0.3, 0.3, 0.9]\nradius = 0.5\n";
+  return StreamedLoop(mode, {.puppet = text.c_str()});
 }
 
 } // namespace
@@ -276,6 +297,99 @@ TEST_SUITE("follow") {
       if (in_links) CHECK(chain.links > 1);
       if (in_links) CHECK(followed.client.implied_centres > 100);
     }
+  }
+
+  TEST_CASE("through grabs, commits, undos and clutches, a follower has a puppet's shape at every "
+            "tick, within 2e-6 of the diagonal, and gets weights and shapes only when it must") {
+    StreamedLoop streamed = puppet_loop(flow::Mode::type1);
+    Followed followed(streamed);
+    const FollowingClient& client = followed.client;
+    std::mt19937 random(21);
+    int bent = 0;
+    double worst = 0.0;
+    double moved = 0.0;
+    int compared = 0;
+    std::size_t most = 0;
+    for (int tick = 0; tick < 600; ++tick) {
+      bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
+      if (random() % 25 == 0)
+        streamed.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
+      if (random() % 25 == 0)
+        streamed.test.commands.try_push(
+            flow::SetClutch{random() % 2 == 0 ? Side::left : Side::right,
+                            puppet::RigPlayer::all_fingers, random() % 2 == 0});
+      const auto shape = streamed.tick(bent);
+      moved = std::max(moved, (shape - streamed.test.model.vertices).cwiseAbs().maxCoeff());
+      followed.pass();
+      const flow::Frame& frame = streamed.test.loop->frames().front();
+      CHECK(client.let_go == frame.let_go);
+      CHECK(client.is_puppet);
+      most = std::max(most, client.update_bytes);
+      if (!followed.is_up_to_date()) continue;
+      worst = std::max(worst, followed.gap(shape));
+      ++compared;
+    }
+    CHECK(client.good);
+    CHECK(worst < 2e-6);
+    CHECK(moved > 0.05); // of a ball of radius 1
+    CHECK(compared > 500);
+    CHECK(client.commits > 3);
+    CHECK(client.undos > 3);
+    CHECK(client.undos < 100); // not one for each tick
+    CHECK(client.vectors > 1000);
+    CHECK(client.weights == 1);
+    CHECK(client.shapes < static_cast<int>(client.undos) + 3);
+    CHECK(most < 1000);
+  }
+
+  TEST_CASE("a puppet's follower gets other weights when radii, kernel or mode change, and has the "
+            "shape then, too") {
+    StreamedLoop streamed = puppet_loop(flow::Mode::type1);
+    Followed followed(streamed);
+    std::mt19937 random(22);
+    int bent = 0;
+    double worst = 0.0;
+    int compared = 0;
+    for (int tick = 0; tick < 600; ++tick) {
+      bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
+      if (random() % 20 == 0)
+        streamed.test.loop->change_settings(
+            test::any_settings(streamed.test.loop->settings(), random));
+      const auto shape = streamed.tick(bent);
+      followed.pass();
+      if (!followed.is_up_to_date()) continue;
+      worst = std::max(worst, followed.gap(shape));
+      ++compared;
+    }
+    CHECK(followed.client.good);
+    CHECK(worst < 1e-5);
+    CHECK(compared > 500);
+    CHECK(followed.client.weights > 3);
+    CHECK(followed.client.weights < 30);
+    CHECK(streamed.test.loop->stats().changes > 15);
+  }
+
+  TEST_CASE("a follower whose weights are late gets neither steps nor shapes until it has them") {
+    StreamedLoop streamed = puppet_loop(flow::Mode::type1);
+    Followed followed(streamed);
+    followed.has_weights = false;
+    for (int tick = 0; tick < 30; ++tick) {
+      streamed.tick(tick);
+      followed.pass();
+    }
+    CHECK(followed.client.updates > 20);
+    CHECK(followed.client.vectors == 0);
+    const int shapes = followed.client.shapes;
+    CHECK(shapes <= 1);
+    followed.has_weights = true;
+    for (int tick = 30; tick < 40; ++tick) {
+      const auto shape = streamed.tick(tick);
+      followed.pass();
+      if (followed.is_up_to_date()) CHECK(followed.gap(shape) < 2e-6);
+    }
+    CHECK(followed.is_up_to_date());
+    CHECK(followed.client.shapes == shapes + 1);
+    CHECK(followed.client.good);
   }
 
   TEST_CASE("the model's message has the mesh: its places, order and triangles") {

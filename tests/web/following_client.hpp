@@ -32,7 +32,8 @@ public:
     diagonal = in.take<double>();
     loop = in.take<std::uint16_t>();
     const auto flags = in.take<std::uint8_t>();
-    in.at += 5;
+    in.at += 1;
+    coats.resize(in.take<std::uint32_t>());
     for (unsigned slot = 0; slot < 2; ++slot)
       if ((flags >> slot & 1U) != 0)
         for (Skeleton& skeleton : bones_[slot])
@@ -40,6 +41,14 @@ public:
     rest = in.take_all<float>(std::size_t{3} * vertices);
     order = in.take_all<std::uint32_t>(vertices);
     corners = in.take_all<std::uint32_t>(std::size_t{3} * triangles);
+    for (Coat& coat : coats) {
+      coat.triangles = in.take<std::uint32_t>();
+      coat.texture = in.take<std::uint32_t>();
+      coat.has_colour = in.take<std::uint32_t>() == 1;
+      coat.colour = in.take<std::array<float, 3>>();
+    }
+    if ((flags & 8U) != 0) texcoords = in.take_all<float>(std::size_t{6} * triangles);
+    if ((flags & 4U) != 0) colours = in.take_all<std::uint16_t>(std::size_t{3} * vertices);
     name.assign(reinterpret_cast<const char*>(model.data()) + in.at, name_bytes);
     good = good && in.at + name_bytes == model.size();
   }
@@ -53,7 +62,8 @@ public:
     if (type == 3) take_report(in);
     if (type == 4) take_settings(in);
     if (type == 5) take_steps(in);
-    return type >= 1 && type <= 5 && in.at == message.size();
+    if (type == 6) take_weights(in);
+    return type >= 1 && type <= 6 && in.at == message.size();
   }
 
   /// The shape, in the mesh's order and units.
@@ -61,6 +71,7 @@ public:
     std::vector<float> shape = base_;
     for (const Field& field : pending_)
       apply(field, shape);
+    if (!pending_vectors_.empty()) apply(pending_vectors_, shape);
     deform::Points points(3, static_cast<Eigen::Index>(order.size()));
     for (std::size_t at = 0; at < order.size(); ++at)
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -77,6 +88,14 @@ public:
   unsigned loop = 0;
   std::vector<float> rest;
   std::vector<std::uint32_t> order, corners;
+  struct Coat {
+    std::uint32_t triangles = 0, texture = 0;
+    bool has_colour = false;
+    std::array<float, 3> colour{};
+  };
+  std::vector<Coat> coats;
+  std::vector<float> texcoords;
+  std::vector<std::uint16_t> colours;
   std::string name;
   // Of the latest settings message.
   std::array<double, 5> radius_m{};
@@ -102,6 +121,10 @@ public:
   std::array<std::uint32_t, 2> bad{}, delivered{}, missed{}, refused{}; ///< records of the gloves
   std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
+  int weights = 0;              ///< messages of them
+  std::uint64_t vectors = 0;    ///< that came in steps
+  std::array<bool, 2> let_go{}; ///< of a puppet
+  bool symmetric = false, is_puppet = false;
   std::string report;                ///< the last report of the server
   std::uint64_t implied_centres = 0; ///< centres that were left out
 
@@ -180,6 +203,25 @@ private:
     number = in.take<std::uint64_t>();
     base_ = in.take_all<float>(std::size_t{3} * vertices);
     pending_.clear();
+    pending_vectors_.clear();
+  }
+
+  void take_weights(Bytes& in) {
+    ++weights;
+    in.at += 1;
+    weights_.vectors = in.take<std::uint16_t>();
+    weights_.number = in.take<std::uint32_t>();
+    const auto vertices = in.take<std::uint32_t>();
+    const auto terms = in.take<std::uint32_t>();
+    weights_.values = in.take_all<float>(terms);
+    weights_.counts = in.take_all<std::uint16_t>(vertices);
+    weights_.of_vector = in.take_all<std::uint16_t>(terms);
+    std::size_t sum = 0;
+    for (const std::uint16_t count : weights_.counts)
+      sum += count;
+    if (vertices != order.size() || sum != terms) good = false;
+    for (const std::uint16_t of : weights_.of_vector)
+      if (of >= weights_.vectors) good = false;
   }
 
   static void take_bones(Bytes& in, Skeleton& skeleton) {
@@ -196,6 +238,9 @@ private:
     const auto state = in.take<std::uint8_t>();
     held = (state & 1U) != 0;
     uncalibrated = {(state & 2U) != 0, (state & 4U) != 0};
+    let_go = {(state & 16U) != 0, (state & 32U) != 0};
+    symmetric = (state & 64U) != 0;
+    is_puppet = (state & 128U) != 0;
     const auto hands = in.take<std::uint8_t>();
     can_undo = (hands & 64U) != 0;
     can_redo = (hands & 128U) != 0;
@@ -256,18 +301,39 @@ private:
 
   void take_step(Bytes& in) {
     const bool bakes = in.take<std::uint8_t>() == 1;
-    in.at += 1;
-    std::vector<Field> fields(in.take<std::uint16_t>());
+    const bool is_of_vectors = in.take<std::uint8_t>() == 1;
+    const auto count = in.take<std::uint16_t>();
+    if (is_of_vectors) {
+      take_vectors(in, bakes, count);
+      return;
+    }
+    std::vector<Field> fields(count);
     for (std::size_t at = 0; at < fields.size(); ++at)
       take_field(in, fields[at], at > 0 ? &fields[at - 1] : nullptr);
     if (number == 0) return; // without a shape there is nothing to apply it to
     pending_.clear();
+    pending_vectors_.clear();
     if (!bakes) {
       pending_ = fields;
       return;
     }
     for (const Field& field : fields)
       apply(field, base_);
+  }
+
+  void take_vectors(Bytes& in, bool bakes, std::size_t count) {
+    const bool is_known =
+        in.take<std::uint32_t>() == weights_.number && count == weights_.vectors && count > 0;
+    const auto numbers = in.take_all<float>(3 * count);
+    vectors += count;
+    if (!is_known) good = false; // the weights must have come before
+    if (number == 0 || !is_known) return;
+    pending_.clear();
+    pending_vectors_.clear();
+    if (bakes)
+      apply(numbers, base_);
+    else
+      pending_vectors_ = numbers;
   }
 
   void take_field(Bytes& in, Field& field, const Field* before) {
@@ -335,6 +401,24 @@ private:
     }
   }
 
+  /// Each vertex moves by the sum of its terms.
+  void apply(const std::vector<float>& numbers, std::vector<float>& shape) const {
+    std::size_t term = 0;
+    for (std::size_t vertex = 0; vertex < weights_.counts.size(); ++vertex)
+      for (unsigned left = weights_.counts[vertex]; left > 0; --left, ++term)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          shape[3 * vertex + axis] +=
+              weights_.values[term] * numbers[3 * std::size_t{weights_.of_vector[term]} + axis];
+  }
+
+  struct Weights {
+    std::uint32_t number = 0;
+    std::size_t vectors = 0;
+    std::vector<float> values;
+    std::vector<std::uint16_t> counts, of_vector;
+  };
+  Weights weights_;
+  std::vector<float> pending_vectors_;
   std::array<std::array<Skeleton, 2>, 2> bones_{}; ///< of the left, the right hand: first, other
   std::vector<float> base_;
   std::vector<Field> pending_;

@@ -133,6 +133,35 @@ TEST_SUITE("run_web") {
   }
 
   TEST_CASE(
+      "a browser's client follows a face's puppet, whose eyes and teeth follow others, to the "
+      "shape that it saves, within 2e-6 of the diagonal, and has its colours") {
+    const test::TemporaryFolder folder;
+    const auto out = folder.path() / "face.obj";
+    test::Program program({"run", "--puppet", "face", "--left", "sim:faces?seed=7", "--right",
+                           "sim:faces?seed=7", "--web", "0", "--out", out.string()});
+    Browser browser{address_of(program), {}, {}};
+    browser.connect();
+    const FollowingClient& seen = *browser.follower;
+    CHECK(seen.coats.size() > 5);
+    browser.follow_until([&] { return seen.vectors > 0 && seen.updates > 100; });
+    CHECK(seen.update_bytes < 1200);
+    REQUIRE(browser.client->send_text("let go"));
+    browser.follow_until([&] { return !seen.held; });
+    CHECK(seen.good);
+    CHECK(seen.weights == 1);
+    CHECK(seen.shapes == 1);
+    program.signal(SIGTERM);
+    CHECK(program.wait().exit_code == 0);
+    const auto written = deform::read_mesh(out);
+    const auto rest = deform::read_mesh(NENDO_MODELS "/face.obj");
+    REQUIRE(written);
+    REQUIRE(rest);
+    const deform::Points shape = seen.vertices();
+    CHECK((written->vertices - shape).cwiseAbs().maxCoeff() < 2e-6 * seen.diagonal);
+    CHECK((rest->vertices - shape).cwiseAbs().maxCoeff() > 1e-3 * seen.diagonal);
+  }
+
+  TEST_CASE(
       "a browser's client changes settings, resets, records, and moves a hand, and the loop goes "
       "on") {
     const test::TemporaryFolder folder;

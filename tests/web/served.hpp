@@ -11,6 +11,7 @@
 #include "streamed_loop.hpp"
 #include "support/eventually.hpp"
 #include "support/restraint.hpp"
+#include "web/weights_message.hpp"
 #include "web_client.hpp"
 
 namespace nendo::test {
@@ -27,9 +28,12 @@ struct Served {
   std::unique_ptr<web::Server> server;
   RestraintCounts counts; ///< of the loop's thread
 
-  explicit Served(flow::Mode mode, web::ServerLimits limits = {})
-      : streamed(mode, {.injective = deform::InjectiveOptions{}}), server(open_server(limits)) {
+  explicit Served(flow::Mode mode, web::ServerLimits limits = {}, const char* puppet = nullptr)
+      : streamed(mode, {.injective = deform::InjectiveOptions{}, .puppet = puppet}),
+        server(open_server(limits)) {
     server->present(streamed.stream, streamed.model);
+    if (const auto& surface = streamed.test.loop->sculptor_options().surface)
+      server->add_weights(surface->number(), web::weights_message(*surface));
   }
   ~Served() { end(); }
   void begin() {

@@ -55,6 +55,23 @@ TEST_SUITE("server_limits") {
     CHECK(viewer.skipped > 50);
   }
 
+  TEST_CASE("of a puppet, a client that does not read misses frames, and then goes on with the "
+            "weights that it has, without a shape") {
+    ServerLimits limits;
+    limits.max_queued_bytes = 8192;
+    limits.send_buffer_bytes = 4096;
+    Served served(flow::Mode::type1, limits, test::ball_puppet);
+    served.begin();
+    Viewer viewer(served, 4096);
+    CHECK(viewer.follow_until([&] { return viewer.follows() && viewer.vectors > 0; }));
+    CHECK(eventually([&] { return served.server->counters().skipped > 50; }));
+    CHECK(
+        viewer.follow_until([&] { return viewer.skipped > 50 && viewer.number == viewer.newest; }));
+    CHECK(viewer.good);
+    CHECK(viewer.weights == 1);
+    CHECK(viewer.shapes <= 2);
+  }
+
   TEST_CASE(
       "clients that are silent or do not finish a request are dropped after their time limit") {
     ServerLimits limits;

@@ -185,9 +185,14 @@ TEST_SUITE("server") {
   }
 
   TEST_CASE("over the network, too, a follower has the shape that the loop ends with") {
-    for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
+    for (const auto& [mode, puppet] :
+         {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
+          {flow::Mode::type2, nullptr},
+          {flow::Mode::type1, test::ball_puppet},
+          {flow::Mode::type2, test::ball_puppet}}) {
       CAPTURE(name_of(mode));
-      auto served = std::make_unique<Served>(mode);
+      CAPTURE((puppet != nullptr));
+      auto served = std::make_unique<Served>(mode, ServerLimits{}, puppet);
       served->begin();
       Viewer viewer(*served);
       for (const auto* request : {"commit", "undo", "commit"}) {
@@ -204,9 +209,45 @@ TEST_SUITE("server") {
       CHECK((viewer.vertices() - shape).cwiseAbs().maxCoeff() < 1e-5 * viewer.diagonal);
       CHECK((shape - served->streamed.test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
       CHECK(viewer.good);
+      const bool weighted = puppet != nullptr && mode == flow::Mode::type1;
+      CHECK(viewer.weights == (weighted ? 1 : 0));
+      CHECK((viewer.vectors > 0) == weighted);
+      CHECK(served->server->counters().weights == (weighted ? 1 : 0));
       served->server.reset(); // sends a close frame
       CHECK(viewer.client.close_code() == 1001);
     }
+  }
+
+  TEST_CASE("a client with the token gets the model's pictures, of what type they are, and nothing "
+            "else of its folder") {
+    const auto server = open_server();
+    const auto text = [](const char* contents) {
+      return std::make_shared<const std::string>(contents);
+    };
+    const std::string png = "\x89PNG\r\n\x1A\n...";
+    const StreamedLoop streamed(flow::Mode::type1);
+    CHECK(WebClient(*server).get(WebClient(*server).with_token("/picture") + "&number=0").status ==
+          503);
+    server->present(streamed.stream, streamed.model,
+                    {text(png.c_str()), nullptr, text("\xFF\xD8\xFF.")});
+    const auto get = [&](const std::string& number) {
+      WebClient client(*server);
+      return client.get(client.with_token("/picture") + "&number=" + number);
+    };
+    REQUIRE(eventually([&] { return get("0").status == 200; }));
+    CHECK(get("0").body == png);
+    CHECK(get("0").head.find("Content-Type: image/png\r\n") != std::string::npos);
+    CHECK(get("0").head.find("nosniff") != std::string::npos);
+    CHECK(get("2").head.find("Content-Type: image/jpeg\r\n") != std::string::npos);
+    for (const auto* none : {"1", "3", "999999", "1000000", "18446744073709551616", "-1", "+0",
+                             "0x0", "", "0/..", "%30"}) {
+      CAPTURE(none);
+      CHECK(get(none).status == 404);
+    }
+    CHECK(WebClient(*server).get("/picture?number=0").status == 403);
+    CHECK(WebClient(*server).get("/picture?token=0&number=0").status == 403);
+    WebClient client(*server);
+    CHECK(client.get(client.with_token("/picture")).status == 404);
   }
 
   TEST_CASE(

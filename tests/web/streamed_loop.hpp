@@ -13,6 +13,7 @@ struct StreamedLoopOptions {
   std::optional<deform::InjectiveOptions> injective = std::nullopt;
   deform::Supports supports = deform::one_radius(0.5);
   std::optional<double> swapped_length_m = std::nullopt; ///< of the hands that may be swapped in
+  const char* puppet = nullptr; ///< the text of its file; its supports are used then
 };
 
 struct StreamedLoop {
@@ -21,8 +22,11 @@ struct StreamedLoop {
   std::vector<std::byte> model;
 
   explicit StreamedLoop(flow::Mode mode, const StreamedLoopOptions& options = {})
-      : test(mode, {.rings_of_ball = 12, .injective = options.injective}) {
-    const deform::Supports& supports = options.supports;
+      : test(mode,
+             {.rings_of_ball = 12, .injective = options.injective, .puppet = options.puppet}) {
+    const deform::Supports supports =
+        test.options.rig ? test.options.rig->supports() : options.supports;
+    const Eigen::Index points = test.options.rig ? test.options.rig->starts().cols() : 10;
     test.options.sculptor.deformer.supports = supports;
     if (options.swapped_length_m)
       for (auto& hand : test.inputs)
@@ -30,8 +34,10 @@ struct StreamedLoop {
     const deform::BlockLayout layout(test.model.vertices);
     constexpr std::size_t most_fields = 64;
     stream = std::make_shared<web::FrameStream>(
-        layout, most_fields,
-        static_cast<std::size_t>(std::max<Eigen::Index>(20, supports.functions(10))));
+        layout, web::FrameStream::Capacity{most_fields,
+                                           static_cast<std::size_t>(std::max<Eigen::Index>(
+                                               20, 2 * supports.functions(points))),
+                                           static_cast<std::size_t>(2 * points)});
     test.options.sinks = {stream.get()};
     make_loop();
     model = web::model_message(test.loop->layout(), test.model, test.inputs,

@@ -21,9 +21,13 @@ using nendo::test::StreamedLoop;
 TEST_SUITE("streamed_loop" * doctest::skip(!nendo::test::restraint_is_counted)) {
   TEST_CASE("with a stream that is active and asked for shapes, a tick makes no system call, no "
             "allocation and takes no lock") {
-    for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
+    for (const auto& [mode, puppet] :
+         {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
+          {flow::Mode::type2, nullptr},
+          {flow::Mode::type1, test::ball_puppet}}) {
       CAPTURE(name_of(mode));
-      StreamedLoop streamed(mode, {.injective = deform::InjectiveOptions{}});
+      CAPTURE((puppet != nullptr));
+      StreamedLoop streamed(mode, {.injective = deform::InjectiveOptions{}, .puppet = puppet});
       streamed.stream->set_active(true);
       std::atomic<bool> over{false};
       std::atomic<std::uint64_t> records{0};

@@ -13,12 +13,14 @@ using deform::Points;
 
 namespace {
 
-Frame first_frame(const Shaping& shaping, double units_per_metre) {
+/// points: of a puppet, 0 without one.
+Frame first_frame(const Shaping& shaping, Eigen::Index points, double units_per_metre) {
   Frame frame;
   frame.settings = shaping.settings();
   frame.units_per_metre = units_per_metre;
   frame.shape = shaping.sculptor().rest();
   frame.fields = shaping.sculptor().fields();
+  frame.surface.vectors.setZero(3, 2 * points);
   for (auto& hand : frame.hands)
     hand.pose.joints.fill(Eigen::Isometry3d::Identity());
   return frame;
@@ -83,7 +85,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
       first_(first_setup(options, hands.front(), *versions_.front(), placement.units_per_metre)),
       asked_model_(versions_.front().get()),
       shaping_(*asked_model_, tips_.cols(), shaping_options(options, first_)), asked_(first_),
-      frames_(first_frame(shaping_, placement.units_per_metre)) {
+      frames_(first_frame(shaping_, options.rig ? tips_.cols() : 0, placement.units_per_metre)) {
   assert(!hands.empty() && hands.size() <= 2);
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.side);

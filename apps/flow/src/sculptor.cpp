@@ -202,6 +202,13 @@ bool Sculptor::is_told_by_fields() const noexcept {
   return !std::holds_alternative<deform::SurfaceDeformer>(deformer_);
 }
 
+void Sculptor::tell(deform::SurfaceMove& move) const noexcept {
+  if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
+    surface->tell(move);
+  else
+    move.clear();
+}
+
 bool Sculptor::moves_anything() const noexcept {
   if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
     return surface->is_moved();

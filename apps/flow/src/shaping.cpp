@@ -72,9 +72,10 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   const FieldStatus status = commits || completes ? sculptor_->finish(tips, frame.shape)
                                                   : sculptor_->update(tips, frame.shape);
   frame.fields.follow(sculptor_->fields());
+  sculptor_->tell(frame.surface);
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  if (!sculptor_->is_told_by_fields()) ++leaps_;
+  if (!sculptor_->is_told_by_fields()) ++(sculptor_->mode() == Mode::type2 ? brushed_ : leaps_);
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
   // What cannot be committed now stays held, and is tried again at the next tick.
@@ -90,6 +91,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
 FieldStatus Shaping::show_rest(Frame& frame) noexcept {
   frame.shape.follow(sculptor_->rest());
   frame.fields.clear();
+  frame.surface.clear();
   frame.chain = {};
   return FieldStatus::ok;
 }
@@ -108,7 +110,8 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   stats.undo_steps = steps_to_undo();
   stats.forgotten_steps = sculptor_->forgotten_steps();
   frame.commits = stats.commits + otherwise_ended_;
-  frame.undos = stats.undos + stats.redos + stats.resets + leaps_;
+  frame.undos = stats.undos + stats.redos + stats.resets + leaps_ + brushed_;
+  frame.leaps = leaps_;
   frame.undo_steps = undo_steps();
   frame.redo_steps = steps_to_redo();
   frame.awaited = awaited_;

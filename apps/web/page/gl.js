@@ -30,6 +30,7 @@ function makeProgram(gl, vertex, fragment, feedback = []) {
     else gl.uniform1i(place, value)
   }
   return {
+    dispose() { gl.deleteProgram(program) },
     use(values = {}) { gl.useProgram(program); this.set(values) },
     set(values) {
       for (const [name, value] of Object.entries(values)) {

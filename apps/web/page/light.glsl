@@ -1,5 +1,5 @@
 // Key, fill and rim lights that go round with the camera, and a sky.
-uniform vec3 eye, colour, key, fill, rim;
+uniform vec3 eye, key, fill, rim;
 uniform float gloss, opacity, rim_opacity;
 uniform float grid, fade;   // of a ground
 uniform float dark;         // of a shadow
@@ -37,6 +37,7 @@ void main() {
   light += max(0.0, (dot(n, fill) + 0.3) / 1.3) * vec3(0.22, 0.27, 0.34);
   light += across * across * max(0.0, (dot(n, rim) + 0.2) / 1.2) * vec3(0.62, 0.66, 0.72);
   float highlight = pow(max(0.0, dot(n, normalize(key + sight))), 32.0);
-  vec3 seen = unlit ? colour : colour * light + gloss * highlight * vec3(1.42, 1.35, 1.25);
+  vec3 own = own_colour();
+  vec3 seen = unlit ? own : own * light + gloss * highlight * vec3(1.42, 1.35, 1.25);
   shown = vec4(screen(seen) * part, part);
 }

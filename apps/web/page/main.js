@@ -3,7 +3,7 @@ const token = location.hash.slice(1)
 const holds = new Holds()
 let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = ''
 const SERVICE_RESTART = 1012
-const counts = { updates: 0, updateBytes: 0, shapes: 0, bakes: 0, draws: 0 }
+const counts = { updates: 0, updateBytes: 0, shapes: 0, weights: 0, bakes: 0, draws: 0 }
 
 const panel = new Panel(ask, (part, yes) => {
   if (scene) scene.parts[part] = yes
@@ -48,12 +48,21 @@ async function connect() {
   holds.begin()
   if (scene) {
     const first = !scene.shape
-    scene.setModel(model)
+    scene.setModel(model, fetchPicture, () => { dirty = true })
     camera.home.target = [0, 0.5 * scene.height, 0]
     camera.home.distance = Math.max(0.5, 3.0 * Math.max(0.45, scene.height))
     if (first) camera.reset()
   }
   open(model)
+}
+
+async function fetchPicture(number) {
+  try {
+    const answer = await fetch(`/picture?token=${token}&number=${number}`)
+    return answer.ok ? await answer.blob() : null
+  } catch (error) {
+    return null
+  }
 }
 
 function open(model) {
@@ -71,6 +80,7 @@ function open(model) {
     if (type === 3) panel.tell(new TextDecoder().decode(data.slice(4)))
     else if (type === 4) takeSettings(readSettings(data))
     else if (type === 5) panel.setHistory(readSteps(data))
+    else if (type === 6) takeWeights(readWeights(data), model)
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
@@ -83,6 +93,11 @@ function open(model) {
 function takeSettings(settings) {
   panel.setSettings(settings)
   if (scene) scene.radii = settings.radii
+}
+
+function takeWeights(weights, model) {
+  counts.weights += 1
+  if (scene && weights.counts.length === model.vertices) scene.shape.takeWeights(weights)
 }
 
 function takeShape(shape, model) {

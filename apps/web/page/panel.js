@@ -15,6 +15,9 @@ const KEYS = [
   ['Ctrl Z', 'undo, too; with Shift, or Ctrl Y: redo'],
   ['x', 'reset: back to the model as it was loaded', panel => panel.ask('reset')],
   ['t', 'a take: record from here on, and end that', panel => panel.record()],
+  [',', 'of a puppet: the left hand lets go, takes hold again', panel => panel.clutch(0)],
+  ['\'', 'of a puppet: the right hand lets go, takes hold again', panel => panel.clutch(1)],
+  ['y', 'of a puppet: one hand plays both sides, or each its own', panel => panel.toggleSymmetry()],
   ['.', 'mark this moment in the recording', panel => panel.ask('mark')],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
   ['s', 'save the model as it is now', panel => panel.ask('save')],
@@ -108,6 +111,14 @@ class Panel {
     return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
   }
   toggle(part, kind = 'show-') { element(kind + part).click() }
+  clutch(slot) {
+    const { update } = this
+    if (update && update.isPuppet) this.ask(`clutch ${slot === 0 ? 'left' : 'right'} all ${update.letGo[slot] ? 'on' : 'off'}`)
+  }
+  toggleSymmetry() {
+    const { update } = this
+    if (update && update.isPuppet) this.ask(`symmetry ${update.symmetric ? 'off' : 'on'}`)
+  }
   record() {
     if (this.settings) this.ask(this.settings.recorded ? 'end recording' : 'record')
   }

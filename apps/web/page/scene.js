@@ -34,8 +34,8 @@ class Scene {
     this.canvas = canvas
     this.radii = [0, 0, 0, 0, 0]
     this.parts = { skin: true, bones: true, vectors: true, radii: false, facets: false }
-    const light = glsl('light')
-    this.model = makeProgram(gl, glsl('deform') + glsl('model'), light)
+    const light = glsl('plain') + glsl('light')
+    this.model = makeProgram(gl, glsl('deform') + glsl('model'), glsl('paint') + glsl('light'))
     this.capsule = makeProgram(gl, glsl('capsule'), light)
     this.ground = makeProgram(gl, glsl('ground'), light)
     this.makeCapsules()
@@ -67,9 +67,14 @@ class Scene {
     gl.bindVertexArray(null)
   }
 
-  setModel(model) {
-    if (this.shape) this.shape.dispose()
+  // fetchPicture, changed: as Paint takes them.
+  setModel(model, fetchPicture, changed) {
+    if (this.shape) {
+      this.shape.dispose()
+      this.paint.dispose()
+    }
     this.shape = new Shape(this.gl, model)
+    this.paint = new Paint(this.gl, model, fetchPicture, changed)
     this.scale = model.unit / model.unitsPerMetre
     if (!this.origin) this.findPlace(model) // a connection that is made anew does not move the picture
     this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
@@ -142,9 +147,10 @@ class Scene {
     gl.depthFunc(gl.LEQUAL)
     if (!this.shape) return
     const beside = this.beside(update, holds)
+    this.shape.prepare()
     this.drawGround(beside)
     this.model.use({ ...this.view, ...LIT, ...CLAY, scale: this.scale, offset: this.offset, facets: this.parts.facets })
-    this.shape.draw(this.model)
+    this.shape.draw(this.model, part => this.paint.each(this.model, CLAY.colour, part))
     this.capsules(beside.bones, BONE)
     this.capsules(beside.arrows, ARROW)
     beside.skins.forEach(([skin, material]) => this.capsules(skin, material))

@@ -23,43 +23,64 @@ function normalsOf(places, corners) {
   return normals
 }
 
+const NOTHING = { count: 0, texels: [], weights: null }
+
 class Shape {
   constructor(gl, model) {
     this.gl = gl
     this.model = model
+    this.seams = splitSeams(model)
     this.bake = makeProgram(gl, glsl('deform') + glsl('bake'), 'void main() {}', ['baked_place', 'baked_normal'])
-    this.corners = makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, model.corners, gl.STATIC_DRAW)
+    this.corners = makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, this.seams.drawn, gl.STATIC_DRAW)
+    this.texcoords = this.seams.texcoords && makeBuffer(gl, gl.ARRAY_BUFFER, this.seams.texcoords, gl.STATIC_DRAW)
+    this.tints = model.colours && makeBuffer(gl, gl.ARRAY_BUFFER, forDrawn(model.colours, 3, this.seams), gl.STATIC_DRAW)
     this.states = [this.makeState(), this.makeState()] // the first is the base
     this.feedback = gl.createTransformFeedback()
     this.texture = gl.createTexture()
-    this.pending = { count: 0, texels: [] }
+    this.pending = NOTHING
+    this.weights = null // of a puppet
+    this.isMoved = false // the other state is what the pending vectors make of the base
     this.number = null // of the frame whose shape this is; null: none has come
     this.setBase(model.places)
   }
 
   makeState() {
-    const { gl, model } = this
+    const { gl } = this
     const array = gl.createVertexArray()
     gl.bindVertexArray(array)
     const buffers = [0, 1].map(which => {
-      const buffer = makeBuffer(gl, gl.ARRAY_BUFFER, 12 * model.vertices, gl.DYNAMIC_COPY)
+      const buffer = makeBuffer(gl, gl.ARRAY_BUFFER, 12 * this.seams.count, gl.DYNAMIC_COPY)
       gl.enableVertexAttribArray(which)
       gl.vertexAttribPointer(which, 3, gl.FLOAT, false, 0, 0)
       return buffer
     })
+    this.share(2, this.texcoords, 2, gl.FLOAT, 0)
+    this.share(3, this.tints, 3, gl.UNSIGNED_SHORT, 6)
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners)
     gl.bindVertexArray(null)
     gl.bindBuffer(gl.ARRAY_BUFFER, null)
     return { array, buffers }
   }
 
+  // An attribute that both states have; 1, where the model has none.
+  share(place, buffer, size, type, stride) {
+    const { gl } = this
+    gl.vertexAttrib4f(place, 1, 1, 1, 1)
+    if (!buffer) return
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
+    gl.enableVertexAttribArray(place)
+    gl.vertexAttribPointer(place, size, type, type !== gl.FLOAT, stride, 0)
+  }
+
   dispose() {
     const { gl } = this
+    if (this.weights) this.weights.dispose()
     for (const { array, buffers } of this.states) {
       gl.deleteVertexArray(array)
       buffers.forEach(buffer => gl.deleteBuffer(buffer))
     }
-    gl.deleteBuffer(this.corners)
+    for (const buffer of [this.corners, this.texcoords, this.tints]) gl.deleteBuffer(buffer)
+    this.bake.dispose()
     gl.deleteTransformFeedback(this.feedback)
     gl.deleteTexture(this.texture)
   }
@@ -69,10 +90,10 @@ class Shape {
     const data = [places, normalsOf(places, this.model.corners)]
     this.states[0].buffers.forEach((buffer, which) => {
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
-      gl.bufferSubData(gl.ARRAY_BUFFER, 0, data[which])
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, forDrawn(data[which], 3, this.seams))
     })
     gl.bindBuffer(gl.ARRAY_BUFFER, null)
-    this.pending = { count: 0, texels: [] }
+    this.pending = NOTHING
   }
 
   takeShape(shape) {
@@ -80,13 +101,27 @@ class Shape {
     this.number = shape.number
   }
 
+  takeWeights(weights) {
+    if (!this.weights) this.weights = new Weights(this.gl, this)
+    this.weights.take(weights)
+    this.pending = NOTHING // which was for those before
+  }
+
   takeStep(step) {
-    if (step.bakes) {
-      if (step.count > 0) this.bakeFields(step)
-      this.pending = { count: 0, texels: [] }
-    } else {
-      this.pending = step
-    }
+    if (step.weights !== null && (!this.weights || step.weights !== this.weights.number)) return
+    this.isMoved = false
+    this.pending = step.bakes ? NOTHING : step
+    if (!step.bakes || step.count === 0) return
+    if (step.weights === null) return this.bakeFields(step)
+    this.weights.run(step)
+    this.states.reverse()
+  }
+
+  // Makes what is pending the other state.
+  makeMoved() {
+    if (this.pending.weights === null) return this.run(this.pending)
+    if (!this.isMoved) this.weights.run(this.pending)
+    this.isMoved = true
   }
 
   // Binds the fields, for a program that contains deform.glsl.
@@ -108,15 +143,21 @@ class Shape {
     const { gl } = this
     this.bake.use()
     this.sendFields(fields, this.bake)
+    this.transform(this.feedback, this.states[1].buffers)
+  }
+
+  // Writes what the program that is in use makes of the base.
+  transform(feedback, buffers) {
+    const { gl } = this
     gl.bindVertexArray(this.states[0].array)
-    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.feedback)
-    this.states[1].buffers.forEach((buffer, which) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, which, buffer))
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, feedback)
+    buffers.forEach((buffer, which) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, which, buffer))
     gl.enable(gl.RASTERIZER_DISCARD)
     gl.beginTransformFeedback(gl.POINTS)
-    gl.drawArrays(gl.POINTS, 0, this.model.vertices)
+    gl.drawArrays(gl.POINTS, 0, this.seams.count)
     gl.endTransformFeedback()
     gl.disable(gl.RASTERIZER_DISCARD)
-    this.states[1].buffers.forEach((_, which) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, which, null))
+    buffers.forEach((_, which) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, which, null))
     gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, null)
     gl.bindVertexArray(null)
   }
@@ -131,7 +172,7 @@ class Shape {
   // The vertices as the shader makes them, in the mesh's order and units.
   vertices() {
     const { gl, model } = this
-    this.run(this.pending)
+    this.makeMoved()
     const read = new Float32Array(3 * model.vertices)
     gl.bindBuffer(gl.ARRAY_BUFFER, this.states[1].buffers[0])
     gl.getBufferSubData(gl.ARRAY_BUFFER, 0, read)
@@ -144,11 +185,15 @@ class Shape {
     return result
   }
 
-  draw(program) {
-    const { gl } = this
-    this.sendFields(this.pending, program)
-    gl.bindVertexArray(this.states[0].array)
-    gl.drawElements(gl.TRIANGLES, this.model.corners.length, gl.UNSIGNED_INT, 0)
+  // Before the program is used that draws: what that needs of others.
+  prepare() { if (this.pending.weights !== null) this.makeMoved() }
+
+  // paint: calls back for each part; by default there is one.
+  draw(program, paint = part => part(0, this.model.corners.length)) {
+    const { gl } = this, isMoved = this.pending.weights !== null
+    this.sendFields(isMoved ? NOTHING : this.pending, program)
+    gl.bindVertexArray(this.states[isMoved ? 1 : 0].array)
+    paint((first, count) => gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * first))
     gl.bindVertexArray(null)
   }
 }

@@ -1,6 +1,6 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
-const MODEL_HEAD = 88, BONE_BYTES = 28, UPDATE_HEAD = 112
+const MODEL_HEAD = 88, BONE_BYTES = 28, COAT_BYTES = 24, UPDATE_HEAD = 112, NO_TEXTURE = 0xffffffff
 const BRUSHES = ['pull', 'none', 'push', 'inflate', 'smooth', 'flatten', 'twist', 'scale']
 const KERNELS = ['c0', 'c2', 'c4', 'c6']
 // Of each joint, whose place hangs on it; the wrist's on none.
@@ -22,7 +22,9 @@ function readModel(buffer) {
     bones[slot] = [readBones(view, places), readBones(view, places + JOINTS * BONE_BYTES)]
     places += 2 * JOINTS * BONE_BYTES
   }
-  const order = places + 12 * vertices, corners = order + 4 * vertices, name = corners + 12 * triangles
+  const order = places + 12 * vertices, corners = order + 4 * vertices, coats = corners + 12 * triangles
+  const texcoords = coats + COAT_BYTES * view.getUint32(84, true), colours = texcoords + (flags & 8 ? 24 * triangles : 0)
+  const name = colours + (flags & 4 ? 6 * vertices : 0)
   return {
     vertices, triangles,
     rate: view.getFloat64(24, true), unit: view.getFloat64(32, true),
@@ -32,8 +34,22 @@ function readModel(buffer) {
     places: new Float32Array(buffer, places, 3 * vertices),
     order: new Uint32Array(buffer, order, vertices),
     corners: new Uint32Array(buffer, corners, 3 * triangles),
+    coats: readCoats(view, coats, view.getUint32(84, true)),
+    texcoords: flags & 8 ? new Float32Array(buffer, texcoords, 6 * triangles) : null,
+    colours: flags & 4 ? new Uint16Array(buffer, colours, 3 * vertices) : null,
     name: text(name, view.getUint32(20, true)),
   }
+}
+
+function readCoats(view, from, count) {
+  let first = 0
+  return Array.from({ length: count }, (_, n) => {
+    const at = from + COAT_BYTES * n, texture = view.getUint32(at + 4, true)
+    const coat = { first, count: 3 * view.getUint32(at, true), texture: texture === NO_TEXTURE ? null : texture, colour: null }
+    if (view.getUint32(at + 8, true)) coat.colour = [12, 16, 20].map(channel => view.getFloat32(at + channel, true))
+    first += coat.count
+    return coat
+  })
 }
 
 // Of a hand, by joint: place and turn in its parent's axes.
@@ -66,6 +82,16 @@ function readShape(buffer) {
   return {
     loop: view.getUint16(2, true), vertices: view.getUint32(4, true), number: view.getBigUint64(8, true),
     places: new Float32Array(buffer, 16),
+  }
+}
+
+function readWeights(buffer) {
+  const view = new DataView(buffer), vertices = view.getUint32(8, true), terms = view.getUint32(12, true)
+  return {
+    number: view.getUint32(4, true), vectors: view.getUint16(2, true),
+    values: new Float32Array(buffer, 16, terms),
+    counts: new Uint16Array(buffer, 16 + 4 * terms, vertices),
+    ofVector: new Uint16Array(buffer, 16 + 4 * terms + 2 * vertices, terms),
   }
 }
 
@@ -145,6 +171,7 @@ function readUpdate(buffer, model) {
   const u32 = at => view.getUint32(at, true), u64 = at => Number(view.getBigUint64(at, true))
   const state = view.getUint8(1), bits = view.getUint8(2)
   const update = {
+    letGo: [(state & 16) !== 0, (state & 32) !== 0], symmetric: (state & 64) !== 0, isPuppet: (state & 128) !== 0,
     canUndo: (bits & 64) !== 0, canRedo: (bits & 128) !== 0,
     held: (state & 1) !== 0, inHand: (state & 8) !== 0, status: view.getUint8(3), number: view.getBigUint64(8, true),
     tick: u64(16), ticks: u64(24), missed: u64(32), commits: u32(40), undos: u32(44),
@@ -165,13 +192,21 @@ function readUpdate(buffer, model) {
   }
   for (let step = u32(4); step > 0; --step) {
     const bakes = view.getUint8(at) === 1, count = view.getUint16(at + 2, true), texels = []
+    const vectors = view.getUint8(at + 1) === 1
     at += 4
+    if (vectors) {
+      const weights = u32(at)
+      for (let n = 0; n < count; ++n, at += 12) texels.push(...[4, 8, 12].map(axis => view.getFloat32(at + axis, true)), 0)
+      at += 4
+      update.steps.push({ bakes, count, texels, weights })
+      continue
+    }
     for (let left = count, field = null; left > 0; --left) {
       field = readField(view, at, field)
       texels.push(...texelsOf(field))
       at = field.end
     }
-    update.steps.push({ bakes, count, texels })
+    update.steps.push({ bakes, count, texels, weights: null })
   }
   return update
 }

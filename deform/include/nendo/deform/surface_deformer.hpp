@@ -35,6 +35,9 @@ public:
   const BlockShape& rest() const noexcept { return shape_->shape(); }
   /// Always empty: no formula of a place tells what happens there.
   const FieldSequence& fields() const noexcept { return fields_; }
+  /// Tells by what the last apply() led from the rest shape to its result. Allocates only if `move`
+  /// has no room.
+  void tell(SurfaceMove& move) const { field_->tell(coefficients_, move); }
   ChainReport report() const noexcept { return {}; }
   /// Tells whether the last apply() moved anything.
   bool is_moved() const noexcept { return !coefficients_.all.isZero(0.0F); }

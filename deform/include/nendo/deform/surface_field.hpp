@@ -36,6 +36,16 @@ struct FollowingPart {
   bool is_affine = true;
 };
 
+/// What a SurfaceField did to a shape, for whoever makes that shape elsewhere: each vertex moved by
+/// the sum of its terms, each of them a value times a vector.
+struct SurfaceMove {
+  std::uint64_t field = 0;    ///< SurfaceField::number(); 0: nothing was moved along the surface
+  std::uint32_t count = 0;    ///< SurfaceField::vector_count()
+  Eigen::Matrix3Xf vectors{}; ///< in blocks' units; may have room for more than `count`
+
+  void clear() noexcept { field = count = 0; }
+};
+
 struct SurfaceSetup {
   std::vector<SurfacePoint> points;
   Wendland kernel = Wendland::c2;
@@ -60,6 +70,20 @@ public:
   /// Returns what each vertex gets of each control vector: #points by #vertices. Allocates.
   Eigen::MatrixXf weights() const;
 
+  /// Tells this field from every other one of the process. Never 0.
+  std::uint64_t number() const noexcept { return number_; }
+  /// How many vectors a SurfaceMove has: the columns of Coefficients::all that any vertex takes.
+  std::size_t vector_count() const noexcept { return columns_.size(); }
+  /// What displace() adds up at the vertices in block order. Those of vertex k are the terms
+  /// starts[k] to starts[k + 1] - 1: values[t] times vector of_vector[t] of a SurfaceMove.
+  struct Terms {
+    std::vector<std::uint32_t> starts; ///< #vertices + 1
+    std::vector<std::uint32_t> of_vector;
+    std::vector<float> values;
+  };
+  /// Returns the terms. Allocates.
+  Terms terms() const;
+
   /// What a tick needs.
   struct Coefficients {
     explicit Coefficients(Eigen::Index points);
@@ -72,6 +96,8 @@ public:
   /// Writes to = from + s, block by block, where s is not 0, and copies the other blocks where they
   /// differ. Does not allocate.
   void displace(const Coefficients& by, const BlockShape& from, BlockShape& to) const noexcept;
+  /// Tells what displace() does with these coefficients. Allocates only if there is no room.
+  void tell(const Coefficients& by, SurfaceMove& move) const;
   bool reaches(std::size_t block) const noexcept { return starts_[block] < starts_[block + 1]; }
 
 private:
@@ -87,8 +113,10 @@ private:
   Eigen::MatrixXd inverse_; ///< of A
   double condition_ = 1.0;
   double unit_ = 1.0;
-  std::vector<std::uint32_t> order_; ///< BlockLayout::order()
-  std::vector<std::size_t> starts_;  ///< of each block's entries
+  std::uint64_t number_ = 0;
+  std::vector<std::uint32_t> columns_; ///< those of Coefficients::all that any vertex takes
+  std::vector<std::uint32_t> order_;   ///< BlockLayout::order()
+  std::vector<std::size_t> starts_;    ///< of each block's entries
   std::vector<Entry> entries_;
 };
 

@@ -9,6 +9,7 @@
 #include <nendo/base/triple_buffer.hpp>
 #include <nendo/deform/field_sequence.hpp>
 #include <nendo/deform/injective_chain.hpp>
+#include <nendo/deform/surface_field.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/loop_settings.hpp>
@@ -51,6 +52,8 @@ struct Frame {
   /// tells. One in this frame comes before its fields, so that they do not lead here from the frame
   /// before. A reader that applies fields must then copy the whole shape.
   std::uint64_t undos = 0;
+  /// How many of `undos` only were moves along the surface. Who applies `surface` needs no copy.
+  std::uint64_t leaps = 0;
   /// How often one can undo, and how often redo, after this frame. At 0 it changes nothing. What
   /// hands that hold the model have shaped since the last commit is a step, too.
   std::uint64_t undo_steps = 0;
@@ -58,7 +61,7 @@ struct Frame {
   StepList steps; ///< the names of the last of them
   std::optional<Awaited> awaited;
   std::uint32_t steps_due = 0; ///< undos, redos and resets that wait, the first for `awaited`
-  bool held = true; ///< the hands hold the model; otherwise it is at rest
+  bool held = true;            ///< the hands hold the model; otherwise it is at rest
   HostTime scheduled{};
   HostTime woke{};
   /// The time between the wake-ups of the tick before and of this one; 0 at first. It differs from
@@ -70,6 +73,8 @@ struct Frame {
   /// The fields in model units. Those of Type-1 lead from the rest shape to this shape, those of
   /// Type-2 from the shape of the frame before.
   deform::FieldSequence fields;
+  /// What led along the surface from the rest shape to this shape, in place of fields.
+  deform::SurfaceMove surface;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   std::uint32_t model = 0;   ///< the version of the model that `shape` is of
   /// The values of a puppet's functions, in their order, and how many there are; 0 without a

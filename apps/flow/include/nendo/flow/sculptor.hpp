@@ -107,6 +107,9 @@ public:
   /// Returns the fields of the last update: for type 1 they lead from the rest shape to this shape,
   /// for type 2 from the shape before.
   const deform::FieldSequence& fields() const noexcept;
+  /// Tells by what the last update() led along the surface from the rest shape to this shape; by
+  /// nothing, if it measures no distances there. Allocates only if `move` has no room.
+  void tell(deform::SurfaceMove& move) const noexcept;
   /// Tells whether the last update() moved anything.
   bool moves_anything() const noexcept;
   /// Returns what the last update() needed to stay injective; all 0 if that is not asked for.

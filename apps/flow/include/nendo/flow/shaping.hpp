@@ -143,7 +143,8 @@ private:
   bool commit_due_ = false;
   bool shaped_ = false;               ///< since the hands took hold, or since the last commit
   std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
-  std::uint64_t leaps_ = 0;           ///< frames in which the shape went where no field leads
+  std::uint64_t leaps_ = 0;           ///< frames in which the shape was led along the surface
+  std::uint64_t brushed_ = 0;         ///< frames in which a brush changed it
   bool in_step_ = false;              ///< shaped before the last change, and not a step yet
   LoopSettings settings_;             ///< in force
   std::optional<Awaited> awaited_;    ///< by the first step that is due

@@ -1,0 +1,73 @@
+#include "web/model_paint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nendo/deform/drawn_faces.hpp>
+
+#include "web/pictures.hpp"
+
+namespace nendo::web {
+namespace {
+
+std::uint16_t as_share(float value) noexcept {
+  return value > 0.0F ? static_cast<std::uint16_t>(std::lround(65535.0F * std::min(value, 1.0F)))
+                      : std::uint16_t{0};
+}
+
+CoatHead coat_of(const deform::Material& material, const Pictures& pictures) {
+  CoatHead coat;
+  if (material.texture < pictures.size() && pictures[material.texture])
+    coat.texture = material.texture;
+  if (!material.colour) return coat;
+  coat.has_colour = 1;
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    coat.colour[channel] =
+        as_float(static_cast<double>((*material.colour)[static_cast<Eigen::Index>(channel)]));
+  return coat;
+}
+
+std::vector<std::array<std::uint16_t, 3>> colours_of(const deform::Mesh& mesh,
+                                                     const deform::BlockLayout& layout) {
+  const auto& given = mesh.look.vertex_colours;
+  std::vector<std::array<std::uint16_t, 3>> colours;
+  if (given.cols() == 0 || given.cols() != mesh.vertices.cols()) return colours;
+  for (const std::uint32_t vertex : layout.order())
+    colours.push_back(
+        {as_share(given(0, vertex)), as_share(given(1, vertex)), as_share(given(2, vertex))});
+  return colours;
+}
+
+} // namespace
+
+ModelPaint paint_of(const deform::Mesh& mesh, const deform::BlockLayout& layout) {
+  const Pictures pictures = pictures_of(mesh);
+  const std::vector<std::uint32_t> place_of = layout.places();
+  ModelPaint paint;
+  std::vector<std::uint32_t> drawn; // numbers of the mesh's corners
+  const auto faces = deform::drawn_faces(mesh);
+  bool textured = false;
+  for (std::size_t at = 0; at < faces.size(); ++at) {
+    CoatHead coat = at == 0 ? CoatHead{} : coat_of(mesh.look.materials[at - 1], pictures);
+    const std::size_t before = drawn.size();
+    for (const std::uint32_t face : faces[at]) {
+      const std::uint32_t begin = mesh.face_starts[face];
+      for (std::uint32_t corner = begin + 2; corner < mesh.face_starts[face + 1]; ++corner)
+        drawn.insert(drawn.end(), {begin, corner - 1, corner});
+    }
+    coat.triangles = static_cast<std::uint32_t>((drawn.size() - before) / 3);
+    if (coat.triangles == 0) continue;
+    textured = textured || coat.texture != deform::no_index;
+    paint.coats.push_back(coat);
+  }
+  for (const std::uint32_t corner : drawn) {
+    paint.corners.push_back(place_of[mesh.face_corners[corner]]);
+    if (!textured) continue;
+    const auto& place = mesh.texcoords.col(mesh.corner_texcoords[corner]);
+    paint.texcoords.push_back({as_float(place.x()), as_float(place.y())});
+  }
+  paint.colours = colours_of(mesh, layout);
+  return paint;
+}
+
+} // namespace nendo::web
