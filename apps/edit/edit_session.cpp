@@ -183,7 +183,7 @@ void EditSession::follow_history() {
       lane.keys_s.push_back(key.time_s);
   }
   for (const Event& event : timeline.events)
-    view_.marks.push_back({event.time_s, in_words(event)});
+    view_.marks.push_back({event.time_s, in_words(timeline, event)});
   view_.file = out_;
   view_.export_file = export_file_;
   view_.duration_s = timeline.duration_s;
@@ -222,7 +222,9 @@ const render::SceneFrame& EditSession::scene_frame() {
   const auto& hands = history_.timeline().hands;
   const auto found = shape();
   scene_frame_.time_s = head_.time_s();
-  scene_frame_.held = found.shape != nullptr && found.shape->held;
+  // Fingertips that play a puppet do not touch the model.
+  scene_frame_.held =
+      found.shape != nullptr && found.shape->held && history_.timeline().rig == nullptr;
   if (found.shape != nullptr) scene_frame_.radius_m = found.shape->radius_m;
   scene_frame_.hands = {};
   for (std::size_t at = 0; at < hands.size(); ++at) {

@@ -42,17 +42,29 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
   return line;
 }
 
-nlohmann::ordered_json event_json(const Event& event) {
+nlohmann::ordered_json settings_json(const flow::LoopSettings& settings) {
+  return {{"mode", name_of(settings.mode)},
+          {"kernel", deform::name_of(settings.kernel)},
+          {"injective", settings.injective},
+          {"radius_m", settings.radius_m},
+          {"piece_fraction", settings.piece_fraction}};
+}
+
+nlohmann::ordered_json event_json(const Timeline& timeline, const timeline::Event& event) {
   nlohmann::ordered_json line{{"time_s", event.time_s}};
-  if (!event.settings) {
-    line["request"] = in_words(event);
-    return line;
-  }
-  line["settings"] = {{"mode", name_of(event.settings->mode)},
-                      {"kernel", deform::name_of(event.settings->kernel)},
-                      {"injective", event.settings->injective},
-                      {"radius_m", event.settings->radius_m},
-                      {"piece_fraction", event.settings->piece_fraction}};
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&event.command))
+    line["settings"] = settings_json(change->settings);
+  else if (const auto* clutch = std::get_if<flow::SetClutch>(&event.command))
+    line["clutch"] = {{"hand", name_of(clutch->side)},
+                      {"finger", timeline::clutched_name(clutch->finger)},
+                      {"holds", clutch->holds}};
+  else if (const auto* role = std::get_if<flow::SetRole>(&event.command))
+    line["role"] = {{"function", timeline.rig->puppet().functions[role->function].name},
+                    {"input", role->input.name()}};
+  else if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&event.command))
+    line["symmetric"] = symmetry->on;
+  else
+    line["request"] = in_words(timeline, event);
   return line;
 }
 
@@ -64,7 +76,7 @@ void print_json(const ShowOptions& options, const Timeline& timeline) {
       {"held", timeline.held}};
   all["events"] = nlohmann::ordered_json::array();
   for (const auto& event : timeline.events)
-    all["events"].push_back(event_json(event));
+    all["events"].push_back(event_json(timeline, event));
   for (const HandTrack& hand : timeline.hands) {
     auto keys = nlohmann::ordered_json::array();
     for (const Key& key : hand.keys)
@@ -128,7 +140,7 @@ int show_timeline(const ShowOptions& options) {
   for (const HandTrack& hand : timeline->hands)
     print_hand(*timeline, hand, finger);
   for (const auto& event : timeline->events)
-    std::printf("at %9.3f s: %s\n", event.time_s, in_words(event).c_str());
+    std::printf("at %9.3f s: %s\n", event.time_s, in_words(*timeline, event).c_str());
   std::fflush(stdout);
   return 0;
 }

@@ -44,8 +44,10 @@ Result<void> blend_key(Timeline& timeline, Side side, std::size_t key, double fa
 /// no common hand, or the factor is not from 0 to 1.
 Result<void> blend(Timeline& one, const Timeline& other, double factor);
 
-/// Swaps the left and the right hand, mirrored about the plane x = plane_x_m of the stage. Error:
-/// the plane is not finite or too far away.
+/// Swaps the left and the right hand, mirrored about the plane x = plane_x_m of the stage.
+/// Functions of a puppet then do what their twins (...Left, ...Right) did, and listen to the other
+/// hand; those without a twin do what they did. Error: the plane is not finite or too far away, or
+/// a function listens to a fingertip's x, which has the other sign in a mirror.
 Result<void> mirror(Timeline& timeline, double plane_x_m);
 
 struct TipSet {
