@@ -213,7 +213,12 @@ const viewer::TimelineView& EditSession::view() {
   const auto progress = cache_.progress();
   view_.computing = !progress.done;
   view_.computed_s = progress.until_s;
-  view_.shape_is_old = !shape().fresh;
+  const auto found = shape();
+  view_.shape_is_old = !found.fresh;
+  view_.functions.clear();
+  for (std::size_t at = 0; found.shape && at < found.shape->functions.size(); ++at)
+    view_.functions.push_back({timeline.rig->puppet().functions[at].name,
+                               static_cast<double>(found.shape->functions[at])});
   if (progress.error) report(Result<void>(*progress.error), {});
   return view_;
 }

@@ -6,10 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 
 #include <nendo/base/result.hpp>
 
-#include "timeline/timeline.hpp"
+#include "timeline/key_search.hpp"
 
 namespace nendo::timeline {
 
@@ -58,5 +59,15 @@ struct TipSet {
 /// the distance.
 Result<TipSet> set_tip(Timeline& timeline, Side side, std::size_t key, hand::Finger finger,
                        const Eigen::Vector3d& target_m, double within_m);
+
+struct ValueSet {
+  KeyRef key;         ///< that was changed
+  double value = 0.0; ///< of the function there
+};
+/// Bends the finger that plays a function of the puppet so that the function has that value at the
+/// finger's key. Error: there is no such function or key, the value is beyond its limits or those
+/// of the joints, or the hand does not move the function there.
+Result<ValueSet> set_value(Timeline& timeline, const std::string& function, std::size_t key,
+                           double value);
 
 } // namespace nendo::timeline
