@@ -159,7 +159,7 @@ void TimelineWindow::Panel::functions(const TimelineView& view) {
     char number[32];
     std::snprintf(number, sizeof number, "%.2f", function.value);
     const auto part = static_cast<float>(std::clamp(std::abs(function.value), 0.0, 1.0));
-    ImGui::ProgressBar(part, ImVec2(bar_width, ImGui::GetTextLineHeight()), number);
+    ImGui::ProgressBar(part, ImVec2(bar_width, 0.0F), number);
     ImGui::SameLine();
     ImGui::TextUnformatted(function.name.c_str());
   }
