@@ -105,9 +105,9 @@ using ValuesAtKeys = std::function<void(const KeyTime& time, std::span<const dou
 
 void for_each_key_time(const Timeline& timeline, const ValuesAtKeys& see) {
   const std::vector<KeyTime> keys = key_times(timeline);
-  std::vector<double> times_s;
-  for (const KeyTime& key : keys)
-    times_s.push_back(key.time_s);
+  std::vector<double> times_s(keys.size());
+  std::transform(keys.begin(), keys.end(), times_s.begin(),
+                 [](const KeyTime& key) { return key.time_s; });
   timeline::play_functions(timeline, times_s,
                            [&](std::size_t at, const timeline::PuppetMoment& moment) {
                              see(keys[at], moment.hands.player().values());

@@ -68,7 +68,7 @@ Result<void> mirror(Timeline& timeline, double plane_x_m) {
       mirror_key(key, plane_x_m);
   }
   if (result.rig)
-    if (const auto done = mirror_roles(result); !done) return done;
+    if (auto done = mirror_roles(result); !done) return done;
   if (std::string wrong = complaint_about(result); !wrong.empty())
     return Error{Errc::usage, std::move(wrong)};
   timeline = std::move(result);
