@@ -21,7 +21,8 @@ int make_timeline(const MakeOptions& options);
 
 struct ShowOptions {
   std::string file;
-  std::string finger; ///< its tip's places are shown; empty means no finger
+  std::string finger;     ///< its tip's places are shown; empty means no finger
+  bool functions = false; ///< the values of the puppet's functions are shown
   bool json = false;
 };
 int show_timeline(const ShowOptions& options);

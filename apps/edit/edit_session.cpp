@@ -183,7 +183,7 @@ void EditSession::follow_history() {
       lane.keys_s.push_back(key.time_s);
   }
   for (const Event& event : timeline.events)
-    view_.marks.push_back({event.time_s, in_words(event)});
+    view_.marks.push_back({event.time_s, in_words(timeline, event)});
   view_.file = out_;
   view_.export_file = export_file_;
   view_.duration_s = timeline.duration_s;
@@ -213,7 +213,12 @@ const viewer::TimelineView& EditSession::view() {
   const auto progress = cache_.progress();
   view_.computing = !progress.done;
   view_.computed_s = progress.until_s;
-  view_.shape_is_old = !shape().fresh;
+  const auto found = shape();
+  view_.shape_is_old = !found.fresh;
+  view_.functions.clear();
+  for (std::size_t at = 0; found.shape && at < found.shape->functions.size(); ++at)
+    view_.functions.push_back({timeline.rig->puppet().functions[at].name,
+                               static_cast<double>(found.shape->functions[at])});
   if (progress.error) report(Result<void>(*progress.error), {});
   return view_;
 }
@@ -222,7 +227,9 @@ const render::SceneFrame& EditSession::scene_frame() {
   const auto& hands = history_.timeline().hands;
   const auto found = shape();
   scene_frame_.time_s = head_.time_s();
-  scene_frame_.held = found.shape != nullptr && found.shape->held;
+  // Fingertips that play a puppet do not touch the model.
+  scene_frame_.held =
+      found.shape != nullptr && found.shape->held && history_.timeline().rig == nullptr;
   if (found.shape != nullptr) scene_frame_.radius_m = found.shape->radius_m;
   scene_frame_.hands = {};
   for (std::size_t at = 0; at < hands.size(); ++at) {

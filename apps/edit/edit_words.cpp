@@ -71,7 +71,7 @@ Result<timeline::Tolerance> parse_tolerance(const std::string& text) {
   const auto length_m = cli::metres_of(text);
   const bool fine = cut_number(rest, value) && value >= 0.0;
   if (fine && length_m) {
-    tolerance.tip_m = *length_m;
+    tolerance.tip_m = tolerance.point_m = *length_m;
   } else if (fine && rest == "rad") {
     tolerance.angle_rad = value;
   } else if (fine && rest == "deg") {

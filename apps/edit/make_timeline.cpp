@@ -31,6 +31,8 @@ void print_json(const MakeOptions& options, const timeline::MadeTimeline& made) 
                                              {"keys", hand.keys.size()},
                                              {"most_angle_rad", reduction.worst.angle_rad},
                                              {"most_tip_mm", 1e3 * reduction.worst.tip_m}};
+    if (made.timeline.rig)
+      line[std::string(name_of(hand.side))]["most_point_mm"] = 1e3 * reduction.worst.point_m;
   }
   cli::print_line(line);
 }
@@ -42,9 +44,12 @@ void print(const MakeOptions& options, const timeline::MadeTimeline& made) {
     const auto& hand = made.timeline.hands[at];
     const auto& reduction = made.hands[at];
     std::printf("  %-6s %zu keys of %zu frames; off by at most %.3f mm at a fingertip, %.4f rad at "
-                "a joint\n",
+                "a joint",
                 std::string(name_of(hand.side)).c_str(), hand.keys.size(), reduction.frames,
                 1e3 * reduction.worst.tip_m, reduction.worst.angle_rad);
+    if (made.timeline.rig)
+      std::printf(", %.3f mm at a point of the puppet", 1e3 * reduction.worst.point_m);
+    std::printf("\n");
   }
   std::fflush(stdout);
 }

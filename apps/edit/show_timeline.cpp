@@ -1,7 +1,14 @@
 // nendo edit show: the keys of a timeline, as a table or as JSON.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iostream>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +17,7 @@
 #include "cli/cli.hpp"
 #include "edit/edit_actions.hpp"
 #include "edit/edit_words.hpp"
+#include "timeline/function_values.hpp"
 #include "timeline/timeline_file.hpp"
 
 namespace nendo::edit {
@@ -42,18 +50,103 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
   return line;
 }
 
-nlohmann::ordered_json event_json(const Event& event) {
+nlohmann::ordered_json settings_json(const flow::LoopSettings& settings) {
+  return {{"mode", name_of(settings.mode)},
+          {"kernel", deform::name_of(settings.kernel)},
+          {"injective", settings.injective},
+          {"radius_m", settings.radius_m},
+          {"piece_fraction", settings.piece_fraction}};
+}
+
+nlohmann::ordered_json event_json(const Timeline& timeline, const timeline::Event& event) {
   nlohmann::ordered_json line{{"time_s", event.time_s}};
-  if (!event.settings) {
-    line["request"] = in_words(event);
-    return line;
-  }
-  line["settings"] = {{"mode", name_of(event.settings->mode)},
-                      {"kernel", deform::name_of(event.settings->kernel)},
-                      {"injective", event.settings->injective},
-                      {"radius_m", event.settings->radius_m},
-                      {"piece_fraction", event.settings->piece_fraction}};
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&event.command))
+    line["settings"] = settings_json(change->settings);
+  else if (const auto* clutch = std::get_if<flow::SetClutch>(&event.command))
+    line["clutch"] = {{"hand", name_of(clutch->side)},
+                      {"finger", timeline::clutched_name(clutch->finger)},
+                      {"holds", clutch->holds}};
+  else if (const auto* role = std::get_if<flow::SetRole>(&event.command))
+    line["role"] = {{"function", timeline.rig->puppet().functions[role->function].name},
+                    {"input", role->input.name()}};
+  else if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&event.command))
+    line["symmetric"] = symmetry->on;
+  else
+    line["request"] = in_words(timeline, event);
   return line;
+}
+
+/// Which keys are at a time.
+struct KeyTime {
+  double time_s = 0.0;
+  std::string keys; ///< "left 3, right 5"
+};
+
+std::vector<KeyTime> key_times(const Timeline& timeline) {
+  std::vector<KeyTime> times;
+  for (const HandTrack& hand : timeline.hands)
+    for (std::size_t at = 0; at < hand.keys.size(); ++at)
+      times.push_back(
+          {hand.keys[at].time_s, std::string(name_of(hand.side)) + " " + std::to_string(at)});
+  std::stable_sort(times.begin(), times.end(), [](const KeyTime& one, const KeyTime& other) {
+    return one.time_s < other.time_s;
+  });
+  std::vector<KeyTime> merged;
+  for (KeyTime& time : times) {
+    if (merged.empty() || merged.back().time_s != time.time_s)
+      merged.push_back(std::move(time));
+    else
+      merged.back().keys += ", " + time.keys;
+  }
+  return merged;
+}
+
+using ValuesAtKeys = std::function<void(const KeyTime& time, std::span<const double> values)>;
+
+void for_each_key_time(const Timeline& timeline, const ValuesAtKeys& see) {
+  const std::vector<KeyTime> keys = key_times(timeline);
+  std::vector<double> times_s(keys.size());
+  std::transform(keys.begin(), keys.end(), times_s.begin(),
+                 [](const KeyTime& key) { return key.time_s; });
+  timeline::play_functions(timeline, times_s,
+                           [&](std::size_t at, const timeline::PuppetMoment& moment) {
+                             see(keys[at], moment.hands.player().values());
+                           });
+}
+
+/// The greatest first, so that a person finds the smile. What a hand that rests does is left out.
+std::string values_text(const puppet::Puppet& puppet, std::span<const double> values) {
+  constexpr double least = 0.1;
+  std::vector<std::size_t> order;
+  for (std::size_t at = 0; at < values.size(); ++at)
+    if (std::abs(values[at]) > least) order.push_back(at);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
+    return std::abs(values[one]) > std::abs(values[other]);
+  });
+  std::string text;
+  for (const std::size_t at : order)
+    text += (text.empty() ? "" : ", ") + puppet.functions[at].name + " " + fixed(values[at], 2);
+  return text.empty() ? "at rest" : text;
+}
+
+void print_functions(const Timeline& timeline) {
+  const puppet::Puppet& puppet = timeline.rig->puppet();
+  std::printf("%9s  %-20s values of the functions, of those above 0.1\n", "time s", "keys");
+  for_each_key_time(timeline, [&](const KeyTime& time, std::span<const double> values) {
+    std::printf("%9.3f  %-20s %s\n", time.time_s, time.keys.c_str(),
+                values_text(puppet, values).c_str());
+  });
+}
+
+nlohmann::ordered_json functions_json(const Timeline& timeline) {
+  auto all = nlohmann::ordered_json::array();
+  for_each_key_time(timeline, [&](const KeyTime& time, std::span<const double> values) {
+    nlohmann::ordered_json line{{"time_s", time.time_s}};
+    for (std::size_t at = 0; at < values.size(); ++at)
+      line["values"][timeline.rig->puppet().functions[at].name] = values[at];
+    all.push_back(std::move(line));
+  });
+  return all;
 }
 
 void print_json(const ShowOptions& options, const Timeline& timeline) {
@@ -64,13 +157,14 @@ void print_json(const ShowOptions& options, const Timeline& timeline) {
       {"held", timeline.held}};
   all["events"] = nlohmann::ordered_json::array();
   for (const auto& event : timeline.events)
-    all["events"].push_back(event_json(event));
+    all["events"].push_back(event_json(timeline, event));
   for (const HandTrack& hand : timeline.hands) {
     auto keys = nlohmann::ordered_json::array();
     for (const Key& key : hand.keys)
       keys.push_back(key_json(timeline, hand, key));
     all["hands"][std::string(name_of(hand.side))] = std::move(keys);
   }
+  if (options.functions) all["functions"] = functions_json(timeline);
   std::cout << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
             << std::endl;
 }
@@ -117,6 +211,8 @@ int show_timeline(const ShowOptions& options) {
   }
   const auto timeline = timeline::read_timeline(options.file);
   if (!timeline) return cli::report(timeline.error());
+  if (options.functions && !timeline->rig)
+    return cli::report({Errc::usage, options.file + ": --functions: there is no puppet in it"});
   if (options.json) {
     print_json(options, *timeline);
     return 0;
@@ -125,10 +221,13 @@ int show_timeline(const ShowOptions& options) {
               timeline->duration_s, timeline->rate_hz,
               std::string(flow::name_of(timeline->sculptor.mode)).c_str(),
               printable(timeline->take).c_str(), printable(timeline->mesh).c_str());
-  for (const HandTrack& hand : timeline->hands)
-    print_hand(*timeline, hand, finger);
+  if (options.functions)
+    print_functions(*timeline);
+  else
+    for (const HandTrack& hand : timeline->hands)
+      print_hand(*timeline, hand, finger);
   for (const auto& event : timeline->events)
-    std::printf("at %9.3f s: %s\n", event.time_s, in_words(event).c_str());
+    std::printf("at %9.3f s: %s\n", event.time_s, in_words(*timeline, event).c_str());
   std::fflush(stdout);
   return 0;
 }

@@ -26,6 +26,8 @@ struct Options {
   std::string out;
   std::string hand;
   std::string finger;
+  std::string function;
+  double value = 0.0;
   std::string place;
   std::string with;
   std::uint32_t key = 0;
@@ -121,6 +123,20 @@ int set_tip(const Options& options) {
   return code;
 }
 
+int set_value(const Options& options) {
+  timeline::ValueSet done;
+  const int code = edit(options, [&](Timeline& timeline) -> Result<void> {
+    const auto set = timeline::set_value(timeline, options.function, options.key, options.value);
+    if (!set) return set.error();
+    done = *set;
+    return {};
+  });
+  if (code == 0)
+    std::printf("%s is %.3f at key %zu of the %s hand\n", options.function.c_str(), done.value,
+                done.key.key, std::string(name_of(done.key.side)).c_str());
+  return code;
+}
+
 // Adds a command with the options that all edits have.
 cli::Command add_edit_of(cli::Command& edit, const char* name, const char* summary,
                          const std::shared_ptr<Options>& options) {
@@ -155,6 +171,8 @@ void add_reading(cli::Command& edit, const std::shared_ptr<Options>& options) {
       edit.add_command("show", "The keys as a table, and what is asked of the model");
   showing.add_option("FILE", options->show.file, "A timeline").required();
   showing.add_option("--finger", options->show.finger, "Shows where this finger's tip is, too");
+  showing.add_flag("--functions", options->show.functions,
+                   "In place of the hands, the values of the puppet's functions at the keys");
   showing.add_flag("--json", options->show.json, "All of every key, as one JSON object");
   showing.on_chosen([options] { return edit::show_timeline(options->show); });
 
@@ -210,6 +228,17 @@ void add_key_edits(cli::Command& edit, const std::shared_ptr<Options>& options) 
   setting.on_chosen([options] { return set_tip(*options); });
 }
 
+void add_value_edit(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
+  cli::Command setting = add_edit_of(
+      edit_command, "set-value",
+      "Bends the finger that plays a function of the puppet so that it has a value", options);
+  setting.add_option("--function", options->function, "Its name, such as jawOpen").required();
+  setting.add_option("--key", options->key, "Number of the key of the hand that plays it")
+      .required();
+  setting.add_option("--to", options->value, "The value that it has there").required();
+  setting.on_chosen([options] { return set_value(*options); });
+}
+
 void add_whole_edits(cli::Command& edit_command, const std::shared_ptr<Options>& options) {
   cli::Command retiming = add_edit_of(edit_command, "retime", "Slower or faster", options);
   retiming.add_option("--scale", options->scale, "2: everything takes twice the time").required();
@@ -246,6 +275,7 @@ void add(cli::Command& program) {
   add_reading(command, options);
   edit::add_timeline_view(command);
   add_key_edits(command, options);
+  add_value_edit(command, options);
   add_whole_edits(command, options);
 }
 

@@ -124,8 +124,8 @@ Result<Take> read_edited(const std::filesystem::path& path) {
   take.rest = (*frames)->model(0);
   take.units_per_metre = timeline.units_per_metre;
   take.duration_s = (*frames)->duration_s();
-  const auto open = [path]() -> Result<std::unique_ptr<FrameSource>> {
-    auto anew = TimelineFrames::open(path);
+  const auto open = [timeline, rest = take.rest]() -> Result<std::unique_ptr<FrameSource>> {
+    auto anew = TimelineFrames::make(timeline, rest);
     if (!anew) return anew.error();
     return std::unique_ptr<FrameSource>(*std::move(anew));
   };

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 
 #include <nendo/base/result.hpp>
 
@@ -33,8 +35,14 @@ public:
   }
   bool has_one_model() const override {
     const auto& events = player_->timeline().events;
-    return std::none_of(events.begin(), events.end(),
-                        [](const timeline::Event& event) { return event.subdivides; });
+    return std::none_of(events.begin(), events.end(), [](const timeline::Event& event) {
+      return std::holds_alternative<flow::Subdivide>(event.command);
+    });
+  }
+  std::optional<PlayedPuppet> puppet() const override {
+    const auto& rig = player_->timeline().rig;
+    if (!rig) return std::nullopt;
+    return PlayedPuppet{*rig, player_->sculptor_options()};
   }
   double rate_hz() const override { return player_->timeline().rate_hz; }
   double duration_s() const override { return player_->last_time_s(); }

@@ -195,21 +195,4 @@ Result<void> blend(Timeline& one, const Timeline& other, double factor) {
   return {};
 }
 
-Result<void> mirror(Timeline& timeline, double plane_x_m) {
-  Timeline result = timeline;
-  for (HandTrack& hand : result.hands) {
-    hand.side = hand.side == Side::left ? Side::right : Side::left;
-    for (Key& key : hand.keys) {
-      key.wrist_m.x() = 2.0 * plane_x_m - key.wrist_m.x();
-      // The turn seen in a mirror whose hand is mirrored, too: about x as before, about y and z the
-      // other way.
-      key.wrist_turn.y() = -key.wrist_turn.y();
-      key.wrist_turn.z() = -key.wrist_turn.z();
-    }
-  }
-  if (std::string wrong = complaint_about(result); !wrong.empty()) return refused(wrong);
-  timeline = std::move(result);
-  return {};
-}
-
 } // namespace nendo::timeline

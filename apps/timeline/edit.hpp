@@ -6,10 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 
 #include <nendo/base/result.hpp>
 
-#include "timeline/timeline.hpp"
+#include "timeline/key_search.hpp"
 
 namespace nendo::timeline {
 
@@ -44,8 +45,10 @@ Result<void> blend_key(Timeline& timeline, Side side, std::size_t key, double fa
 /// no common hand, or the factor is not from 0 to 1.
 Result<void> blend(Timeline& one, const Timeline& other, double factor);
 
-/// Swaps the left and the right hand, mirrored about the plane x = plane_x_m of the stage. Error:
-/// the plane is not finite or too far away.
+/// Swaps the left and the right hand, mirrored about the plane x = plane_x_m of the stage.
+/// Functions of a puppet then do what their twins (...Left, ...Right) did, and listen to the other
+/// hand; those without a twin do what they did. Error: the plane is not finite or too far away, or
+/// a function listens to a fingertip's x, which has the other sign in a mirror.
 Result<void> mirror(Timeline& timeline, double plane_x_m);
 
 struct TipSet {
@@ -56,5 +59,15 @@ struct TipSet {
 /// the distance.
 Result<TipSet> set_tip(Timeline& timeline, Side side, std::size_t key, hand::Finger finger,
                        const Eigen::Vector3d& target_m, double within_m);
+
+struct ValueSet {
+  KeyRef key;         ///< that was changed
+  double value = 0.0; ///< of the function there
+};
+/// Bends the finger that plays a function of the puppet so that the function has that value at the
+/// finger's key. Error: there is no such function or key, the value is beyond its limits or those
+/// of the joints, or the hand does not move the function there.
+Result<ValueSet> set_value(Timeline& timeline, const std::string& function, std::size_t key,
+                           double value);
 
 } // namespace nendo::timeline

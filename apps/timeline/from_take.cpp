@@ -49,6 +49,23 @@ Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
   return timeline;
 }
 
+/// The puppet as the loop has it before its first tick.
+void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state, Timeline& timeline) {
+  if (loop.rig() == nullptr) return;
+  timeline.rig = std::make_shared<const puppet::Rig>(*loop.rig());
+  timeline.rig_state = first_state(*timeline.rig);
+  timeline.rig_state.symmetric = state.symmetric;
+  if (state.functions.size() == timeline.rig_state.functions.size())
+    timeline.rig_state.functions = state.functions;
+  timeline.sculptor.surface = loop.sculptor_options().surface;
+}
+
+/// Roles of functions that the puppet has not say nothing; a loop passes over them, too.
+bool is_of(const flow::Command& command, const puppet::Rig& rig) {
+  const auto* role = std::get_if<flow::SetRole>(&command);
+  return role == nullptr || role->function < rig.puppet().functions.size();
+}
+
 // Follows a replay, and keeps a key a tick of each hand, and what the ticks did.
 class Follower {
 public:
@@ -61,12 +78,18 @@ public:
     if (flow::goes_through_history(request)) steps_.push_back(request);
   }
 
+  /// What a puppet is told, and marks.
+  void hear_told(const flow::Command& command) {
+    if (flow::is_for_puppet(command)) told_.push_back(command);
+    if (std::holds_alternative<flow::Mark>(command)) marks_.push_back(command);
+  }
+
   void hear(const flow::HoldStill&) { is_still_ = true; }
   /// The model is made of the shape of the tick in which the loop began to hold still.
   void hear(const flow::ChangeModel& change) {
     is_still_ = false;
     if (change.source == flow::ModelSource::subdivided)
-      timeline_.events.push_back({still_at_s_, {}, {}, true});
+      timeline_.events.push_back({still_at_s_, flow::Subdivide{}});
   }
 
   /// Returns false if a timeline has no such settings.
@@ -84,6 +107,7 @@ public:
     if (!first_) first_ = tick;
     const double before_s = timeline_.duration_s;
     const double time_s = std::max(before_s, time_of(tick));
+    add_told(before_s, time_s);
     for (auto& hand : timeline_.hands) {
       const std::size_t slot = flow::Placement::index_of(hand.side);
       const Key key = key_of(time_s, frame.hands[slot].angles, frame.hands[slot].T_stage_wrist);
@@ -105,7 +129,19 @@ private:
            timeline_.rate_hz;
   }
 
-  void add(double time_s, flow::Request request) { timeline_.events.push_back({time_s, request}); }
+  void add(double time_s, const flow::Command& command) {
+    timeline_.events.push_back({time_s, command});
+  }
+
+  /// A puppet that is told something finds the hands as they were in the last tick. Where ticks
+  /// were missed, that is the frame behind it.
+  void add_told(double before_s, double time_s) {
+    const double period_s = 1.0 / timeline_.rate_hz;
+    const double next_s = time_s < before_s + 1.5 * period_s ? time_s : before_s + period_s;
+    for (const flow::Command& command : told_)
+      if (timeline_.rig && is_of(command, *timeline_.rig)) add(next_s, command);
+    told_.clear();
+  }
 
   // One that waits for settings, and those behind it, have not happened yet.
   void add_steps(double time_s, const flow::Frame& frame, const flow::LoopStats& stats) {
@@ -126,7 +162,10 @@ private:
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
     if (committed && !frame.held) add(time_s, flow::Request::let_go);
-    if (settings_) timeline_.events.push_back({time_s, {}, std::exchange(settings_, {})});
+    if (settings_) add(time_s, flow::ChangeSettings{*std::exchange(settings_, {})});
+    for (const flow::Command& mark : marks_)
+      add(time_s, mark);
+    marks_.clear();
     commits_ = stats.commits;
     held_ = frame.held;
   }
@@ -136,6 +175,8 @@ private:
   bool on_grid_;
   std::uint64_t commits_ = 0;
   std::uint64_t done_ = 0;                     ///< undos, redos and resets
+  std::vector<flow::Command> told_;            ///< to the puppet since the last tick
+  std::vector<flow::Command> marks_;           ///< likewise
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
   bool answers_step_ = false;                  ///< an undo or a redo has waited for settings_
@@ -145,12 +186,30 @@ private:
   std::optional<flow::LoggedTick> first_;
 };
 
+void hear_told(const recording::Entry& entry, Follower& follower) {
+  if (const auto* mark = std::get_if<flow::Mark>(&entry)) follower.hear_told(*mark);
+  if (const auto* clutch = std::get_if<flow::SetClutch>(&entry)) follower.hear_told(*clutch);
+  if (const auto* role = std::get_if<flow::SetRole>(&entry)) follower.hear_told(*role);
+  if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&entry)) follower.hear_told(*symmetry);
+}
+
 // Of frames or of events; empty if nothing does.
 std::string what_exceeds(const Timeline& timeline, std::size_t most) {
   if (timeline.events.size() > most) return std::to_string(most) + " events";
   for (const auto& hand : timeline.hands)
     if (hand.keys.size() > most) return std::to_string(most) + " frames";
   return {};
+}
+
+/// Both hands may move one point, so that each may use up its part of the tolerance.
+void reduce(Tolerance tolerance, MadeTimeline& made) {
+  Timeline& timeline = made.timeline;
+  tolerance.point_m /= static_cast<double>(timeline.hands.size());
+  for (auto& hand : timeline.hands) {
+    const PointSway sway(timeline, hand.side);
+    made.hands.push_back(reduce_keys(hand.skeleton(), hand.keys, tolerance, &sway));
+    hand.keys = std::exchange(made.hands.back().keys, {});
+  }
 }
 
 } // namespace
@@ -169,14 +228,13 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     return bad(
         "begins in the middle of a run, with a shape that is no file's; a timeline begins with "
         "its model. Record from the beginning of the run, with --record");
-  if (!setup.loop->puppet.empty())
-    return bad("plays a puppet, and a timeline is of hands that touch the model; "
-               "`nendo export` makes an animation of it");
   MadeTimeline made;
   made.timeline = begin_timeline(setup, take);
+  keep_puppet((*replay)->loop(), setup.loop->options.rig_state, made.timeline);
   Follower follower(made.timeline, setup.loop->options);
   while (const auto entry = reader->next()) {
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
+    hear_told(*entry, follower);
     if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
     if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) follower.hear(*change);
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
@@ -193,10 +251,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   if (!follower.has_seen()) return bad("there is no tick of a loop in it");
   if (const std::string wrong = complaint_about(made.timeline); !wrong.empty())
     return bad("cannot become a timeline: " + wrong);
-  for (auto& hand : made.timeline.hands) {
-    made.hands.push_back(reduce_keys(hand.skeleton(), hand.keys, tolerance));
-    hand.keys = std::exchange(made.hands.back().keys, {});
-  }
+  reduce(tolerance, made);
   made.exact = (*replay)->is_exact() && reader->chunks().damage_count() == 0;
   return made;
 }

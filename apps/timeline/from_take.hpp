@@ -16,10 +16,11 @@ struct MadeTimeline {
 };
 
 /// Runs the recorded loop again over `model`, which should be the recorded one. The hands' angles
-/// become keys; requests, and what the wrist switch did, become events. The key at 0 s is the pose
-/// in which a hand took hold, one period before the first tick. Blocks. Errors: those of
-/// TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most` frames or
-/// events).
+/// become keys; requests, what the wrist switch did, what a puppet was told, and marks become
+/// events. The points of a puppet are off by the tolerance at most, by both hands together. The key
+/// at 0 s is the pose in which a hand took hold, one period before the first tick. Blocks. Errors:
+/// those of TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most`
+/// frames or events).
 Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
                                       const Tolerance& tolerance, std::size_t most = most_keys);
 static_assert(most_keys == most_events);

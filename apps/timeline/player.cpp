@@ -34,11 +34,24 @@ std::shared_ptr<flow::ModelVersion> first_version(const deform::Mesh& model) {
 bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
   std::size_t corners = model.face_corners.size();
   for (const Event& event : events) {
-    if (!event.subdivides) continue;
+    if (!std::holds_alternative<flow::Subdivide>(event.command)) continue;
     if (corners > flow::FinerModel::most_corners) return true;
     corners *= 4;
   }
   return false;
+}
+
+/// Makes the puppet's field along the surface, if it needs one and there is none.
+Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
+  if (!timeline.rig) return {};
+  if (const auto fits = puppet::check_fits(timeline.rig->puppet(), model); !fits)
+    return Error{Errc::bad_input, "its puppet does not fit the model: " + fits.error().message};
+  if (timeline.sculptor.surface) return {};
+  auto surface = flow::surface_for(*timeline.rig, model, deform::BlockLayout(model.vertices),
+                                   timeline.sculptor.deformer);
+  if (!surface) return Error{Errc::bad_input, "its puppet: " + surface.error().message};
+  timeline.sculptor.surface = *std::move(surface);
+  return {};
 }
 
 } // namespace
@@ -49,8 +62,11 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
   if (are_too_many(timeline.events, model))
     return Error{Errc::bad_input, "the model would be too large when it is subdivided so often; "
                                   "take out a subdivide event"};
+  if (auto fits = complete(timeline, model); !fits) return fits.error();
   std::unique_ptr<Player> player(new Player(std::move(timeline), model));
   player->pose_hands(0.0);
+  if (player->puppet_) player->puppet_->take_hold();
+  player->play_puppet();
   const deform::FieldStatus status = player->shaping_.begin(player->tips_);
   if (!is_solved(status))
     return Error{Errc::bad_input, "the hands cannot take hold of the model: " +
@@ -59,16 +75,16 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
 }
 
 Player::Player(Timeline timeline, const deform::Mesh& model)
-    : timeline_(std::move(timeline)),
-      tips_(deform::Points::Zero(3, 5 * static_cast<Eigen::Index>(timeline_.hands.size()))),
+    : timeline_(std::move(timeline)), tips_(deform::Points::Zero(3, timeline_.point_count())),
       first_{timeline_.sculptor,
              flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre)},
       now_(first_), versions_{first_version(model)},
       shaping_(*versions_.front(), tips_.cols(), shaping_options(timeline_, first_)),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
   for (const auto& track : timeline_.hands)
-    hands_.push_back(
-        {track.skeleton(), HandCurve(track.keys), flow::Placement::index_of(track.side)});
+    hands_.push_back({track.side, track.skeleton(), HandCurve(track.keys),
+                      flow::Placement::index_of(track.side)});
+  if (timeline_.rig) puppet_.emplace(timeline_);
   frame_.units_per_metre = timeline_.units_per_metre;
   frame_.held = timeline_.held;
   frame_.settings = shaping_.settings();
@@ -100,34 +116,70 @@ void Player::pose_hands(double time_s) {
     shown.pose = hand.skeleton.pose(key.angles, shown.T_stage_wrist);
     shown.present = true;
     shown.samples = made_ + 1;
+    if (puppet_) {
+      puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
+      continue;
+    }
     tips_.middleCols<5>(column) = timeline_.units_per_metre * shown.pose.fingertip_positions();
     column += 5;
   }
 }
 
+void Player::play_puppet() {
+  if (!puppet_) return;
+  puppet_->play(shaping_.is_held());
+  const puppet::RigPlayer& player = puppet_->player();
+  player.write(tips_);
+  for (const Side side : {Side::left, Side::right})
+    frame_.let_go[flow::Placement::index_of(side)] = player.has_let_go(side);
+  frame_.symmetric = player.state().symmetric;
+  frame_.function_count = static_cast<std::uint32_t>(player.values().size());
+  for (std::size_t at = 0; at < player.values().size(); ++at)
+    frame_.functions[at] = static_cast<float>(player.values()[at]);
+}
+
 void Player::ask(const Event& event) {
-  if (event.settings)
-    settings_due_ = event.settings; // of several in a frame the last counts, as in the loop
-  else if (event.subdivides)
-    subdivides_ = true;
-  else
-    shaping_.ask(event.request);
+  const flow::Command& command = event.command;
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
+    settings_due_ = change->settings; // of several in a frame the last counts, as in the loop
+  if (std::holds_alternative<flow::Subdivide>(command)) subdivides_ = true;
+  if (const auto* request = std::get_if<flow::Request>(&command)) shaping_.ask(*request);
+  if (puppet_) puppet_->apply(command);
 }
 
 std::shared_ptr<const flow::ModelVersion> Player::model(std::uint32_t number) const noexcept {
   return number < versions_.size() ? versions_[number] : nullptr;
 }
 
-/// As the loop does at the end of a tick.
-void Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
-  now_ = flow::with_settings(now_, first_, awaited.settings, static_cast<int>(hands_.size()),
-                             timeline_.units_per_metre);
+/// Of a puppet. Returns false, and changes nothing, if its points are too near to each other.
+bool Player::set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersion& model) const {
+  if (!timeline_.rig) return true;
+  auto surface = flow::surface_for(*timeline_.rig, model.mesh, model.layout(), sculptor.deformer);
+  if (!surface) return false;
+  sculptor.surface = *std::move(surface);
+  return true;
+}
+
+/// As the loop does at the end of a tick. Returns false, and goes on as it was, if nothing can be
+/// done with the settings.
+bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   flow::ModelVersion& model = *versions_[awaited.model];
+  const flow::LoopSettings& before = shaping_.settings();
+  const int hands = puppet_ ? 0 : static_cast<int>(hands_.size());
+  flow::SculptorSetup wanted =
+      flow::with_settings(now_, first_, awaited.settings, hands, timeline_.units_per_metre);
+  wanted.options.surface = now_.options.surface; // the first one may be another version's
+  const bool same = &model == &shaping_.model() && awaited.settings.kernel == before.kernel &&
+                    awaited.settings.radius_m == before.radius_m;
+  if (!same && !set_surface(wanted.options, model)) return false;
+  now_ = std::move(wanted);
+  if (puppet_ && awaited.settings != before) puppet_->take_hold();
   flow::ReadySculptor ready;
   shaping_.prepare(now_, model, ready);
   ready.is_new_model = is_new_model;
   if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
   shaping_.exchange(ready, tips_, frame_, stats_);
+  return true;
 }
 
 void Player::subdivide() {
@@ -135,7 +187,10 @@ void Player::subdivide() {
   const auto number = static_cast<std::uint32_t>(versions_.size());
   flow::FinerModel finer(shaping_.model());
   versions_.push_back(finer.finish(number, undo_room()));
-  change_to({shaping_.settings(), number}, true);
+  if (change_to({shaping_.settings(), number}, true)) return;
+  was_refused_ = true;
+  versions_.pop_back();
+  change_to({shaping_.settings(), shaping_.model().number});
 }
 
 bool Player::ask_what_is_due(double time_s) {
@@ -154,16 +209,19 @@ bool Player::has_frame_by(double time_s) const noexcept {
 bool Player::next() {
   if (made_ == frames_) return false;
   const double time_s = time_of(made_);
+  // What a puppet is told finds the hands as they were, as in the loop.
+  const bool asked = ask_what_is_due(time_s);
   pose_hands(time_s);
+  play_puppet();
   if (auto* const memory = versions_[shaping_.model().number]->undo_memory.get()) memory->refill();
   shaping_.set_time(from_seconds(time_s));
-  const bool asked = ask_what_is_due(time_s);
   frame_.settings = shaping_.settings();
   // The hands have just taken hold here: without a wish there is nothing to do.
   if (made_ > 0 || asked)
     frame_.status = shaping_.shape(tips_, frame_, stats_, settings_due_ || subdivides_);
   if (std::exchange(subdivides_, false)) subdivide();
-  if (settings_due_) change_to({*std::exchange(settings_due_, {}), shaping_.model().number});
+  const std::uint32_t model = shaping_.model().number;
+  if (settings_due_ && !change_to({*std::exchange(settings_due_, {}), model})) was_refused_ = true;
   if (frame_.awaited) change_to(flow::Awaited(*frame_.awaited)); // by an undo or a redo
   describe(made_++);
   return true;
@@ -174,7 +232,7 @@ void Player::describe(std::uint64_t number) {
     return HostTime{} + from_seconds(time_of(frame));
   };
   ++stats_.ticks;
-  if (!is_solved(frame_.status)) ++stats_.failed;
+  if (!is_solved(frame_.status) || std::exchange(was_refused_, false)) ++stats_.failed;
   frame_.tick = number;
   frame_.ticks_run = stats_.ticks;
   frame_.scheduled = frame_.woke = time_at(number);

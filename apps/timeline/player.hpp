@@ -9,14 +9,17 @@
 #include <nendo/base/result.hpp>
 
 #include "timeline/hand_curve.hpp"
+#include "timeline/puppet_hands.hpp"
 #include "timeline/timeline.hpp"
 
 namespace nendo::timeline {
 
 class Player {
 public:
-  /// `model` should be the timeline's (Timeline::mesh_sum). Error: bad_input, without the file's
-  /// name, if complaint_about() has a complaint or the hands cannot take hold of the model.
+  /// `model` should be the timeline's (Timeline::mesh_sum), and any field along the surface
+  /// (SculptorOptions::surface) must be of it. Error: bad_input, without the file's name, if
+  /// complaint_about() has a complaint, the puppet does not fit the model, or the hands cannot take
+  /// hold of it.
   static Result<std::unique_ptr<Player>> make(Timeline timeline, const deform::Mesh& model);
 
   /// Makes the next frame, the first one at 0 s. Returns false if there is none. Allocates for
@@ -35,12 +38,17 @@ public:
   const deform::BlockLayout& layout(std::uint32_t version = 0) const noexcept {
     return model(version)->layout();
   }
+  /// Returns the timeline, now with a field along the surface if its puppet needs one. Another
+  /// player of it over the same model then need not make that again.
   const Timeline& timeline() const noexcept { return timeline_; }
+  /// Returns the options in force.
+  const flow::SculptorOptions& sculptor_options() const noexcept { return now_.options; }
   /// Returns the present shape, 3 by #vertices. It includes a stroke that has not ended.
   deform::Points final_shape() { return shaping_.final_shape(tips_); }
 
 private:
   struct Hand {
+    Side side;
     hand::HandSkeleton skeleton;
     HandCurve curve;
     std::size_t slot;
@@ -49,15 +57,18 @@ private:
   Player(Timeline timeline, const deform::Mesh& model);
   double time_of(std::uint64_t frame) const noexcept;
   void pose_hands(double time_s);
+  void play_puppet();
   bool ask_what_is_due(double time_s);
   void ask(const Event& event);
-  void change_to(const flow::Awaited& awaited, bool is_new_model = false);
+  bool change_to(const flow::Awaited& awaited, bool is_new_model = false);
+  bool set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersion& model) const;
   void subdivide();
   void describe(std::uint64_t number);
 
   Timeline timeline_;
   std::vector<Hand> hands_;
-  deform::Points tips_;
+  std::optional<PuppetHands> puppet_;
+  deform::Points tips_;             ///< the fingertips, or the points of the puppet
   flow::SculptorSetup first_, now_; ///< of the timeline, and in force
   std::vector<std::shared_ptr<flow::ModelVersion>> versions_;
   flow::Shaping shaping_;
@@ -66,6 +77,7 @@ private:
   std::size_t next_event_ = 0;
   std::optional<flow::LoopSettings> settings_due_;
   bool subdivides_ = false;  ///< in this frame
+  bool was_refused_ = false; ///< a change in this frame
   std::uint64_t made_ = 0;   ///< frames
   std::uint64_t frames_ = 0; ///< in all
 };

@@ -11,11 +11,15 @@ namespace {
 using Tips = Eigen::Matrix<double, 3, 6>;
 
 // The wrist is the sixth: what carries the fingers counts as they do.
-Tips tips_of(const hand::HandSkeleton& skeleton, const Key& key) {
+Tips tips_of(const hand::HandPose& pose, const Key& key) {
   Tips tips;
-  tips.leftCols<5>() = skeleton.pose(key.angles, key.wrist_pose()).fingertip_positions();
+  tips.leftCols<5>() = pose.fingertip_positions();
   tips.col(5) = key.wrist_m;
   return tips;
+}
+
+Tips tips_of(const hand::HandSkeleton& skeleton, const Key& key) {
+  return tips_of(skeleton.pose(key.angles, key.wrist_pose()), key);
 }
 
 double angle_between(const Key& one, const Key& other) {
@@ -31,11 +35,14 @@ double angle_between(const Key& one, const Key& other) {
 class Reducer {
 public:
   Reducer(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
-          const Tolerance& tolerance)
-      : skeleton_(skeleton), frames_(frames), tolerance_(tolerance), is_key_(frames.size(), false) {
+          const Tolerance& tolerance, const PointSway* sway)
+      : skeleton_(skeleton), frames_(frames), tolerance_(tolerance), sway_(sway),
+        must_stay_(frames.size(), false) {
     for (const Key& frame : frames)
-      tips_.push_back(tips_of(skeleton, frame));
-    is_key_.front() = is_key_.back() = true;
+      seen_.push_back(see(frame));
+    must_stay_.front() = must_stay_.back() = true;
+    if (sway != nullptr) keep_holds(sway->held_at_s());
+    is_key_ = must_stay_;
   }
 
   // Until nothing is too far off.
@@ -59,7 +66,7 @@ public:
     for (std::size_t at = 0; at < frames_.size(); ++at)
       if (is_key_[at]) keys.push_back(at);
     for (std::size_t at = 1; at + 1 < keys.size();) {
-      if (!can_drop(keys, at)) {
+      if (must_stay_[keys[at]] || !can_drop(keys, at)) {
         ++at;
         continue;
       }
@@ -75,11 +82,40 @@ public:
       const Deviation off = deviation(curve, at);
       reduction.worst.angle_rad = std::max(reduction.worst.angle_rad, off.angle_rad);
       reduction.worst.tip_m = std::max(reduction.worst.tip_m, off.tip_m);
+      reduction.worst.point_m = std::max(reduction.worst.point_m, off.point_m);
     }
     return reduction;
   }
 
 private:
+  // What counts of a pose, besides its angles.
+  struct Seen {
+    Tips tips;
+    Eigen::VectorXd signals; ///< to a puppet
+  };
+
+  Seen see(const Key& key) const {
+    const Eigen::Isometry3d T_stage_wrist = key.wrist_pose();
+    const hand::HandPose pose = skeleton_.pose(key.angles, T_stage_wrist);
+    Seen seen{tips_of(pose, key), {}};
+    if (sway_ != nullptr) seen.signals = sway_->signals({key.angles, pose, T_stage_wrist});
+    return seen;
+  }
+
+  // The last frame that is not later than each of these times, the one before it, and the one
+  // behind it.
+  void keep_holds(const std::vector<double>& times_s) {
+    for (const double time_s : times_s) {
+      const auto after =
+          std::upper_bound(frames_.begin(), frames_.end(), time_s,
+                           [](double time, const Key& frame) { return time < frame.time_s; });
+      const auto behind = static_cast<std::size_t>(after - frames_.begin());
+      const std::size_t first = behind - std::min<std::size_t>(behind, 2);
+      for (std::size_t at = first; at <= std::min(behind, frames_.size() - 1); ++at)
+        must_stay_[at] = true;
+    }
+  }
+
   static constexpr std::size_t reach = 3; // keys on either side that a slope's change can be felt
 
   std::vector<Key> keys() const {
@@ -92,12 +128,16 @@ private:
   Deviation deviation(const HandCurve& curve, std::size_t frame) const {
     if (is_key_[frame]) return {};
     const Key made = curve.at(frames_[frame].time_s);
-    const Tips off = tips_of(skeleton_, made) - tips_[frame];
-    return {angle_between(made, frames_[frame]), off.colwise().norm().maxCoeff()};
+    const Seen seen = see(made);
+    const Seen& wanted = seen_[frame];
+    return {angle_between(made, frames_[frame]),
+            (seen.tips - wanted.tips).colwise().norm().maxCoeff(),
+            sway_ == nullptr ? 0.0 : sway_->off_m(seen.signals, wanted.signals)};
   }
 
   bool is_fine(const Deviation& off) const {
-    return off.angle_rad <= tolerance_.angle_rad && off.tip_m <= tolerance_.tip_m;
+    return off.angle_rad <= tolerance_.angle_rad && off.tip_m <= tolerance_.tip_m &&
+           off.point_m <= tolerance_.point_m;
   }
 
   // `begin`, if none is too far off.
@@ -107,8 +147,9 @@ private:
     double most = 0.0;
     for (std::size_t at = begin + 1; at < end; ++at) {
       const Deviation off = deviation(curve, at);
-      const double badness = std::max(off.angle_rad / std::max(tolerance_.angle_rad, least),
-                                      off.tip_m / std::max(tolerance_.tip_m, least));
+      const double badness = std::max({off.angle_rad / std::max(tolerance_.angle_rad, least),
+                                       off.tip_m / std::max(tolerance_.tip_m, least),
+                                       off.point_m / std::max(tolerance_.point_m, least)});
       if (is_fine(off) || (worst != begin && !(badness > most))) continue;
       worst = at;
       most = badness;
@@ -137,21 +178,23 @@ private:
   const hand::HandSkeleton& skeleton_;
   std::span<const Key> frames_;
   Tolerance tolerance_;
+  const PointSway* sway_;
+  std::vector<bool> must_stay_; ///< as a key
   std::vector<bool> is_key_;
-  std::vector<Tips> tips_;
+  std::vector<Seen> seen_; ///< of each frame
 };
 
 } // namespace
 
 Deviation deviation_between(const hand::HandSkeleton& skeleton, const Key& one, const Key& other) {
   return {angle_between(one, other),
-          (tips_of(skeleton, one) - tips_of(skeleton, other)).colwise().norm().maxCoeff()};
+          (tips_of(skeleton, one) - tips_of(skeleton, other)).colwise().norm().maxCoeff(), 0.0};
 }
 
 Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
-                      const Tolerance& tolerance) {
+                      const Tolerance& tolerance, const PointSway* sway) {
   if (frames.empty()) return {};
-  Reducer reducer(skeleton, frames, tolerance);
+  Reducer reducer(skeleton, frames, tolerance, sway);
   reducer.add_keys();
   reducer.drop_keys();
   return reducer.result();

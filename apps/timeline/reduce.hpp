@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "timeline/timeline.hpp"
+#include "timeline/point_sway.hpp"
 
 namespace nendo::timeline {
 
@@ -13,16 +13,18 @@ namespace nendo::timeline {
 /// frame that is not exactly on the curve becomes a key.
 struct Tolerance {
   double angle_rad =
-      std::numeric_limits<double>::infinity();            ///< of any joint, and the wrist's turn
-  double tip_m = std::numeric_limits<double>::infinity(); ///< of any fingertip, and the wrist
+      std::numeric_limits<double>::infinity();              ///< of any joint, and the wrist's turn
+  double tip_m = std::numeric_limits<double>::infinity();   ///< of any fingertip, and the wrist
+  double point_m = std::numeric_limits<double>::infinity(); ///< of any point of a puppet
 };
 
 struct Deviation {
   double angle_rad = 0.0; ///< as in Tolerance
   double tip_m = 0.0;
+  double point_m = 0.0; ///< PointSway::off_m()
 };
 
-/// Returns the deviation between two poses of a hand.
+/// Returns the deviation between two poses of a hand that touches the model.
 Deviation deviation_between(const hand::HandSkeleton& skeleton, const Key& one, const Key& other);
 
 struct Reduction {
@@ -33,8 +35,10 @@ struct Reduction {
 
 /// Returns keys for the frames, which must fulfil the conditions of HandTrack::keys. The first and
 /// the last frame become keys. As long as the curve is too far off, the worst frame between two
-/// keys becomes a key. At the end, keys that are not needed are removed.
+/// keys becomes a key. At the end, keys that are not needed are removed. With `sway`, the points of
+/// the puppet that the hand plays count, too, and the frames at which its functions take hold, and
+/// those before them, stay keys.
 Reduction reduce_keys(const hand::HandSkeleton& skeleton, std::span<const Key> frames,
-                      const Tolerance& tolerance);
+                      const Tolerance& tolerance, const PointSway* sway = nullptr);
 
 } // namespace nendo::timeline

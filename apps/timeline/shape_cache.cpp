@@ -109,8 +109,14 @@ void ShapeCache::put(const Player& player, std::size_t slot, double held_since_s
   if (slot < fresh_) return; // only this thread changes it
   const flow::Frame& frame = player.frame();
   Shape shape = std::make_shared<const CachedShape>(
-      CachedShape{frame.tick, player.time_s(), frame.held, held_since_s, frame.settings.radius_m,
-                  frame.shape, player.model(frame.model)});
+      CachedShape{frame.tick,
+                  player.time_s(),
+                  frame.held,
+                  held_since_s,
+                  frame.settings.radius_m,
+                  {frame.functions.begin(), frame.functions.begin() + frame.function_count},
+                  frame.shape,
+                  player.model(frame.model)});
   const std::lock_guard lock(mutex_);
   std::swap(slots_[slot], shape); // the old one goes after the lock
   fresh_ = slot + 1;

@@ -23,6 +23,7 @@ struct CachedShape {
   bool held = false;
   double held_since_s = 0.0;        ///< where the fingertips took hold, if held
   std::array<double, 5> radius_m{}; ///< of each finger then
+  std::vector<float> functions;     ///< their values, of a puppet
   deform::BlockShape shape;
   std::shared_ptr<const flow::ModelVersion> model; ///< that the shape is of
 };

@@ -44,7 +44,7 @@ std::string complaint_about(const HandTrack& track) {
   return {};
 }
 
-std::string complaint_about(const flow::SculptorOptions& sculptor, std::size_t hands) {
+std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index points) {
   const auto& options = sculptor.deformer;
   if (!within(sculptor.piece_length, least_positive, largest))
     return "piece_length must be positive";
@@ -52,8 +52,8 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, std::size_t h
   if (options.supports.shared.empty() || !options.supports.are_usable())
     return "supports: radii and weights must be positive, and one at least must be shared";
   for (const auto& own : options.supports.own)
-    if (own.point < 0 || own.point >= 5 * static_cast<Eigen::Index>(hands))
-      return "supports: there is no fingertip " + std::to_string(own.point);
+    if (own.point < 0 || own.point >= points)
+      return "supports: there is no fingertip, or point of a puppet, " + std::to_string(own.point);
   if (!within(options.csrbf.merge_fraction, 0.0, 1.0))
     return "merge_fraction must lie within 0 and 1";
   constexpr std::size_t most_weight_bytes = std::size_t{1} << 28;
@@ -68,18 +68,78 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, std::size_t h
   return {};
 }
 
-std::string complaint_about(const std::vector<Event>& events) {
+/// Of what a puppet is told; empty for all other commands.
+std::string complaint_about(const flow::Command& command, const puppet::Rig* rig) {
+  if (!flow::is_for_puppet(command)) return {};
+  if (rig == nullptr) return "is about a puppet, and there is none";
+  if (const auto* clutch = std::get_if<flow::SetClutch>(&command);
+      clutch != nullptr && clutch->finger > puppet::HandSignal::no_finger &&
+      clutch->finger != puppet::RigPlayer::all_fingers)
+    return "there is no finger " + std::to_string(clutch->finger);
+  if (const auto* role = std::get_if<flow::SetRole>(&command);
+      role != nullptr && role->function >= rig->puppet().functions.size())
+    return "the puppet has no function " + std::to_string(role->function);
+  return {};
+}
+
+std::string complaint_about(const Event& event, const puppet::Rig* rig) {
+  const flow::Command& command = event.command;
+  if (!within(event.time_s, 0.0, longest_s)) return "its time must lie within 0 and 1000000 s";
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&command);
+      change != nullptr && !change->settings.are_usable())
+    return "radii must lie within 1e-9 and 1e9 m, piece_fraction within 0.001 and 1000";
+  const bool is_known = std::holds_alternative<flow::Request>(command) ||
+                        std::holds_alternative<flow::ChangeSettings>(command) ||
+                        std::holds_alternative<flow::Subdivide>(command) ||
+                        std::holds_alternative<flow::Mark>(command) || flow::is_for_puppet(command);
+  return is_known ? complaint_about(command, rig) : "is none that a timeline can have";
+}
+
+std::string complaint_about(const std::vector<Event>& events, const puppet::Rig* rig) {
   if (events.size() > most_events)
     return "has more than " + std::to_string(most_events) + " events";
   for (std::size_t at = 0; at < events.size(); ++at) {
-    if (!within(events[at].time_s, 0.0, longest_s) ||
-        (at > 0 && events[at].time_s < events[at - 1].time_s))
-      return "event " + std::to_string(at) + ": times must lie within 0 and 1000000 s and not fall";
-    if (events[at].settings && !events[at].settings->are_usable())
-      return "event " + std::to_string(at) +
-             ": radii must lie within 1e-9 and 1e9 m, piece_fraction within 0.001 and 1000";
+    std::string wrong = complaint_about(events[at], rig);
+    if (wrong.empty() && at > 0 && events[at].time_s < events[at - 1].time_s)
+      wrong = "its time must not be before that of the event before";
+    if (!wrong.empty()) return "event " + std::to_string(at) + ": " + wrong;
   }
   return {};
+}
+
+std::string complaint_about(const puppet::Rig* rig, const puppet::RigState& state) {
+  if (state.functions.size() != (rig == nullptr ? 0 : rig->puppet().functions.size()))
+    return "the puppet must have a state for each of its functions";
+  if (rig != nullptr && !rig->starts().allFinite()) return "the puppet's points must be finite";
+  for (const puppet::FunctionState& function : state.functions)
+    if (!within(function.asked, -largest, largest))
+      return "the puppet: what is asked of a function must be finite";
+  return {};
+}
+
+std::string words_of(const flow::LoopSettings& settings) {
+  std::string words = std::string(name_of(settings.mode)) + ", " +
+                      std::string(deform::name_of(settings.kernel)) +
+                      (settings.injective ? ", never folds, radius" : ", radius");
+  const auto [least, most] =
+      std::minmax_element(settings.radius_m.begin(), settings.radius_m.end());
+  char radius[64];
+  std::snprintf(radius, sizeof radius, " %.3g", 100.0 * *least);
+  words += radius;
+  std::snprintf(radius, sizeof radius, " to %.3g", 100.0 * *most);
+  return words + (*least == *most ? "" : radius) + " cm";
+}
+
+std::string words_of(const flow::SetClutch& clutch) {
+  std::string who(clutched_name(clutch.finger));
+  if (clutch.finger == puppet::RigPlayer::all_fingers)
+    who = "hand";
+  else if (clutch.finger == puppet::HandSignal::no_finger)
+    who = "palm and wrist";
+  else if (clutch.finger > 0)
+    who += " finger";
+  return "the " + std::string(name_of(clutch.side)) + " " + who +
+         (clutch.holds ? " takes hold" : " lets go");
 }
 
 } // namespace
@@ -107,24 +167,44 @@ bool same_bits(const Key& one, const Key& other) noexcept {
 }
 
 bool same_bits(const Event& one, const Event& other) noexcept {
-  return same_bits(one.time_s, other.time_s) && one.request == other.request &&
-         one.settings == other.settings && one.subdivides == other.subdivides;
+  return same_bits(one.time_s, other.time_s) && one.command == other.command;
 }
 
-std::string in_words(const Event& event) {
-  if (event.subdivides) return "subdivide";
-  if (!event.settings) return std::string(name_of(event.request));
-  const flow::LoopSettings& settings = *event.settings;
-  std::string words = std::string(name_of(settings.mode)) + ", " +
-                      std::string(deform::name_of(settings.kernel)) +
-                      (settings.injective ? ", never folds, radius" : ", radius");
-  const auto [least, most] =
-      std::minmax_element(settings.radius_m.begin(), settings.radius_m.end());
-  char radius[64];
-  std::snprintf(radius, sizeof radius, " %.3g", 100.0 * *least);
-  words += radius;
-  std::snprintf(radius, sizeof radius, " to %.3g", 100.0 * *most);
-  return words + (*least == *most ? "" : radius) + " cm";
+bool same_bits(const puppet::FunctionState& one, const puppet::FunctionState& other) noexcept {
+  return same_bits(one.asked, other.asked) && one.input == other.input && one.held == other.held;
+}
+
+puppet::RigState first_state(const puppet::Rig& rig) {
+  puppet::RigState state;
+  for (const puppet::Function& function : rig.puppet().functions)
+    state.functions.push_back({0.0, function.input, true});
+  return state;
+}
+
+std::string_view clutched_name(std::uint8_t finger) noexcept {
+  if (finger < hand::finger_count) return hand::name_of(static_cast<hand::Finger>(finger));
+  return finger == puppet::HandSignal::no_finger ? "palm" : "all";
+}
+
+std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept {
+  for (std::uint8_t finger = 0; finger <= puppet::HandSignal::no_finger; ++finger)
+    if (clutched_name(finger) == name) return finger;
+  if (name == "all") return puppet::RigPlayer::all_fingers;
+  return std::nullopt;
+}
+
+std::string in_words(const Timeline& timeline, const Event& event) {
+  if (const auto* request = std::get_if<flow::Request>(&event.command))
+    return std::string(name_of(*request));
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&event.command))
+    return words_of(change->settings);
+  if (const auto* clutch = std::get_if<flow::SetClutch>(&event.command)) return words_of(*clutch);
+  if (const auto* role = std::get_if<flow::SetRole>(&event.command); role && timeline.rig)
+    return timeline.rig->puppet().functions[role->function].name + " listens to " +
+           role->input.name();
+  if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&event.command))
+    return symmetry->on ? "one hand plays both sides" : "each hand plays its side";
+  return std::holds_alternative<flow::Subdivide>(event.command) ? "subdivide" : "mark";
 }
 
 HandTrack* Timeline::track(Side side) noexcept {
@@ -144,6 +224,10 @@ std::size_t Timeline::key_count() const noexcept {
   for (const auto& hand : hands)
     count += hand.keys.size();
   return count;
+}
+
+Eigen::Index Timeline::point_count() const noexcept {
+  return rig ? rig->starts().cols() : 5 * static_cast<Eigen::Index>(hands.size());
 }
 
 std::string complaint_about(const Key& key) {
@@ -169,9 +253,11 @@ std::string complaint_about(const Timeline& timeline) {
     return "must have one or two hands, of different sides";
   for (const auto& hand : timeline.hands)
     if (auto wrong = complaint_about(hand); !wrong.empty()) return wrong;
-  if (auto wrong = complaint_about(timeline.sculptor, timeline.hands.size()); !wrong.empty())
+  if (auto wrong = complaint_about(timeline.sculptor, timeline.point_count()); !wrong.empty())
     return wrong;
-  return complaint_about(timeline.events);
+  if (auto wrong = complaint_about(timeline.rig.get(), timeline.rig_state); !wrong.empty())
+    return wrong;
+  return complaint_about(timeline.events, timeline.rig.get());
 }
 
 } // namespace nendo::timeline

@@ -1,16 +1,19 @@
 #pragma once
 // A take as key poses. For each hand, it has joint angles and the place of the wrist at some times.
-// It also has the requests to the model, the changes of settings, and all options on which the
-// shape depends.
+// It also has what people asked for meanwhile, and all options on which the shape depends.
 
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include <nendo/flow/shaping.hpp>
+#include <nendo/flow/command.hpp>
 #include <nendo/hand/skeleton.hpp>
+#include <nendo/puppet/rig.hpp>
 #include <nendo/recording/setup.hpp>
 
 namespace nendo::timeline {
@@ -38,16 +41,14 @@ struct HandTrack {
 
 struct Event {
   double time_s = 0.0;
-  flow::Request request = flow::Request::grab;
-  /// The event is a change to these, and `request` means nothing. They have no filter, because keys
-  /// are poses that were filtered.
-  std::optional<flow::LoopSettings> settings{};
-  bool subdivides = false; ///< the event makes the model finer, and `request` means nothing
+  /// A Request, ChangeSettings (without a filter, because keys are poses that were filtered),
+  /// Subdivide, Mark, or, with a puppet, SetClutch, SetRole or SetSymmetry. These three find the
+  /// hands as they were in the frame before.
+  flow::Command command = flow::Request::grab;
 };
 
 bool same_bits(const Event& one, const Event& other) noexcept;
-/// Returns what the event does, in words: "commit", "type2, wendland-c4, radius 12 cm".
-std::string in_words(const Event& event);
+bool same_bits(const puppet::FunctionState& one, const puppet::FunctionState& other) noexcept;
 
 /// Times begin at 0, when the hands take hold of the unchanged model.
 struct Timeline {
@@ -59,15 +60,32 @@ struct Timeline {
   double duration_s = 0.0;      ///< of the last frame
   bool held = true;             ///< the hands hold the model at first
   bool pull_is_step = false;    ///< LoopOptions::pull_is_step; false in files that do not tell
+  /// A field along the surface is not in files. Without it, a player makes it of the puppet.
   flow::SculptorOptions sculptor;
-  /// One or two, of different sides. Their order numbers the own supports of fingertips.
+  /// The puppet that the hands play. Null: they touch the model with their fingertips.
+  std::shared_ptr<const puppet::Rig> rig{};
+  puppet::RigState rig_state; ///< at 0 s; has all functions
+  /// One or two, of different sides. Without a puppet, their order numbers the own supports.
   std::vector<HandTrack> hands;
   std::vector<Event> events; ///< in order of their times, which may be equal
 
   HandTrack* track(Side side) noexcept;
   const HandTrack* track(Side side) const noexcept;
   std::size_t key_count() const noexcept;
+  /// Returns how many points move the model: fingertips, or those of the puppet.
+  Eigen::Index point_count() const noexcept;
 };
+
+/// Returns the state of a puppet that nobody has played yet.
+puppet::RigState first_state(const puppet::Rig& rig);
+
+/// The name of what a SetClutch is about (SetClutch::finger): "thumb" to "little", "palm", "all".
+std::string_view clutched_name(std::uint8_t finger) noexcept;
+std::optional<std::uint8_t> clutched_named(std::string_view name) noexcept;
+
+/// Returns what the event does, in words: "commit", "type2, wendland-c4, radius 12 cm",
+/// "the left index finger lets go".
+std::string in_words(const Timeline& timeline, const Event& event);
 
 inline constexpr std::size_t most_keys = 1'000'000; ///< of a hand
 inline constexpr std::size_t most_events = 1'000'000;

@@ -37,6 +37,7 @@ void go(Timeline& timeline, const TimelineChange& change, bool forth) {
     put(timeline.hands[at].keys, hand.keys, forth);
   }
   put(timeline.events, change.events, forth);
+  put(timeline.rig_state.functions, change.functions, forth);
 }
 
 } // namespace
@@ -50,11 +51,13 @@ TimelineChange change_between(const Timeline& before, const Timeline& after) {
     change.hands.push_back({before.hands[at].side, after.hands[at].side,
                             splice_between(before.hands[at].keys, after.hands[at].keys)});
   change.events = splice_between(before.events, after.events);
+  change.functions = splice_between(before.rig_state.functions, after.rig_state.functions);
   return change;
 }
 
 bool is_empty(const TimelineChange& change) noexcept {
   return same_bits(change.duration_before_s, change.duration_after_s) && change.events.is_empty() &&
+         change.functions.is_empty() &&
          std::all_of(change.hands.begin(), change.hands.end(), [](const auto& hand) {
            return hand.side_before == hand.side_after && hand.keys.is_empty();
          });

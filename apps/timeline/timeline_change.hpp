@@ -25,10 +25,11 @@ struct TimelineChange {
   double duration_after_s = 0.0;
   std::vector<Hand> hands; ///< in the order of the timeline's hands
   Splice<Event> events;
+  Splice<puppet::FunctionState> functions; ///< of the puppet, at 0 s
 };
 
-/// Compares all that edits change: durations, sides, keys and events. Both must have the same
-/// number of hands.
+/// Compares all that edits change: durations, sides, keys, events, and what a puppet listens to.
+/// Both must have the same number of hands.
 TimelineChange change_between(const Timeline& before, const Timeline& after);
 bool is_empty(const TimelineChange& change) noexcept;
 /// These apply the change or take it back, bit for bit.

@@ -1,5 +1,6 @@
 // Writing timelines, and files of them.
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -39,13 +40,13 @@ std::string line(std::string_view name, const std::string& value) {
   return std::string(name) + " = " + value + "\n";
 }
 
-std::string supports_text(const deform::Supports& supports) {
+std::string supports_text(const deform::Supports& supports, std::string_view of_own) {
   std::string shared;
   for (const auto& support : supports.shared)
     shared += (shared.empty() ? "" : ", ") + list(std::array{support.radius, support.weight});
   std::string own;
   for (const auto& one : supports.own)
-    own += (own.empty() ? "" : ", ") + std::string("{ tip = ") + std::to_string(one.point) +
+    own += (own.empty() ? "{ " : ", { ") + std::string(of_own) + " = " + std::to_string(one.point) +
            ", radius = " + decimal_text(one.support.radius) +
            ", weight = " + decimal_text(one.support.weight) + " }";
   return line("shared", "[" + shared + "]") + line("own", "[" + own + "]");
@@ -63,16 +64,16 @@ std::string brushes_lines(const flow::SculptorOptions& sculptor) {
          line("brush_strength", decimal_text(sculptor.brush_strength));
 }
 
-std::string sculptor_text(const flow::SculptorOptions& sculptor) {
+std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet) {
   const auto& options = sculptor.deformer;
-  const auto word = [](std::string_view name) { return toml_string(name); };
-  std::string text = "\n[sculptor]\n" + line("mode", word(name_of(sculptor.mode))) +
+  std::string text = "\n[sculptor]\n" + line("mode", toml_string(name_of(sculptor.mode))) +
                      line("piece_length", decimal_text(sculptor.piece_length)) +
-                     brushes_lines(sculptor) + line("kernel", word(name_of(options.csrbf.kernel))) +
-                     line("polynomial", word(name_of(options.csrbf.polynomial))) +
+                     brushes_lines(sculptor) +
+                     line("kernel", toml_string(name_of(options.csrbf.kernel))) +
+                     line("polynomial", toml_string(name_of(options.csrbf.polynomial))) +
                      line("merge_fraction", decimal_text(options.csrbf.merge_fraction)) +
                      line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
-                     supports_text(options.supports);
+                     supports_text(options.supports, is_puppet ? "point" : "tip");
   if (options.injective)
     text +=
         line("injective", "{ most_bound = " + decimal_text(options.injective->most_bound) +
@@ -103,20 +104,70 @@ std::string key_text(const Key& key) {
          line("angles_rad", "{ " + angles + " }");
 }
 
+/// Of several lines, as it is if TOML can have it so.
+std::string toml_lines(const std::string& text) {
+  const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return c == '\n' || c == '\t' || (byte >= 0x20 && byte != 0x7F);
+  });
+  if (!is_plain || text.find("'''") != std::string::npos || text.ends_with('\''))
+    return toml_string(text);
+  return "'''\n" + text + "'''";
+}
+
+std::string word(bool truth) {
+  return truth ? "true" : "false";
+}
+
+std::string puppet_text(const puppet::Rig& rig, const puppet::RigState& state) {
+  const puppet::Puppet& puppet = rig.puppet();
+  std::string functions;
+  for (std::size_t at = 0; at < puppet.functions.size(); ++at) {
+    const puppet::FunctionState& function = state.functions[at];
+    functions += "  { name = " + toml_string(puppet.functions[at].name) +
+                 ", input = " + toml_string(function.input.name()) +
+                 ", asked = " + decimal_text(function.asked) + ", held = " + word(function.held) +
+                 " },\n";
+  }
+  std::string starts;
+  for (std::size_t at = 0; at < puppet.points.size(); ++at)
+    starts += line(puppet.points[at].name, list(rig.starts().col(static_cast<Eigen::Index>(at))));
+  return "\n[puppet]\n" + line("symmetric", word(state.symmetric)) + "functions = [\n" + functions +
+         "]\n" + line("text", toml_lines(puppet.text)) + "\n[puppet.starts]\n" + starts;
+}
+
+std::string clutch_text(const flow::SetClutch& clutch) {
+  return "{ hand = " + toml_string(name_of(clutch.side)) +
+         ", finger = " + toml_string(clutched_name(clutch.finger)) +
+         ", holds = " + word(clutch.holds) + " }";
+}
+
+std::string event_text(const Timeline& timeline, const Event& event) {
+  const flow::Command& command = event.command;
+  if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
+    return "settings = " + settings_text(change->settings);
+  if (const auto* clutch = std::get_if<flow::SetClutch>(&command))
+    return "clutch = " + clutch_text(*clutch);
+  if (const auto* role = std::get_if<flow::SetRole>(&command))
+    return "role = { function = " +
+           toml_string(timeline.rig->puppet().functions[role->function].name) +
+           ", input = " + toml_string(role->input.name()) + " }";
+  if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command))
+    return "symmetric = " + word(symmetry->on);
+  return "request = " + toml_string(in_words(timeline, event));
+}
+
 std::string head_text(const Timeline& timeline) {
   std::string events;
   for (const Event& event : timeline.events)
-    events += "  { time_s = " + decimal_text(event.time_s) + ", " +
-              (event.settings ? "settings = " + settings_text(*event.settings)
-                              : "request = " + toml_string(in_words(event))) +
-              " },\n";
+    events +=
+        "  { time_s = " + decimal_text(event.time_s) + ", " + event_text(timeline, event) + " },\n";
   return "# Key poses of hands over a model; `nendo edit` works on it, and so does a text "
          "editor.\n" +
          line("version", "1") + line("take", toml_string(timeline.take)) +
          line("units_per_metre", decimal_text(timeline.units_per_metre)) +
          line("rate_hz", decimal_text(timeline.rate_hz)) +
-         line("duration_s", decimal_text(timeline.duration_s)) +
-         line("held", timeline.held ? "true" : "false") +
+         line("duration_s", decimal_text(timeline.duration_s)) + line("held", word(timeline.held)) +
          (timeline.pull_is_step ? line("pull_is_step", "true") : "") + "events = [\n" + events +
          "]\n" + "\n[model]\n" + line("file", toml_string(timeline.mesh)) +
          line("vertices", std::to_string(timeline.mesh_sum.vertices)) +
@@ -130,7 +181,9 @@ Result<std::string> timeline_text(const Timeline& timeline) {
   if (std::string wrong = complaint_about(timeline); !wrong.empty()) return failed(wrong);
   if (!is_utf8(timeline.mesh) || !is_utf8(timeline.take))
     return failed("the name of the model's or the take's file is no UTF-8; rename it");
-  std::string text = head_text(timeline) + sculptor_text(timeline.sculptor);
+  const bool is_puppet = timeline.rig != nullptr;
+  std::string text = head_text(timeline) + sculptor_text(timeline.sculptor, is_puppet);
+  if (is_puppet) text += puppet_text(*timeline.rig, timeline.rig_state);
   for (const HandTrack& hand : timeline.hands) {
     text += "\n[[hands]]\n" + line("side", toml_string(name_of(hand.side))) +
             line("length_m", decimal_text(hand.size.length_m)) +

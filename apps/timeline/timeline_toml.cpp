@@ -1,6 +1,7 @@
 // Reading timelines.
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -19,22 +20,24 @@ deform::Support read_support(TomlReader& reader, const toml::node& node) {
   return {values[0], values[1]};
 }
 
-void read_supports(TomlReader& reader, const toml::table& table, deform::Supports& supports) {
+/// `of_own`: "tip", or "point" of a puppet.
+void read_supports(TomlReader& reader, const toml::table& table, std::string_view of_own,
+                   deform::Supports& supports) {
   supports = {};
-  constexpr std::size_t most_supports = 64;
+  constexpr std::size_t most_supports = puppet::Puppet::most_points;
   const toml::array* const shared = reader.array(table, "shared");
   const toml::array* const own = reader.array(table, "own");
   if (shared == nullptr || own == nullptr) return;
   if (shared->size() > most_supports || own->size() > most_supports)
-    return reader.complain(table, "there are more than 64 supports of a kind");
+    return reader.complain(table, "there are more than 1000 supports of a kind");
   for (const toml::node& node : *shared)
     supports.shared.push_back(read_support(reader, node));
   for (const toml::node& node : *own) {
     const toml::table* const one = reader.as_table(node, "an own support");
     if (one == nullptr) return;
-    reader.allow_only(*one, {"tip", "radius", "weight"});
-    const auto tip = static_cast<Eigen::Index>(reader.count(*one, "tip", 9));
-    supports.own.push_back({tip, {reader.number(*one, "radius"), reader.number(*one, "weight")}});
+    reader.allow_only(*one, {of_own, "radius", "weight"});
+    const auto point = static_cast<Eigen::Index>(reader.count(*one, of_own, most_supports));
+    supports.own.push_back({point, {reader.number(*one, "radius"), reader.number(*one, "weight")}});
   }
 }
 
@@ -67,7 +70,8 @@ void read_brushes(TomlReader& reader, const toml::table& table,
   }
 }
 
-void read_sculptor(TomlReader& reader, const toml::table& root, flow::SculptorOptions& sculptor) {
+void read_sculptor(TomlReader& reader, const toml::table& root, bool is_puppet,
+                   flow::SculptorOptions& sculptor) {
   const toml::table* const table = reader.table(root, "sculptor");
   if (table == nullptr) return;
   // order and storage stand in older files; they are ignored.
@@ -83,7 +87,7 @@ void read_sculptor(TomlReader& reader, const toml::table& root, flow::SculptorOp
   options.csrbf.merge_fraction = reader.number(*table, "merge_fraction");
   options.evaluation.weight_bytes =
       reader.count(*table, "weight_bytes", std::numeric_limits<std::int64_t>::max());
-  read_supports(reader, *table, options.supports);
+  read_supports(reader, *table, is_puppet ? "point" : "tip", options.supports);
   read_injective(reader, *table, options);
 }
 
@@ -131,8 +135,6 @@ HandTrack read_hand(TomlReader& reader, const toml::table& table) {
 
 flow::LoopSettings read_settings(TomlReader& reader, const toml::table& event) {
   flow::LoopSettings settings;
-  if (event.get("request") != nullptr)
-    reader.complain(event, "an event has a request or settings; make two events of it");
   const toml::table* const table = reader.table(event, "settings");
   if (table == nullptr) return settings;
   reader.allow_only(*table, {"mode", "kernel", "injective", "radius_m", "piece_fraction", "brushes",
@@ -147,23 +149,126 @@ flow::LoopSettings read_settings(TomlReader& reader, const toml::table& event) {
   return settings;
 }
 
+/// Returns 0, with an error, if the puppet has no such function.
+std::uint16_t read_function(TomlReader& reader, const toml::table& table, std::string_view key,
+                            const puppet::Puppet& puppet) {
+  const std::string name = reader.text(table, key);
+  const auto found = puppet.function_named(name);
+  if (!found) reader.complain(table, "the puppet has no function '" + name + "'");
+  return static_cast<std::uint16_t>(found.value_or(0));
+}
+
+flow::SetClutch read_clutch(TomlReader& reader, const toml::table& event) {
+  const toml::table* const table = reader.table(event, "clutch");
+  if (table == nullptr) return {};
+  reader.allow_only(*table, {"hand", "finger", "holds"});
+  return {reader.named(*table, "hand", side_named), reader.named(*table, "finger", clutched_named),
+          reader.truth(*table, "holds")};
+}
+
+flow::SetRole read_role(TomlReader& reader, const toml::table& event, const puppet::Rig* rig) {
+  const toml::table* const table = reader.table(event, "role");
+  if (table == nullptr) return {};
+  reader.allow_only(*table, {"function", "input"});
+  if (rig == nullptr) reader.complain(*table, "a role is of a puppet's function; add [puppet]");
+  if (rig == nullptr) return {};
+  return {read_function(reader, *table, "function", rig->puppet()),
+          reader.named(*table, "input", puppet::HandSignal::named)};
+}
+
+flow::Command read_request(TomlReader& reader, const toml::table& event) {
+  const auto name = event["request"].value<std::string_view>();
+  if (name == "subdivide") return flow::Subdivide{};
+  if (name == "mark") return flow::Mark{};
+  return reader.named(event, "request", flow::request_named);
+}
+
+flow::Command read_command(TomlReader& reader, const toml::table& event, const puppet::Rig* rig) {
+  if (event.size() > 2)
+    reader.complain(event, "an event has a time and one thing that happens; make two events of it");
+  if (event.contains("settings")) return flow::ChangeSettings{read_settings(reader, event)};
+  if (event.contains("clutch")) return read_clutch(reader, event);
+  if (event.contains("role")) return read_role(reader, event, rig);
+  if (event.contains("symmetric")) return flow::SetSymmetry{reader.truth(event, "symmetric")};
+  return read_request(reader, event);
+}
+
 void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline) {
   const toml::array* const events = reader.array(root, "events");
   if (events == nullptr) return;
   for (const toml::node& node : *events) {
     const toml::table* const event = reader.as_table(node, "an event");
     if (event == nullptr || reader.error()) return;
-    reader.allow_only(*event, {"time_s", "request", "settings"});
+    reader.allow_only(*event, {"time_s", "request", "settings", "clutch", "role", "symmetric"});
     Event& read = timeline.events.emplace_back();
     read.time_s = reader.number(*event, "time_s");
-    if (event->get("settings") != nullptr)
-      read.settings = read_settings(reader, *event);
-    else if (event->get("request") != nullptr &&
-             event->at("request").value<std::string_view>() == "subdivide")
-      read.subdivides = true;
-    else
-      read.request = reader.named(*event, "request", flow::request_named);
+    read.command = read_command(reader, *event, timeline.rig.get());
+    if (!reader.error() && flow::is_for_puppet(read.command) && timeline.rig == nullptr)
+      reader.complain(*event, "is about a puppet, and there is none; add [puppet]");
   }
+}
+
+/// Where the points are on the model, by their names.
+deform::Points read_starts(TomlReader& reader, const toml::table& table,
+                           const puppet::Puppet& puppet) {
+  deform::Points starts = deform::Points::Zero(3, static_cast<Eigen::Index>(puppet.points.size()));
+  const toml::table* const places = reader.table(table, "starts");
+  if (places == nullptr) return starts;
+  for (const auto& [key, node] : *places)
+    if (std::none_of(puppet.points.begin(), puppet.points.end(),
+                     [&](const auto& point) { return point.name == key.str(); }))
+      reader.complain(node, "the puppet has no point '" + std::string(key.str()) + "'");
+  for (std::size_t at = 0; at < puppet.points.size(); ++at) {
+    const std::string& name = puppet.points[at].name;
+    const toml::node* const place = reader.find(*places, name);
+    if (place == nullptr) return starts;
+    const auto numbers = reader.numbers<3>(*place, name);
+    starts.col(static_cast<Eigen::Index>(at)) = Eigen::Vector3d::Map(numbers.data());
+  }
+  return starts;
+}
+
+void read_rig_state(TomlReader& reader, const toml::table& table, const puppet::Puppet& puppet,
+                    puppet::RigState& state) {
+  state.symmetric = table.contains("symmetric") && reader.truth(table, "symmetric");
+  if (!table.contains("functions")) return;
+  const toml::array* const functions = reader.array(table, "functions");
+  if (functions == nullptr) return;
+  for (const toml::node& node : *functions) {
+    const toml::table* const one = reader.as_table(node, "a function");
+    if (one == nullptr || reader.error()) return;
+    reader.allow_only(*one, {"name", "input", "asked", "held"});
+    state.functions[read_function(reader, *one, "name", puppet)] = {
+        reader.number(*one, "asked"), reader.named(*one, "input", puppet::HandSignal::named),
+        reader.truth(*one, "held")};
+  }
+}
+
+/// `message` begins with ":LINE: ", which counts from the line below the key if the text is written
+/// in several lines.
+void complain_in_text(TomlReader& reader, const toml::node& text, const std::string& message) {
+  std::size_t line = 0;
+  const auto [end, error] =
+      std::from_chars(message.data() + 1, message.data() + message.size(), line);
+  const auto& source = text.source();
+  const bool is_below = error == std::errc{} && source.end.line > source.begin.line;
+  const std::string what = message.substr(static_cast<std::size_t>(end - message.data()));
+  reader.complain(source.begin.line + (is_below ? line : 0), "the puppet's text" + what);
+}
+
+void read_puppet(TomlReader& reader, const toml::table& root, Timeline& timeline) {
+  if (!root.contains("puppet")) return;
+  const toml::table* const table = reader.table(root, "puppet");
+  if (table == nullptr) return;
+  reader.allow_only(*table, {"text", "starts", "symmetric", "functions"});
+  const std::string text = reader.text(*table, "text");
+  if (reader.error()) return;
+  auto puppet = puppet::parse_puppet(text, "");
+  if (!puppet) return complain_in_text(reader, *table->get("text"), puppet.error().message);
+  deform::Points starts = read_starts(reader, *table, *puppet);
+  timeline.rig = std::make_shared<const puppet::Rig>(*std::move(puppet), std::move(starts));
+  timeline.rig_state = first_state(*timeline.rig);
+  read_rig_state(reader, *table, timeline.rig->puppet(), timeline.rig_state);
 }
 
 void read_model(TomlReader& reader, const toml::table& root, Timeline& timeline) {
@@ -179,7 +284,7 @@ void read_model(TomlReader& reader, const toml::table& root, Timeline& timeline)
 
 Timeline read_root(TomlReader& reader, const toml::table& root) {
   reader.allow_only(root, {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
-                           "pull_is_step", "events", "model", "sculptor", "hands"});
+                           "pull_is_step", "events", "model", "sculptor", "puppet", "hands"});
   Timeline timeline;
   timeline.take = reader.text(root, "take");
   timeline.units_per_metre = reader.number(root, "units_per_metre");
@@ -187,9 +292,10 @@ Timeline read_root(TomlReader& reader, const toml::table& root) {
   timeline.duration_s = reader.number(root, "duration_s");
   timeline.held = reader.truth(root, "held");
   timeline.pull_is_step = root.contains("pull_is_step") && reader.truth(root, "pull_is_step");
+  read_puppet(reader, root, timeline);
   read_events(reader, root, timeline);
   read_model(reader, root, timeline);
-  read_sculptor(reader, root, timeline.sculptor);
+  read_sculptor(reader, root, timeline.rig != nullptr, timeline.sculptor);
   const toml::array* const hands = reader.array(root, "hands");
   if (hands == nullptr) return timeline;
   for (const toml::node& node : *hands) {

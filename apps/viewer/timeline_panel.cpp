@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "viewer/key_list.hpp"
@@ -81,6 +83,9 @@ void TimelineWindow::Panel::draw(const TimelineView& view, EditActions& actions)
   ImGui::PushTextWrapPos(panel_width - 12.0F);
   file(view, actions);
   if (ImGui::CollapsingHeader("Key", ImGuiTreeNodeFlags_DefaultOpen)) key(view, actions);
+  if (!view.functions.empty() &&
+      ImGui::CollapsingHeader("Functions", ImGuiTreeNodeFlags_DefaultOpen))
+    functions(view);
   retiming_shown = ImGui::CollapsingHeader("Timeline");
   if (retiming_shown) whole(view, actions);
   if (!view.message.empty()) {
@@ -145,6 +150,19 @@ void TimelineWindow::Panel::key(const TimelineView& view, EditActions& actions) 
     ImGui::TextDisabled("%s", view.at_selected
                                   ? "drag a ringed fingertip to bend its finger"
                                   : "the head is elsewhere: click the key to bend its fingers");
+}
+
+/// A bar for each, from 0; those below 0 are told by their numbers.
+void TimelineWindow::Panel::functions(const TimelineView& view) {
+  constexpr float bar_width = 90.0F;
+  for (const FunctionValue& function : view.functions) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.2f", function.value);
+    const auto part = static_cast<float>(std::clamp(std::abs(function.value), 0.0, 1.0));
+    ImGui::ProgressBar(part, ImVec2(bar_width, 0.0F), number);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(function.name.c_str());
+  }
 }
 
 void TimelineWindow::Panel::whole(const TimelineView& view, EditActions& actions) {

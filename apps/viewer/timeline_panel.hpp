@@ -27,6 +27,7 @@ struct TimelineWindow::Panel {
 private:
   void file(const TimelineView& view, EditActions& actions) const;
   void key(const TimelineView& view, EditActions& actions);
+  static void functions(const TimelineView& view);
   void whole(const TimelineView& view, EditActions& actions);
 };
 

@@ -13,12 +13,19 @@
 
 namespace nendo::viewer {
 
+/// What a function of a puppet is at.
+struct FunctionValue {
+  std::string name;
+  double value = 0.0;
+};
+
 struct TimelineView {
   std::string file; ///< where the timeline is saved
   double duration_s = 0.0;
   double rate_hz = 90.0; ///< of the frames
   std::vector<StripLane> lanes;
   std::vector<StripMark> marks;
+  std::vector<FunctionValue> functions; ///< at the play head; without a puppet there are none
 
   double head_s = 0.0;
   bool playing = false;

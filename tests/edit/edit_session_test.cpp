@@ -10,6 +10,7 @@
 #include "support/test_meshes.hpp"
 #include "support/text_files.hpp"
 #include "support/timelines.hpp"
+#include "timeline/function_values.hpp"
 #include "timeline/timeline_file.hpp"
 
 namespace edit_session_test {
@@ -26,10 +27,14 @@ using viewer::TipDrag;
 namespace {
 
 struct Edited {
+  explicit Edited(bool with_puppet = false)
+      : first(with_puppet ? test::puppet_timeline(model)
+                          : test::waved_timeline(model, flow::Mode::type1)) {}
+
   test::TemporaryFolder folder;
   std::string out = (folder.path() / "take.timeline.toml").string();
   deform::Mesh model = test::sphere(12, 24, 1.0);
-  Timeline first = test::waved_timeline(model, flow::Mode::type1);
+  Timeline first;
   EditSession session{first, model, out};
 
   void wish(EditCommand command) {
@@ -65,6 +70,39 @@ struct Edited {
 } // namespace
 
 TEST_SUITE("edit_session") {
+  TEST_CASE("a puppet is edited, mirrored, undone and saved like hands that touch the model") {
+    Edited edited(true);
+    CHECK(edited.session.view().marks[1].name == "smileRight listens to right.wrist_yaw");
+    edited.click({1, 5});
+    edited.try_out(KeyDrag{{1, 5}, 0.47}, true);
+    CHECK(edited.key(1, 5).time_s == 0.47);
+    edited.wish(EditCommand::mirror);
+    CHECK(edited.session.view().marks[1].name == "smileLeft listens to left.wrist_yaw");
+    CHECK(edited.now().hands[1].side == Side::left);
+    edited.wish(EditCommand::save);
+    const auto saved = read_timeline(edited.out);
+    REQUIRE(saved);
+    CHECK(test::same_bits(*saved, edited.now()));
+    edited.wish(EditCommand::undo);
+    edited.wish(EditCommand::undo);
+    CHECK(test::same_bits(edited.now(), edited.first));
+    CHECK(edited.session.history().is_modified());
+    CHECK_FALSE(edited.session.scene_frame().held); // no fingertip touches the model
+    while (edited.session.view().computing)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    edited.session.seek(0.28);
+    const auto& functions = edited.session.view().functions;
+    REQUIRE(functions.size() == edited.first.rig_state.functions.size());
+    play_functions(edited.first, std::array{25.0 / 90.0},
+                   [&](std::size_t, const PuppetMoment& moment) {
+                     const auto values = moment.hands.player().values();
+                     for (std::size_t at = 0; at < values.size(); ++at) {
+                       CHECK(functions[at].value == doctest::Approx(values[at]));
+                       CHECK(functions[at].name == edited.first.rig->puppet().functions[at].name);
+                     }
+                   });
+  }
+
   TEST_CASE("what is shown at a frame's time are the player's hands, and where they took hold") {
     Edited edited;
     auto player = Player::make(edited.first, edited.model);

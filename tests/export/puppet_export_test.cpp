@@ -10,6 +10,9 @@
 #include "export/gltf_export.hpp"
 #include "support/glb_reader.hpp"
 #include "support/recorded_motion.hpp"
+#include "takes/timeline_frames.hpp"
+#include "timeline/edit.hpp"
+#include "timeline/from_take.hpp"
 
 namespace puppet_export_test {
 
@@ -211,6 +214,38 @@ TEST_SUITE("puppet_export") {
       const Glb glb = take.read();
       CHECK(target_names(glb) != names);
       CHECK(take.farthest_off(glb) < 1.01e-3);
+    }
+  }
+
+  TEST_CASE("a timeline of the take has the same targets, also mirrored, and the player's shapes") {
+    const RecordedPuppet take(PuppetMotion{});
+    auto made = timeline::timeline_of_take(take.played.path, take.played.test.model, {0.0, 0.0});
+    REQUIRE(made);
+    for (const bool mirrors : {false, true}) {
+      CAPTURE(mirrors);
+      if (mirrors) REQUIRE(timeline::mirror(made->timeline, 0.0));
+      const auto frames_of = [&] {
+        auto frames = takes::TimelineFrames::make(made->timeline, take.played.test.model);
+        REQUIRE(frames);
+        return *std::move(frames);
+      };
+      const auto open = [&]() -> Result<std::unique_ptr<takes::FrameSource>> {
+        return std::unique_ptr<takes::FrameSource>(frames_of());
+      };
+      const auto done = export_gltf(open, {}, {.tolerance = 1e-3}, take.path());
+      REQUIRE(done);
+      CHECK(done->morphs->basis == MorphBasis::functions);
+      const Glb glb = take.read();
+      CHECK(target_names(glb) == names);
+      const auto frames = frames_of();
+      double worst = 0.0, most = 0.0;
+      while (frames->next()) {
+        const deform::Points shape = take.played.test.vertices_of(frames->frame());
+        worst = std::max(worst, test::farthest(glb.vertices(0, frames->time_s()), shape));
+        most = std::max(most, test::farthest(shape, take.rest()));
+      }
+      CHECK(worst < ControlMorphs::most_error * take.diagonal());
+      CHECK(most > 0.05 * take.diagonal());
     }
   }
 

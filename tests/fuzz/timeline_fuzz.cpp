@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <variant>
 
 #include "support/test_meshes.hpp"
 #include "timeline/player.hpp"
@@ -23,8 +24,9 @@ void play(nendo::timeline::Timeline timeline) {
   if (deformer.injective)
     deformer.injective->most_links = std::min(deformer.injective->most_links, 8);
   int finer = 0; // nor memory
-  std::erase_if(timeline.events,
-                [&](const auto& event) { return event.subdivides && ++finer > 3; });
+  std::erase_if(timeline.events, [&](const auto& event) {
+    return std::holds_alternative<nendo::flow::Subdivide>(event.command) && ++finer > 3;
+  });
   const auto player = nendo::timeline::Player::make(std::move(timeline), model);
   if (!player) return;
   for (int frame = 0; frame < most_frames && (*player)->next(); ++frame) {

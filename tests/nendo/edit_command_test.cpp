@@ -79,6 +79,53 @@ bool catches(pid_t process, int signal) {
 } // namespace
 
 TEST_SUITE("edit_command") {
+  TEST_CASE("a run with a puppet is edited: its functions are listed, set and mirrored") {
+    const TemporaryFolder folder;
+    const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+    const std::string take = path("face.nendo"), file = path("face.timeline.toml");
+    const auto run = test::nendo({"run", "--puppet", "face", "--left", "sim:faces", "--right",
+                                  "sim:faces", "--duration", "1.6", "--rate", "30", "--out",
+                                  path("face.obj"), "--record", take});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const auto played = [&](const std::string& of) {
+      EditedRun::fine({"play", of, "--out", path("played.ply")});
+      return path("played.ply");
+    };
+    EditedRun::fine({"make", take, "--out", file, "--tolerance", "0mm"});
+    CHECK(farthest(played(file), path("face.obj")) < 1e-5); // which has six digits
+    const json made = json::parse(
+        EditedRun::fine({"make", take, "--out", file, "--tolerance", "10mm", "--json"}));
+    CHECK(made["left"]["most_point_mm"].get<double>() <= 5.0);
+    const auto functions = [&](const std::string& of) {
+      return json::parse(EditedRun::fine({"show", of, "--functions", "--json"}))["functions"];
+    };
+    const std::string table = EditedRun::fine({"show", file, "--functions"});
+    CHECK(table.find("at rest") != std::string::npos);
+    CHECK(table.find("mouthSmileLeft 0.") != std::string::npos);
+    const json before = functions(file);
+    EditedRun::fine({"mirror", file, "--out", path("mirrored.timeline.toml")});
+    const json after = functions(path("mirrored.timeline.toml"));
+    REQUIRE(after.size() == before.size());
+    CHECK(after.back()["values"]["mouthSmileRight"] == before.back()["values"]["mouthSmileLeft"]);
+    CHECK(after.back()["values"]["jawOpen"] == before.back()["values"]["jawOpen"]);
+    const std::string said = EditedRun::fine(
+        {"set-value", file, "--function", "mouthSmileLeft", "--key", "2", "--to", "0.5"});
+    CHECK(said.find("mouthSmileLeft is 0.500 at key 2") != std::string::npos);
+    CHECK(functions(file) != before);
+    for (const auto& [arguments, about] :
+         {std::pair{Arguments{"set-value", file, "--function", "grin", "--key", "1", "--to", "0.5"},
+                    "'grin'"},
+          std::pair{
+              Arguments{"set-value", file, "--function", "jawOpen", "--key", "1", "--to", "7"},
+              "jawOpen goes from"}}) {
+      const auto refused = EditedRun::edit(arguments);
+      CHECK(refused.exit_code == 2);
+      CHECK(is_one_line_about(refused.err, about));
+    }
+    EditedRun::fine({"show", file});
+  }
+
   TEST_CASE("a recorded run is made into keys that play to its shape") {
     for (const std::string mode : {"type1", "type2"}) {
       CAPTURE(mode);

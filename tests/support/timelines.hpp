@@ -45,16 +45,15 @@ inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys
   }
   for (const flow::Request request : flow::requests)
     made.events.push_back({0.1 * static_cast<double>(made.events.size()), request});
-  made.events.push_back({2.5,
-                         {},
-                         flow::LoopSettings{.mode = flow::Mode::type2,
-                                            .injective = true,
-                                            .radius_m = {0.1, 0.2, 0.3, step(random), 0.5},
-                                            .piece_fraction = 0.07,
-                                            .brushes = {deform::Brush::twist, deform::Brush::pull,
-                                                        deform::Brush::none, deform::Brush::smooth,
-                                                        deform::Brush::scale},
-                                            .brush_strength = -0.3}});
+  made.events.push_back(
+      {2.5, flow::ChangeSettings{{.mode = flow::Mode::type2,
+                                  .injective = true,
+                                  .radius_m = {0.1, 0.2, 0.3, step(random), 0.5},
+                                  .piece_fraction = 0.07,
+                                  .brushes = {deform::Brush::twist, deform::Brush::pull,
+                                              deform::Brush::none, deform::Brush::smooth,
+                                              deform::Brush::scale},
+                                  .brush_strength = -0.3}}});
   return made;
 }
 
@@ -69,6 +68,10 @@ inline bool same_bits(const timeline::Timeline& one, const timeline::Timeline& o
   }
   for (std::size_t at = 0; same && at < one.events.size(); ++at)
     same = timeline::same_bits(one.events[at], other.events[at]);
+  same = same && one.rig_state == other.rig_state && (one.rig != nullptr) == (other.rig != nullptr);
+  if (same && one.rig)
+    same = one.rig->puppet().text == other.rig->puppet().text &&
+           one.rig->starts() == other.rig->starts();
   return same;
 }
 
@@ -115,6 +118,71 @@ inline timeline::Timeline waved_timeline(const deform::Mesh& model, flow::Mode m
                          flow::Request::undo, flow::Request::redo};
   for (std::size_t at = 0; at < asked.size(); ++at)
     made.events.push_back({at_s[at], asked[at]});
+  return made;
+}
+
+/// A puppet whose sides are alike: twins, and two functions without one, each of one hand.
+inline constexpr const char* symmetric_puppet = R"(
+version = 1
+model = "ball.obj"
+distance = "air"
+mirror = "x"
+[points]
+cornerLeft = { at = [0.5, -0.2, 0.8], radius = 0.9 }
+chin = { at = [0.0, -0.6, 0.8], radius = 0.8 }
+crown = { at = [0.0, 1.0, 0.0], radius = 0.7, pin = true }
+[functions.jawOpen]
+input = "right.thumb_flexion"
+travel_deg = 40
+curve = "ease"
+move = { chin = [0.0, -0.2, 0.05] }
+[functions.pucker]
+input = "left.thumb_flexion"
+travel_deg = 40
+move = { chin = [0.0, 0.0, 0.2], cornerLeft = [-0.1, 0.0, 0.1], cornerRight = [0.1, 0.0, 0.1] }
+[functions.smileLeft]
+input = "right.index_flexion"
+travel_deg = 60
+move = { cornerLeft = [0.15, 0.12, -0.05] }
+[functions.frownLeft]
+input = "right.middle_mcp_flexion"
+travel_deg = -30
+least = -0.5
+most = 2
+move = { cornerLeft = [0.05, -0.14, 0.03] }
+)";
+
+inline std::shared_ptr<const puppet::Rig> symmetric_rig() {
+  puppet::Puppet puppet = *puppet::parse_puppet(symmetric_puppet, "a test's puppet");
+  deform::Points starts(3, static_cast<Eigen::Index>(puppet.points.size()));
+  for (std::size_t at = 0; at < puppet.points.size(); ++at) {
+    Eigen::Vector3d place = puppet.points[at].at;
+    if (puppet.points[at].is_mirrored) place.x() = -place.x();
+    starts.col(static_cast<Eigen::Index>(at)) = place;
+  }
+  return std::make_shared<const puppet::Rig>(std::move(puppet), std::move(starts));
+}
+
+/// Returns waved_timeline(), in which the hands play the symmetric puppet, let go, take hold, and
+/// change their roles.
+inline timeline::Timeline puppet_timeline(const deform::Mesh& model, std::size_t frames = 90) {
+  timeline::Timeline made = waved_timeline(model, flow::Mode::type1, frames);
+  made.rig = symmetric_rig();
+  made.rig_state = timeline::first_state(*made.rig);
+  made.sculptor.deformer.supports = made.rig->supports();
+  const auto function = [&](const char* name) {
+    return static_cast<std::uint16_t>(*made.rig->puppet().function_named(name));
+  };
+  made.events = {
+      {0.1, flow::SetClutch{Side::right, 1, false}},
+      {0.2, flow::SetRole{function("smileRight"), *puppet::HandSignal::named("right.wrist_yaw")}},
+      {0.3, flow::SetClutch{Side::right, 1, true}},
+      {0.35, flow::Mark{}},
+      {0.4, flow::SetSymmetry{true}},
+      {0.5, flow::SetClutch{Side::left, puppet::RigPlayer::all_fingers, false}},
+      {0.6, flow::SetSymmetry{false}},
+      {0.7, flow::SetRole{function("pucker"), *puppet::HandSignal::named("left.palm_arch")}},
+      {0.8, flow::SetClutch{Side::left, puppet::HandSignal::no_finger, true}}};
   return made;
 }
 

@@ -118,6 +118,13 @@ std::vector<SurfacePlace> places_on(const Puppet& puppet, const Mesh& model,
 
 } // namespace
 
+std::optional<std::size_t> Puppet::function_named(std::string_view name) const noexcept {
+  const auto found = std::find_if(functions.begin(), functions.end(),
+                                  [&](const Function& known) { return known.name == name; });
+  if (found == functions.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - functions.begin());
+}
+
 std::string twin_of(const std::string& name) {
   constexpr std::string_view left = "Left", right = "Right";
   for (const auto& [ending, other] : {std::pair{left, right}, std::pair{right, left}})

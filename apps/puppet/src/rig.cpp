@@ -31,12 +31,6 @@ double eased(double value, double limit) noexcept {
   return std::copysign(std::abs(limit) * (straight + rest * over * (2.0 - over)), value);
 }
 
-double limited(const Function& function, double value) noexcept {
-  const double limit = value < 0.0 ? function.least : function.most;
-  if (limit == 0.0) return 0.0;
-  return function.eases ? eased(value, limit) : std::clamp(value, function.least, function.most);
-}
-
 /// A hand that takes hold again moves the function at once, however far beyond its limit it was.
 double within_reach(const Function& function, double value) noexcept {
   const double reach = function.eases ? slowing : 1.0;
@@ -44,6 +38,22 @@ double within_reach(const Function& function, double value) noexcept {
 }
 
 } // namespace
+
+double value_of(const Function& function, double asked) noexcept {
+  const double limit = asked < 0.0 ? function.least : function.most;
+  if (limit == 0.0) return 0.0;
+  return function.eases ? eased(asked, limit) : std::clamp(asked, function.least, function.most);
+}
+
+double asked_for(const Function& function, double value) noexcept {
+  const double limit = value < 0.0 ? function.least : function.most;
+  if (!function.eases || limit == 0.0) return value;
+  const double part = std::abs(value / limit);
+  if (part <= straight) return value;
+  const double rest = 1.0 - straight; // eased(), solved for its argument
+  const double over = 1.0 - std::sqrt(std::max(0.0, 1.0 - (part - straight) / rest));
+  return std::copysign(std::abs(limit) * (straight + 2.0 * rest * over), value);
+}
 
 Rig::Rig(Puppet puppet, const deform::Mesh& model) : puppet_(std::move(puppet)) {
   const auto places = places_on(puppet_, model);
@@ -123,7 +133,7 @@ void RigPlayer::follow(const Hands& hands) noexcept {
 void RigPlayer::set_values() noexcept {
   const auto& functions = rig_->puppet().functions;
   for (std::size_t at = 0; at < values_.size(); ++at)
-    values_[at] = limited(functions[at], state_.functions[at].asked);
+    values_[at] = value_of(functions[at], state_.functions[at].asked);
   if (!state_.symmetric) return;
   for (std::size_t at = 0; at < values_.size(); ++at)
     if (std::abs(values_[twins_[at]]) > std::abs(values_[at])) values_[at] = values_[twins_[at]];

@@ -76,6 +76,9 @@ struct Puppet {
   std::vector<Mask> masks;
   std::string text; ///< of the file
 
+  /// Returns the number of the function with that name.
+  std::optional<std::size_t> function_named(std::string_view name) const noexcept;
+
   static constexpr std::size_t most_points = 1000;
   static constexpr std::size_t most_functions = 64;
 };

@@ -41,6 +41,12 @@ private:
   std::vector<deform::Points> vectors_; ///< of each function
 };
 
+/// Returns the value of a function of which that much is asked: it stays within its limits.
+double value_of(const Function& function, double asked) noexcept;
+/// Returns the least that must be asked of a function, by its amount, so that it has that value,
+/// which must be within its limits.
+double asked_for(const Function& function, double value) noexcept;
+
 /// What a player of a rig needs to go on where another one is.
 struct FunctionState {
   double asked = 0.0; ///< of the function by its hand, before its limits

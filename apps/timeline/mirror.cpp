@@ -1,0 +1,78 @@
+#include <string>
+#include <utility>
+
+#include "timeline/edit.hpp"
+
+namespace nendo::timeline {
+namespace {
+
+Side other_of(Side side) noexcept {
+  return side == Side::left ? Side::right : Side::left;
+}
+
+void mirror_key(Key& key, double plane_x_m) {
+  key.wrist_m.x() = 2.0 * plane_x_m - key.wrist_m.x();
+  // The turn seen in a mirror whose hand is mirrored, too: about x as before, about y and z the
+  // other way.
+  key.wrist_turn.y() = -key.wrist_turn.y();
+  key.wrist_turn.z() = -key.wrist_turn.z();
+}
+
+std::size_t twin_number(const puppet::Puppet& puppet, std::size_t function) {
+  const std::string& name = puppet.functions[function].name;
+  return puppet.function_named(puppet::twin_of(name)).value_or(function);
+}
+
+/// All other numbers of a mirrored hand are those of the hand. This one changes its sign.
+bool is_sideways(const puppet::HandSignal& input) {
+  return input.name().ends_with("_tip_x");
+}
+
+Result<puppet::HandSignal> mirrored(const puppet::Puppet& puppet, std::size_t function,
+                                    const puppet::HandSignal& input) {
+  if (!is_sideways(input)) return input.mirrored();
+  return Error{Errc::usage,
+               "the puppet's " + puppet.functions[function].name + " listens to " + input.name() +
+                   ", which goes the other way in a mirror; let it listen to an angle"};
+}
+
+/// Twins change their places, and each function listens to the other hand.
+Result<void> mirror_roles(Timeline& timeline) {
+  const puppet::Puppet& puppet = timeline.rig->puppet();
+  const std::vector<puppet::FunctionState> before = timeline.rig_state.functions;
+  for (std::size_t at = 0; at < before.size(); ++at) {
+    const auto input = mirrored(puppet, at, before[at].input);
+    if (!input) return input.error();
+    timeline.rig_state.functions[twin_number(puppet, at)] = {before[at].asked, *input,
+                                                             before[at].held};
+  }
+  for (Event& event : timeline.events) {
+    if (auto* const clutch = std::get_if<flow::SetClutch>(&event.command))
+      clutch->side = other_of(clutch->side);
+    auto* const role = std::get_if<flow::SetRole>(&event.command);
+    if (role == nullptr) continue;
+    const auto input = mirrored(puppet, role->function, role->input);
+    if (!input) return input.error();
+    *role = {static_cast<std::uint16_t>(twin_number(puppet, role->function)), *input};
+  }
+  return {};
+}
+
+} // namespace
+
+Result<void> mirror(Timeline& timeline, double plane_x_m) {
+  Timeline result = timeline;
+  for (HandTrack& hand : result.hands) {
+    hand.side = other_of(hand.side);
+    for (Key& key : hand.keys)
+      mirror_key(key, plane_x_m);
+  }
+  if (result.rig)
+    if (auto done = mirror_roles(result); !done) return done;
+  if (std::string wrong = complaint_about(result); !wrong.empty())
+    return Error{Errc::usage, std::move(wrong)};
+  timeline = std::move(result);
+  return {};
+}
+
+} // namespace nendo::timeline
