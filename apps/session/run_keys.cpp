@@ -15,7 +15,8 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes, x "
       "resets; " +
       std::string("[ and ] make the brush smaller, larger; m the other mode, n the next kernel, ") +
-      "i never folds, or may; e makes the model finer; t records; . marks the moment; s saves; "
+      "i never folds, or may; e makes the model finer; t records; . marks the moment; o punches a "
+      "layer in or out; s saves; "
       "comma and quote let one hand go of a puppet, y plays both its sides by one; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
@@ -32,6 +33,7 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == 't') commands.try_push(flow::SetRecording{!status.recording});
   if (*key == 'e') commands.try_push(flow::Subdivide{});
   if (*key == '.') commands.try_push(flow::Mark{});
+  if (*key == 'o') commands.try_push(flow::Punch{});
   if (*key == ',') clutch(Side::left, status.frame, commands);
   if (*key == '\'') clutch(Side::right, status.frame, commands);
   if (*key == 'y') commands.try_push(flow::SetSymmetry{!status.frame.symmetric});
