@@ -331,10 +331,10 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
   command.add_option("--frames", options->view.frames,
                      "The window's pictures after which it ends; 0: when it is closed");
   command.on_chosen([options, command] {
-    options->decided_by_take = command.first_given(
-        {"--puppet", "--mode", "--radius", "--kernel", "--polynomial", "--injective",
-         "--no-injective", "--rate", "--policy", "--switch", "--filter", "--filter-min-cutoff",
-         "--filter-beta"});
+    options->decided_by_take =
+        command.first_given({"--puppet", "--mode", "--radius", "--kernel", "--polynomial",
+                             "--injective", "--no-injective", "--rate", "--policy", "--switch",
+                             "--filter", "--filter-min-cutoff", "--filter-beta"});
     return run(*options);
   });
 }

@@ -38,7 +38,8 @@ Result<Span> parse_span(const std::string& option, const std::string& text,
     to = time(text.substr(colon + 1), HostClock::duration::max());
   }
   if (!from || !to)
-    return bad_span(option, text, "use two times with a colon between, such as 2s:5.5s, 2s: or :5s");
+    return bad_span(option, text,
+                    "use two times with a colon between, such as 2s:5.5s, 2s: or :5s");
   if (*from >= length)
     return bad_span(option, text, fmt::format("the take lasts {:.2f} s", to_seconds(length)));
   if (*from >= *to) return bad_span(option, text, "ends before it begins");
@@ -80,9 +81,8 @@ Result<void> check_gloves(const std::array<flow::AngleSet, 2>& part, const RunOp
       return Error{Errc::usage,
                    "--layer: no glove plays the " + hand + " hand; name one with --" + hand};
     if (is_named && !plays)
-      return Error{Errc::usage,
-                   "--" + hand + ": the layer has nothing of that hand; add " + hand +
-                       " to --layer, or leave the glove out"};
+      return Error{Errc::usage, "--" + hand + ": the layer has nothing of that hand; add " + hand +
+                                    " to --layer, or leave the glove out"};
   }
   return {};
 }

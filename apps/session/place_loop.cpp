@@ -25,8 +25,7 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
     inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
     inputs.back().filter = options.filter;
     if (options.live)
-      inputs.back().layer.emplace().joints =
-          (*options.live)[flow::Placement::index_of(hand.side)];
+      inputs.back().layer.emplace().joints = (*options.live)[flow::Placement::index_of(hand.side)];
   }
   return inputs;
 }
@@ -169,8 +168,8 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
-  const auto points =
-      rig ? rig->starts().cols() : 5 * static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs));
+  const auto points = rig ? rig->starts().cols()
+                          : 5 * static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs));
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);

@@ -32,8 +32,7 @@ hand::JointAngles first_angles(const Setup& setup, const flow::HandInput& hand) 
   hand::JointAngles angles = own_angles(hand);
   if (hand.layer && hand.layer->below) angles = *hand.layer->below;
   for (const auto& input : setup.hands)
-    if (input.side == hand.side && input.layer)
-      input.layer->play_over(own_angles(input), angles);
+    if (input.side == hand.side && input.layer) input.layer->play_over(own_angles(input), angles);
   return angles;
 }
 

@@ -56,6 +56,10 @@ def hand(b):
     h["own"], h["swapped"], h["swapped_size"] = calibration(b), calibration(b), b.take("dd")
     if b.take("B"):
         h["learned"] = {"side": b.take("B"), "sensors": [b.take("ddIIdd") for _ in range(24)]}
+    if b.take("B"):
+        h["layer"] = dict(zip(("joints", "on", "part"), b.take("IBd")))
+        if b.take("B"):
+            h["layer"]["below"] = b.take("23d")
     return h
 
 
@@ -105,7 +109,7 @@ def sent(b):
 
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
-             6: settings, 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 6: settings, 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")
@@ -125,7 +129,7 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 5, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 6, crc32c(data[:12])), "header"
     at = 16
     number = 0
     readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "REST": rest, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}

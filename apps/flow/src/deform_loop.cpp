@@ -168,11 +168,11 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
   HostTime newest{};
   std::uint8_t number = 0;
   for (auto& hand : hands_) {
-    const std::size_t count =
-        hand.input.ring == nullptr
-            ? 0
-            : hand.input.ring->drain(
-                  [&](const GloveSample& sample) noexcept { take(number, sample); });
+    const std::size_t count = hand.input.ring == nullptr
+                                  ? 0
+                                  : hand.input.ring->drain([&](const GloveSample& sample) noexcept {
+                                      take(number, sample);
+                                    });
     ++number;
     hand.fresh = count > 0;
     if (hand.fresh) {

@@ -30,9 +30,9 @@ void depart(const GloveSample& from, GloveSample& to, double part) noexcept {
 } // namespace
 
 void InputScript::add(HostClock::duration at, const Command& command) {
-  const auto place =
-      std::lower_bound(events_.begin(), events_.end(), at,
-                       [](const Event& event, HostClock::duration time) { return event.at < time; });
+  const auto place = std::lower_bound(
+      events_.begin(), events_.end(), at,
+      [](const Event& event, HostClock::duration time) { return event.at < time; });
   events_.insert(place, {at, command});
 }
 

@@ -52,8 +52,7 @@ void Layer::play_over(const hand::JointAngles& own, hand::JointAngles& angles) c
   for (std::size_t at = 0; at < hand::angle_count; ++at) {
     const Angle angle = hand::angle_at(at);
     if (!joints.has(angle)) continue;
-    angles[angle] =
-        part < 1.0 ? angles[angle] + weight * (own[angle] - angles[angle]) : own[angle];
+    angles[angle] = part < 1.0 ? angles[angle] + weight * (own[angle] - angles[angle]) : own[angle];
   }
 }
 

@@ -79,7 +79,7 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   }
   place_tips();
   switch_on_ = false;
-  last_due_ = {}; // as in a loop that begins
+  last_due_ = {};                      // as in a loop that begins
   if (rig_) state.rig = rig_->state(); // which has room for it
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
   state.held = shaping_.is_held();

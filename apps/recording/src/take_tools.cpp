@@ -172,7 +172,7 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
   const HostTime last = setup.begun_host + end;
   Groups groups(*reader);
   std::uint64_t left_out = 0;
-  std::optional<Entry> settings; // the last that are left out
+  std::optional<Entry> settings;        // the last that are left out
   std::map<std::uint8_t, Entry> layers; // likewise, by input
   auto group = groups.next();
   for (; group && (!group->time || *group->time < first); group = groups.next()) {

@@ -16,6 +16,7 @@ const KEYS = [
   ['x', 'reset: back to the model as it was loaded', panel => panel.ask('reset')],
   ['t', 'a take: record from here on, and end that', panel => panel.record()],
   ['.', 'mark this moment in the recording', panel => panel.ask('mark')],
+  ['o', 'overdub: the gloves\' layer comes in, or goes out (--over, --layer)', panel => panel.ask('punch')],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
   ['s', 'save the model as it is now', panel => panel.ask('save')],
   ['m', 'the other mode', panel => panel.shaping.otherMode()],

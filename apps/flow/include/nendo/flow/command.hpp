@@ -93,13 +93,12 @@ struct ChangeModel {
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
-/// A loop obeys Request, WristMove, SetLayer and what is for puppets at the beginning of its next tick, and logs a Mark. All
-/// others are obeyed by the code that runs the loop. HoldStill and ChangeModel only tell a log what
-/// the loop did.
-using Command =
-    std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
-                 Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry,
-                 SetLayer, Punch>;
+/// A loop obeys Request, WristMove, SetLayer and what is for puppets at the beginning of its next
+/// tick, and logs a Mark. All others are obeyed by the code that runs the loop. HoldStill and
+/// ChangeModel only tell a log what the loop did.
+using Command = std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape,
+                             SaveRecording, EndRun, Subdivide, HoldStill, ChangeModel, Mark,
+                             SetClutch, SetRole, SetSymmetry, SetLayer, Punch>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.

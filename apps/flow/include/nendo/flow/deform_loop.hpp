@@ -279,9 +279,9 @@ private:
     GloveSample latest{};
     hand::JointAngles angles{}; ///< of `latest`, filtered
     WristSwitchEdge wrist_switch{};
-    bool is_lowest = true;   ///< of its side: the hand, and not a layer over it
-    bool is_topmost = true;  ///< of its side: whose samples are counted
-    bool fresh = false; ///< samples came out of its ring in this tick
+    bool is_lowest = true;  ///< of its side: the hand, and not a layer over it
+    bool is_topmost = true; ///< of its side: whose samples are counted
+    bool fresh = false;     ///< samples came out of its ring in this tick
     bool silent = false;
   };
 
