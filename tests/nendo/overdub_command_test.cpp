@@ -103,7 +103,7 @@ TEST_SUITE("overdub_command") {
         {{"--over", take, "--puppet", "face"}, "--puppet: the recording"},
         {{NENDO_MODELS "/head.obj", "--over", take}, "is not the model of"},
         {{"--over", take, "--layer", "left.toe"}, "--layer left.toe: use left, right"},
-        {{"--over", take, "--left", "sim", "--layer", "right"},
+        {{"--over", take, "--left", "sim", "--layer", "left,right"},
          "--layer: no glove plays the right"},
         {{"--over", take, "--left", "sim", "--right", "sim", "--layer", "right"},
          "--left: the layer has nothing of that hand"},

@@ -245,7 +245,7 @@ TEST_SUITE("run_session") {
     REQUIRE(opened);
     CHECK(opened->hands.size() == 1);
     Asker puncher({{flow::Punch{}}, {flow::Punch{}}});
-    const RunParticipants participants{[](const auto&, double) {}, {&puncher}, {}};
+    const RunParticipants participants{[](const auto&, double) {}, {&puncher}, {&puncher}};
     REQUIRE(run_session(run.options, opened->hands, run.mesh, participants));
     for (const char* told : {"punched out", "punched in"})
       CHECK(std::count(puncher.reports.begin(), puncher.reports.end(), told) == 1);
