@@ -231,6 +231,14 @@ Option Command::add_flag(const std::string& names, bool& value, const std::strin
   return Option(*app_->add_flag(names, value, summary));
 }
 
+std::string Command::first_given(std::initializer_list<const char*> names) const {
+  for (const char* name : names)
+    if (const CLI::Option* option = app_->get_option_no_throw(name);
+        option != nullptr && option->count() > 0)
+      return name;
+  return {};
+}
+
 void Command::free_short_help() {
   app_->set_help_flag("--help", "Print this help message and exit");
 }

@@ -61,6 +61,9 @@ public:
   void on_chosen(std::function<int()> command);
   /// Requires that one of its commands follows, since this one does nothing by itself.
   void require_command();
+  /// Returns the first of these options, by one name of each, that the arguments have; empty: none.
+  /// For the function of on_chosen().
+  std::string first_given(std::initializer_list<const char*> names) const;
   /// Leaves the command out of all lists, because it is not for users.
   void hide();
   /// Returns everything that was described so far, as --help shows it.

@@ -151,7 +151,8 @@ Result<Take> read_recorded(const Options& options, const std::string& format) {
     return take;
   }
   for (const auto& hand : setup.hands)
-    take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton(hand.first.side));
+    if (auto& skeleton = take.skeletons[flow::Placement::index_of(hand.side)]; !skeleton)
+      skeleton.emplace(hand.skeleton(hand.first.side)); // layers play over it
   if (!setup.loop) {
     take.notes = uncalibrated_notes(options, setup, "its angles are those of an average hand");
     return read_gloves(options, format, std::move(take));

@@ -21,8 +21,10 @@
 #include "session/live_view.hpp"
 #include "session/loop_options.hpp"
 #include "session/open_hands.hpp"
+#include "session/overdub.hpp"
 #include "session/run_publishing.hpp"
 #include "session/run_report.hpp"
+#include "takes/recorded_model.hpp"
 
 namespace nendo::app::run_command {
 namespace {
@@ -37,6 +39,8 @@ struct CommandOptions {
   session::BrushArguments brush;
   session::LoopArguments loop;
   session::ViewOptions view;
+  session::OverdubArguments overdub;
+  std::string decided_by_take; ///< the first option of the command line that a take decides
   std::vector<std::string> publish;
   std::string web; ///< [ADDR:]PORT; empty: none
   bool injective = false;
@@ -62,7 +66,8 @@ Result<void> check_outputs(const CommandOptions& options) {
   if (!view.window && (view.frames > 0 || !view.screenshot.empty()))
     return Error{Errc::usage, "--frames and --screenshot are the window's; add --view"};
   if (auto fine = cli::check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
-  if (auto fine = cli::check_spares(run.mesh, "--out", run.out, options.force); !fine) return fine;
+  const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
+  if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
   if (auto fine = cli::check_place("--picture", run.picture, {".png"}); !fine) return fine;
   if (auto fine = cli::check_place("--record", run.recording.file); !fine) return fine;
   if (auto fine = cli::check_place("--screenshot", view.screenshot, {".png"}); !fine) return fine;
@@ -81,6 +86,38 @@ Result<void> read_puppet(session::RunOptions& run) {
   run.puppet = std::move(file->puppet);
   if (run.mesh.empty()) run.mesh = file->model;
   return {};
+}
+
+/// Reads the take to play over, if one is named. Its model and its settings are the run's.
+Result<void> read_take(CommandOptions& options) {
+  session::RunOptions& run = options.run;
+  if (!options.overdub.take.empty() && !options.decided_by_take.empty())
+    return Error{Errc::usage, options.decided_by_take + ": the recording of --over decides that; "
+                                                        "leave it out"};
+  auto over = session::read_overdub(options.overdub);
+  if (!over) return over.error();
+  run.over = *std::move(over);
+  auto live = session::live_part(options.overdub, run);
+  if (!live) return live.error();
+  run.live = *std::move(live);
+  return {};
+}
+
+/// Reads the model, or that of the take to play over, which must be as it was recorded.
+Result<deform::Mesh> read_model(CommandOptions& options) {
+  session::RunOptions& run = options.run;
+  if (!run.over) return deform::read_mesh(run.mesh);
+  const recording::LoopSetup& loop = *run.over->take.setup.loop;
+  auto model = takes::recorded_model(loop, run.mesh);
+  if (!model) return model;
+  const auto of_file = static_cast<Eigen::Index>(loop.mesh_sum.vertices);
+  if (model->vertices.cols() < of_file ||
+      recording::sum_of(model->vertices.leftCols(of_file)) != loop.mesh_sum)
+    return Error{Errc::bad_input, run.mesh + ": is not the model of " + run.over->file +
+                                      "; a layer is played over the model that was recorded"};
+  if (run.mesh.empty()) run.mesh = loop.mesh;
+  if (auto fine = session::take_over_settings(*model, run); !fine) return fine.error();
+  return model;
 }
 
 Result<void> check(CommandOptions& options) {
@@ -122,7 +159,8 @@ Result<void> check(CommandOptions& options) {
   if (run.out.empty()) run.out = dated_name();
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
   if (auto fine = read_puppet(run); !fine) return fine;
-  if (run.mesh.empty()) run.mesh = cli::shipped_model("moai.obj").string();
+  if (auto fine = read_take(options); !fine) return fine;
+  if (run.mesh.empty() && !run.over) run.mesh = cli::shipped_model("moai.obj").string();
   return check_outputs(options);
 }
 
@@ -172,7 +210,7 @@ void note_oddities(const deform::Mesh& model, const CommandOptions& options) {
 
 /// Turns the guard against folds on, or says that a model of this size goes without.
 void choose_injective(const deform::Mesh& model, CommandOptions& options) {
-  if (options.not_injective || options.run.puppet) return;
+  if (options.not_injective || options.run.puppet || options.run.over) return;
   if (options.injective || model.vertices.cols() <= most_injective_unasked) {
     options.run.loop.sculptor.deformer.injective.emplace();
     return;
@@ -186,7 +224,7 @@ int run(CommandOptions& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   auto published = session::publish_to(options.publish);
   if (!published) return cli::report(published.error());
-  auto model = deform::read_mesh(options.run.mesh);
+  auto model = read_model(options);
   if (!model) return cli::report(model.error());
   note_oddities(*model, options);
   choose_injective(*model, options);
@@ -273,6 +311,7 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
                      "keeps what was just "
                      "done (--keep-last)");
   session::add_recording_options(command, run_options.recording);
+  session::add_overdub_options(command, options->overdub);
   session::add_filter_options(command, options->filter);
   session::add_publish_option(command, options->publish);
   command.add_duration("--duration", run_options.duration_s,
@@ -296,7 +335,13 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
                      "Where the window's last picture goes, .png");
   command.add_option("--frames", options->view.frames,
                      "The window's pictures after which it ends; 0: when it is closed");
-  command.on_chosen([options] { return run(*options); });
+  command.on_chosen([options, command] {
+    options->decided_by_take =
+        command.first_given({"--puppet", "--mode", "--radius", "--kernel", "--polynomial",
+                             "--injective", "--no-injective", "--rate", "--policy", "--switch",
+                             "--filter", "--filter-min-cutoff", "--filter-beta"});
+    return run(*options);
+  });
 }
 
 } // namespace

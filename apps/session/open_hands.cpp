@@ -10,6 +10,10 @@
 namespace nendo::session {
 namespace {
 
+bool plays(const RunOptions& options, Side side) {
+  return !options.live || !(*options.live)[flow::Placement::index_of(side)].is_empty();
+}
+
 // Opens the gloves that the machine has, one for each hand, or simulated ones. A glove that is
 // there but may not be used is an error. If one does not answer, a note says so, and the other hand
 // goes on alone.
@@ -17,6 +21,7 @@ Result<std::vector<gloves::OpenHand>> open_any(const RunOptions& options, EventC
   std::vector<gloves::OpenHand> hands;
   std::vector<std::string> why;
   for (const Side side : {Side::left, Side::right}) {
+    if (!plays(options, side)) continue;
     auto hand = gloves::open_hand("auto:" + std::string(name_of(side)), side, event_count);
     if (hand) {
       hands.push_back(*std::move(hand));
@@ -33,9 +38,12 @@ Result<std::vector<gloves::OpenHand>> open_any(const RunOptions& options, EventC
     for (const auto& reason : why)
       cli::note(reason);
   if (!hands.empty()) return hands;
-  cli::note("no glove found, so both hands are simulated (sim); to use a glove name its port, "
+  const bool both = plays(options, Side::left) && plays(options, Side::right);
+  cli::note("no glove found, so " + std::string(both ? "both hands are" : "the hand is") +
+            " simulated (sim); to use a glove name its port, "
             "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {
+    if (!plays(options, side)) continue;
     auto hand = gloves::open_hand(options.puppet ? "sim:faces" : "sim", side, event_count);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
@@ -80,8 +88,9 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
   EventCount* const notified = options.loop.event_count;
   auto hands = named ? open_named(options, model, notified) : open_any(options, notified);
   if (!hands) return hands.error();
-  if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
-    return fine.error();
+  if (!options.over) // whose gloves had the switch
+    if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
+      return fine.error();
   RunHands opened{*std::move(hands), {}};
   {
     const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));

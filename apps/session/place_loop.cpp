@@ -24,6 +24,8 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
   for (const auto& hand : hands) {
     inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
     inputs.back().filter = options.filter;
+    if (options.live)
+      inputs.back().layer.emplace().joints = (*options.live)[flow::Placement::index_of(hand.side)];
   }
   return inputs;
 }
@@ -84,6 +86,48 @@ Result<void> set_rig(const RunOptions& options, const deform::Mesh& model,
   return {};
 }
 
+Result<PlacedLoop> make_loop(PlacedSetup setup, const deform::Mesh& model,
+                             const deform::BlockShape* first) {
+  auto loop = std::make_unique<flow::DeformLoop>(model, setup.placement, setup.inputs,
+                                                 setup.options, first);
+  if (!is_solved(loop->grab_status())) {
+    return Error{Errc::failed, "the hands cannot take hold of the model: " +
+                                   std::string(deform::describe(loop->grab_status()))};
+  }
+  return PlacedLoop{std::move(loop), std::move(setup)};
+}
+
+/// The radii of the hand that joins are those of the hand that was there alone.
+void add_hand(deform::Supports& supports) {
+  constexpr Eigen::Index tips = 5;
+  const auto own = supports.own;
+  for (deform::OwnSupport support : own) {
+    support.point += tips;
+    supports.own.push_back(support);
+  }
+}
+
+/// Makes the loop of the take, whose hands stand where they stood.
+Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
+                              const deform::Mesh& model) {
+  const recording::Setup& take = options.over->take.setup;
+  auto inputs = inputs_of(hands, options);
+  const auto joining = placement_for(hands, inputs, model, options.puppet.has_value());
+  if (const auto played = play_over(options, inputs); !played) return played.error();
+  PlacedSetup setup{std::move(inputs), take.loop->placement, options.loop};
+  for (const auto& hand : hands) {
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const bool was_there =
+        std::any_of(take.hands.begin(), take.hands.end(),
+                    [&](const flow::HandInput& input) { return input.side == hand.side; });
+    if (!was_there) setup.placement.T_stage_wrist[slot] = joining.T_stage_wrist[slot];
+  }
+  if (!setup.options.rig && flow::count_hands(setup.inputs) > flow::count_hands(take.hands))
+    add_hand(setup.options.sculptor.deformer.supports);
+  const deform::BlockShape first(take.loop->rest);
+  return make_loop(std::move(setup), model, first.block_count() > 0 ? &first : nullptr);
+}
+
 } // namespace
 
 Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
@@ -93,8 +137,16 @@ Result<std::optional<deform::Supports>> parse_radius(const std::string& text) {
   return supports;
 }
 
+std::uint32_t PlacedSetup::live_layers() const noexcept {
+  std::uint32_t layers = 0;
+  for (std::size_t at = 0; at < inputs.size(); ++at)
+    if (inputs[at].ring != nullptr && inputs[at].layer) layers |= 1U << at;
+  return layers;
+}
+
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model) {
+  if (options.over) return place_over(options, hands, model);
   const double size = longest_side(model);
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
@@ -111,18 +163,13 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
     if (const auto fine = set_rig(options, model, loop_options); !fine) return fine.error();
   const auto placement = placement_for(hands, inputs, model, options.puppet.has_value());
   PlacedSetup setup{inputs, placement, loop_options};
-  auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
-  if (!is_solved(loop->grab_status())) {
-    return Error{Errc::failed, "the hands cannot take hold of the model: " +
-                                   std::string(deform::describe(loop->grab_status()))};
-  }
-  return PlacedLoop{std::move(loop), std::move(setup)};
+  return make_loop(std::move(setup), model, nullptr);
 }
 
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
-  const auto points =
-      rig ? rig->starts().cols() : 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
+  const auto points = rig ? rig->starts().cols()
+                          : 5 * static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs));
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);

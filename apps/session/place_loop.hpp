@@ -2,6 +2,7 @@
 // Makes a loop over the open hands, which are placed so that they hold the model between them.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,9 @@ struct PlacedSetup {
   std::vector<flow::HandInput> inputs;
   flow::Placement placement;
   flow::LoopOptions options; ///< with the supports in model units
+
+  /// Returns which inputs are layers that live gloves play; bit k is input k.
+  std::uint32_t live_layers() const noexcept;
 };
 
 struct PlacedLoop {
@@ -32,7 +36,8 @@ struct LoopStart {
 };
 
 /// Makes the loop that options.loop describes, with the supports of options.supports, and places
-/// the hands at the model. Errors: usage (radius), failed (the hands cannot take hold of the
+/// the hands at the model, or makes the loop of options.over, with them as layers. Errors: usage
+/// (radius, or too many layers), failed (the hands cannot take hold of the
 /// model).
 Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                               const deform::Mesh& model);

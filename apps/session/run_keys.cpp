@@ -16,7 +16,7 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "resets; " +
       std::string("[ and ] make the radii smaller, larger; m the other mode, n the next kernel, ") +
       "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; e "
-      "makes the model finer; t records; . marks the moment; s saves; "
+      "makes the model finer; t records; . marks the moment; o punches a layer in or out; s saves; "
       "comma and quote let one hand go of a puppet, y plays both its sides by one; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
@@ -33,6 +33,7 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == 't') commands.try_push(flow::SetRecording{!status.recording});
   if (*key == 'e') commands.try_push(flow::Subdivide{});
   if (*key == '.') commands.try_push(flow::Mark{});
+  if (*key == 'o') commands.try_push(flow::Punch{});
   if (*key == ',') clutch(Side::left, status.frame, commands);
   if (*key == '\'') clutch(Side::right, status.frame, commands);
   if (*key == 'y') commands.try_push(flow::SetSymmetry{!status.frame.symmetric});

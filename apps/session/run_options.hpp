@@ -1,6 +1,7 @@
 #pragma once
 // The options of a run on the command line.
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include <nendo/flow/realtime.hpp>
 
 #include "gloves/glove_calibration.hpp"
+#include "session/overdub.hpp"
 #include "session/run_recording.hpp"
 
 namespace nendo::session {
@@ -31,6 +33,8 @@ struct RunOptions {
   gloves::HandLength length;
   hand::FilterOptions filter; ///< of both hands
   flow::LoopOptions loop;
+  std::shared_ptr<Overdub> over{}; ///< a take that plays, too; null: none
+  LivePart live{};                 ///< what the gloves play; nothing: all
   RecordingOptions recording;
   flow::RealtimeOptions realtime; ///< of the loop's thread
 };

@@ -82,6 +82,10 @@ std::string RunRecorder::next_name() {
 recording::Setup RunRecorder::setup_now() const {
   recording::Setup setup = begin_setup(hands_, options_.calibration.user);
   setup.hands = placed_.setup.inputs;
+  if (options_.over) {
+    const auto& gloves = options_.over->take.setup.gloves;
+    setup.gloves.insert(setup.gloves.begin(), gloves.begin(), gloves.end());
+  }
   setup.loop = recording::LoopSetup{std::filesystem::absolute(options_.mesh).string(),
                                     recording::sum_of(model_.vertices),
                                     placed_.setup.placement,
@@ -92,6 +96,12 @@ recording::Setup RunRecorder::setup_now() const {
     setup.loop->puppet = rig->puppet().text;
     setup.loop->puppet_starts = rig->starts();
   }
+  if (options_.over) { // whose model may have been subdivided, and shaped, before it began
+    const recording::LoopSetup& taken = *options_.over->take.setup.loop;
+    setup.loop->mesh_sum = taken.mesh_sum;
+    setup.loop->subdivisions = taken.subdivisions;
+    setup.loop->rest = taken.rest;
+  }
   return setup;
 }
 
@@ -99,7 +109,15 @@ Result<void> RunRecorder::begin() {
   if (!log_) return {};
   to_file_ = options_.recording.on;
   // The loop takes all that came since the gloves were started.
-  return begin(setup_now(), Counts(hands_.size()));
+  return begin(setup_now(), Counts(placed_.setup.inputs.size()));
+}
+
+RunRecorder::Counts RunRecorder::counts() const {
+  Counts counts = counts_of(hands_);
+  if (!options_.over) return counts;
+  const Counts& of_take = options_.over->take.sent;
+  counts.insert(counts.begin(), of_take.begin(), of_take.end());
+  return counts;
 }
 
 Result<void> RunRecorder::begin(const recording::Setup& setup, const Counts& before) {
@@ -112,8 +130,8 @@ Result<void> RunRecorder::begin(const recording::Setup& setup, const Counts& bef
   wanted.kept_stem = asked.kept_stem;
   wanted.keep_on_switch = options_.loop.switch_action == flow::SwitchAction::keep;
   wanted.report = cli::note;
-  wanted.sent = [&hands = hands_, before] {
-    auto counts = counts_of(hands);
+  wanted.sent = [this, before] {
+    auto counts = this->counts();
     for (std::size_t at = 0; at < counts.size(); ++at)
       counts[at] = driver::since(before[at], counts[at]);
     return counts;
@@ -129,7 +147,7 @@ void RunRecorder::set_file(bool on, const flow::Frame& frame) {
   next_to_file_ = on;
   const bool any = on || options_.recording.keep_last_s > 0.0;
   next_log_ = any ? std::make_unique<flow::InputLog>() : nullptr;
-  counts_ = counts_of(hands_);
+  counts_ = counts();
   is_changing_ = true;
   placed_.loop->change_log(next_log_.get(), frame.shape);
 }

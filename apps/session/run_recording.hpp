@@ -87,6 +87,7 @@ public:
 private:
   using Counts = std::vector<driver::RecordCounts>;
   recording::Setup setup_now() const; ///< of the loop as it was made
+  Counts counts() const;              ///< of all inputs of the loop
   Result<void> begin(const recording::Setup& setup, const Counts& before);
   void end_with(const recording::ShapeSum& shape);
   std::string next_name();

@@ -109,10 +109,12 @@ private:
     const flow::Frame& frame = placed_.loop->frames().front();
     const flow::ModelVersion& model = *placed_.loop->model(frame.model);
     settle_sinks();
+    follow_layers(frame);
     const RunStatus status{frame, model, fresh, gloves_, recorder_.is_to_file()};
     for (Observer* observer : observers_)
       observer->update(status, commands_);
     commands_.drain([this](const flow::Command& command) noexcept { dispatch(command); });
+    follow_take();
     for (auto& wrist : wrists_)
       if (wrist)
         loop_commands_.try_push(*std::exchange(wrist, {})); // if it is full, the next move counts
@@ -136,6 +138,27 @@ private:
       recorder_.set_file(*std::exchange(record_, {}), frame);
     tell(recorder_.follow());
     tell(models_.follow(!awaits && !recorder_.is_changing()));
+  }
+  // What the take changes, and its loop does not do by itself.
+  void follow_take() noexcept {
+    if (options_.over)
+      options_.over->take.script->for_others().drain(
+          [this](const flow::Command& command) noexcept { dispatch(command); });
+  }
+  void follow_layers(const flow::Frame& frame) {
+    if (frame.ticks_run == 0) return;
+    const bool on = (frame.layers_on & placed_.setup.live_layers()) != 0;
+    if (is_in_ && *is_in_ != on) report(on ? "punched in" : "punched out");
+    is_in_ = on;
+  }
+  void punch() noexcept {
+    const std::uint32_t live = placed_.setup.live_layers();
+    if (live == 0)
+      return report("the gloves play whole hands here, and no layer; --layer and --over make one");
+    const bool on = !is_in_.value_or(true);
+    for (std::size_t at = 0; at < placed_.setup.inputs.size(); ++at)
+      if ((live >> at & 1U) != 0)
+        loop_commands_.try_push(flow::SetLayer{static_cast<std::uint8_t>(at), on});
   }
   void tell(const std::optional<std::string>& message) {
     if (message) report(*message);
@@ -162,6 +185,7 @@ private:
     if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
     if (std::holds_alternative<flow::Subdivide>(command)) models_.subdivide();
     if (std::holds_alternative<flow::Mark>(command)) mark();
+    if (std::holds_alternative<flow::Punch>(command)) punch();
     if (flow::is_for_puppet(command)) play_otherwise(command);
     ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
     saving_.add(command);
@@ -206,6 +230,7 @@ private:
     gloves_ = status_of(hands_);
     for (Observer* observer : observers_)
       observer->loop_begins(start());
+    if (options_.over) std::this_thread::sleep_until(options_.over->begin);
     LoopThread thread(loop, options_);
     report_refusals(thread.grants());
     watch(thread, picture);
@@ -228,6 +253,7 @@ private:
   // Returns whether no glove will send any more, and the loop has taken all that they sent. Its
   // present tick, for which whoever stops it waits, shows the last of it.
   bool is_exhausted() const {
+    if (options_.over) return options_.over->take.script->has_ended();
     return gloves::have_ended(hands_) && placed_.loop->frames().front().ticks_run > 0 &&
            std::all_of(hands_.begin(), hands_.end(),
                        [](const auto& hand) { return hand.ring->size() == 0; });
@@ -295,6 +321,7 @@ private:
   double elapsed_s_ = 0.0;
   std::uint64_t marks_ = 0;
   bool end_reported_ = false; ///< that all gloves have ended
+  std::optional<bool> is_in_; ///< the live layers play, in the latest frame
 };
 
 } // namespace

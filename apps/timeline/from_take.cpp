@@ -23,9 +23,17 @@ Key key_of(double time_s, const hand::JointAngles& angles, const Eigen::Isometry
 }
 
 // As the loop had it before its first tick.
-hand::JointAngles first_angles(const flow::HandInput& hand) {
-  hand::ActiveCalibration calibration(hand.wearer);
-  return hand::joint_angles(hand.first, calibration.follow(hand.first));
+hand::JointAngles own_angles(const flow::HandInput& input) {
+  hand::ActiveCalibration calibration(input.wearer);
+  return hand::joint_angles(input.first, calibration.follow(input.first));
+}
+
+hand::JointAngles first_angles(const Setup& setup, const flow::HandInput& hand) {
+  hand::JointAngles angles = own_angles(hand);
+  if (hand.layer && hand.layer->below) angles = *hand.layer->below;
+  for (const auto& input : setup.hands)
+    if (input.side == hand.side && input.layer) input.layer->play_over(own_angles(input), angles);
+  return angles;
 }
 
 Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
@@ -41,10 +49,13 @@ Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
   timeline.sculptor = loop.options.sculptor;
   timeline.sculptor.deformer.undo_bytes = 0;
   for (const auto& hand : setup.hands) {
+    if (std::any_of(timeline.hands.begin(), timeline.hands.end(),
+                    [&](const auto& known) { return known.side == hand.side; }))
+      continue; // a layer over it
     const auto& T_stage_wrist = loop.placement.T_stage_wrist[flow::Placement::index_of(hand.side)];
     timeline.hands.push_back({hand.side,
                               hand.wearer.of(hand.first.side).size,
-                              {key_of(0.0, first_angles(hand), T_stage_wrist)}});
+                              {key_of(0.0, first_angles(setup, hand), T_stage_wrist)}});
   }
   return timeline;
 }

@@ -22,6 +22,7 @@ constexpr std::array key_table{
     KeyLine{",, '", "of a puppet: the left hand, the right hand lets go, takes hold again"},
     KeyLine{"y", "of a puppet: one hand plays both sides, or each its own"},
     KeyLine{".", "mark this moment in the recording"},
+    KeyLine{"o", "overdub: the gloves' layer comes in, or goes out (--over, --layer)"},
     KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
     KeyLine{"s", "save the model as it is now"},
     KeyLine{"m, n", "the other mode, the next kernel"},
@@ -102,6 +103,7 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
                                             frame.let_go[flow::Placement::index_of(side)]});
   if (pressed(GLFW_KEY_Y)) commands.emplace_back(flow::SetSymmetry{!frame.symmetric});
   if (pressed(GLFW_KEY_PERIOD)) commands.emplace_back(flow::Mark{});
+  if (pressed(GLFW_KEY_O)) commands.emplace_back(flow::Punch{});
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_E)) commands.emplace_back(flow::Subdivide{});
   if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});

@@ -82,7 +82,7 @@ TEST_SUITE("loop_replay") {
     const auto state = before.test.loop->take_state();
     REQUIRE(state);
     for (std::size_t at = 0; at < test.inputs.size(); ++at)
-      test.inputs[at].wearer.learned = state->learned[at];
+      test.inputs[at].wearer.learned = state->inputs[at].learned;
     test.loop =
         std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
     live.setup = test::setup_of(test);

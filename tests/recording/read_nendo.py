@@ -56,6 +56,10 @@ def hand(b):
     h["own"], h["swapped"], h["swapped_size"] = calibration(b), calibration(b), b.take("dd")
     if b.take("B"):
         h["learned"] = {"side": b.take("B"), "sensors": [b.take("ddIIdd") for _ in range(24)]}
+    if b.take("B"):
+        h["layer"] = dict(zip(("joints", "on", "part"), b.take("IBd")))
+        if b.take("B"):
+            h["layer"]["below"] = b.take("23d")
     return h
 
 
@@ -110,7 +114,7 @@ def sent(b):
 
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
-             6: lambda e: {**settings(e), **brushes(e)}, 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 6: lambda e: {**settings(e), **brushes(e)}, 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")

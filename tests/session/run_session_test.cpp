@@ -208,6 +208,57 @@ private:
 } // namespace
 
 TEST_SUITE("run_session") {
+  TEST_CASE("a take that is played over does again what people asked of it, and is punched") {
+    Run run;
+    const auto file = [&](const char* name) { return (run.folder.path() / name).string(); };
+    run.options.recording.file = file("take.nendo");
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    auto others = other_settings;
+    others.kernel = deform::Wendland::c0;
+    Asker asker({{change(other_settings)},
+                 {flow::Subdivide{}},
+                 {reset},
+                 {flow::Mark{}},
+                 {},
+                 {change(others)},
+                 {}});
+    run.follow({&asker});
+    const auto changes = replay(file("take.nendo"));
+    const auto before = recording::summarise(file("take.nendo"));
+    REQUIRE(before);
+    CHECK(changes >= 2);
+    CHECK(before->model_changes == 1);
+
+    const OverdubArguments arguments{file("take.nendo"), "left.index", "", ""};
+    auto over = read_overdub(arguments);
+    REQUIRE(over);
+    run.options.over = *over;
+    run.options.right.clear();
+    const auto live = live_part(arguments, run.options);
+    REQUIRE(live);
+    run.options.live = *live;
+    REQUIRE(take_over_settings(run.mesh, run.options));
+    run.options.recording = {};
+    run.options.recording.file = file("over.nendo");
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    auto opened = open_hands(run.options, run.mesh, run.event_count);
+    REQUIRE(opened);
+    CHECK(opened->hands.size() == 1);
+    Asker puncher({{flow::Punch{}}, {flow::Punch{}}});
+    const RunParticipants participants{[](const auto&, double) {}, {&puncher}, {&puncher}};
+    REQUIRE(run_session(run.options, opened->hands, run.mesh, participants));
+    for (const char* told : {"punched out", "punched in"})
+      CHECK(std::count(puncher.reports.begin(), puncher.reports.end(), told) == 1);
+    CHECK(replay(file("over.nendo")) == changes);
+    const auto after = recording::summarise(file("over.nendo"));
+    REQUIRE(after);
+    CHECK(after->is_whole());
+    CHECK(after->setup.gloves.size() == 3);
+    CHECK(after->model_changes == before->model_changes);
+    CHECK(after->requests == before->requests);
+    CHECK(after->marks.size() == 1);
+  }
+
   TEST_CASE(
       "a run of recordings ends with them, but not before whoever looks at a window says so") {
     Run run;

@@ -32,6 +32,8 @@ TEST_SUITE("client_commands") {
     CHECK(parsed_as<flow::SetRecording>("end recording") == flow::SetRecording{false});
     CHECK(parsed_as<flow::SaveShape>("save"));
     CHECK(parsed_as<flow::Mark>("mark"));
+    CHECK(parsed_as<flow::Punch>("punch"));
+    CHECK_FALSE(parse_command("punch in"));
     CHECK_FALSE(parse_command("mark 1"));
     CHECK(parsed_as<flow::SetClutch>("clutch left all off") ==
           flow::SetClutch{Side::left, puppet::RigPlayer::all_fingers, false});

@@ -63,6 +63,22 @@ ShapingOptions shaping_options(const LoopOptions& options, const SculptorSetup& 
 
 } // namespace
 
+bool are_usable(std::span<const HandInput> inputs) noexcept {
+  for (auto input = inputs.begin(); input != inputs.end(); ++input)
+    if (!input->layer && std::any_of(inputs.begin(), input, [&](const HandInput& before) {
+          return before.side == input->side;
+        }))
+      return false;
+  return !inputs.empty() && inputs.size() <= most_inputs;
+}
+
+std::size_t count_hands(std::span<const HandInput> inputs) noexcept {
+  const bool has_other = std::any_of(inputs.begin(), inputs.end(), [&](const HandInput& input) {
+    return input.side != inputs.front().side;
+  });
+  return inputs.empty() ? 0 : 1 + static_cast<std::size_t>(has_other);
+}
+
 Result<std::shared_ptr<const deform::SurfaceField>>
 surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
             const deform::DeformerOptions& options) {
@@ -80,13 +96,13 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        std::vector<HandInput> hands, const LoopOptions& options,
                        const deform::BlockShape* first)
     : options_(options), units_per_metre_(placement.units_per_metre),
-      tips_(Points::Zero(3, control_points(options, hands.size()))),
+      tips_(Points::Zero(3, control_points(options, count_hands(hands)))),
       versions_(first_version(model, options, first)),
       first_(first_setup(options, hands.front(), *versions_.front(), placement.units_per_metre)),
       asked_model_(versions_.front().get()),
       shaping_(*asked_model_, tips_.cols(), shaping_options(options, first_)), asked_(first_),
       frames_(first_frame(shaping_, options.rig ? tips_.cols() : 0, placement.units_per_metre)) {
-  assert(!hands.empty() && hands.size() <= 2);
+  assert(are_usable(hands));
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.side);
     const std::array skeletons{input.skeleton(Side::left), input.skeleton(Side::right)};
@@ -99,7 +115,15 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                       calibration,
                       {},
                       filter});
-    hands_.back().follow(hands_.back().input.first);
+    Hand& hand = hands_.back();
+    hand.follow(hand.input.first);
+    for (Hand& before : hands_) {
+      if (&before == &hand || before.slot != slot) continue;
+      hand.is_lowest = false;
+      before.is_topmost = false;
+    }
+    auto& layer = hand.input.layer;
+    if (layer && hand.is_lowest && !layer->below) layer->below = hand.angles;
   }
   if (options.rig) {
     rig_.emplace(options.rig);
@@ -118,19 +142,39 @@ void DeformLoop::Hand::follow(const GloveSample& sample) noexcept {
   angles = filter.pass(hand::joint_angles(latest, active), time());
 }
 
+/// Takes a sample of that input.
+void DeformLoop::take(std::uint8_t number, const GloveSample& sample) noexcept {
+  Hand& hand = hands_[number];
+  if (options_.input_log != nullptr) options_.input_log->sample(number, sample);
+  hand.follow(sample);
+  if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
+  ++stats_.switch_uses[hand.slot];
+  if (options_.switch_action == SwitchAction::toggle) shaping_.toggle_hold();
+  if (options_.switch_action == SwitchAction::commit) shaping_.commit_when_held();
+}
+
+void DeformLoop::take_script(HostTime scheduled) noexcept {
+  if (options_.script == nullptr) return;
+  const HostClock::duration since_first =
+      stats_.ticks == 0 ? HostClock::duration::zero() : scheduled - first_due_;
+  options_.script->play(since_first, [this](const InputLogEntry& entry) noexcept {
+    if (const auto* taken = std::get_if<TakenSample>(&entry)) {
+      if (taken->hand < hands_.size()) take(taken->hand, taken->sample);
+    } else if (const auto* command = std::get_if<Command>(&entry)) {
+      apply(*command);
+    }
+  });
+}
+
 void DeformLoop::take_samples(TickRecord& record) noexcept {
-  const HostTime now = record.woke;
   HostTime newest{};
   std::uint8_t number = 0;
   for (auto& hand : hands_) {
-    const std::size_t count = hand.input.ring->drain([&](const GloveSample& sample) noexcept {
-      if (options_.input_log != nullptr) options_.input_log->sample(number, sample);
-      hand.follow(sample);
-      if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
-      ++stats_.switch_uses[hand.slot];
-      if (options_.switch_action == SwitchAction::toggle) shaping_.toggle_hold();
-      if (options_.switch_action == SwitchAction::commit) shaping_.commit_when_held();
-    });
+    const std::size_t count = hand.input.ring == nullptr
+                                  ? 0
+                                  : hand.input.ring->drain([&](const GloveSample& sample) noexcept {
+                                      take(number, sample);
+                                    });
     ++number;
     hand.fresh = count > 0;
     if (hand.fresh) {
@@ -139,23 +183,57 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
       record.input = record.samples == 0 ? arrival : std::min(record.input, arrival);
       record.samples += static_cast<std::uint32_t>(count);
     }
-    stats_.samples[hand.slot] += count;
-    SampleRate& rate = stats_.rates[hand.slot];
-    if (stats_.ticks == 0) {
-      rate = {0, hand.latest.arrival, hand.latest.arrival};
-    } else if (hand.fresh) {
-      rate.samples += count;
-      rate.last = hand.latest.arrival;
-    }
-    stats_.spikes[hand.slot] = hand.gate.spikes();
-    if (const auto* learned = hand.calibration.adaptation())
-      stats_.ranges[hand.slot] = learned->ranges();
-    const bool silent = now - hand.latest.arrival > options_.silent_after;
-    if (silent && !hand.silent) ++stats_.silences[hand.slot];
-    hand.silent = silent;
+    this->count(hand, count, record.woke);
   }
   if (options_.policy == OverrunPolicy::sample && record.samples > 0) record.scheduled = newest;
   follow_switches();
+}
+
+void DeformLoop::count(Hand& hand, std::size_t samples, HostTime now) noexcept {
+  const bool silent = now - hand.latest.arrival > options_.silent_after;
+  const bool fell_silent = silent && !std::exchange(hand.silent, silent);
+  hand.silent = silent;
+  if (!hand.is_topmost) return;
+  if (fell_silent) ++stats_.silences[hand.slot];
+  stats_.samples[hand.slot] += samples;
+  SampleRate& rate = stats_.rates[hand.slot];
+  if (stats_.ticks == 0) {
+    rate = {0, hand.latest.arrival, hand.latest.arrival};
+  } else if (hand.fresh) {
+    rate.samples += samples;
+    rate.last = hand.latest.arrival;
+  }
+  stats_.spikes[hand.slot] = hand.gate.spikes();
+  if (const auto* learned = hand.calibration.adaptation())
+    stats_.ranges[hand.slot] = learned->ranges();
+}
+
+/// By the times at which ticks are due, so that a replay does the same.
+void DeformLoop::let_layers_pass(HostTime scheduled) noexcept {
+  const HostClock::duration time =
+      last_due_ == HostTime{} ? HostClock::duration::zero() : scheduled - last_due_;
+  last_due_ = scheduled;
+  for (Hand& hand : hands_)
+    if (hand.input.layer) hand.input.layer->pass(time);
+}
+
+/// Returns the angles of a hand, with all layers over it.
+hand::JointAngles DeformLoop::angles_of(const Hand& lowest) const noexcept {
+  hand::JointAngles angles = lowest.input.layer ? *lowest.input.layer->below : lowest.angles;
+  for (const Hand& hand : hands_)
+    if (hand.slot == lowest.slot && hand.input.layer)
+      hand.input.layer->play_over(hand.angles, angles);
+  return angles;
+}
+
+hand::HandPose DeformLoop::pose_of(const Hand& lowest) const noexcept {
+  return lowest.skeleton().pose(angles_of(lowest), lowest.T_stage_wrist);
+}
+
+/// A hand is, if all that play it are.
+bool DeformLoop::is_silent(std::size_t slot) const noexcept {
+  return std::all_of(hands_.begin(), hands_.end(),
+                     [&](const Hand& hand) { return hand.slot != slot || hand.silent; });
 }
 
 void DeformLoop::follow_switches() noexcept {
@@ -180,6 +258,9 @@ void DeformLoop::apply(const Command& command) noexcept {
   if (options_.input_log != nullptr) options_.input_log->command(command);
   if (request != nullptr) return shaping_.ask(*request);
   if (is_for_puppet(command)) return set_rig(command);
+  if (const auto* layer = std::get_if<SetLayer>(&command))
+    if (layer->input < hands_.size() && hands_[layer->input].input.layer)
+      hands_[layer->input].input.layer->on = layer->on;
   if (move == nullptr) return; // a mark is only logged
   for (Hand& hand : hands_)
     if (hand.slot == Placement::index_of(move->side)) hand.T_stage_wrist = move->pose();
@@ -195,17 +276,21 @@ void DeformLoop::set_rig(const Command& command) noexcept {
 
 void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
-  for (const auto& hand : hands_) {
+  frame.layers_on = 0;
+  for (std::size_t at = 0; at < hands_.size(); ++at) {
+    const Hand& hand = hands_[at];
+    if (hand.input.layer && hand.input.layer->on) frame.layers_on |= 1U << at;
+    if (!hand.is_lowest) continue;
     HandFrame& shown = frame.hands[hand.slot];
-    shown.angles = hand.angles;
-    shown.pose = hand.pose();
+    shown.angles = angles_of(hand);
+    shown.pose = hand.skeleton().pose(shown.angles, hand.T_stage_wrist);
     shown.swapped = hand.latest.side != hand.input.first.side;
     shown.T_stage_wrist = hand.T_stage_wrist;
     shown.present = true;
-    shown.silent = hand.silent;
+    shown.silent = is_silent(hand.slot);
     shown.samples = stats_.samples[hand.slot];
     if (rig_) {
-      hand_states_[hand.slot] = {hand.angles, shown.pose, hand.T_stage_wrist};
+      hand_states_[hand.slot] = {shown.angles, shown.pose, hand.T_stage_wrist};
       continue;
     }
     tips_.middleCols<5>(column) = units_per_metre_ * shown.pose.fingertip_positions();
@@ -231,7 +316,8 @@ puppet::RigPlayer::Hands DeformLoop::played_hands() const noexcept {
 /// The same, where they are now, and not when the tick computed them.
 puppet::RigPlayer::Hands DeformLoop::hands_now() noexcept {
   for (const Hand& hand : hands_)
-    hand_states_[hand.slot] = {hand.angles, hand.pose(), hand.T_stage_wrist};
+    if (hand.is_lowest)
+      hand_states_[hand.slot] = {angles_of(hand), pose_of(hand), hand.T_stage_wrist};
   return played_hands();
 }
 
@@ -255,8 +341,10 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   take_change();
   if (runs.input) {
     take_commands();
+    take_script(record.scheduled);
     take_samples(record);
   }
+  let_layers_pass(record.scheduled);
   record.drained_ns = now_ns();
   Frame& frame = frames_.back();
   if (runs.hands) compute_hands(frame);

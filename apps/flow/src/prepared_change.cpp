@@ -52,7 +52,8 @@ void DeformLoop::place_tips() noexcept {
   if (rig_) return rig_->take_hold(hands_now()); // the points stay where they are
   Eigen::Index column = 0;
   for (const Hand& hand : hands_) {
-    tips_.middleCols<5>(column) = units_per_metre_ * hand.pose().fingertip_positions();
+    if (!hand.is_lowest) continue;
+    tips_.middleCols<5>(column) = units_per_metre_ * pose_of(hand).fingertip_positions();
     column += 5;
   }
 }
@@ -73,12 +74,12 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     Hand& hand = hands_[at];
     hand.begin_anew();
-    state.latest[at] = hand.input.first;
-    state.learned[at] = hand.input.wearer.learned;
+    state.inputs[at] = {hand.input.first, hand.input.wearer.learned, hand.input.layer};
     state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
   }
   place_tips();
   switch_on_ = false;
+  last_due_ = {};                      // as in a loop that begins
   if (rig_) state.rig = rig_->state(); // which has room for it
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
   state.held = shaping_.is_held();
@@ -132,7 +133,7 @@ bool DeformLoop::set_surface(SculptorOptions& sculptor, const ModelVersion& mode
 /// Nothing, if nothing can be done with the settings.
 std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
                                                    const LoopSettings& settings) const {
-  const int hands = options_.rig ? 0 : static_cast<int>(hands_.size());
+  const int hands = options_.rig ? 0 : static_cast<int>(tips_.cols() / 5);
   SculptorSetup setup = with_settings(before, first_, settings, hands, units_per_metre_);
   setup.options.surface = asked_.options.surface; // others may be another version's
   const bool same =
@@ -148,6 +149,7 @@ void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   begins.log = log;
   begins.state.placement.units_per_metre = units_per_metre_;
   begins.state.shape = like;
+  begins.state.inputs.resize(hands_.size());
   if (rig_) begins.state.rig.functions.resize(rig_->values().size());
   change.log = std::move(begins);
   offer_change();

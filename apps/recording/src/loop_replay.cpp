@@ -51,14 +51,29 @@ std::optional<flow::Command> command_in(const Entry& entry) {
 
 } // namespace
 
-Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
-                                                     const deform::Mesh& model) {
+Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh& model) {
   if (!setup.loop || setup.hands.empty()) return Error{Errc::bad_input, std::string(without_loop)};
+  if (setup.hands.size() < setup.gloves.size())
+    return Error{Errc::bad_input,
+                 "what tells of a hand or of a layer is missing, damaged, or not of a hand; record "
+                 "it anew, or cut nothing out of it"};
   flow::LoopOptions options = setup.loop->options;
   if (const auto fine = set_rig(*setup.loop, model, options); !fine) return fine.error();
-  if (const auto tips = 5 * static_cast<Eigen::Index>(setup.hands.size());
-      !options.rig && !points_exist(options.sculptor.deformer.supports, tips))
+  const auto tips = 5 * static_cast<Eigen::Index>(flow::count_hands(setup.hands));
+  if (!options.rig && !points_exist(options.sculptor.deformer.supports, tips))
     return Error{Errc::bad_input, std::string(without_loop)};
+  if (!setup.loop->rest.empty() &&
+      setup.loop->rest.size() !=
+          deform::block_count_of(static_cast<std::size_t>(model.vertices.cols())))
+    return Error{Errc::bad_input, "the shape at its beginning is not one of this model"};
+  return options;
+}
+
+Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
+                                                     const deform::Mesh& model) {
+  auto made = loop_options_of(setup, model);
+  if (!made) return made.error();
+  flow::LoopOptions options = *std::move(made);
   std::unique_ptr<LoopReplay> replay(new LoopReplay);
   std::vector<flow::HandInput> inputs = setup.hands;
   for (auto& input : inputs) {
@@ -69,9 +84,6 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   options.undo_most_bytes = std::min(options.undo_most_bytes, deform::half_of_memory());
   const deform::BlockShape first(setup.loop->rest);
   const bool has_first = first.block_count() > 0;
-  if (has_first && first.block_count() !=
-                       deform::block_count_of(static_cast<std::size_t>(model.vertices.cols())))
-    return Error{Errc::bad_input, "the shape at its beginning is not one of this model"};
   replay->loop_ = std::make_unique<flow::DeformLoop>(
       model, setup.loop->placement, std::move(inputs), options, has_first ? &first : nullptr);
   if (!is_solved(replay->loop_->grab_status()))

@@ -211,7 +211,7 @@ private:
   std::uint64_t entries_ = 0;                  ///< in the payload
   std::optional<flow::LoopSettings> settings_; ///< nothing: those of the setup
   bool settings_due_ = false;                  ///< at the beginning of the next chunk
-  std::array<flow::WristSwitchEdge, 2> switches_{};
+  std::array<flow::WristSwitchEdge, flow::most_inputs> switches_{};
   Recorded recorded_;
   std::optional<Error> failure_; ///< the first one
   unsigned kept_number_ = 0;

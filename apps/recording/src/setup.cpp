@@ -28,8 +28,9 @@ Setup begin_setup(std::string program) {
 void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout, Setup& setup) {
   for (std::size_t at = 0; at < setup.hands.size(); ++at) {
     flow::HandInput& hand = setup.hands[at];
-    hand.first = state.latest[at];
-    hand.wearer.learned = state.learned[at];
+    hand.first = state.inputs[at].latest;
+    hand.wearer.learned = state.inputs[at].learned;
+    hand.layer = state.inputs[at].layer;
     hand.filter = state.sculptor.settings.filter;
   }
   LoopSetup& loop = *setup.loop;
@@ -37,7 +38,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.options.sculptor = state.sculptor.options;
   loop.options.held = state.held;
   loop.options.rig_state = state.rig;
-  loop.subdivisions = state.subdivisions;
+  loop.subdivisions += state.subdivisions;
   loop.options.settings = state.sculptor.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
   const deform::BlockShape original = layout.pack();

@@ -5,7 +5,6 @@
 namespace nendo::recording {
 namespace {
 
-constexpr std::size_t most_hands = 2;
 constexpr double largest = 1e6; // of all numbers that describe a hand
 constexpr double least_hand_m = 0.01;
 constexpr double most_hand_m = 1.0;
@@ -80,6 +79,28 @@ void read_size(CheckedReader& checked, hand::HandSize& size) {
   size.breadth_m = checked.number(least_hand_m, most_hand_m);
 }
 
+void put_layer(ByteWriter& writer, const flow::Layer& layer) {
+  writer.u32_le(layer.joints.bits);
+  writer.u8(static_cast<std::uint8_t>(layer.on));
+  writer.f64_le(layer.part);
+  writer.u8(static_cast<std::uint8_t>(layer.below.has_value()));
+  if (!layer.below) return;
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    writer.f64_le((*layer.below)[hand::angle_at(at)]);
+}
+
+void read_layer(ByteReader& reader, CheckedReader& checked, flow::Layer& layer) {
+  layer.joints.bits = reader.u32_le();
+  checked.require((layer.joints.bits & ~flow::AngleSet::all().bits) == 0);
+  layer.on = reader.u8() != 0;
+  layer.part = checked.number(0.0, 1.0);
+  if (reader.u8() == 0) return;
+  hand::JointAngles& below = layer.below.emplace();
+  constexpr double most_rad = 7.0; // a turn
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    below[hand::angle_at(at)] = checked.number(-most_rad, most_rad);
+}
+
 } // namespace
 
 void put_head(ByteWriter& writer, const Setup& setup) {
@@ -124,6 +145,8 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   put_size(writer, other.size);
   writer.u8(static_cast<std::uint8_t>(hand.wearer.learned.has_value()));
   if (hand.wearer.learned) put_learned(writer, *hand.wearer.learned);
+  writer.u8(static_cast<std::uint8_t>(hand.layer.has_value()));
+  if (hand.layer) put_layer(writer, *hand.layer);
 }
 
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
@@ -133,8 +156,7 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   hand.side = checked.one_of(Side::right);
   read_size(checked, own.size);
   const auto first = driver::read_sample_body(reader);
-  if (!first || first->glove != hands.size() || hands.size() >= most_hands) return false;
-  if (!hands.empty() && hands.front().side == hand.side) return false;
+  if (!first || first->glove != hands.size()) return false;
   hand.first = first->sample;
   hand.gated = reader.u8() != 0;
   read_filter(checked, hand.filter);
@@ -146,11 +168,15 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
   read_size(checked, other.size);
   if (reader.remaining() > 0 && reader.u8() != 0) // format 1.0 ends before it
     read_learned(reader, checked, hand.wearer.learned.emplace());
+  if (reader.remaining() > 0 && reader.u8() != 0) // formats before 1.6 end before it
+    read_layer(reader, checked, hand.layer.emplace());
   if (!checked.fine()) return false;
   hand.wearer.of(hand.first.side) = own;
   hand.wearer.of(opposite(hand.first.side)) = other;
   hands.push_back(hand);
-  return true;
+  if (flow::are_usable(hands)) return true;
+  hands.pop_back();
+  return false;
 }
 
 } // namespace nendo::recording

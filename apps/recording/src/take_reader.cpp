@@ -17,6 +17,7 @@ constexpr std::size_t wrist_bytes = 57;
 constexpr std::size_t model_bytes = 5;
 constexpr std::size_t clutch_bytes = 3;
 constexpr std::size_t role_bytes = 4;
+constexpr std::size_t layer_bytes = 2;
 
 struct EntryWriter {
   ByteWriter& writer;
@@ -70,6 +71,11 @@ struct EntryWriter {
   void operator()(const flow::SetSymmetry& symmetry) const {
     driver::put_entry_head(writer, EntryKind::symmetry, 1);
     writer.u8(static_cast<std::uint8_t>(symmetry.on));
+  }
+  void operator()(const flow::SetLayer& layer) const {
+    driver::put_entry_head(writer, EntryKind::layer, layer_bytes);
+    writer.u8(layer.input);
+    writer.u8(static_cast<std::uint8_t>(layer.on));
   }
   void operator()(const Gap& gap) const {
     driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
@@ -286,6 +292,11 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
   } else if (record.is(EntryKind::symmetry)) {
     const flow::SetSymmetry symmetry{reader.u8() != 0};
     if (!reader.overrun()) entry = symmetry;
+  } else if (record.is(EntryKind::layer)) {
+    const std::uint8_t input = reader.u8();
+    const flow::SetLayer layer{input, reader.u8() != 0};
+    const bool is_layer = input < setup_.hands.size() && setup_.hands[input].layer;
+    if (!reader.overrun() && is_layer) entry = layer;
   } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

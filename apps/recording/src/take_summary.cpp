@@ -41,6 +41,7 @@ public:
   void operator()(const flow::SetClutch&) {}
   void operator()(const flow::SetRole&) {}
   void operator()(const flow::SetSymmetry&) {}
+  void operator()(const flow::SetLayer&) {}
   void operator()(const flow::Mark&) { ++marks_due_; }
   void operator()(const flow::LoggedTick& tick) {
     for (; marks_due_ > 0; --marks_due_)

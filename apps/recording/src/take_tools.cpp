@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include <nendo/recording/loop_replay.hpp>
@@ -171,12 +172,15 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
   const HostTime last = setup.begun_host + end;
   Groups groups(*reader);
   std::uint64_t left_out = 0;
-  std::optional<Entry> settings; // the last that are left out
+  std::optional<Entry> settings;        // the last that are left out
+  std::map<std::uint8_t, Entry> layers; // likewise, by input
   auto group = groups.next();
   for (; group && (!group->time || *group->time < first); group = groups.next()) {
     left_out += group->entries.size();
-    for (const Entry& entry : group->entries)
+    for (const Entry& entry : group->entries) {
       if (std::holds_alternative<flow::LoopSettings>(entry)) settings = entry;
+      if (const auto* layer = std::get_if<flow::SetLayer>(&entry)) layers[layer->input] = entry;
+    }
   }
   if (!group || *group->time >= last)
     return bad_input(from, "nothing happened in that part of it; `nendo recording info` tells how "
@@ -191,6 +195,8 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
     if (const auto put = copy->put(Gap{left_out}); !put) return put.error();
     if (settings)
       if (const auto put = copy->put(*settings); !put) return put.error();
+    for (const auto& [input, layer] : layers)
+      if (const auto put = copy->put(layer); !put) return put.error();
   }
   HostTime ended = first;
   for (; group && group->time && *group->time < last; group = groups.next()) {

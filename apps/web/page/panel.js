@@ -19,6 +19,7 @@ const KEYS = [
   ['\'', 'of a puppet: the right hand lets go, takes hold again', panel => panel.clutch(1)],
   ['y', 'of a puppet: one hand plays both sides, or each its own', panel => panel.toggleSymmetry()],
   ['.', 'mark this moment in the recording', panel => panel.ask('mark')],
+  ['o', 'overdub: the gloves\' layer comes in, or goes out (--over, --layer)', panel => panel.ask('punch')],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
   ['s', 'save the model as it is now', panel => panel.ask('save')],
   ['m', 'the other mode', panel => panel.shaping.otherMode()],

@@ -61,6 +61,16 @@ struct SetSymmetry {
   bool on = false;
   friend bool operator==(const SetSymmetry&, const SetSymmetry&) = default;
 };
+/// Lets a layer (Layer) come in, or go out. The inputs of a loop are numbered in their order.
+struct SetLayer {
+  std::uint8_t input = 0;
+  bool on = true;
+  friend bool operator==(const SetLayer&, const SetLayer&) = default;
+};
+/// Lets the layers that live gloves play come in, or go out if they are in: punch in and out.
+struct Punch {
+  friend bool operator==(const Punch&, const Punch&) = default;
+};
 /// Ends the run, which then writes its shape.
 struct EndRun {
   friend bool operator==(const EndRun&, const EndRun&) = default;
@@ -83,12 +93,12 @@ struct ChangeModel {
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
-/// A loop obeys Request and WristMove at the beginning of its next tick, and logs a Mark. All
-/// others are obeyed by the code that runs the loop. HoldStill and ChangeModel only tell a log what
-/// the loop did.
-using Command =
-    std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
-                 Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry>;
+/// A loop obeys Request, WristMove, SetLayer and what is for puppets at the beginning of its next
+/// tick, and logs a Mark. All others are obeyed by the code that runs the loop. HoldStill and
+/// ChangeModel only tell a log what the loop did.
+using Command = std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape,
+                             SaveRecording, EndRun, Subdivide, HoldStill, ChangeModel, Mark,
+                             SetClutch, SetRole, SetSymmetry, SetLayer, Punch>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.
@@ -103,7 +113,8 @@ constexpr bool is_for_puppet(const Command& command) noexcept {
 /// Tells whether a running loop obeys the command by itself.
 constexpr bool is_for_loop(const Command& command) noexcept {
   return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command) ||
-         std::holds_alternative<Mark>(command) || is_for_puppet(command);
+         std::holds_alternative<Mark>(command) || std::holds_alternative<SetLayer>(command) ||
+         is_for_puppet(command);
 }
 
 } // namespace nendo::flow

@@ -9,12 +9,15 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <nendo/base/job_offer.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/frame_sink.hpp>
 #include <nendo/flow/input_log.hpp>
+#include <nendo/flow/input_script.hpp>
+#include <nendo/flow/layer.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
 #include <nendo/flow/prepared_change.hpp>
@@ -28,8 +31,8 @@
 
 namespace nendo::flow {
 
-/// A hand as an input of the loop. Only the loop's thread drains `ring`, which must outlive the
-/// loop.
+/// A hand as an input of the loop, or a layer over it. Only the loop's thread drains `ring`, which
+/// must outlive the loop; without one, the input is in LoopOptions::script.
 struct HandInput {
   SampleRing* ring = nullptr;
   Side side = Side::right; ///< which hand it is on the stage, whichever glove it wears
@@ -40,6 +43,9 @@ struct HandInput {
   /// Measured bones (HandSkeleton::of_bones) for gloves of the first sample's side, in place of the
   /// wearer's size. A recording does not keep them.
   std::optional<hand::HandSkeleton> measured{};
+  /// A layer has its own glove and calibration; the hand's bones are those of the first input of
+  /// its side.
+  std::optional<Layer> layer{};
 
   /// Returns the skeleton for samples from a glove of that side. It always has the side `side`.
   hand::HandSkeleton skeleton(Side glove) const {
@@ -47,6 +53,12 @@ struct HandInput {
     return hand::HandSkeleton(side, wearer.of(glove).size);
   }
 };
+
+/// Tells whether a loop can be made of these: one to most_inputs, and of each side at most one that
+/// is no layer, before its layers.
+bool are_usable(std::span<const HandInput> inputs) noexcept;
+/// Returns how many hands shape: one or two.
+std::size_t count_hands(std::span<const HandInput> inputs) noexcept;
 
 /// The stages of a tick. A measurement may leave some out; their results then stay as they were.
 struct TickStages {
@@ -65,6 +77,9 @@ struct LoopOptions : PaceOptions {
   CommandRing* commands = nullptr;
   /// The log to which the loop writes its input, for a recorder. It must outlive the loop.
   InputLog* input_log = nullptr;
+  /// Recorded input that the loop takes in its ticks, before what is live. It must outlive the
+  /// loop.
+  InputScript* script = nullptr;
   std::size_t undo_most_bytes = 0; ///< UndoRoom::most_bytes, of all versions together
   /// The sinks that are shown every frame. They must outlive the loop.
   std::vector<FrameSink*> sinks;
@@ -103,7 +118,7 @@ surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::Blo
 
 class DeformLoop {
 public:
-  /// `hands` are one or two, at most one of a side. Copies the model and allocates all that a tick
+  /// `hands` must be usable (are_usable()). Copies the model and allocates all that a tick
   /// needs. The hands take hold of the model at their first samples. With
   /// SwitchAction::grab they hold it only while a switch is on. With `first`, the shape is at first
   /// that one, in the blocks of the model's layout.
@@ -203,6 +218,8 @@ public:
   deform::Mesh final_mesh();
 
 private:
+  struct Hand;
+
   void tick(const Pacer::Due& due) noexcept;
   void take_commands() noexcept;
   void apply(const Command& command) noexcept;
@@ -226,7 +243,14 @@ private:
   void go_back();
   void free_others(const ChangeModel& taken);
   UndoRoom undo_room() const noexcept;
+  void take_script(HostTime scheduled) noexcept;
   void take_samples(TickRecord& record) noexcept;
+  void take(std::uint8_t number, const GloveSample& sample) noexcept;
+  void count(Hand& hand, std::size_t samples, HostTime now) noexcept;
+  void let_layers_pass(HostTime scheduled) noexcept;
+  hand::JointAngles angles_of(const Hand& lowest) const noexcept;
+  hand::HandPose pose_of(const Hand& lowest) const noexcept;
+  bool is_silent(std::size_t slot) const noexcept;
   void follow_switches() noexcept;
   void compute_hands(Frame& frame) noexcept;
   void describe(const TickRecord& record, Frame& frame) noexcept;
@@ -241,7 +265,6 @@ private:
     }
     /// Forgets all that came before `latest` but what adaptation has learned.
     void begin_anew() noexcept;
-    hand::HandPose pose() const noexcept { return skeleton().pose(angles, T_stage_wrist); }
     const hand::HandSkeleton& skeleton() const noexcept {
       return skeletons[Placement::index_of(latest.side)];
     }
@@ -256,7 +279,9 @@ private:
     GloveSample latest{};
     hand::JointAngles angles{}; ///< of `latest`, filtered
     WristSwitchEdge wrist_switch{};
-    bool fresh = false; ///< samples came in with this tick
+    bool is_lowest = true;  ///< of its side: the hand, and not a layer over it
+    bool is_topmost = true; ///< of its side: whose samples are counted
+    bool fresh = false;     ///< samples came out of its ring in this tick
     bool silent = false;
   };
 
@@ -288,6 +313,7 @@ private:
   std::vector<LoopState> states_;              ///< not taken yet
   HostTime first_due_{};                       ///< of the first tick
   HostTime last_woke_{};                       ///< of the tick before; HostTime{} at first
+  HostTime last_due_{};                        ///< of the tick before
   LoopStats stats_;
   FrameExchange frames_;
 };

@@ -83,6 +83,8 @@ struct Frame {
   std::uint32_t function_count = 0;
   std::array<bool, 2> let_go{}; ///< by side: that hand has let go of all that it plays
   bool symmetric = false;       ///< one hand plays both sides
+  /// Which inputs of the loop are layers that play, or are coming in; bit k is input k.
+  std::uint32_t layers_on = 0;
   /// The deformed vertices, which DeformLoop::layout(model) turns into points. The stamps tell
   /// which blocks differ from those of an earlier frame of the same version.
   deform::BlockShape shape;

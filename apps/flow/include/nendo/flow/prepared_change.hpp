@@ -2,10 +2,11 @@
 // What another thread makes for a loop that runs, and hands to it ready. The loop's tick only swaps
 // pointers.
 
-#include <array>
 #include <optional>
+#include <vector>
 
 #include <nendo/flow/input_log.hpp>
+#include <nendo/flow/layer.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/shaping.hpp>
 #include <nendo/hand/range_adaptation.hpp>
@@ -16,9 +17,14 @@ namespace nendo::flow {
 /// Where a loop is between two ticks, without the hands' grip, which ends there. A loop that is
 /// made of this (LoopOptions::held, and a first shape) does the same as the one that goes on.
 struct LoopState {
-  std::array<GloveSample, 2> latest{}; ///< of each hand, in the loop's order
-  std::array<std::optional<hand::LearnedRanges>, 2> learned{}; ///< of each hand
-  Placement placement{};                                       ///< without the gaps
+  /// Of an input of the loop.
+  struct Input {
+    GloveSample latest{};
+    std::optional<hand::LearnedRanges> learned{};
+    std::optional<Layer> layer{};
+  };
+  std::vector<Input> inputs{}; ///< in the loop's order
+  Placement placement{};       ///< without the gaps
   bool held = true;
   SculptorSetup sculptor{};
   std::uint32_t subdivisions = 0; ///< of the model with which the loop began

@@ -16,6 +16,10 @@ inline constexpr std::string_view without_loop =
     "gloves were recorded, but no loop that shapes a model; shape one with `nendo run --right "
     "replay:FILE`";
 
+/// Returns the options of the recorded loop, with its puppet and what this needs of `model`, and
+/// without rings. Error: bad_input, as from LoopReplay::make(), but for the hands' hold.
+Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh& model);
+
 class LoopReplay {
 public:
   /// Makes the recorded loop in its first state, over `model`, which should be the recorded one

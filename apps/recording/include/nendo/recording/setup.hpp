@@ -56,8 +56,8 @@ struct Setup {
 /// Returns a setup that begins now.
 Setup begin_setup(std::string program);
 
-/// Makes of a loop's setup the one of a loop that goes on from a later state. `layout` is the
-/// loop's.
+/// Makes of a loop's setup, as it began, the one of a loop that goes on from a later state.
+/// `layout` is the loop's.
 void continue_from(const flow::LoopState& state, const deform::BlockLayout& layout, Setup& setup);
 
 /// Returns the file's header and the chunks of a setup, numbered from 0, and sets `chunks` to the

@@ -30,7 +30,7 @@ struct Gap {
 using Entry =
     std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
                  flow::HoldStill, flow::ChangeModel, flow::Mark, flow::SetClutch, flow::SetRole,
-                 flow::SetSymmetry, flow::LoggedTick, Gap>;
+                 flow::SetSymmetry, flow::SetLayer, flow::LoggedTick, Gap>;
 
 template <class One, class Of = Entry>
 inline constexpr bool is_entry = false;

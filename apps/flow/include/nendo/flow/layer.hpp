@@ -1,0 +1,62 @@
+#pragma once
+// Takes in layers: an input of the loop may play some joints of a hand over what the inputs before
+// it play, as an animator overdubs. Angles are what is merged, because each glove's counts mean
+// something else, and the hand that shapes is one skeleton.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nendo/base/units.hpp>
+#include <nendo/hand/joint_angles.hpp>
+
+namespace nendo::flow {
+
+/// A set of joint angles of a hand. Bit k is hand::angle_at(k).
+struct AngleSet {
+  std::uint32_t bits = 0;
+
+  static constexpr AngleSet all() noexcept { return {(1U << hand::angle_count) - 1U}; }
+  constexpr bool has(hand::Angle angle) const noexcept {
+    return (bits >> hand::index_of(angle) & 1U) != 0;
+  }
+  constexpr bool is_empty() const noexcept { return bits == 0; }
+  friend constexpr bool operator==(AngleSet, AngleSet) = default;
+};
+
+/// Returns the angles of a part of a hand: thumb, index, middle, ring, little, palm, wrist, or one
+/// angle by its name (hand::angle_names). Returns nothing if there is no such part.
+std::optional<AngleSet> angles_named(std::string_view part) noexcept;
+
+/// Parses what a layer plays, of both hands by Placement::index_of(side): parts with commas
+/// between, each a hand (left, right), or a hand, a point and one of its parts, such as
+/// "left.index,right". Returns nothing if the text is not that.
+std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexcept;
+
+/// What makes a layer of an input. Where no input before it is of the same hand, it lies over that
+/// hand at rest, in the pose of its own first sample.
+struct Layer {
+  /// How long it takes to come in and to go out, so that nothing jumps.
+  static constexpr HostClock::duration blend_time = std::chrono::milliseconds(150);
+  /// No tick goes farther than this of that time, however late it is.
+  static constexpr HostClock::duration longest_step = std::chrono::milliseconds(30);
+
+  AngleSet joints = AngleSet::all();
+  bool on = true;    ///< it plays, or is coming in
+  double part = 1.0; ///< how far it has come in: 0 not at all, 1 wholly
+  /// The hand below, if no input before this one is of that hand. Nothing: the pose of its first
+  /// sample.
+  std::optional<hand::JointAngles> below{};
+
+  /// Lets time pass. Wait-free.
+  void pass(HostClock::duration time) noexcept;
+  /// Puts its angles `own` over those in `angles`. Those that are not its joints stay as they are,
+  /// bit for bit, as all do while it is out; while it is wholly in, its joints are `own`, bit for
+  /// bit. Wait-free.
+  void play_over(const hand::JointAngles& own, hand::JointAngles& angles) const noexcept;
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,26 @@
+#pragma once
+// All input of a recording in memory, for a run that plays it once more with other hands over it.
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <nendo/flow/input_script.hpp>
+#include <nendo/recording/take_reader.hpp>
+
+namespace nendo::recording {
+
+struct TakeInput {
+  Setup setup;
+  /// What the loop took: all samples, and of the commands all but those that the next loop makes
+  /// itself (HoldStill, and a ChangeModel to a version that was there).
+  std::unique_ptr<flow::InputScript> script;
+  std::vector<driver::RecordCounts> sent; ///< of each glove, by its number
+  bool is_exact = true;                   ///< nothing is missing
+};
+
+/// Reads a recording of a loop. Blocks, and takes 160 bytes for each sample. Errors: bad_input (as
+/// from TakeReader::open(); or no loop was recorded, or it has no tick).
+Result<TakeInput> read_take_input(const std::filesystem::path& path);
+
+} // namespace nendo::recording

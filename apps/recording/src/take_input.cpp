@@ -1,0 +1,88 @@
+#include <nendo/recording/take_input.hpp>
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include <nendo/recording/loop_replay.hpp>
+
+namespace nendo::recording {
+namespace {
+
+/// Gathers the entries of each tick, and gives them the tick's time.
+class ScriptMaker {
+public:
+  void add(const Entry& entry) {
+    std::visit([this](const auto& one) { add_one(one); }, entry);
+  }
+  bool has_ticks() const noexcept { return ticks_ > 0; }
+  bool is_exact() const noexcept { return exact_; }
+  std::uint64_t samples_of(std::size_t glove) const { return samples_[glove]; }
+
+  std::unique_ptr<flow::InputScript> finish() {
+    events_.resize(timed_); // what no tick took decides nothing
+    return std::make_unique<flow::InputScript>(std::move(events_), first_, latest_);
+  }
+
+private:
+  void add_one(const driver::RecordedSample& recorded) {
+    if (recorded.glove >= samples_.size()) {
+      exact_ = false;
+      return;
+    }
+    ++samples_[recorded.glove];
+    put(flow::TakenSample{recorded.glove, recorded.sample});
+  }
+  void add_one(const flow::LoopSettings& settings) {
+    put(flow::Command(flow::ChangeSettings{settings}));
+  }
+  void add_one(const flow::ChangeModel& change) {
+    if (change.source == flow::ModelSource::subdivided) put(flow::Command(flow::Subdivide{}));
+  }
+  void add_one(const flow::HoldStill&) {}
+  void add_one(const Gap&) { exact_ = false; }
+  void add_one(const flow::LoggedTick& tick) {
+    if (ticks_++ == 0) first_ = tick.scheduled;
+    latest_ = std::max(latest_, tick.scheduled - first_); // whatever a hostile file says
+    for (; timed_ < events_.size(); ++timed_)
+      events_[timed_].at = latest_;
+  }
+  template <class One>
+  void add_one(const One& command) {
+    put(flow::Command(command));
+  }
+  void put(flow::InputLogEntry entry) { events_.push_back({{}, std::move(entry)}); }
+
+  std::vector<flow::InputScript::Event> events_;
+  std::size_t timed_ = 0; ///< so many have their times
+  HostTime first_{};
+  HostClock::duration latest_{};
+  std::uint64_t ticks_ = 0;
+  std::array<std::uint64_t, flow::most_inputs> samples_{};
+  bool exact_ = true;
+};
+
+} // namespace
+
+Result<TakeInput> read_take_input(const std::filesystem::path& path) {
+  auto reader = TakeReader::open(path);
+  if (!reader) return reader.error();
+  ScriptMaker script;
+  while (const auto entry = reader->next())
+    script.add(*entry);
+  TakeInput input{reader->setup(), nullptr, reader->sent()};
+  if (!input.setup.loop || !script.has_ticks())
+    return Error{Errc::bad_input, path.string() + ": " + std::string(without_loop)};
+  if (input.sent.size() != input.setup.gloves.size()) { // nobody has counted more than arrived
+    input.sent.clear();
+    for (std::size_t at = 0; at < std::min(input.setup.gloves.size(), flow::most_inputs); ++at)
+      input.sent.push_back({script.samples_of(at)});
+  }
+  input.is_exact = script.is_exact() && reader->chunks().damage_count() == 0;
+  input.script = script.finish();
+  return input;
+}
+
+} // namespace nendo::recording
