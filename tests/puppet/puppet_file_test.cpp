@@ -112,6 +112,23 @@ TEST_SUITE("puppet file") {
                   "degrees"));
   }
 
+  TEST_CASE("what would take memory, stack or time without bound is refused in a sentence") {
+    const auto many = [](const std::string& text, std::size_t count) {
+      std::string all;
+      for (std::size_t at = 0; at < count; ++at)
+        all += text;
+      return all;
+    };
+    CHECK(refuses(head + "points = " + many("[", 500000), "deep"));
+    CHECK(refuses(head + "[points" + many(".a", 500000) + "]\n", "parts"));
+    CHECK(refuses(whole + many("[[masks]]\n", 1001), "1000 masks"));
+    CHECK(refuses(whole + many("[[parts]]\n", 1001), "1000 parts"));
+    std::string crowded = head + "[points]\n";
+    for (int at = 0; at < 30000; ++at)
+      crowded += "p" + std::to_string(at) + " = { vertex = 1, radius = 1 }\n";
+    CHECK(refuses(crowded + smile, "1000 points"));
+  }
+
   TEST_CASE("points and signals that there are not are named") {
     CHECK(refuses(replaced(whole, "move = { cornerLeft", "move = { cornerLift"), "'cornerLift'"));
     CHECK(refuses(replaced(whole, "right.index_flexion", "right.toe_flexion"),

@@ -17,8 +17,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double largest = 1e9;       // of lengths, model units
-constexpr double largest_value = 1e3; // of functions, and of a point's part in a turn
+constexpr double largest = 1e9;            // of lengths, model units
+constexpr double largest_value = 1e3;      // of functions, and of a point's part in a turn
+constexpr std::size_t most_entries = 1000; // of [[parts]], and of [[masks]]
 constexpr std::string_view left = "Left";
 
 Vector3d vector_of(const std::array<double, 3>& numbers) {
@@ -54,6 +55,8 @@ private:
   void read_list(const toml::table& root, std::string_view key, const Read& read) {
     const toml::array* const list = reader_.array(root, key);
     if (list == nullptr) return;
+    if (list->size() > most_entries)
+      return reader_.complain(*list, "there are more than 1000 " + std::string(key));
     for (const toml::node& node : *list) {
       const toml::table* const one = reader_.as_table(node, key);
       if (one == nullptr || reader_.error()) return;
@@ -95,6 +98,8 @@ private:
   void read_points(const toml::table& root) {
     const toml::table* const points = reader_.table(root, "points");
     if (points == nullptr) return;
+    if (points->size() > Puppet::most_points)
+      return reader_.complain(*points, "there are more than 1000 points");
     for (const auto& [key, node] : *points) {
       const toml::table* const table = reader_.as_table(node, key.str());
       if (table == nullptr || reader_.error()) return;
@@ -135,6 +140,8 @@ private:
   void read_functions(const toml::table& root) {
     const toml::table* const functions = reader_.table(root, "functions");
     if (functions == nullptr) return;
+    if (functions->size() > Puppet::most_functions)
+      return reader_.complain(*functions, "there are more than 64 functions");
     for (const auto& [key, node] : *functions) {
       const toml::table* const table = reader_.as_table(node, key.str());
       if (table == nullptr || reader_.error()) return;
