@@ -77,6 +77,7 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
     state.learned[at] = hand.input.wearer.learned;
     state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
   }
+  if (rig_) gestures_->reset(*rig_);
   place_tips();
   switch_on_ = false;
   if (rig_) state.rig = rig_->state(); // which has room for it

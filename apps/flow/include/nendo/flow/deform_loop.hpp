@@ -24,6 +24,7 @@
 #include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
+#include <nendo/puppet/gesture_clutch.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
@@ -203,6 +204,7 @@ public:
   deform::Mesh final_mesh();
 
 private:
+  struct Hand;
   void tick(const Pacer::Due& due) noexcept;
   void take_commands() noexcept;
   void apply(const Command& command) noexcept;
@@ -228,6 +230,7 @@ private:
   UndoRoom undo_room() const noexcept;
   void take_samples(TickRecord& record) noexcept;
   void follow_switches() noexcept;
+  bool has_clutch(const Hand& hand) const noexcept;
   void compute_hands(Frame& frame) noexcept;
   void describe(const TickRecord& record, Frame& frame) noexcept;
   void record_latencies(const TickRecord& record) noexcept;
@@ -264,7 +267,8 @@ private:
   double units_per_metre_;
   std::vector<Hand> hands_;
   std::optional<puppet::RigPlayer> rig_;
-  std::array<puppet::HandState, 2> hand_states_; ///< by side, for the rig
+  std::optional<puppet::GestureClutch> gestures_; ///< of the rig's hands
+  std::array<puppet::HandState, 2> hand_states_;  ///< by side, for the rig
   /// The control points, 3 by 5 a hand, or by as many as a puppet has; model units.
   deform::Points tips_;
   // For the thread that asks for changes:
@@ -287,6 +291,7 @@ private:
   std::optional<LoopSettings> settings_later_; ///< that were asked for while it holds still
   std::vector<LoopState> states_;              ///< not taken yet
   HostTime first_due_{};                       ///< of the first tick
+  std::optional<HostTime> due_;                ///< of this tick
   HostTime last_woke_{};                       ///< of the tick before; HostTime{} at first
   LoopStats stats_;
   FrameExchange frames_;
