@@ -59,6 +59,7 @@ public:
 
   void hear(flow::Request request) {
     if (flow::goes_through_history(request)) steps_.push_back(request);
+    takes_hold_ = takes_hold_ || request == flow::Request::take_hold;
   }
 
   void hear(const flow::HoldStill&) { is_still_ = true; }
@@ -120,6 +121,7 @@ private:
 
   void see_events(double time_s, const flow::Frame& frame, std::uint64_t commits) {
     add_steps(time_s, frame);
+    if (!is_still_ && std::exchange(takes_hold_, false)) add(time_s, flow::Request::take_hold);
     const bool committed = commits > commits_;
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
@@ -135,6 +137,7 @@ private:
   std::uint64_t commits_ = 0;
   std::uint64_t undos_ = 0;
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
+  bool takes_hold_ = false;                    ///< it was asked for since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
   bool is_still_ = false;                      ///< from the next tick on
   double still_at_s_ = 0.0;                    ///< the end of the last tick that shaped
@@ -172,7 +175,15 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   MadeTimeline made;
   made.timeline = begin_timeline(setup, take);
   Follower follower(made.timeline, setup.loop->options);
+  bool takes_hold = false, changes = false;
   while (const auto entry = reader->next()) {
+    const auto* const asked = std::get_if<flow::Request>(&*entry);
+    takes_hold = takes_hold || (asked != nullptr && *asked == flow::Request::take_hold);
+    changes = changes || std::holds_alternative<flow::LoopSettings>(*entry) ||
+              std::holds_alternative<flow::ChangeModel>(*entry);
+    if (takes_hold && changes)
+      return bad("has hands that take hold anew (key a), and settings that change, which a "
+                 "timeline cannot repeat together; cut a part with `nendo recording cut`");
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
     if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
     if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) follower.hear(*change);

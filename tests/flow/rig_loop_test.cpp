@@ -124,6 +124,26 @@ TEST_SUITE("rig_loop") {
     CHECK(test.loop->frames().front().functions[right] > 0.1F); // its own hand again
   }
 
+  TEST_CASE(
+      "hands that take hold anew leave a puppet as it is, and go on from their present pose") {
+    auto test = puppet_loop();
+    HostTime now = HostClock::now();
+    std::uint64_t tick = 0;
+    const auto after = [&](int counts) {
+      test.bend(counts, now += 11ms);
+      return test.frame_after_tick(tick++).functions;
+    };
+    for (int counts = 0; counts < 60; counts += 4)
+      after(counts);
+    after(60);
+    const auto far = after(60); // beyond its limits
+    test.commands.try_push(Request::take_hold);
+    CHECK(after(60) == far);
+    const auto back = after(50); // at once, and not only when it is within the limits again
+    for (std::size_t at = 0; at < 4; ++at)
+      CHECK(back[at] != far[at]);
+  }
+
   TEST_CASE("a wrist switch that is a clutch lets its hand go, and take hold again, and no more") {
     const std::string text =
         std::string(test::ball_puppet) + "[clutch]\nleft = \"fist\"\nright = \"switch\"\n";

@@ -184,6 +184,7 @@ void DeformLoop::apply(const Command& command) noexcept {
   if (!is_for_loop(command) || (move != nullptr && !move->is_usable())) return;
   if (is_for_puppet(command) && !rig_) return;
   if (options_.input_log != nullptr) options_.input_log->command(command);
+  if (rig_ && command == Command(Request::take_hold)) return rig_->take_hold(hands_now());
   if (request != nullptr) return shaping_.ask(*request);
   if (is_for_puppet(command)) return set_rig(command);
   if (move == nullptr) return; // a mark is only logged
