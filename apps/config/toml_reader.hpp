@@ -14,6 +14,7 @@
 
 #include <toml++/toml.h>
 
+#include <nendo/base/plain_toml.hpp>
 #include <nendo/base/result.hpp>
 #include <nendo/base/text.hpp>
 
@@ -131,6 +132,10 @@ template <class Read>
 std::optional<Error> read_toml(std::string_view text, std::string_view name, const Read& read) {
   toml::table root;
   TomlReader reader(name);
+  if (const auto fault = find_toml_fault(text)) {
+    reader.complain(fault->line, fault->what);
+    return reader.error();
+  }
   try {
     root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {

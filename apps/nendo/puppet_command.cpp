@@ -113,6 +113,32 @@ void print_head(const OpenRig& open) {
       puppet.distance == puppet::Distance::surface ? "along the surface" : "through the air");
 }
 
+std::string gesture_text(const puppet::ClutchOptions& clutch, puppet::ClutchMeans means) {
+  switch (means) {
+  case puppet::ClutchMeans::fist:
+    return fmt::format("a fist (fingers bent by {:.0f} degrees, held for {:g} s)",
+                       to_degrees(clutch.fist_rad), clutch.held_s);
+  case puppet::ClutchMeans::pinch:
+    return fmt::format("a pinch (tips within {:g} m, held for {:g} s)", clutch.pinch_m,
+                       clutch.held_s);
+  case puppet::ClutchMeans::wrist_switch:
+    return "the wrist switch";
+  case puppet::ClutchMeans::none:
+    break;
+  }
+  return {};
+}
+
+void print_clutches(const OpenRig& open) {
+  const puppet::ClutchOptions& clutch = open.rig().puppet().clutch;
+  for (const Side side : {Side::left, Side::right}) {
+    const std::string words = gesture_text(clutch, clutch.means[static_cast<std::size_t>(side)]);
+    if (!words.empty())
+      fmt::print("the {} hand lets go, and takes hold again, by {}\n",
+                 side == Side::left ? "left" : "right", words);
+  }
+}
+
 /// The shapes of a sheet, the model at rest first.
 struct Sheet {
   std::vector<Points> shapes;
@@ -193,6 +219,7 @@ Result<void> show(const Options& options) {
   for (std::size_t at = 0; at < open->functions().size(); ++at)
     print_function(*open, at);
   print_points(*open);
+  print_clutches(*open);
   if (options.picture.empty()) return {};
   return draw_sheet(sheet_of(*open), open->model, options, *view, *size);
 }

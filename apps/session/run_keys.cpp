@@ -12,7 +12,8 @@ namespace nendo::session {
 RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : timeout_(timeout) {
   if (!keys_.are_available()) return;
   cli::note(
-      "keys: g lets go, takes hold again; c keeps the shape so far; u undoes, r redoes, x "
+      "keys: g lets go, takes hold again; a takes hold anew; c keeps the shape so far; u undoes, r "
+      "redoes, x "
       "resets; " +
       std::string("[ and ] make the radii smaller, larger; m the other mode, n the next kernel, ") +
       "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; e "
@@ -27,6 +28,7 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   const bool held = status.frame.held;
   if (*key == 'g') commands.try_push(held ? flow::Request::let_go : flow::Request::grab);
   if (*key == 'c' || *key == ' ') commands.try_push(flow::Request::commit);
+  if (*key == 'a') commands.try_push(flow::Request::take_hold);
   if (*key == 'u') step(flow::Request::undo, status.frame.undo_steps, commands);
   if (*key == 'r' || *key == 'U') step(flow::Request::redo, status.frame.redo_steps, commands);
   if (*key == 'x') commands.try_push(flow::Request::reset);

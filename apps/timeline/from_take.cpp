@@ -87,6 +87,11 @@ public:
 
   void hear(flow::Request request) {
     if (flow::goes_through_history(request)) steps_.push_back(request);
+    if (request != flow::Request::take_hold) return;
+    if (timeline_.rig)
+      told_.emplace_back(request);
+    else
+      takes_hold_ = true;
   }
 
   /// What a puppet is told, and marks.
@@ -118,6 +123,7 @@ public:
     if (!first_) first_ = tick;
     const double before_s = timeline_.duration_s;
     const double time_s = std::max(before_s, time_of(tick));
+    hear_switches(frame, stats);
     add_told(before_s, time_s);
     for (auto& hand : timeline_.hands) {
       const std::size_t slot = flow::Placement::index_of(hand.side);
@@ -142,6 +148,19 @@ private:
 
   void add(double time_s, const flow::Command& command) {
     timeline_.events.push_back({time_s, command});
+  }
+
+  /// By which hands let go of a puppet, and take hold of it again.
+  void hear_switches(const flow::Frame& frame, const flow::LoopStats& stats) {
+    for (const Side side : {Side::left, Side::right}) {
+      const std::size_t slot = flow::Placement::index_of(side);
+      const bool used =
+          std::exchange(switch_uses_[slot], stats.switch_uses[slot]) != stats.switch_uses[slot];
+      const auto by_switch = puppet::ClutchMeans::wrist_switch;
+      if (used && timeline_.rig && timeline_.rig->puppet().clutch.means[slot] == by_switch)
+        told_.emplace_back(
+            flow::SetClutch{side, puppet::RigPlayer::all_fingers, !frame.let_go[slot]});
+    }
   }
 
   /// A puppet that is told something finds the hands as they were in the last tick. Where ticks
@@ -169,6 +188,7 @@ private:
 
   void see_events(double time_s, const flow::Frame& frame, const flow::LoopStats& stats) {
     add_steps(time_s, frame, stats);
+    if (!is_still_ && std::exchange(takes_hold_, false)) add(time_s, flow::Request::take_hold);
     const bool committed = stats.commits > commits_;
     if (!held_ && (frame.held || committed)) add(time_s, flow::Request::grab);
     if (committed && frame.held) add(time_s, flow::Request::commit);
@@ -185,10 +205,12 @@ private:
   bool held_;
   bool on_grid_;
   std::uint64_t commits_ = 0;
+  std::array<std::uint64_t, 2> switch_uses_{};
   std::uint64_t done_ = 0;                     ///< undos, redos and resets
   std::vector<flow::Command> told_;            ///< to the puppet since the last tick
   std::vector<flow::Command> marks_;           ///< likewise
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
+  bool takes_hold_ = false;                    ///< it was asked for since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
   bool answers_step_ = false;                  ///< an undo or a redo has waited for settings_
   bool is_still_ = false;                      ///< from the next tick on

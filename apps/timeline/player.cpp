@@ -127,7 +127,9 @@ void Player::pose_hands(double time_s) {
 
 void Player::play_puppet() {
   if (!puppet_) return;
-  puppet_->play(shaping_.is_held());
+  std::optional<HostTime> time;
+  if (made_ > 0) time = HostTime{} + from_seconds(time_of(made_)); // a loop has no tick before
+  puppet_->play(shaping_.is_held(), time);
   const puppet::RigPlayer& player = puppet_->player();
   player.write(tips_);
   for (const Side side : {Side::left, Side::right})
@@ -143,7 +145,10 @@ void Player::ask(const Event& event) {
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
     settings_due_ = change->settings; // of several in a frame the last counts, as in the loop
   if (std::holds_alternative<flow::Subdivide>(command)) subdivides_ = true;
-  if (const auto* request = std::get_if<flow::Request>(&command)) shaping_.ask(*request);
+  const auto* request = std::get_if<flow::Request>(&command);
+  // A puppet's hands take hold of its functions.
+  if (request != nullptr && !(puppet_ && *request == flow::Request::take_hold))
+    shaping_.ask(*request);
   if (puppet_) puppet_->apply(command);
 }
 

@@ -2,7 +2,8 @@
 
 namespace nendo::timeline {
 
-PuppetHands::PuppetHands(const Timeline& timeline) : player_(timeline.rig) {
+PuppetHands::PuppetHands(const Timeline& timeline)
+    : player_(timeline.rig), gestures_(*timeline.rig) {
   player_.set_state(timeline.rig_state);
 }
 
@@ -24,13 +25,17 @@ void PuppetHands::apply(const flow::Command& command) noexcept {
     player_.set_input(role->function, role->input, hands());
   if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command))
     player_.set_symmetric(symmetry->on);
+  if (command == flow::Command(flow::Request::take_hold)) take_hold();
 }
 
-void PuppetHands::play(bool is_held) noexcept {
-  if (is_held)
+void PuppetHands::play(bool is_held, std::optional<HostTime> time) noexcept {
+  if (is_held) {
+    if (time) gestures_.watch(player_, hands(), *time);
     player_.follow(hands());
-  else
+  } else {
+    gestures_.reset(player_);
     player_.take_hold(hands());
+  }
 }
 
 double PuppetHands::signal(const puppet::HandSignal& input) const noexcept {

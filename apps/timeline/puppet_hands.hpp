@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include <nendo/puppet/gesture_clutch.hpp>
+
 #include "timeline/hand_curve.hpp"
 #include "timeline/timeline.hpp"
 
@@ -22,7 +24,8 @@ public:
   /// Does what the command says, if it is about a puppet.
   void apply(const flow::Command& command) noexcept;
   /// Lets the functions follow the hands, or take hold of them if these do not hold the model.
-  void play(bool is_held) noexcept;
+  /// Gestures are seen from the first `time` on.
+  void play(bool is_held, std::optional<HostTime> time) noexcept;
 
   const puppet::RigPlayer& player() const noexcept { return player_; }
   double signal(const puppet::HandSignal& input) const noexcept; ///< 0 if that hand is not there
@@ -31,6 +34,7 @@ private:
   puppet::RigPlayer::Hands hands() const noexcept;
 
   puppet::RigPlayer player_;
+  puppet::GestureClutch gestures_;
   std::array<std::optional<puppet::HandState>, 2> states_; ///< left and right
 };
 

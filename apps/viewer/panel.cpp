@@ -110,6 +110,8 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
   ask("Redo", "Redo what was undone (r, ctrl y)", Request::redo, frame.redo_steps > 0);
   ask("Commit", "This shape becomes the rest shape (c)", Request::commit);
   ask("Reset", "Back to the model as it was loaded; undo takes it back (x)", Request::reset);
+  ask("Hold anew", "The hands take hold anew where they are, without a commit (a)",
+      Request::take_hold, frame.held);
   if (button("Save", "The model as it is now, to a file of its own (s)"))
     commands.emplace_back(flow::SaveShape{});
   if (button("Keep", "The recording of what was just done (k)"))

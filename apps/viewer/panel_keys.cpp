@@ -14,6 +14,7 @@ namespace {
 constexpr std::array key_table{
     KeyLine{"g", "grab: the hands take hold"},
     KeyLine{"l", "let go; what is shaped stays"},
+    KeyLine{"a", "take hold anew where the hands are, without a commit"},
     KeyLine{"c", "commit: this shape becomes the rest shape"},
     KeyLine{"u, ctrl z", "undo the last step"},
     KeyLine{"r, ctrl y", "redo what was undone; ctrl shift z, too"},
@@ -90,6 +91,7 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
                                     SceneWindow& window, Commands& commands) {
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
+                                     {GLFW_KEY_A, Request::take_hold},
                                      {GLFW_KEY_C, Request::commit},
                                      {GLFW_KEY_X, Request::reset}})
     if (pressed(key)) commands.emplace_back(request);

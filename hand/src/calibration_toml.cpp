@@ -10,6 +10,7 @@
 
 #include <toml++/toml.h>
 
+#include <nendo/base/plain_toml.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_file.hpp>
 
@@ -244,6 +245,7 @@ std::string one_line(std::string_view text) {
 } // namespace
 
 Result<WearerCalibration> parse_calibration(std::string_view text, std::string_view name) {
+  if (const auto fault = find_toml_fault(text)) return bad_line(name, fault->line, fault->what);
   toml::table root;
   try {
     root = toml::parse(text, name);

@@ -58,6 +58,56 @@ TEST_SUITE("request") {
     CHECK_FALSE(request_named("undoing").has_value());
   }
 
+  TEST_CASE("in type 1, hands that take hold anew pull the same rest shape from where they are") {
+    Person person(Mode::type1);
+    person.move(0, 15);
+    const Points pulled = person.shape();
+    const Frame anew = person.ask(Request::take_hold, 15);
+    CHECK(anew.held);
+    CHECK(anew.commits == 0);
+    CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() <= test::float_gap);
+    CHECK(anew.redo_steps == 1);
+    CHECK(anew.undo_steps == 0);
+    // As a person whose hands were there when they took hold first.
+    Person other(Mode::type1);
+    other.ask(Request::let_go, 0);
+    other.move(0, 15);
+    other.ask(Request::grab, 15);
+    person.move(15, 25);
+    other.move(15, 25);
+    CHECK((person.shape() - other.shape()).cwiseAbs().maxCoeff() <= test::float_gap);
+    CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() > 0.01);
+    Person third(Mode::type1);
+    third.move(0, 15);
+    third.ask(Request::take_hold, 15);
+    third.ask(Request::redo, 15);
+    CHECK((third.shape() - pulled).cwiseAbs().maxCoeff() <= test::float_gap);
+  }
+
+  TEST_CASE("in type 2, hands that take hold anew leave the shape, and the step goes on") {
+    Person person(Mode::type2);
+    person.move(0, 15);
+    const Points before = person.shape();
+    CHECK(person.ask(Request::take_hold, 15).commits == 0);
+    CHECK(person.shape() == before);
+    person.move(15, 22);
+    CHECK((person.shape() - before).cwiseAbs().maxCoeff() > 0.005);
+    CHECK(person.ask(Request::undo, 22).undo_steps == 0); // both parts together
+    CHECK((person.shape() - person.test.model.vertices).cwiseAbs().maxCoeff() <= test::float_gap);
+  }
+
+  TEST_CASE("hands that have let go do not take hold anew") {
+    for (const Mode mode : modes) {
+      Person person(mode);
+      person.move(0, 15);
+      person.ask(Request::let_go, 15);
+      const Points kept = person.shape();
+      CHECK_FALSE(person.ask(Request::take_hold, 15).held);
+      CHECK(person.ask(Request::grab, 15).held);
+      CHECK(person.shape() == kept);
+    }
+  }
+
   TEST_CASE("hands that let go leave the model alone until they take hold of it again") {
     for (const Mode mode : modes) {
       Person person(mode);

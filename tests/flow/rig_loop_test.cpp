@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -123,6 +124,55 @@ TEST_SUITE("rig_loop") {
     CHECK(test.loop->frames().front().functions[right] > 0.1F); // its own hand again
   }
 
+  TEST_CASE(
+      "hands that take hold anew leave a puppet as it is, and go on from their present pose") {
+    auto test = puppet_loop();
+    HostTime now = HostClock::now();
+    std::uint64_t tick = 0;
+    const auto after = [&](int counts) {
+      test.bend(counts, now += 11ms);
+      return test.frame_after_tick(tick++).functions;
+    };
+    for (int counts = 0; counts < 60; counts += 4)
+      after(counts);
+    after(60);
+    const auto far = after(60); // beyond its limits
+    test.commands.try_push(Request::take_hold);
+    CHECK(after(60) == far);
+    const auto back = after(50); // at once, and not only when it is within the limits again
+    for (std::size_t at = 0; at < 4; ++at)
+      CHECK(back[at] != far[at]);
+  }
+
+  TEST_CASE("a wrist switch that is a clutch lets its hand go, and take hold again, and no more") {
+    const std::string text =
+        std::string(test::ball_puppet) + "[clutch]\nleft = \"fist\"\nright = \"switch\"\n";
+    LoopUnderTest test(Mode::type1,
+                       {.switch_action = SwitchAction::commit, .puppet = text.c_str()});
+    HostTime now = HostClock::now();
+    std::uint64_t tick = 0;
+    const auto after = [&](int counts, WristSwitch position) {
+      for (int repeat = 0; repeat < 5; ++repeat) { // as long as a switch takes to settle
+        GloveSample sample = test::bent_sample(Side::right, counts, now += 11ms);
+        sample.wrist_switch = position;
+        test.rings[1]->try_push(sample);
+        test.frame_after_tick(tick++);
+      }
+      return test.loop->frames().front();
+    };
+    after(0, WristSwitch::off);
+    const Frame bent = after(12, WristSwitch::off);
+    const Frame free = after(12, WristSwitch::on);
+    CHECK(free.let_go == std::array{false, true});
+    CHECK(after(0, WristSwitch::off).functions == bent.functions);
+    const Frame held = after(0, WristSwitch::on);
+    CHECK(held.let_go == std::array{false, false});
+    for (std::size_t at = 0; at < held.function_count; ++at)
+      CHECK(held.functions[at] == doctest::Approx(bent.functions[at]).epsilon(1e-5));
+    CHECK(after(5, WristSwitch::off).functions != held.functions);
+    CHECK(test.loop->frames().front().commits == 0);
+  }
+
   TEST_CASE("no function leaves its limits, however far a hand bends") {
     auto test = puppet_loop();
     HostTime now = HostClock::now();
@@ -138,8 +188,11 @@ TEST_SUITE("rig_loop") {
   }
 
   TEST_CASE("a tick of a puppet allocates nothing, frees nothing and takes no lock") {
+    const std::string text = std::string(test::ball_puppet) +
+                             "[clutch]\nleft = \"fist\"\nright = \"pinch\"\nheld_s = 0.25\n"
+                             "fist_deg = 90\n";
     for (const Mode mode : {Mode::type1, Mode::type2}) {
-      auto test = puppet_loop(mode);
+      LoopUnderTest test(mode, {.puppet = text.c_str()});
       test::RestraintCounts counts;
       const HostTime begin = HostClock::now();
       {

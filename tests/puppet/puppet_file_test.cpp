@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <string>
 
 #include <nendo/base/units.hpp>
@@ -110,6 +111,45 @@ TEST_SUITE("puppet file") {
     CHECK(refuses(whole + "turn = { degrees = 1e300, axis = [1, 0, 0], through = [0, 0, 0], "
                           "points = { tip = 1e300 } }\n",
                   "degrees"));
+  }
+
+  TEST_CASE("clutches are chosen by hand, and hostile bounds are refused") {
+    const auto none = parse_puppet(whole, "p.toml");
+    REQUIRE(none);
+    CHECK(none->clutch.means == std::array<puppet::ClutchMeans, 2>{});
+    const auto parsed = parse_puppet(
+        whole + "[clutch]\nleft = \"fist\"\nright = \"switch\"\nheld_s = 1\nfist_deg = 180\n",
+        "p.toml");
+    REQUIRE(parsed);
+    CHECK(parsed->clutch.means ==
+          std::array{puppet::ClutchMeans::fist, puppet::ClutchMeans::wrist_switch});
+    CHECK(parsed->clutch.held_s == 1.0);
+    CHECK(parsed->clutch.fist_rad == doctest::Approx(from_degrees(180.0)));
+    CHECK(parsed->clutch.pinch_m == 0.02);
+    CHECK(refuses(whole + "[clutch]\nleft = \"kick\"\n", "'kick'"));
+    CHECK(refuses(whole + "[clutch]\nfoot = \"fist\"\n", "'foot'"));
+    CHECK(refuses(whole + "[clutch]\nheld_s = 0.1\n", "held_s must be within 0.25 and 5"));
+    CHECK(refuses(whole + "[clutch]\nheld_s = nan\n", "held_s"));
+    CHECK(refuses(whole + "[clutch]\nfist_deg = 1e9\n", "fist_deg"));
+    CHECK(refuses(whole + "[clutch]\npinch_m = -1\n", "pinch_m"));
+    CHECK(refuses("clutch = 1\n" + whole, "clutch must be a table"));
+  }
+
+  TEST_CASE("what would take memory, stack or time without bound is refused in a sentence") {
+    const auto many = [](const std::string& text, std::size_t count) {
+      std::string all;
+      for (std::size_t at = 0; at < count; ++at)
+        all += text;
+      return all;
+    };
+    CHECK(refuses(head + "points = " + many("[", 500000), "deep"));
+    CHECK(refuses(head + "[points" + many(".a", 500000) + "]\n", "parts"));
+    CHECK(refuses(whole + many("[[masks]]\n", 1001), "1000 masks"));
+    CHECK(refuses(whole + many("[[parts]]\n", 1001), "1000 parts"));
+    std::string crowded = head + "[points]\n";
+    for (int at = 0; at < 30000; ++at)
+      crowded += "p" + std::to_string(at) + " = { vertex = 1, radius = 1 }\n";
+    CHECK(refuses(crowded + smile, "1000 points"));
   }
 
   TEST_CASE("points and signals that there are not are named") {

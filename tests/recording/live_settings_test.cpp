@@ -1,7 +1,12 @@
 // A loop whose settings change, and a recording that begins while it runs, are replayed bit for
 // bit.
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -21,17 +26,49 @@ using test::RecordedLoop;
 
 namespace {
 
+using Shapes = std::vector<deform::Points>;
+
+const std::string with_clutches =
+    std::string(test::ball_puppet) +
+    "[clutch]\nleft = \"fist\"\nright = \"switch\"\nheld_s = 0.25\nfist_deg = 90\n";
+
+/// A loop whose ticks are 11 ms apart, and hands that close and open again and again.
+struct Clenching {
+  RecordedLoop live{Mode::type1, FilterKind::off,    false,
+                    false,       SwitchAction::none, with_clutches.c_str()};
+  HostTime begin = HostClock::now();
+  std::uint64_t tick = 0;
+  int counts = 0;
+  int changes = 0; ///< of what the left hand holds
+  bool let_go = false;
+  Shapes shapes;
+
+  void go_on(std::uint64_t ticks) {
+    flow::DeformLoop& loop = *live.test.loop;
+    for (const std::uint64_t end = tick + ticks; tick < end; ++tick) {
+      const bool closes = tick % 120 >= 40 && tick % 120 < 90;
+      counts = std::clamp(counts + (closes ? 8 : -8), 0, 110);
+      const HostTime now = begin + std::chrono::milliseconds(11 * tick);
+      live.test.bend(counts, now);
+      loop.tick(tick, now);
+      loop.frames().update();
+      const flow::Frame& frame = loop.frames().front();
+      shapes.push_back(live.test.vertices_of(frame));
+      changes += std::exchange(let_go, frame.let_go[0]) != frame.let_go[0] ? 1 : 0;
+    }
+  }
+};
+
 /// One of the ways in which a loop can begin.
 std::unique_ptr<RecordedLoop> loop_of(unsigned seed) {
   constexpr std::array actions{SwitchAction::none, SwitchAction::toggle, SwitchAction::commit,
                                SwitchAction::grab};
+  const char* const puppet = seed % 8 == 5 ? with_clutches.c_str() : test::ball_puppet;
   return std::make_unique<RecordedLoop>(
       seed % 2 == 0 ? Mode::type1 : Mode::type2,
       seed % 3 == 0 ? FilterKind::one_euro : FilterKind::off, seed % 5 == 0, seed % 4 >= 2,
-      actions[seed % actions.size()], seed % 4 == 1 ? test::ball_puppet : nullptr);
+      actions[seed % actions.size()], seed % 4 == 1 ? puppet : nullptr);
 }
-
-using Shapes = std::vector<deform::Points>;
 
 struct Replayed {
   Shapes shapes; ///< of each tick
@@ -137,6 +174,38 @@ TEST_SUITE("live_settings") {
     }
     CHECK(shaped >= test::rounds(8)); // the others end with an undo or a reset
     CHECK(subdivided > 0);
+  }
+
+  TEST_CASE("gestures let go and take hold in a replay as they did live, bit for bit") {
+    Clenching person;
+    person.live.record();
+    person.go_on(400);
+    REQUIRE(person.live.end());
+    CHECK(person.changes >= 2);
+    CHECK(replayed(person.live.path, person.live.test.model).shapes == person.shapes);
+  }
+
+  TEST_CASE("a recording that begins in the middle of a gesture, or behind it, is replayed") {
+    for (const std::uint64_t before : {50U, 62U, 100U, 130U}) {
+      CAPTURE(before);
+      Clenching person;
+      person.go_on(before);
+      flow::DeformLoop& loop = *person.live.test.loop;
+      flow::InputLog log;
+      loop.change_log(&log, loop.frames().front().shape);
+      person.go_on(1);
+      const auto begun = loop.take_state();
+      REQUIRE(begun);
+      Setup setup = person.live.setup;
+      continue_from(*begun, loop.newest_model().layout(), setup);
+      const auto path = person.live.folder.path() / "part.nendo";
+      auto recorder = Recorder::begin(setup, log, {.file = path});
+      REQUIRE(recorder);
+      person.shapes.clear();
+      person.go_on(300);
+      REQUIRE((*recorder)->end(sum_of(loop.final_shape())));
+      CHECK(replayed(path, person.live.test.model).shapes == person.shapes);
+    }
   }
 
   TEST_CASE("a shape at the beginning that is no shape of the model is refused") {

@@ -127,6 +127,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
   }
   if (options.rig) {
     rig_.emplace(options.rig);
+    gestures_.emplace(*options.rig);
     rig_->set_state(options.rig_state);
     rig_->take_hold(hands_now());
   }
@@ -149,6 +150,7 @@ void DeformLoop::take(std::uint8_t number, const GloveSample& sample) noexcept {
   hand.follow(sample);
   if (!hand.wrist_switch.turned_on(sample.wrist_switch, sample.arrival)) return;
   ++stats_.switch_uses[hand.slot];
+  if (has_clutch(hand)) return rig_->toggle_clutch(hand.input.side, hands_now());
   if (options_.switch_action == SwitchAction::toggle) shaping_.toggle_hold();
   if (options_.switch_action == SwitchAction::commit) shaping_.commit_when_held();
 }
@@ -238,11 +240,17 @@ bool DeformLoop::is_silent(std::size_t slot) const noexcept {
 
 void DeformLoop::follow_switches() noexcept {
   if (options_.switch_action != SwitchAction::grab) return;
-  const bool on = std::any_of(hands_.begin(), hands_.end(),
-                              [](const Hand& hand) { return hand.wrist_switch.is_on(); });
+  const bool on = std::any_of(hands_.begin(), hands_.end(), [this](const Hand& hand) {
+    return hand.wrist_switch.is_on() && !has_clutch(hand);
+  });
   if (on != switch_on_) // in between, requests are heard
     shaping_.ask(on ? Request::grab : Request::let_go);
   switch_on_ = on;
+}
+
+/// Tells whether the hand's wrist switch is the clutch of a puppet, and so nothing else.
+bool DeformLoop::has_clutch(const Hand& hand) const noexcept {
+  return rig_ && rig_->rig().puppet().clutch.means[hand.slot] == puppet::ClutchMeans::wrist_switch;
 }
 
 void DeformLoop::take_commands() noexcept {
@@ -256,6 +264,7 @@ void DeformLoop::apply(const Command& command) noexcept {
   if (!is_for_loop(command) || (move != nullptr && !move->is_usable())) return;
   if (is_for_puppet(command) && !rig_) return;
   if (options_.input_log != nullptr) options_.input_log->command(command);
+  if (rig_ && command == Command(Request::take_hold)) return rig_->take_hold(hands_now());
   if (request != nullptr) return shaping_.ask(*request);
   if (is_for_puppet(command)) return set_rig(command);
   if (const auto* layer = std::get_if<SetLayer>(&command))
@@ -325,10 +334,13 @@ puppet::RigPlayer::Hands DeformLoop::hands_now() noexcept {
 /// mouse.
 void DeformLoop::play_rig() noexcept {
   const auto hands = played_hands();
-  if (shaping_.is_held())
+  if (shaping_.is_held()) {
+    if (due_) gestures_->watch(*rig_, hands, *due_);
     rig_->follow(hands);
-  else
+  } else {
+    gestures_->reset(*rig_);
     rig_->take_hold(hands);
+  }
   rig_->write(tips_);
 }
 
@@ -346,6 +358,7 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   }
   let_layers_pass(record.scheduled);
   record.drained_ns = now_ns();
+  due_ = record.scheduled;
   Frame& frame = frames_.back();
   if (runs.hands) compute_hands(frame);
   record.posed_ns = now_ns();

@@ -77,6 +77,7 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
     state.inputs[at] = {hand.input.first, hand.input.wearer.learned, hand.input.layer};
     state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
   }
+  if (rig_) gestures_->reset(*rig_);
   place_tips();
   switch_on_ = false;
   last_due_ = {};                      // as in a loop that begins

@@ -5,8 +5,8 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, requests.size()> names{"grab", "let go", "commit",
-                                                              "undo", "redo",   "reset"};
+constexpr std::array<std::string_view, requests.size()> names{"grab", "let go", "commit",   "undo",
+                                                              "redo", "reset",  "take hold"};
 
 } // namespace
 

@@ -45,6 +45,7 @@ void Shaping::ask(Request request) noexcept {
   if (request == Request::grab) hold_wanted_ = true;
   if (request == Request::let_go) hold_wanted_ = false;
   if (request == Request::commit) commit_due_ = held_ || hold_wanted_;
+  if (request == Request::take_hold) anew_due_ = true;
   if (goes_through_history(request) && steps_due_.size() < steps_due_.capacity())
     steps_due_.push_back(request);
 }
@@ -53,6 +54,7 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
                            bool completes) noexcept {
   make_room(frame);
   if (!is_still_) take_steps(tips, stats);
+  if (!is_still_ && !awaited_ && std::exchange(anew_due_, false) && held_) take_hold_anew(tips);
   if (!is_still_ && !held_ && hold_wanted_) {
     held_ = is_solved(sculptor_->grab(tips));
     if (held_) ++stats.grabs;
@@ -64,6 +66,18 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
   frame.held = held_;
   tell(frame, stats);
   return status;
+}
+
+void Shaping::take_hold_anew(const Points& tips) noexcept {
+  if (sculptor_->mode() == Mode::type1) {
+    const FieldStatus status = is_pulled() ? sculptor_->take_back(tips) : sculptor_->grab(tips);
+    shaped_ = shaped_ && !is_solved(status);
+    return;
+  }
+  sculptor_->release(false);
+  in_step_ = in_step_ || shaped_;
+  shaped_ = false;
+  held_ = is_solved(sculptor_->grab_on(tips)); // if not, it is tried again at each tick
 }
 
 FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats& stats,
@@ -199,7 +213,7 @@ void Shaping::go_on_with(ReadySculptor& ready) noexcept {
 
 void Shaping::begin_anew(const Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept {
   sculptor_->release(true);
-  shaped_ = in_step_ = commit_due_ = false;
+  shaped_ = in_step_ = commit_due_ = anew_due_ = false;
   exchanged_at_.reset();
   steps_due_.clear();
   awaited_.reset();

@@ -18,6 +18,8 @@ using Eigen::Vector3d;
 
 namespace {
 
+constexpr std::array<std::string_view, 4> means_names{"none", "fist", "pinch", "switch"};
+
 bool is_in(const deform::Box& box, const Vector3d& place) {
   return (place.array() >= box.lowest.array()).all() &&
          (place.array() <= box.highest.array()).all();
@@ -131,6 +133,16 @@ std::string twin_of(const std::string& name) {
     if (name.ends_with(ending))
       return name.substr(0, name.size() - ending.size()) + std::string(other);
   return name;
+}
+
+std::string_view name_of(ClutchMeans means) noexcept {
+  return means_names[static_cast<std::size_t>(means)];
+}
+
+std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept {
+  for (std::size_t at = 0; at < means_names.size(); ++at)
+    if (means_names[at] == name) return static_cast<ClutchMeans>(at);
+  return std::nullopt;
 }
 
 Result<Puppet> read_puppet(const std::filesystem::path& path) {

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
 #include <nendo/puppet/puppet.hpp>
 
@@ -17,8 +18,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double largest = 1e9;       // of lengths, model units
-constexpr double largest_value = 1e3; // of functions, and of a point's part in a turn
+constexpr double largest = 1e9;            // of lengths, model units
+constexpr double largest_value = 1e3;      // of functions, and of a point's part in a turn
+constexpr std::size_t most_entries = 1000; // of [[parts]], and of [[masks]]
 constexpr std::string_view left = "Left";
 
 Vector3d vector_of(const std::array<double, 3>& numbers) {
@@ -30,8 +32,8 @@ public:
   PuppetReader(TomlReader& reader, Puppet& puppet) : reader_(reader), puppet_(puppet) {}
 
   void read(const toml::table& root) {
-    reader_.allow_only(
-        root, {"version", "model", "distance", "mirror", "points", "functions", "parts", "masks"});
+    reader_.allow_only(root, {"version", "model", "distance", "mirror", "clutch", "points",
+                              "functions", "parts", "masks"});
     puppet_.model = reader_.text(root, "model");
     const std::string distance = root.get("distance") ? reader_.text(root, "distance") : "surface";
     puppet_.distance = distance == "air" ? Distance::air : Distance::surface;
@@ -40,6 +42,7 @@ public:
     const bool mirrors = root.get("mirror") != nullptr;
     if (mirrors && reader_.text(root, "mirror") != "x")
       reader_.complain(root, "mirror must be \"x\": the plane x = 0; or leave it out");
+    if (root.get("clutch") != nullptr) read_clutch(root);
     read_points(root);
     if (mirrors) mirror_points();
     read_functions(root);
@@ -54,6 +57,8 @@ private:
   void read_list(const toml::table& root, std::string_view key, const Read& read) {
     const toml::array* const list = reader_.array(root, key);
     if (list == nullptr) return;
+    if (list->size() > most_entries)
+      return reader_.complain(*list, "there are more than 1000 " + std::string(key));
     for (const toml::node& node : *list) {
       const toml::table* const one = reader_.as_table(node, key);
       if (one == nullptr || reader_.error()) return;
@@ -92,9 +97,37 @@ private:
     return table.get(key) == nullptr ? usual : reader_.number(table, key);
   }
 
+  double number_within(const toml::table& table, std::string_view key, double usual, double least,
+                       double most) {
+    const double value = number_or(table, key, usual);
+    if (!(value >= least && value <= most))
+      reader_.complain(table, std::string(key) + " must be within " + short_text(least) + " and " +
+                                  short_text(most));
+    return value;
+  }
+  static std::string short_text(double value) {
+    std::string text = decimal_text(value);
+    return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+  }
+  void read_clutch(const toml::table& root) {
+    const toml::table* const table = reader_.table(root, "clutch");
+    if (table == nullptr) return;
+    reader_.allow_only(*table, {"left", "right", "held_s", "fist_deg", "pinch_m"});
+    ClutchOptions& clutch = puppet_.clutch;
+    for (const auto& [side, key] : {std::pair{Side::left, "left"}, std::pair{Side::right, "right"}})
+      if (table->get(key) != nullptr)
+        clutch.means[static_cast<std::size_t>(side)] =
+            reader_.named(*table, key, clutch_means_named);
+    clutch.held_s = number_within(*table, "held_s", clutch.held_s, 0.25, 5.0);
+    clutch.fist_rad = from_degrees(number_within(*table, "fist_deg", 200.0, 90.0, 250.0));
+    clutch.pinch_m = number_within(*table, "pinch_m", clutch.pinch_m, 0.005, 0.04);
+  }
+
   void read_points(const toml::table& root) {
     const toml::table* const points = reader_.table(root, "points");
     if (points == nullptr) return;
+    if (points->size() > Puppet::most_points)
+      return reader_.complain(*points, "there are more than 1000 points");
     for (const auto& [key, node] : *points) {
       const toml::table* const table = reader_.as_table(node, key.str());
       if (table == nullptr || reader_.error()) return;
@@ -135,6 +168,8 @@ private:
   void read_functions(const toml::table& root) {
     const toml::table* const functions = reader_.table(root, "functions");
     if (functions == nullptr) return;
+    if (functions->size() > Puppet::most_functions)
+      return reader_.complain(*functions, "there are more than 64 functions");
     for (const auto& [key, node] : *functions) {
       const toml::table* const table = reader_.as_table(node, key.str());
       if (table == nullptr || reader_.error()) return;

@@ -122,10 +122,12 @@ void RigPlayer::follow(const Hands& hands) noexcept {
   for (std::size_t at = 0; at < holds_.size(); ++at) {
     FunctionState& state = state_.functions[at];
     const HandState* const hand = hands[static_cast<std::size_t>(state.input.side())];
-    if (hand == nullptr || !state.held) continue;
+    if (hand == nullptr || !is_held(state)) continue;
     const double moved =
         (state.input.of(*hand) - holds_[at].signal) / rig_->puppet().functions[at].travel;
     state.asked = holds_[at].value + moved;
+    const Kept& kept = kept_[static_cast<std::size_t>(state.input.side())];
+    if (kept.part > 0.0) state.asked += kept.part * (kept.asked[at] - state.asked);
   }
   set_values();
 }
@@ -141,14 +143,31 @@ void RigPlayer::set_values() noexcept {
 
 void RigPlayer::set_clutch(Side side, std::uint8_t finger, bool holds,
                            const Hands& hands) noexcept {
+  bool& hand_holds = state_.hand_holds[static_cast<std::size_t>(side)];
+  const bool is_alone = holds && finger != all_fingers && !hand_holds; // of a hand that let go
   for (std::size_t at = 0; at < holds_.size(); ++at) {
     FunctionState& state = state_.functions[at];
-    const bool is_meant =
-        state.input.side() == side && (finger == all_fingers || finger == state.input.finger());
-    if (!is_meant || state.held == holds) continue;
-    state.held = holds;
-    take_hold(at, hands);
+    if (state.input.side() != side) continue;
+    const bool was_held = is_held(state);
+    const bool is_meant = finger == all_fingers || finger == state.input.finger();
+    if (is_meant && (holds || finger != all_fingers)) state.held = holds;
+    if (!is_meant && is_alone) state.held = false;
+    if (is_meant && was_held != holds) take_hold(at, hands);
   }
+  if (finger == all_fingers || is_alone) hand_holds = holds;
+}
+
+void RigPlayer::toggle_clutch(Side side, const Hands& hands) noexcept {
+  bool& hand_holds = state_.hand_holds[static_cast<std::size_t>(side)];
+  if (hand_holds && has_let_go(side)) return set_clutch(side, all_fingers, true, hands);
+  hand_holds = !hand_holds;
+  for (std::size_t at = 0; at < holds_.size(); ++at)
+    if (state_.functions[at].input.side() == side && state_.functions[at].held)
+      take_hold(at, hands);
+}
+
+void RigPlayer::set_kept(Side side, double part, std::span<const double> kept) noexcept {
+  kept_[static_cast<std::size_t>(side)] = {part, kept};
 }
 
 void RigPlayer::set_input(std::size_t function, HandSignal input, const Hands& hands) noexcept {
@@ -163,14 +182,16 @@ void RigPlayer::set_symmetric(bool on) noexcept {
 }
 
 bool RigPlayer::has_let_go(Side side) const noexcept {
-  return std::none_of(state_.functions.begin(), state_.functions.end(),
-                      [&](const auto& state) { return state.input.side() == side && state.held; });
+  return std::none_of(state_.functions.begin(), state_.functions.end(), [&](const auto& state) {
+    return state.input.side() == side && is_held(state);
+  });
 }
 
 void RigPlayer::set_state(const RigState& state) noexcept {
   if (state.functions.size() != holds_.size()) return;
   std::copy(state.functions.begin(), state.functions.end(), state_.functions.begin());
   state_.symmetric = state.symmetric;
+  state_.hand_holds = state.hand_holds;
   set_values();
 }
 

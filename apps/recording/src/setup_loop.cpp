@@ -231,6 +231,8 @@ void put_puppet(ByteWriter& writer, const LoopSetup& loop) {
   writer.u16_le(static_cast<std::uint16_t>(loop.puppet_starts.cols()));
   for (const double coordinate : loop.puppet_starts.reshaped())
     writer.f64_le(coordinate);
+  for (const bool holds : state.hand_holds)
+    writer.u8(static_cast<std::uint8_t>(holds));
 }
 
 namespace {
@@ -263,6 +265,9 @@ bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
   deform::Points starts(3, static_cast<Eigen::Index>(checked.count(puppet::Puppet::most_points)));
   for (double& coordinate : starts.reshaped())
     coordinate = checked.number(-largest_number, largest_number);
+  if (reader.remaining() > 0) // since 1.6
+    for (bool& holds : state.hand_holds)
+      holds = reader.u8() != 0;
   if (!checked.fine()) return false;
   loop->puppet.assign(reinterpret_cast<const char*>(text.data()), text.size());
   loop->options.rig_state = std::move(state);

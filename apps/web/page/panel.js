@@ -9,6 +9,7 @@ const VIEWS = {
 const KEYS = [
   ['g', 'grab: the hands take hold', panel => panel.ask('grab')],
   ['l', 'let go; what is shaped stays', panel => panel.ask('let go')],
+  ['a', 'take hold anew where the hands are, without a commit', panel => panel.ask('take hold')],
   ['c', 'commit: this shape becomes the rest shape', panel => panel.ask('commit')],
   ['u', 'undo the last step', panel => panel.step('undo')],
   ['r', 'redo what was undone', panel => panel.step('redo')],

@@ -27,6 +27,7 @@
 #include <nendo/hand/active_calibration.hpp>
 #include <nendo/hand/joint_filter.hpp>
 #include <nendo/hand/sensor_gate.hpp>
+#include <nendo/puppet/gesture_clutch.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
@@ -219,7 +220,6 @@ public:
 
 private:
   struct Hand;
-
   void tick(const Pacer::Due& due) noexcept;
   void take_commands() noexcept;
   void apply(const Command& command) noexcept;
@@ -252,6 +252,7 @@ private:
   hand::HandPose pose_of(const Hand& lowest) const noexcept;
   bool is_silent(std::size_t slot) const noexcept;
   void follow_switches() noexcept;
+  bool has_clutch(const Hand& hand) const noexcept;
   void compute_hands(Frame& frame) noexcept;
   void describe(const TickRecord& record, Frame& frame) noexcept;
   void record_latencies(const TickRecord& record) noexcept;
@@ -289,7 +290,8 @@ private:
   double units_per_metre_;
   std::vector<Hand> hands_;
   std::optional<puppet::RigPlayer> rig_;
-  std::array<puppet::HandState, 2> hand_states_; ///< by side, for the rig
+  std::optional<puppet::GestureClutch> gestures_; ///< of the rig's hands
+  std::array<puppet::HandState, 2> hand_states_;  ///< by side, for the rig
   /// The control points, 3 by 5 a hand, or by as many as a puppet has; model units.
   deform::Points tips_;
   // For the thread that asks for changes:
@@ -312,6 +314,7 @@ private:
   std::optional<LoopSettings> settings_later_; ///< that were asked for while it holds still
   std::vector<LoopState> states_;              ///< not taken yet
   HostTime first_due_{};                       ///< of the first tick
+  std::optional<HostTime> due_;                ///< of this tick
   HostTime last_woke_{};                       ///< of the tick before; HostTime{} at first
   HostTime last_due_{};                        ///< of the tick before
   LoopStats stats_;

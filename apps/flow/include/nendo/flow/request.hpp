@@ -16,10 +16,14 @@ enum class Request : std::uint8_t {
   undo,   ///< back to the rest shape before the last commit: Sculptor::undo()
   redo,   ///< forth again, if nothing was committed since: Sculptor::redo()
   reset,  ///< back to the model as it was loaded, which undo() takes back
+  /// The hands that hold the model take hold anew where they are, without a commit
+  /// (Shaping::ask()).
+  take_hold,
 };
 
-inline constexpr std::array requests{Request::grab, Request::let_go, Request::commit,
-                                     Request::undo, Request::redo,   Request::reset};
+inline constexpr std::array requests{Request::grab,     Request::let_go, Request::commit,
+                                     Request::undo,     Request::redo,   Request::reset,
+                                     Request::take_hold};
 
 /// Tells whether a request goes back or forth: Shaping does these one after another.
 constexpr bool goes_through_history(Request request) noexcept {

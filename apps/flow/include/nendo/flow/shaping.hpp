@@ -52,7 +52,13 @@ public:
   deform::FieldStatus begin(const deform::Points& tips) noexcept { return sculptor_->grab(tips); }
   /// Tells the time of the next calls, since the beginning.
   void set_time(HostClock::duration time) noexcept { time_ = time; }
-  /// Makes the next shape() do it. Wait-free.
+  /// Makes the next shape() do it. Wait-free. Request::take_hold freezes the start points anew
+  /// where the fingertips of hands that hold the model are, as the paper's Type-1 keeps it apart
+  /// from a commit (2.3.1). In type 1 the rest shape stays what it was, and so the shape is the
+  /// rest shape again: what was pulled is taken back, and a redo brings it back. In type 2 the
+  /// shape stays as it is, and what is shaped before and after is one step; of the way to the next
+  /// piece, which was not made yet, nothing is made.
+  /// It waits while an undo or a redo does (Frame::awaited).
   void ask(Request request) noexcept;
   /// Asks for Request::grab if Request::let_go was asked for last, and the other way round.
   void toggle_hold() noexcept { hold_wanted_ = !hold_wanted_; }
@@ -105,6 +111,7 @@ private:
   deform::FieldStatus show_rest(Frame& frame) noexcept;
   bool is_pulled() const noexcept;
   bool is_in_hand() const noexcept;
+  void take_hold_anew(const deform::Points& tips) noexcept;
   void make_room(Frame& frame) noexcept;
   void go_on_with(ReadySculptor& ready) noexcept;
   void tell(Frame& frame, LoopStats& stats) noexcept;
@@ -141,6 +148,7 @@ private:
   bool held_;        ///< the fingertips shape the model
   bool hold_wanted_; ///< what is asked for; follows at the next tick that can
   bool commit_due_ = false;
+  bool anew_due_ = false;             ///< Request::take_hold
   bool shaped_ = false;               ///< since the hands took hold, or since the last commit
   std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
   std::uint64_t leaps_ = 0;           ///< frames in which the shape was led along the surface

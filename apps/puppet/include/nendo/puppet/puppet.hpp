@@ -3,6 +3,8 @@
 // fingertips to ten functions on a face (2.2, figure 3); so does a puppet file, a short text beside
 // the model (README.md of this folder tells its keys).
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/base/units.hpp>
 #include <nendo/deform/surface_field.hpp>
 #include <nendo/puppet/hand_signal.hpp>
 
@@ -67,6 +70,24 @@ struct Mask {
   double radius = 0.0; ///< model units; vertices within half of it stay, and the rest eases out
 };
 
+/// With what a hand lets go of its functions and takes hold of them again, besides keys.
+enum class ClutchMeans : std::uint8_t {
+  none,
+  fist,         ///< all four fingers bent
+  pinch,        ///< the tips of thumb and index finger together
+  wrist_switch, ///< the glove's, turned on
+};
+
+std::string_view name_of(ClutchMeans means) noexcept; ///< in the file
+std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept;
+
+struct ClutchOptions {
+  std::array<ClutchMeans, 2> means{};    ///< of the left and the right hand
+  double held_s = 0.5;                   ///< how long a gesture must last
+  double fist_rad = from_degrees(200.0); ///< by which each finger is bent at least in a fist
+  double pinch_m = 0.02;                 ///< by which the tips are apart at most in a pinch
+};
+
 struct Puppet {
   std::string model; ///< file name, beside the puppet's file
   Distance distance = Distance::surface;
@@ -74,6 +95,7 @@ struct Puppet {
   std::vector<Function> functions;
   std::vector<PuppetPart> parts;
   std::vector<Mask> masks;
+  ClutchOptions clutch;
   std::string text; ///< of the file
 
   /// Returns the number of the function with that name.

@@ -51,12 +51,13 @@ double asked_for(const Function& function, double value) noexcept;
 struct FunctionState {
   double asked = 0.0; ///< of the function by its hand, before its limits
   HandSignal input;
-  bool held = true; ///< the hand moves it
+  bool held = true; ///< it has not been let go of by itself
   friend bool operator==(const FunctionState&, const FunctionState&) = default;
 };
 struct RigState {
   std::vector<FunctionState> functions; ///< none: as the puppet file says, at 0
   bool symmetric = false;
+  std::array<bool, 2> hand_holds{true, true}; ///< left and right; false: all of it is let go of
   friend bool operator==(const RigState&, const RigState&) = default;
 };
 
@@ -79,6 +80,13 @@ public:
   /// take hold of them again. finger: HandSignal::finger(), or all_fingers.
   static constexpr std::uint8_t all_fingers = 255;
   void set_clutch(Side side, std::uint8_t finger, bool holds, const Hands& hands) noexcept;
+  /// Lets a hand let go of all its functions if it holds any, and otherwise take hold of them
+  /// again, but for fingers that had let go by themselves.
+  void toggle_clutch(Side side, const Hands& hands) noexcept;
+  /// While a gesture is made, draws what that hand asks for to `kept` (of each function, as
+  /// asked()), in place of following it: by no part (0, as at first), or all the way (1). `kept`
+  /// must live until the part is 0 again.
+  void set_kept(Side side, double part, std::span<const double> kept) noexcept;
   /// Lets that function listen to another signal, from its present value on.
   void set_input(std::size_t function, HandSignal input, const Hands& hands) noexcept;
   /// While it is on, functions that are twins (...Left, ...Right) have the same value: that which
@@ -93,8 +101,17 @@ public:
   void set_state(const RigState& state) noexcept;
   /// Tells whether nothing of that hand is held.
   bool has_let_go(Side side) const noexcept;
+  /// Returns what was asked of that function, before its limits.
+  double asked(std::size_t function) const noexcept { return state_.functions[function].asked; }
 
 private:
+  struct Kept {
+    double part = 0.0;
+    std::span<const double> asked{};
+  };
+  bool is_held(const FunctionState& state) const noexcept {
+    return state.held && state_.hand_holds[static_cast<std::size_t>(state.input.side())];
+  }
   struct Hold {
     double signal = 0.0; ///< at which the hand took hold
     double value = 0.0;  ///< that it had asked for until then
@@ -105,6 +122,7 @@ private:
   std::shared_ptr<const Rig> rig_;
   std::vector<std::size_t> twins_; ///< of each function; itself, if it has none
   std::vector<Hold> holds_;
+  std::array<Kept, 2> kept_{}; ///< by side
   RigState state_;
   std::vector<double> values_;
 };
