@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/base/units.hpp>
+
 namespace nendo::puppet {
 
 using deform::Points;
@@ -13,10 +15,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-Vector3d vector_of(const Move& move, const Vector3d& start) {
-  if (move.turn_rad == 0.0) return move.vector;
-  const Vector3d arm = start - move.through;
-  return move.vector + Eigen::AngleAxisd(move.turn_rad, move.axis) * arm - arm;
+Vector3d vector_of(const Function& function, const Move& move, const Vector3d& start) {
+  if (!move.part || !function.turn) return move.vector;
+  const double turn_rad = from_degrees(function.turn->degrees) * *move.part;
+  if (turn_rad == 0.0) return Vector3d::Zero();
+  Vector3d axis = function.turn->axis;
+  axis.stableNormalize();
+  const Vector3d arm = start - function.turn->through;
+  return Eigen::AngleAxisd(turn_rad, axis) * arm - arm;
 }
 
 constexpr double straight = 0.7; // of the way to a limit, of a function that eases
@@ -63,7 +69,7 @@ void Rig::place_vectors() {
     Points& vectors = vectors_.emplace_back(Points::Zero(3, starts_.cols()));
     for (const Move& move : function.moves) {
       const auto point = static_cast<Index>(move.point);
-      vectors.col(point) += vector_of(move, starts_.col(point));
+      vectors.col(point) += vector_of(function, move, starts_.col(point));
     }
   }
 }
