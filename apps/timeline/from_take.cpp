@@ -166,7 +166,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     return bad(
         "begins in the middle of a run, with a shape that is no file's; a timeline begins with "
         "its model. Record from the beginning of the run, with --record");
-  if (!setup.loop->puppet.empty())
+  if (!setup.loop->puppet.text.empty())
     return bad("plays a puppet, and a timeline is of hands that touch the model; "
                "`nendo export` makes an animation of it");
   MadeTimeline made;

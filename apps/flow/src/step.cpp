@@ -5,8 +5,9 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, 9> step_names{
-    "stroke", "reset", "mode", "kernel", "radius", "folding", "filter", "settings", "subdivide"};
+constexpr std::array<std::string_view, 10> step_names{"stroke",    "reset",   "mode",   "kernel",
+                                                      "radius",    "folding", "filter", "settings",
+                                                      "subdivide", "puppet"};
 
 } // namespace
 

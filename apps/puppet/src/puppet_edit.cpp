@@ -62,9 +62,12 @@ public:
   template <class List>
   static std::string free_name(const List& list, const std::string& stem, bool is_left) {
     for (std::size_t number = 1;; ++number) {
-      std::string name = stem + std::to_string(number) + (is_left ? "Left" : "");
-      if (find_named(list, name) == list.end() && find_named(list, twin_of(name)) == list.end())
-        return name;
+      const std::string name = stem + std::to_string(number);
+      const auto is_free = [&](const std::string& wanted) {
+        return find_named(list, wanted) == list.end();
+      };
+      if (is_free(name) && is_free(name + "Left") && is_free(name + "Right"))
+        return name + (is_left ? "Left" : "");
     }
   }
   bool is_moved(std::size_t point) const { return mover_of(point) != puppet_.functions.size(); }

@@ -87,6 +87,28 @@ deform::Supports Rig::supports() const {
   return deform::with_common(std::move(own));
 }
 
+std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& after) {
+  const auto number_of = [&](const auto& is_it) {
+    const auto found = std::find_if(before.functions.begin(), before.functions.end(), is_it);
+    return found == before.functions.end()
+               ? no_function
+               : static_cast<std::size_t>(found - before.functions.begin());
+  };
+  std::vector<std::size_t> numbers;
+  for (const Function& function : after.functions)
+    numbers.push_back(number_of([&](const auto& other) { return other.name == function.name; }));
+  for (std::size_t at = 0; at < numbers.size(); ++at) { // with other names
+    if (numbers[at] != no_function) continue;
+    Function named = after.functions[at];
+    const std::size_t number = number_of([&](const Function& other) {
+      named.name = other.name;
+      return named == other;
+    });
+    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) numbers[at] = number;
+  }
+  return numbers;
+}
+
 RigPlayer::RigPlayer(std::shared_ptr<const Rig> rig)
     : rig_(std::move(rig)), holds_(rig_->puppet().functions.size()), values_(holds_.size(), 0.0) {
   const auto& functions = rig_->puppet().functions;
@@ -155,6 +177,26 @@ void RigPlayer::set_input(std::size_t function, HandSignal input, const Hands& h
 
 void RigPlayer::set_symmetric(bool on) noexcept {
   state_.symmetric = on;
+  set_values();
+}
+
+void RigPlayer::go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
+                           const Hands& hands) noexcept {
+  const auto& functions = rig_->puppet().functions;
+  for (std::size_t at = 0; at < holds_.size() && at < from.size(); ++at) {
+    FunctionState& state = state_.functions[at];
+    if (from[at] < before.holds_.size()) {
+      const Function& was = before.rig_->puppet().functions[from[at]];
+      const HandSignal input = state.input;
+      state = before.state_.functions[from[at]];
+      const HandSignal played = state.input;
+      if (was.input != input) state.input = input;
+      holds_[at] = before.holds_[from[at]];
+      if (state.input == played && was.travel == functions[at].travel) continue;
+    }
+    take_hold(at, hands);
+  }
+  state_.symmetric = before.state_.symmetric;
   set_values();
 }
 

@@ -17,6 +17,7 @@ constexpr std::size_t wrist_bytes = 57;
 constexpr std::size_t model_bytes = 5;
 constexpr std::size_t clutch_bytes = 3;
 constexpr std::size_t role_bytes = 4;
+constexpr std::size_t puppet_bytes = 4;
 
 struct EntryWriter {
   ByteWriter& writer;
@@ -69,6 +70,10 @@ struct EntryWriter {
   void operator()(const flow::SetSymmetry& symmetry) const {
     driver::put_entry_head(writer, EntryKind::symmetry, 1);
     writer.u8(static_cast<std::uint8_t>(symmetry.on));
+  }
+  void operator()(const PuppetChange& change) const {
+    driver::put_entry_head(writer, EntryKind::puppet, puppet_bytes);
+    writer.u32_le(change.number);
   }
   void operator()(const Gap& gap) const {
     driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
@@ -247,6 +252,12 @@ bool TakeReader::take_chunk(const driver::Chunk& chunk) {
     if (fine) sent_ = *std::move(sent);
     return fine;
   }
+  if (chunk.type == puppet_version_chunk) {
+    auto read = read_puppet_version(chunk.payload);
+    if (!read) return false;
+    puppets_[read->number] = std::make_shared<const RecordedPuppet>(std::move(read->puppet));
+    return true;
+  }
   if (setup_done_ && is_setup_chunk(chunk.type)) return false; // it does not change any more
   return read_setup_chunk(chunk.type, chunk.payload, setup_);
 }
@@ -281,6 +292,11 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
   } else if (record.is(EntryKind::symmetry)) {
     const flow::SetSymmetry symmetry{reader.u8() != 0};
     if (!reader.overrun()) entry = symmetry;
+  } else if (record.is(EntryKind::puppet)) {
+    PuppetChange change{reader.u32_le(), nullptr};
+    if (const auto known = puppets_.find(change.number); known != puppets_.end())
+      change.puppet = known->second;
+    if (!reader.overrun()) entry = std::move(change);
   } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

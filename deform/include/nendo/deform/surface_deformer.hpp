@@ -23,6 +23,7 @@ public:
   FieldStatus apply(const Points& ends, BlockShape& out);
   FieldStatus commit(const Points& ends);
   void release(bool is_step) noexcept;
+  void drop(bool is_step) noexcept;
   FieldStatus reset(const Points& tips);
   FieldStatus undo(const Points& tips);
   FieldStatus take_back(const Points& tips);

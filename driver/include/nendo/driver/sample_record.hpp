@@ -30,6 +30,7 @@ enum class EntryKind : std::uint8_t {
   clutch = 10,
   role = 11,
   symmetry = 12,
+  puppet = 13,
 };
 
 /// One entry of an input log: its kind and what it holds.

@@ -22,6 +22,7 @@ enum class StepKind : std::uint8_t {
   filter,
   settings,  ///< a change of several settings at once, or within a second
   subdivide, ///< the model became finer
+  puppet,    ///< the puppet was edited
 };
 
 std::string_view name_of(StepKind kind) noexcept;

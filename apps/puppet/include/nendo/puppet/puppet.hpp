@@ -82,6 +82,9 @@ struct Mask {
   friend bool operator==(const Mask&, const Mask&) = default;
 };
 
+/// At this part of a mask's radius, places move half as far as without it.
+inline constexpr double half_of_mask = 0.75;
+
 struct Puppet {
   std::string model; ///< file name, beside the puppet's file
   Distance distance = Distance::surface;
