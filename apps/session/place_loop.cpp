@@ -109,8 +109,10 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 
   if (options.puppet)
     if (const auto fine = set_rig(options, model, loop_options); !fine) return fine.error();
-  const auto placement = placement_for(hands, inputs, model, options.puppet.has_value());
-  PlacedSetup setup{inputs, placement, loop_options};
+  const auto placement = placement_for(hands, inputs, model, !options.puppet_file.empty());
+  constexpr Eigen::Index points_to_add = 64;
+  PlacedSetup setup{inputs, placement, loop_options,
+                    options.out_puppet.file.empty() ? 0 : points_to_add};
   auto loop = std::make_unique<flow::DeformLoop>(model, placement, std::move(inputs), loop_options);
   if (!is_solved(loop->grab_status())) {
     return Error{Errc::failed, "the hands cannot take hold of the model: " +
@@ -122,7 +124,8 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
   const auto points =
-      rig ? rig->starts().cols() : 5 * static_cast<Eigen::Index>(placed.setup.inputs.size());
+      (rig ? rig->starts().cols() : 5 * static_cast<Eigen::Index>(placed.setup.inputs.size())) +
+      placed.setup.spare_points;
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);

@@ -16,7 +16,8 @@ namespace nendo::session {
 struct PlacedSetup {
   std::vector<flow::HandInput> inputs;
   flow::Placement placement;
-  flow::LoopOptions options; ///< with the supports in model units
+  flow::LoopOptions options;     ///< with the supports in model units
+  Eigen::Index spare_points = 0; ///< that a puppet may get during the run, for whoever shows frames
 };
 
 struct PlacedLoop {

@@ -8,6 +8,7 @@
 #include <nendo/flow/wanted_settings.hpp>
 
 #include "viewer/live_window.hpp"
+#include "viewer/puppet_editor.hpp"
 
 namespace nendo::viewer {
 
@@ -52,6 +53,9 @@ struct LiveWindow::Panel {
   void settings();
   /// Lists the steps of the history. A click goes there.
   void history(const flow::Frame& frame, Commands& commands);
+  /// Edits the puppet.
+  static void puppet(PuppetEditor& editor, Commands& commands);
+  static void puppet_keys(PuppetEditor& editor, Commands& commands);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
   /// What keys do. It also draws their list.

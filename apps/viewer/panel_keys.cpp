@@ -21,6 +21,9 @@ constexpr std::array key_table{
     KeyLine{"t", "a take: record from here on, and end that"},
     KeyLine{",, '", "of a puppet: the left hand, the right hand lets go, takes hold again"},
     KeyLine{"y", "of a puppet: one hand plays both sides, or each its own"},
+    KeyLine{"w", "the puppet: edit it with the mouse, or play it"},
+    KeyLine{"j, o, z", "while it is edited: mirror, pin, the brush for masks"},
+    KeyLine{"Delete, a", "the chosen point goes; save the puppet"},
     KeyLine{".", "mark this moment in the recording"},
     KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
     KeyLine{"s", "save the model as it is now"},
@@ -69,7 +72,8 @@ void LiveWindow::Panel::keys(const flow::Frame& frame, const Gauges& gauges, Sce
   if (keys_shown)
     draw_key_list(key_table,
                   "right drag on a hand moves it, with shift turns it, with the wheel\n"
-                  "pushes and pulls it",
+                  "pushes and pulls it; while a puppet is edited, a click places a point, a\n"
+                  "drag of a point tells where it goes, the wheel over one how far it reaches",
                   keys_shown);
 }
 
