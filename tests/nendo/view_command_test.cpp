@@ -200,7 +200,7 @@ TEST_SUITE("view_command") {
     const auto checked = test::nendo({"puppet", "check", maker.at("spot.puppet.toml")});
     CHECK_MESSAGE(checked.exit_code == 0, checked.err);
     const auto shown = test::nendo({"puppet", "show", maker.at("spot.puppet.toml")});
-    CHECK(shown.out.find("2 points, 2 functions") != std::string::npos);
+    CHECK_MESSAGE(shown.out.find("2 points, 2 functions") != std::string::npos, shown.out);
     const auto replayed =
         test::nendo({"replay", maker.at("take.nendo"), "--out", maker.at("again.ply")});
     REQUIRE_MESSAGE(replayed.exit_code == 0, replayed.err);

@@ -194,6 +194,26 @@ TEST_SUITE("puppet edit") {
     CHECK(ball.puppet().text == text_of(ball.puppet()));
   }
 
+  TEST_CASE("what the mouse gives is written with few digits, near enough") {
+    for (const double scale : {1e-6, 1.0, 300.0, 1e7}) {
+      Ball ball;
+      ball.mesh.vertices *= scale;
+      const Vector3d at = scale * Vector3d(1.0 / 3, 2.0 / 3, 2.0 / 3), move = at / 7.0;
+      const double radius = scale * 0.5 / 0.97;
+      ball.take(with_function(ball.rig, {at, radius}, move, index_bends, travel));
+      const PuppetPoint& point = ball.puppet().points[0];
+      CHECK((point.at - at).norm() < 1e-3 * radius);
+      CHECK((ball.puppet().functions[0].moves[0].vector - move).norm() < 1e-3 * radius);
+      CHECK(std::abs(point.radius - radius) < 1e-3 * radius);
+      std::size_t digits = 0, longest = 0;
+      for (const char letter : ball.puppet().text) {
+        digits = letter >= '0' && letter <= '9' ? digits + 1 : 0;
+        longest = std::max(longest, digits);
+      }
+      CHECK(longest <= 11); // of 0.0000003333, too
+    }
+  }
+
   TEST_CASE("points that are too near, or too many, and pins before all else are refused") {
     Ball ball;
     CHECK(ball.refusal(with_pin(ball.rig, {{0, 1, 0}, 0.5})).find("begins") != std::string::npos);

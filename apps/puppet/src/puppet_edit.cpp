@@ -1,6 +1,8 @@
 #include <nendo/puppet/puppet_edit.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -16,6 +18,24 @@ constexpr double middle = 0.05; // of the radius: nearer to x = 0, a point has n
 
 Vector3d flipped(const Vector3d& place) {
   return {-place.x(), place.y(), place.z()};
+}
+
+/// A file is read by people: what the mouse gives has some three digits that mean anything, counted
+/// from the radius, and `more` of them where another place must not be seen.
+double rounded(double value, double radius, int more = 0) {
+  const int digits = std::clamp(3 - static_cast<int>(std::floor(std::log10(radius))) + more, 0, 30);
+  std::array<char, 400> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, digits)
+          .ptr;
+  double read = value;
+  std::from_chars(text.data(), end, read);
+  return read;
+}
+
+Vector3d rounded(const Vector3d& vector, double radius, int more = 0) {
+  return {rounded(vector.x(), radius, more), rounded(vector.y(), radius, more),
+          rounded(vector.z(), radius, more)};
 }
 
 bool has_side(const std::string& name) {
@@ -97,10 +117,10 @@ public:
                        "'; choose one farther away, or a smaller radius");
     }
     PuppetPoint& made = puppet_.points.emplace_back();
-    made.at = point.at;
+    made.at = rounded(point.at, point.radius);
     if (is_sided(point)) made.at.x() = std::abs(made.at.x());
     if (puppet_.mirrors && !is_sided(point)) made.at.x() = 0.0;
-    made.radius = point.radius;
+    made.radius = rounded(point.radius, point.radius);
     made.is_pin = is_pin;
     const auto before = std::span(puppet_.points).first(puppet_.points.size() - 1);
     made.name = free_name(before, is_pin ? "pin" : "point", is_sided(point));
@@ -165,7 +185,8 @@ Result<Puppet> with_function(const Rig& rig, const NewPoint& point, const Vector
   made.input = is_flipped ? input.mirrored() : input;
   made.travel = travel;
   made.eases = true;
-  made.moves.push_back({*added, is_flipped ? flipped(move) : move, {}});
+  const Vector3d way = rounded(move, point.radius);
+  made.moves.push_back({*added, is_flipped ? flipped(way) : way, {}});
   puppet.functions.push_back(std::move(made));
   return draft.done();
 }
@@ -202,7 +223,7 @@ Result<Puppet> with_radius(const Rig& rig, std::size_t point, double radius) {
   if (!(radius > 0.0 && radius <= largest))
     return refused("a radius must be more than 0, and at most 1e9");
   EditedPuppet draft(rig);
-  draft.puppet().points[draft.source_of_point(point)].radius = radius;
+  draft.puppet().points[draft.source_of_point(point)].radius = rounded(radius, radius);
   return draft.done();
 }
 
@@ -229,7 +250,8 @@ Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point
   const bool is_twin = puppet.functions[function].is_twin;
   Function& edited = puppet.functions[draft.source_of_function(function)];
   const std::size_t moved = is_twin ? draft.twin_of_point(point) : point;
-  const Vector3d by = is_twin ? flipped(vector) : vector;
+  const Vector3d way = rounded(vector, puppet.points[point].radius);
+  const Vector3d by = is_twin ? flipped(way) : way;
   for (Move& move : edited.moves) {
     if (move.point != moved) continue;
     if (move.part)
@@ -278,7 +300,7 @@ void end_mirror(EditedPuppet& draft) {
     PuppetPoint& point = puppet.points[at];
     if (!std::exchange(point.is_mirrored, false)) continue;
     point.vertex.reset();
-    point.at = draft.start(at);
+    point.at = rounded(draft.start(at), point.radius, 4);
   }
   for (Function& function : puppet.functions)
     function.is_twin = false;
@@ -300,15 +322,23 @@ public:
     }
     for (std::size_t at = 0; at < sides_.size(); ++at) {
       PuppetPoint& point = puppet_.points[at];
-      if (sides_[at] == 0) continue;
+      if (sides_[at] == 0) {
+        settle_in_middle(point, at);
+        continue;
+      }
       point.name = left_name(puppet_.points, point.name);
       if (sides_[at] > 0) continue;
       point.vertex.reset();
-      point.at = flipped(draft_.start(at));
+      point.at = rounded(flipped(draft_.start(at)), point.radius, 4);
     }
   }
 
 private:
+  /// What a person has clicked in the middle is its own mirror image.
+  void settle_in_middle(PuppetPoint& point, std::size_t at) const {
+    const bool is_near = std::abs(draft_.start(at).x()) <= middle * point.radius;
+    if (is_near && !point.vertex && !has_side(point.name)) point.at.x() = 0.0;
+  }
   /// Those that functions of both sides move stay as they are.
   void find_sides() {
     for (std::size_t at = 0; at < sides_.size(); ++at) {
@@ -378,7 +408,8 @@ Result<Puppet> with_masks(const Rig& rig, std::span<const Vector3d> stroke, doub
     const bool is_there = std::any_of(masks.begin(), masks.end(), [&](const Mask& mask) {
       return mask.radius >= radius && (mask.at - at).norm() < near * radius;
     });
-    if (!is_there && at.allFinite()) masks.push_back({at, radius});
+    if (!is_there && at.allFinite())
+      masks.push_back({rounded(at, radius), rounded(radius, radius)});
   };
   for (const Vector3d& at : stroke) {
     add(at);
