@@ -73,6 +73,7 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
       return true;
     }
     pressed_at_ = pointer_now();
+    return true; // the way to here is no drag of the camera
   }
   if (pressed_at_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
     const bool is_click = (pointer_now() - *pressed_at_).norm() <= still_px;
