@@ -5,6 +5,8 @@
 
 #include <unistd.h>
 
+#include <nendo/base/text.hpp>
+
 namespace nendo::cli {
 namespace {
 
@@ -58,6 +60,16 @@ Result<void> check_spares(const std::string& model, std::string_view option, con
   return Error{Errc::usage, std::string(option) + " " + out +
                                 ": is the model itself, whose normals, materials and groups would "
                                 "be lost; name another file, or add --force"};
+}
+
+Result<std::string> name_beside(const std::string& to, const std::string& from) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path folder = fs::absolute(from, failed).parent_path();
+  const std::string name = fs::proximate(to, folder, failed).string();
+  if (failed || printable(name) != name || name.find_first_of("\"\\") != std::string::npos)
+    return Error{Errc::usage, from + ": cannot name its model from there; put it beside " + to};
+  return name;
 }
 
 std::string numbered(const std::string& path, int number) {

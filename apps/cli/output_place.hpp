@@ -30,6 +30,10 @@ Result<void> check_spares(const std::string& model, std::string_view option, con
 inline constexpr const char* force_summary =
     "Let --out be the model itself, whose normals, materials and groups are then lost";
 
+/// Returns how a text in the file `from` names the file `to`: by the way from its folder. Error:
+/// usage (no text in quotes can name it).
+Result<std::string> name_beside(const std::string& to, const std::string& from);
+
 /// Returns "a/shape-2.obj" for "a/shape.obj" and 2.
 std::string numbered(const std::string& path, int number);
 /// Sets `number` to the next number whose name no file has, and returns that name.

@@ -116,8 +116,8 @@ void print_head(const OpenRig& open) {
 std::string gesture_text(const puppet::ClutchOptions& clutch, puppet::ClutchMeans means) {
   switch (means) {
   case puppet::ClutchMeans::fist:
-    return fmt::format("a fist (fingers bent by {:.0f} degrees, held for {:g} s)",
-                       to_degrees(clutch.fist_rad), clutch.held_s);
+    return fmt::format("a fist (fingers bent by {:.0f} degrees, held for {:g} s)", clutch.fist_deg,
+                       clutch.held_s);
   case puppet::ClutchMeans::pinch:
     return fmt::format("a pinch (tips within {:g} m, held for {:g} s)", clutch.pinch_m,
                        clutch.held_s);
@@ -292,25 +292,12 @@ Result<void> check(const Options& options) {
   return {};
 }
 
-/// The file stands beside its model, or names the way to it from there.
-Result<std::string> model_name(const Options& options) {
-  namespace fs = std::filesystem;
-  std::error_code failed;
-  const fs::path folder = fs::absolute(options.out, failed).parent_path();
-  const std::string name = fs::proximate(options.file, folder, failed).string();
-  if (failed || printable(name) != name || name.find_first_of("\"\\") != std::string::npos)
-    return Error{Errc::usage, "--out " + options.out +
-                                  ": a puppet cannot name its model from there; put it beside " +
-                                  options.file};
-  return name;
-}
-
 Result<void> make(const Options& options) {
   if (auto fine = cli::check_place("--out", options.out, {".toml"}); !fine) return fine;
   std::error_code ignored;
   if (!options.force && std::filesystem::exists(options.out, ignored))
     return Error{Errc::usage, "--out " + options.out + ": exists; --force replaces it"};
-  const auto name = model_name(options);
+  const auto name = cli::name_beside(options.file, options.out);
   if (!name) return name.error();
   const auto model = deform::read_mesh(options.file);
   if (!model) return model.error();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -45,7 +46,8 @@ struct CommandOptions {
   std::string web; ///< [ADDR:]PORT; empty: none
   bool injective = false;
   bool not_injective = false;
-  bool force = false; ///< --out may be the model
+  std::string out_puppet;
+  bool force = false; ///< --out may be the model, and --out-puppet may be there
 };
 
 // Up to this size, a tick of 64 links takes less time than a tick at 90 Hz has.
@@ -60,6 +62,19 @@ std::string dated_name() {
   return name;
 }
 
+/// One that is there is written over only if it is the one that was opened.
+Result<void> check_out_puppet(const CommandOptions& options) {
+  if (options.out_puppet.empty()) return {};
+  if (!options.view.window) return Error{Errc::usage, "--out-puppet is the window's; add --view"};
+  std::error_code ignored;
+  const bool is_opened =
+      std::filesystem::equivalent(options.out_puppet, options.run.puppet_file, ignored);
+  if (!is_opened && !options.force && std::filesystem::exists(options.out_puppet, ignored))
+    return Error{Errc::usage,
+                 "--out-puppet " + options.out_puppet + ": exists; --force replaces it"};
+  return cli::check_place("--out-puppet", options.out_puppet, {".toml"});
+}
+
 Result<void> check_outputs(const CommandOptions& options) {
   const session::RunOptions& run = options.run;
   const session::ViewOptions& view = options.view;
@@ -70,15 +85,34 @@ Result<void> check_outputs(const CommandOptions& options) {
   if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
   if (auto fine = cli::check_place("--picture", run.picture, {".png"}); !fine) return fine;
   if (auto fine = cli::check_place("--record", run.recording.file); !fine) return fine;
+  if (auto fine = check_out_puppet(options); !fine) return fine;
   if (auto fine = cli::check_place("--screenshot", view.screenshot, {".png"}); !fine) return fine;
   return cli::check_distinct({{"--out", run.out},
                               {"--picture", run.picture},
                               {"--record", run.recording.file},
+                              {"--out-puppet", options.out_puppet},
                               {"--screenshot", view.screenshot}});
 }
 
 /// A file, or the name of a shipped puppet. Its model stands beside it.
-Result<void> read_puppet(session::RunOptions& run) {
+Result<void> read_puppet(CommandOptions& options) {
+  session::RunOptions& run = options.run;
+  std::error_code ignored;
+  if (options.view.window) {
+    const bool is_opened =
+        std::filesystem::equivalent(options.out_puppet, run.puppet_file, ignored);
+    run.out_puppet = {options.out_puppet, options.force || is_opened};
+  }
+  const bool is_named =
+      !run.puppet_file.empty() && std::filesystem::exists(run.puppet_file, ignored);
+  if (options.view.window && !run.puppet_file.empty() && !run.mesh.empty() && !is_named &&
+      run.puppet_file.ends_with(".toml")) { // one that is to be made
+    if (run.out_puppet.file.empty()) run.out_puppet.file = run.puppet_file;
+    run.loop.held = false;
+    return {};
+  }
+  if (is_named && options.view.window && options.out_puppet.empty())
+    run.out_puppet = {run.puppet_file, true};
   if (run.puppet_file.empty()) return {};
   auto file = open_puppet(run.puppet_file);
   if (!file) return file.error();
@@ -158,9 +192,12 @@ Result<void> check(CommandOptions& options) {
   if (auto fine = check(run.calibration); !fine) return fine;
   if (run.out.empty()) run.out = dated_name();
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
-  if (auto fine = read_puppet(run); !fine) return fine;
+  if (auto fine = read_puppet(options); !fine) return fine;
   if (auto fine = read_take(options); !fine) return fine;
   if (run.mesh.empty() && !run.over) run.mesh = cli::shipped_model("moai.obj").string();
+  if (options.view.window && run.out_puppet.file.empty() && !run.over)
+    run.out_puppet.file =
+        std::filesystem::path(run.mesh).filename().replace_extension(".puppet.toml").string();
   return check_outputs(options);
 }
 
@@ -280,7 +317,7 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
   command.add_option(
       "--puppet", run_options.puppet_file,
       "A puppet file, or face, moai or spot: what each finger does to the model, in place of "
-      "hands that touch it");
+      "hands that touch it. In a window with a MODEL, also a file that is to be made");
   command.add_option(
       "--mode", options.mode,
       "type1: the rest shape follows the fingertips; type2: strokes along their paths; without it, "
@@ -331,6 +368,9 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
   command.add_option("--web", options->web,
                      "[ADDR:]PORT at which a browser shows the run, with buttons; without ADDR, a "
                      "browser on this machine");
+  command.add_option("--out-puppet", options->out_puppet,
+                     "Where the window saves a puppet that was edited, .toml; without it, the file "
+                     "that was opened, or beside you, named after the model");
   command.add_option("--screenshot", options->view.screenshot,
                      "Where the window's last picture goes, .png");
   command.add_option("--frames", options->view.frames,

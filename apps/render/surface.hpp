@@ -21,6 +21,7 @@ struct Material {
   float grid_m = 0.0F;      ///< of a ground: distance between its lines; it has faded out at fade_m
   float fade_m = 0.0F;
   bool opaque_before_ground = false; ///< translucent only where the model or a solid is behind it
+  bool shadowless = false;           ///< a mark on something else, which casts no shadow
   bool operator==(const Material&) const = default;
 };
 

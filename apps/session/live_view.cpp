@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "viewer/live_window.hpp"
+#include "viewer/puppet_editor.hpp"
 
 namespace nendo::session {
 
@@ -22,12 +23,15 @@ public:
       : window_(std::move(window)), options_(options) {
     gauges_.model = std::filesystem::path(run.mesh).filename().string();
     gauges_.rate_hz = run.loop.rate_hz;
+    edits_ = !run.puppet_file.empty() && !run.puppet; // there is none yet
   }
 
   void loop_begins(const LoopStart& start) override {
     const PlacedLoop& placed = start.placed;
     const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
     window_->begin(placed.loop->layout(), builder, placed.loop->settings());
+    window_->editor().begin(start.model, gauges_.model, placed.loop->puppet(0));
+    if (edits_) window_->editor().turn(true);
   }
 
   void update(const RunStatus& status, flow::CommandRing& commands) override {
@@ -37,14 +41,19 @@ public:
       gauges_.counts[slot] = status.gloves[slot].counts;
     }
     gauges_.recording = status.recording;
-    if (std::exchange(model_, status.frame.model) != status.frame.model)
+    if (std::exchange(model_, status.frame.model) != status.frame.model) {
       window_->set_model(status.model.layout(),
                          SceneBuilder(status.model.mesh, status.frame.units_per_metre));
+      window_->editor().set_model(status.model.mesh);
+    }
+    window_->editor().follow(status.puppet, status.frame);
     for (const flow::Command& command : window_->show(status.frame, status.fresh, gauges_))
       commands.try_push(command);
     if (status.fresh) ++shown_;
     if (options_.frames > 0 && shown_ >= options_.frames) commands.try_push(flow::EndRun{});
   }
+
+  std::shared_ptr<const puppet::Rig> take_puppet() override { return window_->editor().take(); }
 
   void report(const std::string& message) override { gauges_.report = message; }
   bool sets_pace() const noexcept override { return true; }
@@ -64,6 +73,7 @@ private:
   ViewOptions options_;
   Gauges gauges_;
   std::uint32_t shown_ = 0;
+  bool edits_ = false;      ///< from the beginning
   std::uint32_t model_ = 0; ///< that the window has
 };
 

@@ -3,6 +3,7 @@
 // browser.
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct RunStatus {
   bool fresh = false;              ///< it is another one than at the call before
   const GloveStatuses& gloves;
   bool recording = false; ///< to a file
+  /// The puppet that is played from this frame on; null: none.
+  const std::shared_ptr<const puppet::Rig>& puppet;
 };
 
 /// All calls come from the main thread. No call may block for longer than 30 ms.
@@ -42,6 +45,8 @@ public:
   /// Called repeatedly while the loop runs. Pushes the commands that were given since the last
   /// call.
   virtual void update(const RunStatus& status, flow::CommandRing& commands) = 0;
+  /// Returns, once, another puppet with which the loop shall go on; null: none was asked for.
+  virtual std::shared_ptr<const puppet::Rig> take_puppet() { return nullptr; }
   /// Tells the person who watches what became of a command.
   virtual void report(const std::string& message) { static_cast<void>(message); }
   /// Tells whether update() waits by itself, as a window waits for its screen.

@@ -44,7 +44,8 @@ Result<std::vector<gloves::OpenHand>> open_any(const RunOptions& options, EventC
             "e.g. --right serial:/dev/ttyUSB0 (`nendo devices` lists them)");
   for (const Side side : {Side::left, Side::right}) {
     if (!plays(options, side)) continue;
-    auto hand = gloves::open_hand(options.puppet ? "sim:faces" : "sim", side, event_count);
+    auto hand =
+        gloves::open_hand(options.puppet_file.empty() ? "sim" : "sim:faces", side, event_count);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }

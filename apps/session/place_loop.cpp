@@ -161,15 +161,19 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 
   if (options.puppet)
     if (const auto fine = set_rig(options, model, loop_options); !fine) return fine.error();
-  const auto placement = placement_for(hands, inputs, model, options.puppet.has_value());
-  PlacedSetup setup{inputs, placement, loop_options};
+  const auto placement = placement_for(hands, inputs, model, !options.puppet_file.empty());
+  constexpr Eigen::Index points_to_add = 64;
+  PlacedSetup setup{inputs, placement, loop_options,
+                    options.out_puppet.file.empty() ? 0 : points_to_add};
   return make_loop(std::move(setup), model, nullptr);
 }
 
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
-  const auto points = rig ? rig->starts().cols()
-                          : 5 * static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs));
+  const auto points =
+      (rig ? rig->starts().cols()
+           : 5 * static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs))) +
+      placed.setup.spare_points;
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);

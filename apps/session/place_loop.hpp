@@ -17,7 +17,8 @@ namespace nendo::session {
 struct PlacedSetup {
   std::vector<flow::HandInput> inputs;
   flow::Placement placement;
-  flow::LoopOptions options; ///< with the supports in model units
+  flow::LoopOptions options;     ///< with the supports in model units
+  Eigen::Index spare_points = 0; ///< that a puppet may get during the run, for whoever shows frames
 
   /// Returns which inputs are layers that live gloves play; bit k is input k.
   std::uint32_t live_layers() const noexcept;

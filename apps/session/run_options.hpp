@@ -14,12 +14,19 @@
 
 namespace nendo::session {
 
+/// Where a puppet that was edited goes.
+struct PuppetPlace {
+  std::string file;             ///< .toml; empty: nobody can edit one
+  bool may_be_replaced = false; ///< as it is the file that was opened
+};
+
 struct RunOptions {
   std::string left;                       ///< GLOVE; empty: not asked for
   std::string right;                      ///< GLOVE; empty: not asked for
   std::string mesh;                       ///< empty: the shipped model, or a puppet's
   std::string puppet_file;                ///< empty: none
   std::optional<puppet::Puppet> puppet{}; ///< of that file
+  PuppetPlace out_puppet{};               ///< where a window saves it
   std::string out;                        ///< empty: a name made of date and time
   std::string picture;                    ///< empty: none
   double duration_s = 0.0;                ///< 0: until a stop signal

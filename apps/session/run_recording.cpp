@@ -93,8 +93,8 @@ recording::Setup RunRecorder::setup_now() const {
                                     std::string(deform::simd_names().front()),
                                     {}};
   if (const auto& rig = placed_.setup.options.rig) {
-    setup.loop->puppet = rig->puppet().text;
-    setup.loop->puppet_starts = rig->starts();
+    setup.loop->puppet.text = rig->puppet().text;
+    setup.loop->puppet.starts = rig->starts();
   }
   if (options_.over) { // whose model may have been subdivided, and shaped, before it began
     const recording::LoopSetup& taken = *options_.over->take.setup.loop;
@@ -180,6 +180,10 @@ std::optional<std::string> RunRecorder::follow() {
 
 bool RunRecorder::keeps_last_minute() const noexcept {
   return options_.recording.keep_last_s > 0.0;
+}
+
+void RunRecorder::add_puppet(std::uint32_t number, const puppet::Rig& rig) {
+  if (recorder_) recorder_->add_puppet(number, {rig.puppet().text, rig.starts()});
 }
 
 void RunRecorder::save_last_minute() noexcept {

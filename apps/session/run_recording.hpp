@@ -78,6 +78,8 @@ public:
   bool is_recording() const noexcept { return recorder_ != nullptr; }
   /// Returns true with --keep-last.
   bool keeps_last_minute() const noexcept;
+  /// Tells of a puppet before the loop gets it.
+  void add_puppet(std::uint32_t number, const puppet::Rig& rig);
   /// Asks for the recording in memory to be written to a file. Does nothing unless
   /// keeps_last_minute(). Wait-free.
   void save_last_minute() noexcept;

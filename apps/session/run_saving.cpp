@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include <nendo/base/files.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "cli/output_place.hpp"
@@ -28,17 +29,20 @@ Result<void> write_shape(const std::string& out, const deform::Mesh& shape) {
                written.error().message + "; the shape is in " + elsewhere.string() + " instead"};
 }
 
-RunSaving::RunSaving(std::string out, RunRecorder& recorder)
-    : out_(std::move(out)), recorder_(recorder) {}
+RunSaving::RunSaving(const RunOptions& options, RunRecorder& recorder)
+    : out_(options.out), model_(options.mesh), out_puppet_(options.out_puppet),
+      recorder_(recorder) {}
 
 void RunSaving::add(const flow::Command& command) noexcept {
   shape_ = shape_ || std::holds_alternative<flow::SaveShape>(command);
+  puppet_ = puppet_ || std::holds_alternative<flow::SavePuppet>(command);
   recording_ = recording_ || std::holds_alternative<flow::SaveRecording>(command);
 }
 
 std::string RunSaving::save(flow::DeformLoop& loop) {
   std::string report = std::exchange(shape_, false) ? save_shape(loop) : "";
   if (std::exchange(recording_, false)) report += (report.empty() ? "" : "; ") + save_recording();
+  if (std::exchange(puppet_, false)) report += (report.empty() ? "" : "; ") + save_puppet(loop);
   next_ = HostClock::now() + least_between_saves;
   return report;
 }
@@ -48,6 +52,28 @@ std::string RunSaving::save_recording() {
     return "nothing is kept in memory; start with --keep-last 60s";
   recorder_.save_last_minute();
   return "what was just done is being kept";
+}
+
+/// Only the file that was opened, or that was saved before, is written over.
+std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
+  const auto& rig = loop.puppet(loop.newest_puppet());
+  if (!rig || out_puppet_.file.empty()) return "there is no puppet to save";
+  std::error_code ignored;
+  if (!out_puppet_.may_be_replaced && std::filesystem::exists(out_puppet_.file, ignored)) {
+    int number = 1;
+    out_puppet_.file = cli::next_free_name(out_puppet_.file, number);
+  }
+  puppet::Puppet puppet = rig->puppet();
+  const auto name = cli::name_beside(model_, out_puppet_.file);
+  if (!name) return name.error().message;
+  if (puppet.model != *name) {
+    puppet.model = *name;
+    puppet.text = puppet::text_of(puppet);
+  }
+  const auto written = replace_file(out_puppet_.file, puppet.text);
+  if (!written) return written.error().message;
+  out_puppet_.may_be_replaced = true;
+  return "the puppet is saved as " + out_puppet_.file;
 }
 
 std::string RunSaving::save_shape(flow::DeformLoop& loop) {

@@ -6,7 +6,7 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/flow/deform_loop.hpp>
 
-#include "session/run_recording.hpp"
+#include "session/run_options.hpp"
 
 namespace nendo::session {
 
@@ -18,14 +18,14 @@ Result<void> write_shape(const std::string& out, const deform::Mesh& shape);
 /// Saves a few times a second at most, even if it is asked more often.
 class RunSaving {
 public:
-  /// Saved shapes are named after `out` and numbered. `recorder` must outlive this.
-  RunSaving(std::string out, RunRecorder& recorder);
+  /// Saved shapes are named after `options.out` and numbered. `recorder` must outlive this.
+  RunSaving(const RunOptions& options, RunRecorder& recorder);
 
-  /// Takes note of flow::SaveShape and flow::SaveRecording for save(). Other commands change
-  /// nothing.
+  /// Takes note of flow::SaveShape, flow::SaveRecording and flow::SavePuppet for save(). Other
+  /// commands change nothing.
   void add(const flow::Command& command) noexcept;
   /// Returns whether anything waits to be saved.
-  bool is_due() const noexcept { return shape_ || recording_; }
+  bool is_due() const noexcept { return shape_ || recording_ || puppet_; }
   /// Returns whether anything waits to be saved and the last save() was long enough ago.
   bool is_due_now() const noexcept { return is_due() && HostClock::now() >= next_; }
   /// Saves what waits. The shape is that of the newest frame. Blocks while it writes. Returns a
@@ -35,12 +35,16 @@ public:
 private:
   std::string save_shape(flow::DeformLoop& loop);
   std::string save_recording();
+  std::string save_puppet(const flow::DeformLoop& loop);
 
   std::string out_;
+  std::string model_; ///< its file
+  PuppetPlace out_puppet_;
   RunRecorder& recorder_;
   int saved_ = 0;
   bool shape_ = false;
   bool recording_ = false;
+  bool puppet_ = false;
   HostTime next_{};
 };
 

@@ -44,7 +44,7 @@ public:
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
         participants_(participants), grants_(std::move(grants)),
         recorder_(options_, placed_, hands_, model_), models_(placed_, participants_.sinks),
-        saving_(options_.out, recorder_) {
+        saving_(options_, recorder_) {
     for (const auto& hand : hands_)
       if (options_.loop.switch_action != flow::SwitchAction::none)
         lights_.emplace_back(*hand.glove);
@@ -110,9 +110,12 @@ private:
     const flow::ModelVersion& model = *placed_.loop->model(frame.model);
     settle_sinks();
     follow_layers(frame);
-    const RunStatus status{frame, model, fresh, gloves_, recorder_.is_to_file()};
-    for (Observer* observer : observers_)
+    const RunStatus status{
+        frame, model, fresh, gloves_, recorder_.is_to_file(), placed_.loop->puppet(frame.puppet)};
+    for (Observer* observer : observers_) {
       observer->update(status, commands_);
+      if (auto puppet = observer->take_puppet()) puppet_ = std::move(puppet);
+    }
     commands_.drain([this](const flow::Command& command) noexcept { dispatch(command); });
     follow_take();
     for (auto& wrist : wrists_)
@@ -134,6 +137,9 @@ private:
     if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
       report("settings that nothing can be done with; the run goes on as it was");
+    if (puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
+        !models_.is_handing_over())
+      change_puppet();
     if (record_ && !recorder_.is_changing() && !models_.is_handing_over())
       recorder_.set_file(*std::exchange(record_, {}), frame);
     tell(recorder_.follow());
@@ -159,6 +165,16 @@ private:
     for (std::size_t at = 0; at < placed_.setup.inputs.size(); ++at)
       if ((live >> at & 1U) != 0)
         loop_commands_.try_push(flow::SetLayer{static_cast<std::uint8_t>(at), on});
+  }
+  void change_puppet() {
+    flow::DeformLoop& loop = *placed_.loop;
+    const std::shared_ptr<const puppet::Rig> rig = std::exchange(puppet_, nullptr);
+    const auto functions = static_cast<std::size_t>(2 * rig->starts().cols());
+    if (!participants_.sinks.empty() && functions > frame_capacity(placed_).functions)
+      return report("a puppet with so many points more cannot be published; save it, and begin "
+                    "again with it");
+    recorder_.add_puppet(loop.next_puppet(), *rig);
+    if (const auto changed = loop.change_puppet(rig); !changed) report(changed.error().message);
   }
   void tell(const std::optional<std::string>& message) {
     if (message) report(*message);
@@ -192,7 +208,7 @@ private:
   }
 
   void play_otherwise(const flow::Command& command) noexcept {
-    if (!options_.puppet)
+    if (placed_.loop->puppet(placed_.loop->newest_puppet()) == nullptr)
       report("there is no puppet here, and fingertips touch the model; g lets go of it");
     else if (!loop_commands_.try_push(command))
       report("the loop does not answer, so it was not told how to play the puppet");
@@ -207,8 +223,9 @@ private:
   // Commands that came just before the end are still obeyed, if the loop ticks at all.
   void wait_until_taken() {
     const auto is_due = [this] {
-      return loop_commands_.size() > 0 || settings_ || record_ || recorder_.is_changing() ||
-             models_.is_due() || models_.is_handing_over() || placed_.loop->is_changing();
+      return loop_commands_.size() > 0 || settings_ || puppet_ || record_ ||
+             recorder_.is_changing() || models_.is_due() || models_.is_handing_over() ||
+             placed_.loop->is_changing();
     };
     auto& frames = placed_.loop->frames();
     const HostTime begin = HostClock::now();
@@ -310,6 +327,7 @@ private:
   bool refusal_reported_ = false;                        ///< and no request was accepted since
   bool ends_ = false;                                    ///< somebody has asked for the end
   std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
+  std::shared_ptr<const puppet::Rig> puppet_;            ///< not passed on yet
   std::optional<bool> record_;                           ///< to a file, or not; not done yet
   PlacedLoop placed_; ///< outlives what another thread may be making of its model
   RunRecorder recorder_;

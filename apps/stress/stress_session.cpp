@@ -85,7 +85,9 @@ struct Watch {
     ++pictures;
     const bool fresh = loop.frames().update();
     const flow::Frame& frame = loop.frames().front();
-    observer->update({frame, *loop.model(frame.model), fresh, gloves}, commands);
+    observer->update(
+        {frame, *loop.model(frame.model), fresh, gloves, false, loop.puppet(frame.puppet)},
+        commands);
     bool ends = false;
     std::optional<flow::LoopSettings> wanted;
     commands.drain([&](const flow::Command& command) noexcept {

@@ -47,6 +47,7 @@ private:
   double duration_s_ = 0.0;
   double time_s_ = 0.0;
   bool has_one_model_ = true;
+  bool has_one_puppet_ = true;
 };
 
 } // namespace nendo::takes

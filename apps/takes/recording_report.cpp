@@ -56,6 +56,8 @@ void print_loop(const TakeSummary& summary) {
     std::printf(", %llu changes of settings", number(summary.settings_changes));
   if (summary.model_changes > 0)
     std::printf(", %llu changes of the model", number(summary.model_changes));
+  if (summary.puppet_changes > 0)
+    std::printf(", %llu changes of the puppet", number(summary.puppet_changes));
   if (summary.shapes > 0) std::printf(", %llu shapes", number(summary.shapes));
   std::printf("\n");
 }
@@ -104,6 +106,7 @@ ordered_json loop_json(const TakeSummary& summary) {
   line["wrist_moves"] = summary.wrist_moves;
   line["settings_changes"] = summary.settings_changes;
   line["model_changes"] = summary.model_changes;
+  line["puppet_changes"] = summary.puppet_changes;
   line["shapes"] = summary.shapes;
   line["marks_s"] = ordered_json::array();
   for (const HostClock::duration mark : summary.marks)

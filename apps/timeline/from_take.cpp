@@ -270,6 +270,10 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     hear_told(*entry, follower);
     if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
     if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) follower.hear(*change);
+    if (std::holds_alternative<recording::PuppetChange>(*entry))
+      return bad(
+          "edits its puppet on the way, which a timeline cannot; save the puppet, and record "
+          "a run with it by --puppet FILE");
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
     if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "

@@ -5,6 +5,12 @@
 namespace nendo::timeline {
 namespace {
 
+/// Of a frame; gestures are seen from the second one on, as by Player.
+std::optional<HostTime> time_of(double time_s) {
+  if (!(time_s > 0.0)) return std::nullopt;
+  return HostTime{} + from_seconds(time_s);
+}
+
 /// A Player without a model.
 class FunctionPlayer {
 public:
@@ -23,7 +29,7 @@ public:
          ++next_)
       takes_hold = ask(timeline_.events[next_].command) || takes_hold;
     pose(hands_, time_s);
-    hands_.play(is_held_);
+    hands_.play(is_held_, time_of(time_s));
     is_held_ = will_hold_;
     if (takes_hold) hands_.take_hold();
   }
@@ -32,7 +38,7 @@ public:
   PuppetHands at(double time_s) const {
     PuppetHands hands = hands_;
     pose(hands, time_s);
-    hands.play(is_held_);
+    hands.play(is_held_, time_of(time_s));
     return hands;
   }
   bool is_held() const noexcept { return is_held_; }

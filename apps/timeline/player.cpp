@@ -180,7 +180,7 @@ bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   now_ = std::move(wanted);
   if (puppet_ && awaited.settings != before) puppet_->take_hold();
   flow::ReadySculptor ready;
-  shaping_.prepare(now_, model, ready);
+  flow::Shaping::prepare(now_, model, tips_.cols(), ready);
   ready.is_new_model = is_new_model;
   if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
   shaping_.exchange(ready, tips_, frame_, stats_);

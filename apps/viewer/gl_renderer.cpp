@@ -24,7 +24,7 @@ constexpr GLint ground_mark = 0; // or nothing
 constexpr GLint solid_mark = 1;  // the model or a solid
 
 bool casts(const render::Surface& surface) {
-  return surface.material.opacity > 0.0F;
+  return surface.material.opacity > 0.0F && !surface.material.shadowless;
 }
 
 // What is beyond, or nowhere, casts no shadow.

@@ -6,11 +6,15 @@
 
 #include "viewer/panel.hpp"
 #include "viewer/panel_style.hpp"
+#include "viewer/puppet_marks.hpp"
+#include "viewer/puppet_tool.hpp"
 
 namespace nendo::viewer {
 
 LiveWindow::LiveWindow(std::unique_ptr<SceneWindow> window)
-    : window_(std::move(window)), panel_(std::make_unique<Panel>()) {}
+    : window_(std::move(window)), panel_(std::make_unique<Panel>()),
+      editor_(std::make_unique<PuppetEditor>()), tool_(std::make_unique<PuppetTool>()),
+      marks_(std::make_unique<PuppetMarks>()) {}
 
 LiveWindow::~LiveWindow() = default;
 
@@ -36,6 +40,8 @@ void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBui
 
 void LiveWindow::set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder) {
   window_->set_model(layout, builder);
+  builder_.emplace(builder);
+  shows_loop_ = true;
   scene_frame_.vertices = layout.original();
 }
 
@@ -45,15 +51,22 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   if (fresh) {
     holds_.follow(frame);
     panel_->follow(frame, gauges.rate_hz);
-    window_->follow(frame.shape);
+    if (shows_loop_) window_->follow(frame.shape);
     scene_frame_.radius_m = frame.settings.radius_m;
   }
   set_hands(frame, holds_, scene_frame_);
   if (frame.ticks_run > 0) panel_->follow_settings(frame.settings);
   window_->leave_left(panel_->covered_px());
   window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there
-  if (!move_hand(frame, commands)) window_->move_camera();
+  if (editor_->is_on() && !editor_->is_dragging())
+    for (const render::Surface& veil : marks_->veils(*editor_, *builder_))
+      window_->add(veil);
+  if (!move_hand(frame, commands) && !edit_puppet()) window_->move_camera();
   draw_panel(frame, gauges, commands);
+  show_model(frame);
+  // A puppet that was begun here is played by hands that had nothing to hold.
+  const bool begins = !std::exchange(plays_, frame.function_count > 0) && plays_;
+  if (begins && frame.puppet > 0 && !frame.held) commands.emplace_back(flow::Request::grab);
   window_->end_picture();
   panel_->pictures_ms.add(static_cast<float>(1e3 * to_seconds(HostClock::now() - begin)));
   if (window_->take_close_request()) commands.emplace_back(flow::EndRun{});
@@ -66,6 +79,25 @@ const std::string& LiveWindow::told() const noexcept {
 
 const flow::LoopSettings& LiveWindow::settings() const noexcept {
   return panel_->wanted.now;
+}
+
+// That of the loop, or that of the editor.
+void LiveWindow::show_model(const flow::Frame& frame) {
+  if (editor_->is_on()) {
+    shows_loop_ = false;
+    if (const deform::BlockShape* const shape = editor_->shape()) window_->follow(*shape);
+  } else if (!std::exchange(shows_loop_, true)) {
+    window_->follow(frame.shape);
+  }
+}
+
+bool LiveWindow::edit_puppet() {
+  if (!editor_->is_on()) return false;
+  const double units_per_metre = builder_->units_per_metre();
+  const bool is_taken = tool_->follow(*window_, units_per_metre, *editor_);
+  draw_points(*editor_, window_->stage_camera(), window_->scene_size(), units_per_metre,
+              tool_->hovered());
+  return is_taken;
 }
 
 // True: the mouse holds a hand, and does nothing else.

@@ -4,6 +4,7 @@
 // and the loop never waits for it. All calls belong to the main thread.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct Gauges {
   std::string report;     ///< the result of the last command that saved something
 };
 
+class PuppetEditor;
+class PuppetMarks;
+class PuppetTool;
+
 /// The commands that a person has given since the last picture, in their order.
 using Commands = std::vector<flow::Command>;
 
@@ -47,6 +52,9 @@ public:
   /// is none. fresh: the frame differs from that of the previous call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
+  /// Edits the puppet, if begin() has been called of it, too.
+  PuppetEditor& editor() noexcept { return *editor_; }
+
   /// Returns the line below the panel's buttons: the report, or that there is nothing to undo.
   const std::string& told() const noexcept;
   /// Returns the settings that the panel shows.
@@ -63,11 +71,19 @@ public:
 private:
   struct Panel;
   explicit LiveWindow(std::unique_ptr<SceneWindow> window);
+  bool edit_puppet();
+  void show_model(const flow::Frame& frame);
   bool move_hand(const flow::Frame& frame, Commands& commands);
   void draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
 
   std::unique_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;
+  std::unique_ptr<PuppetEditor> editor_;
+  std::unique_ptr<PuppetTool> tool_;
+  std::unique_ptr<PuppetMarks> marks_;
+  std::optional<render::SceneBuilder> builder_;
+  bool shows_loop_ = true; ///< and not the model of the editor
+  bool plays_ = false;     ///< the loop has a puppet
   render::HoldTracker holds_;
   render::SceneFrame scene_frame_;
   HandMover hand_mover_;

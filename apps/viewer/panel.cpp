@@ -277,9 +277,16 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
     ImGui::TextWrapped("%s   (? for keys)", gauges.model.c_str());
     panel_->buttons(frame, gauges, commands);
     panel_->parts(*window_);
+    const auto puppet = [&] {
+      if (ImGui::CollapsingHeader("Puppet", ImGuiTreeNodeFlags_DefaultOpen))
+        Panel::puppet(*editor_, commands);
+    };
+    const bool edits = editor_->is_on(); // and then needs nothing as much as this
+    if (edits) puppet();
     if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings();
     if (ImGui::CollapsingHeader("History", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->history(frame, commands);
+    if (!edits) puppet();
     if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->timing(frame, gauges);
     if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
@@ -287,6 +294,8 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   }
   ImGui::End();
   if (!commands.empty()) panel_->note.clear();
+  panel_->edits_puppet = editor_->is_on();
+  Panel::puppet_keys(*editor_, commands);
   panel_->keys(frame, gauges, *window_, commands);
   if (const auto change = panel_->wanted.ask()) commands.push_back(*change);
 }

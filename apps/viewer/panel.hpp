@@ -8,6 +8,7 @@
 #include <nendo/flow/wanted_settings.hpp>
 
 #include "viewer/live_window.hpp"
+#include "viewer/puppet_editor.hpp"
 
 namespace nendo::viewer {
 
@@ -38,6 +39,7 @@ struct LiveWindow::Panel {
   bool keys_shown = false;
   bool one_radius = true;
   bool one_brush = true;
+  bool edits_puppet = false;
   std::uint64_t history_shown = 0; ///< the list's version
   bool fold_asked = false;
   bool folded = false;
@@ -54,6 +56,9 @@ struct LiveWindow::Panel {
   void brushes(flow::LoopSettings& chosen);
   /// Lists the steps of the history. A click goes there.
   void history(const flow::Frame& frame, Commands& commands);
+  /// Edits the puppet.
+  static void puppet(PuppetEditor& editor, Commands& commands);
+  static void puppet_keys(PuppetEditor& editor, Commands& commands);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
   /// What keys do. It also draws their list.

@@ -22,6 +22,9 @@ constexpr std::array key_table{
     KeyLine{"t", "a take: record from here on, and end that"},
     KeyLine{",, '", "of a puppet: the left hand, the right hand lets go, takes hold again"},
     KeyLine{"y", "of a puppet: one hand plays both sides, or each its own"},
+    KeyLine{"Tab", "the puppet: edit it with the mouse, or play it"},
+    KeyLine{"j, o, z", "while it is edited: mirror, pin, the brush for masks"},
+    KeyLine{"Delete, a", "the chosen point goes; save the puppet"},
     KeyLine{".", "mark this moment in the recording"},
     KeyLine{"o", "overdub: the gloves' layer comes in, or goes out (--over, --layer)"},
     KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
@@ -76,7 +79,8 @@ void LiveWindow::Panel::keys(const flow::Frame& frame, const Gauges& gauges, Sce
   if (keys_shown)
     draw_key_list(key_table,
                   "right drag on a hand moves it, with shift turns it, with the wheel\n"
-                  "pushes and pulls it",
+                  "pushes and pulls it; while a puppet is edited, a click places a point, a\n"
+                  "drag of a point tells where it goes, the wheel over one how far it reaches",
                   keys_shown);
 }
 
@@ -91,7 +95,6 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
                                     SceneWindow& window, Commands& commands) {
   for (const auto& [key, request] : {std::pair{GLFW_KEY_G, Request::grab},
                                      {GLFW_KEY_L, Request::let_go},
-                                     {GLFW_KEY_A, Request::take_hold},
                                      {GLFW_KEY_C, Request::commit},
                                      {GLFW_KEY_X, Request::reset}})
     if (pressed(key)) commands.emplace_back(request);
@@ -105,7 +108,10 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
                                             frame.let_go[flow::Placement::index_of(side)]});
   if (pressed(GLFW_KEY_Y)) commands.emplace_back(flow::SetSymmetry{!frame.symmetric});
   if (pressed(GLFW_KEY_PERIOD)) commands.emplace_back(flow::Mark{});
-  if (pressed(GLFW_KEY_O)) commands.emplace_back(flow::Punch{});
+  if (!edits_puppet) { // where these keys have another meaning
+    if (pressed(GLFW_KEY_A)) commands.emplace_back(Request::take_hold);
+    if (pressed(GLFW_KEY_O)) commands.emplace_back(flow::Punch{});
+  }
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_E)) commands.emplace_back(flow::Subdivide{});
   if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});

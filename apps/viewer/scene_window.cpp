@@ -142,6 +142,11 @@ void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_w
   ImGui::NewFrame();
 }
 
+void SceneWindow::add(render::Surface surface) {
+  const bool is_veil = surface.material.opacity < 1.0F;
+  (is_veil ? scene_.veils : scene_.solids).push_back(std::move(surface));
+}
+
 // Of the window's width: what is covered at its left.
 double SceneWindow::covered_part() const noexcept {
   constexpr double most = 0.4;

@@ -47,6 +47,8 @@ public:
   /// than the model. The camera is chosen anew for each frame until the first one with is_whole.
   /// Widgets may follow.
   void begin_picture(const render::SceneFrame& scene_frame, bool is_whole = true);
+  /// Adds a translucent or an opaque surface to the picture that has begun, in metres of the scene.
+  void add(render::Surface surface);
   /// Turns, shifts and zooms the camera by the mouse, unless the mouse is over a widget.
   void move_camera();
   /// Moves the camera, without turning it, so that it has all of the model and the hands.

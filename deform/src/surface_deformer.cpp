@@ -71,6 +71,10 @@ FieldStatus SurfaceDeformer::commit(const Points& ends) {
 
 void SurfaceDeformer::release(bool is_step) noexcept {
   if (grabbed_) absorb();
+  drop(is_step);
+}
+
+void SurfaceDeformer::drop(bool is_step) noexcept {
   if (is_step) shape_->parts().keep();
   grabbed_ = false;
   coefficients_.all.setZero();

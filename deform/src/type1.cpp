@@ -187,6 +187,10 @@ FieldStatus Type1Deformer::commit(const Points& ends) {
 void Type1Deformer::release(bool is_step) noexcept {
   const bool is_moved = in_links_ || !displacements_.isZero(0.0);
   if (grabbed_ && is_moved) absorb();
+  drop(is_step);
+}
+
+void Type1Deformer::drop(bool is_step) noexcept {
   if (is_step) shape_->parts().keep();
   grabbed_ = false;
   in_links_ = false;

@@ -74,7 +74,7 @@ struct RecordedPuppet {
     test.loop =
         std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs, test.options);
     played.setup = test::setup_of(test);
-    played.setup.loop->puppet = puppet->text;
+    played.setup.loop->puppet.text = puppet->text;
     played.record();
     constexpr std::uint64_t ticks = 60;
     for (std::uint64_t tick = 0; tick < ticks; ++tick) {

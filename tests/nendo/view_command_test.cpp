@@ -1,8 +1,11 @@
 // A person before `nendo view`: real keys in a real window, on a screen that exists in memory
 // alone.
 
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -66,6 +69,58 @@ struct Person {
   }
 };
 
+struct Pixel {
+  int x = 0, y = 0;
+};
+
+/// Makes a puppet of the calf, which has none yet, with fingers that never rest.
+struct Maker {
+  test::TemporaryFolder folder;
+  std::string model = copied_model();
+  test::Program program{{"view", model, "--puppet", at("spot.puppet.toml"), "--left", "sim:faces",
+                         "--right", "sim:faces", "--record", at("take.nendo"), "--out",
+                         at("clay.ply")}};
+
+  std::string at(const std::string& name) const { return (folder.path() / name).string(); }
+  std::string copied_model() const {
+    std::filesystem::copy_file(NENDO_MODELS "/spot.obj", at("spot.obj"));
+    return at("spot.obj");
+  }
+  static std::string words(const Pixel& pixel) {
+    return "mousemove " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + " sleep 0.15 ";
+  }
+  void come() const {
+    CAPTURE(program.err_so_far());
+    REQUIRE(
+        test::eventually([] { return Person::does("search --name Nendo windowsize 640 440"); }));
+    REQUIRE(Person::does(words({455, 170})));
+  }
+  /// Saves the puppet, and returns how many functions it has; 0: there is no file yet.
+  int saved_functions() const {
+    Person::does("key a sleep 1.5");
+    const std::string text = test::contents(at("spot.puppet.toml"));
+    int count = 0;
+    for (auto found = text.find("[functions."); found != std::string::npos;
+         found = text.find("[functions.", found + 1))
+      ++count;
+    return count;
+  }
+  /// Clicks the first of the places that is one of the model, and waits until a finger has bent.
+  Pixel place_point(int number, const std::vector<Pixel>& places) const {
+    for (const Pixel& place : places) {
+      REQUIRE(Person::does(words(place) + "click 1"));
+      for (int wait = 0; wait < 30; ++wait)
+        if (saved_functions() == number) return place;
+    }
+    FAIL("no click has made a point");
+    return {};
+  }
+  void drag(const Pixel& from, const Pixel& to) const {
+    REQUIRE(
+        Person::does(words(from) + "mousedown 1 sleep 0.15 " + words(to) + "mouseup 1 sleep 0.15"));
+  }
+};
+
 double gap(const deform::Points& a, const deform::Points& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
@@ -113,6 +168,41 @@ TEST_SUITE("view_command") {
         test::nendo({"replay", person.at("take.nendo"), "--out", person.at("again.ply")});
     REQUIRE(replayed.exit_code == 0);
     CHECK(test::contents(person.at("again.ply")) == test::contents(person.at("clay.ply")));
+  }
+
+  TEST_CASE("a person makes a puppet by clicks and drags, saves it, and the recording replays to "
+            "the same bytes") {
+    test::give_way();
+    const test::MemoryScreen screen;
+    if (!screen.is_there() || !test::restraint_is_counted || !Person::does("version")) return;
+    Maker maker;
+    maker.come();
+    const Pixel first = maker.place_point(1, {{455, 110}, {455, 150}, {475, 190}, {440, 190}});
+    maker.place_point(
+        2, {{first.x + 30, first.y + 20}, {first.x - 30, first.y + 20}, {first.x, first.y + 40}});
+    const std::string before = test::contents(maker.at("spot.puppet.toml"));
+    // The function that moves the first point gets another way.
+    maker.drag(first, {first.x + 8, first.y - 8});
+    REQUIRE(Person::does("key a")); // once: where pictures come late, keys wait for them
+    CHECK(test::eventually([&] { return test::contents(maker.at("spot.puppet.toml")) != before; }));
+    CHECK(before.find("model = \"spot.obj\"") != std::string::npos);
+    REQUIRE(Person::does("key --delay 60 Tab"));
+    std::this_thread::sleep_for(std::chrono::seconds(1)); // the fingers play it
+    REQUIRE(Person::does("key --delay 60 Tab j"));        // mirrored, and back
+    REQUIRE(Person::does("key --delay 60 u Tab"));
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    REQUIRE(Person::does("key q"));
+    const auto finished = maker.program.wait(std::chrono::seconds(180));
+    CAPTURE(finished.err);
+    REQUIRE(finished.exit_code == 0);
+    const auto checked = test::nendo({"puppet", "check", maker.at("spot.puppet.toml")});
+    CHECK_MESSAGE(checked.exit_code == 0, checked.err);
+    const auto shown = test::nendo({"puppet", "show", maker.at("spot.puppet.toml")});
+    CHECK_MESSAGE(shown.out.find("2 points, 2 functions") != std::string::npos, shown.out);
+    const auto replayed =
+        test::nendo({"replay", maker.at("take.nendo"), "--out", maker.at("again.ply")});
+    REQUIRE_MESSAGE(replayed.exit_code == 0, replayed.err);
+    CHECK(test::contents(maker.at("again.ply")) == test::contents(maker.at("clay.ply")));
   }
 }
 

@@ -124,7 +124,7 @@ TEST_SUITE("puppet file") {
     CHECK(parsed->clutch.means ==
           std::array{puppet::ClutchMeans::fist, puppet::ClutchMeans::wrist_switch});
     CHECK(parsed->clutch.held_s == 1.0);
-    CHECK(parsed->clutch.fist_rad == doctest::Approx(from_degrees(180.0)));
+    CHECK(parsed->clutch.fist_deg == 180.0);
     CHECK(parsed->clutch.pinch_m == 0.02);
     CHECK(refuses(whole + "[clutch]\nleft = \"kick\"\n", "'kick'"));
     CHECK(refuses(whole + "[clutch]\nfoot = \"fist\"\n", "'foot'"));

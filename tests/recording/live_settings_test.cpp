@@ -5,12 +5,14 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include <nendo/recording/loop_replay.hpp>
+#include <nendo/recording/take_tools.hpp>
 
 #include "support/rounds.hpp"
 #include "support/takes.hpp"
@@ -154,10 +156,12 @@ TEST_SUITE("live_settings") {
       const auto path = live->folder.path() / "part.nendo";
       auto recorder = Recorder::begin(setup, log, {.file = path});
       REQUIRE(recorder);
+      live->other = recorder->get();
       Shapes shapes;
       test::play(*live, 150, seed + 100, true, [&](const flow::Frame& frame) {
         shapes.push_back(live->test.vertices_of(frame));
       });
+      live->other = nullptr;
       tick = 2000;
       const flow::LoopState ended = change_log(nullptr);
       shapes.push_back(live->test.vertices_of(loop.frames().front()));
@@ -205,6 +209,47 @@ TEST_SUITE("live_settings") {
       person.go_on(300);
       REQUIRE((*recorder)->end(sum_of(loop.final_shape())));
       CHECK(replayed(path, person.live.test.model).shapes == person.shapes);
+    }
+  }
+
+  TEST_CASE("a puppet that is begun, edited, undone and done again in a run, bit for bit") {
+    for (const bool begins_with_one : {false, true}) {
+      CAPTURE(begins_with_one);
+      RecordedLoop live(Mode::type1, FilterKind::off, false, false, SwitchAction::none,
+                        begins_with_one ? test::ball_puppet : nullptr);
+      live.record({.file = live.path, .chunk_time = std::chrono::milliseconds(1)});
+      flow::DeformLoop& loop = *live.test.loop;
+      std::mt19937 random(5);
+      Shapes shapes;
+      std::uint32_t most = 0;
+      int undone = 0;
+      for (std::uint64_t tick = 0; tick < 400; ++tick) {
+        live.test.bend(static_cast<int>(tick % 25), HostClock::now());
+        if (tick % 9 == 4)
+          live.change_puppet(
+              test::any_puppet(loop.puppet(loop.newest_puppet()), live.test.model, random));
+        if (tick % 20 == 10) live.test.commands.try_push(flow::Request::undo);
+        if (tick % 40 == 30) live.test.commands.try_push(flow::Request::redo);
+        const std::uint32_t before = loop.frames().front().puppet;
+        const flow::Frame& frame = live.test.frame_after_tick(tick);
+        undone += frame.puppet < before ? 1 : 0;
+        most = std::max(most, frame.puppet);
+        shapes.push_back(live.test.vertices_of(frame));
+        if (frame.awaited) loop.change_to(*frame.awaited);
+        if (tick % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(30)); // chunks
+      }
+      CHECK(most > 20);
+      CHECK(undone > 5);
+      REQUIRE(live.end());
+      const auto again = replayed(live.path, live.test.model);
+      CHECK(again.shapes == shapes);
+      // What is copied has the puppets, too.
+      const auto copy = live.folder.path() / "copy.nendo";
+      REQUIRE(add_shapes(live.path, copy, live.test.model, 10.0));
+      CHECK(replayed(copy, live.test.model).shapes == shapes);
+      const auto summary = summarise(live.path);
+      REQUIRE(summary);
+      CHECK(summary->puppet_changes > 20);
     }
   }
 

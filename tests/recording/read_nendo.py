@@ -114,7 +114,8 @@ def sent(b):
 
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
-             15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 6: lambda e: {**settings(e), **brushes(e)}, 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             6: lambda e: {**settings(e), **brushes(e)}, 9: lambda e: {"mark": 1}, 10: lambda e: {"clutch": e.take("3B")}, 11: lambda e: {"role": e.take("HBB")},
+             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")
@@ -124,6 +125,21 @@ def tape(b):
         entries.append(dict(kind=kind, **forms[kind](body)))
         assert body.left() == 0, "an entry is too long"
     return entries
+
+
+def points(b):
+    return [b.take("3d") for _ in range(b.take("H"))]
+
+
+def puppet(b):
+    o = {"text": b.take(f"{b.take('I')}s").decode()}
+    o["functions"] = [dict(zip(("asked", "side", "signal", "held"), b.take("dBBB"))) for _ in range(b.take("H"))]
+    return dict(o, symmetric=b.take("B"), points=points(b))
+
+
+def puppet_version(b):
+    o = {"number": b.take("I"), "text": b.take(f"{b.take('I')}s").decode()}
+    return dict(o, points=points(b))
 
 
 def shape(b):
@@ -137,7 +153,7 @@ def main():
     assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 6, crc32c(data[:12])), "header"
     at = 16
     number = 0
-    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "REST": rest, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
+    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
     while at < len(data):
         magic, kind, size, found, check = struct.unpack_from("<4s4sIII", data, at)
         assert magic == b"NCHK" and check == crc32c(data[at:at + 16]) and found == number, f"chunk header at {at}"

@@ -10,6 +10,7 @@
 
 #include <nendo/recording/recorder.hpp>
 
+#include "support/any_puppet.hpp"
 #include "support/flow_fixtures.hpp"
 #include "support/late_maker.hpp"
 #include "support/temporary_folder.hpp"
@@ -43,8 +44,8 @@ inline recording::Setup setup_of(const LoopUnderTest& test) {
   setup.loop = recording::LoopSetup{"ball.obj", recording::sum_of(test.model.vertices),
                                     test.placement, test.options, "AVX2"};
   if (test.options.rig) {
-    setup.loop->puppet = test.options.rig->puppet().text;
-    setup.loop->puppet_starts = test.options.rig->starts();
+    setup.loop->puppet.text = test.options.rig->puppet().text;
+    setup.loop->puppet.starts = test.options.rig->starts();
   }
   return setup;
 }
@@ -57,7 +58,8 @@ struct RecordedLoop {
   LoopUnderTest test;
   recording::Setup setup;
   std::unique_ptr<recording::Recorder> recorder;
-  std::vector<std::string> told; ///< by the recorder's thread; read it after end()
+  recording::Recorder* other = nullptr; ///< to which the loop's log goes, if not to `recorder`
+  std::vector<std::string> told;        ///< by the recorder's thread; read it after end()
 
   explicit RecordedLoop(flow::Mode mode, hand::FilterKind filter = hand::FilterKind::off,
                         bool adapts = false, bool injective = false,
@@ -80,6 +82,13 @@ struct RecordedLoop {
     auto begun = recording::Recorder::begin(setup, input_log, std::move(options));
     if (!begun) throw std::runtime_error(begun.error().message);
     recorder = *std::move(begun);
+  }
+  /// As who runs the loop does. Returns false if it is refused.
+  bool change_puppet(const std::shared_ptr<const puppet::Rig>& rig) {
+    recording::Recorder* const tells = other != nullptr ? other : recorder.get();
+    if (tells != nullptr)
+      tells->add_puppet(test.loop->next_puppet(), {rig->puppet().text, rig->starts()});
+    return bool(test.loop->change_puppet(rig));
   }
   Result<recording::Recorded> end() {
     return recorder->end(recording::sum_of(test.loop->final_shape()));
@@ -143,6 +152,9 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
       played.test.commands.try_push(any_role(of_changes));
     if (changes && of_changes() % 10 == 0)
       loop.change_settings(any_settings(loop.settings(), of_changes));
+    if (changes && played.test.options.rig && of_changes() % 15 == 0)
+      played.change_puppet(
+          any_puppet(loop.puppet(loop.newest_puppet()), played.test.model, of_changes));
     if (changes) maker.turn(loop);
     const flow::Frame& frame = played.test.frame_after_tick(tick);
     see(frame);

@@ -39,7 +39,7 @@ SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
   return setup;
 }
 
-Eigen::Index control_points(const LoopOptions& options, std::size_t hands) {
+Eigen::Index points_at_first(const LoopOptions& options, std::size_t hands) {
   return options.rig ? options.rig->starts().cols() : 5 * static_cast<Eigen::Index>(hands);
 }
 
@@ -96,10 +96,10 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        std::vector<HandInput> hands, const LoopOptions& options,
                        const deform::BlockShape* first)
     : options_(options), units_per_metre_(placement.units_per_metre),
-      tips_(Points::Zero(3, control_points(options, count_hands(hands)))),
+      tips_(Points::Zero(3, points_at_first(options, count_hands(hands)))),
       versions_(first_version(model, options, first)),
       first_(first_setup(options, hands.front(), *versions_.front(), placement.units_per_metre)),
-      asked_model_(versions_.front().get()),
+      first_rig_(options.rig), puppets_{options.rig}, asked_model_(versions_.front().get()),
       shaping_(*asked_model_, tips_.cols(), shaping_options(options, first_)), asked_(first_),
       frames_(first_frame(shaping_, options.rig ? tips_.cols() : 0, placement.units_per_metre)) {
   assert(are_usable(hands));
@@ -130,9 +130,14 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     gestures_.emplace(*options.rig);
     rig_->set_state(options.rig_state);
     rig_->take_hold(hands_now());
+    held_at_.resize(rig_->values().size());
+    still_at_ = held_at_;
+  } else {
+    tip_supports_ = first_.options.deformer.supports;
   }
   compute_hands(frames_.back());
   grab_status_ = shaping_.begin(tips_);
+  note_hold();
 }
 
 DeformLoop::~DeformLoop() = default;
@@ -305,8 +310,17 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     tips_.middleCols<5>(column) = units_per_metre_ * shown.pose.fingertip_positions();
     column += 5;
   }
-  if (!rig_) return;
-  play_rig();
+  if (rig_) play_rig();
+  tell_rig(frame);
+}
+
+void DeformLoop::tell_rig(Frame& frame) const noexcept {
+  if (!rig_) {
+    frame.let_go = {};
+    frame.symmetric = false;
+    frame.function_count = 0;
+    return;
+  }
   for (const Side side : {Side::left, Side::right})
     frame.let_go[Placement::index_of(side)] = rig_->has_let_go(side);
   frame.symmetric = rig_->state().symmetric;
@@ -367,7 +381,9 @@ void DeformLoop::tick(const Pacer::Due& due) noexcept {
   shaping_.set_time(record.scheduled - first_due_);
   if (runs.deform) {
     const bool completes = taken_ != nullptr && taken_->ends_stroke();
+    const std::uint64_t holds = shaping_.sculptor().holds();
     frame.status = shaping_.shape(tips_, frame, stats_, completes);
+    if (shaping_.sculptor().holds() != holds) note_hold();
   }
   if (taken_ != nullptr) finish_change(frame);
   record.solved_ns = now_ns();

@@ -38,8 +38,6 @@ double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) n
   return sum(settings.radius_m) / sum(first.radius_m);
 }
 
-namespace {
-
 deform::Supports scaled(deform::Supports supports, double scale) {
   for (deform::Support& shared : supports.shared)
     shared.radius *= scale;
@@ -47,8 +45,6 @@ deform::Supports scaled(deform::Supports supports, double scale) {
     own.support.radius *= scale;
   return supports;
 }
-
-} // namespace
 
 SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first,
                             const LoopSettings& wanted, int hands, double units_per_metre) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <tuple>
 #include <utility>
 
 #include <nendo/base/relax.hpp>
@@ -21,6 +22,7 @@ void DeformLoop::take_change() noexcept {
     if (taken_->holds_still) log->command(HoldStill{});
     if (taken_->model) log->command(*taken_->model);
     if (taken_->settings) log->command(ChangeSettings{*taken_->settings});
+    if (taken_->rig) log->command(ChangePuppet{taken_->rig->number});
   }
   if (!taken_->log || !shaping_.is_held()) return;
   // What was recorded leads to a shape that is committed, so that a replay ends with the same one.
@@ -30,11 +32,46 @@ void DeformLoop::take_change() noexcept {
 
 /// After the tick has made its shape.
 void DeformLoop::finish_change(Frame& frame) noexcept {
-  if (taken_->holds_still) shaping_.hold_still(tips_, frame, stats_);
+  if (taken_->holds_still) {
+    shaping_.hold_still(tips_, frame, stats_);
+    if (rig_) std::copy(rig_->values().begin(), rig_->values().end(), still_at_.begin());
+  }
   if (taken_->settings) change_filters(taken_->settings->filter);
-  if (taken_->settings || taken_->model)
+  if (taken_->exchanges()) {
+    const bool holds_on = shaping_.holds_on(taken_->ready);
+    if (taken_->rig) take_rig(*taken_->rig, taken_->ready);
+    if (shaping_.is_still())
+      held_at_ = still_at_; // of the same size
+    else if (!holds_on)
+      note_hold();
     taken_->is_refused = !shaping_.exchange(taken_->ready, tips_, frame, stats_);
+    if (taken_->rig) tell_rig(frame);
+  }
   if (taken_->log) begin_anew(*taken_->log, frame);
+}
+
+/// The hands have taken hold where they are.
+void DeformLoop::note_hold() noexcept {
+  if (rig_) std::copy(rig_->values().begin(), rig_->values().end(), held_at_.begin());
+}
+
+/// `rig` then has what was before. If the shape is still held at the values at which the hands took
+/// hold of it, these are the starts.
+void DeformLoop::take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept {
+  if (rig.player) {
+    const auto hands = hands_now();
+    rig_ ? rig.player->go_on_from(*rig_, rig.from, hands) : rig.player->take_hold(hands);
+    for (std::size_t at = 0; at < rig.held_at.size(); ++at)
+      rig.held_at[at] = rig.from[at] < held_at_.size() ? held_at_[rig.from[at]] : 0.0;
+    rig.player->rig().place(rig.held_at, ready.starts);
+    rig.player->write(rig.tips);
+  }
+  std::swap(rig_, rig.player);
+  std::swap(gestures_, rig.gestures);
+  std::swap(held_at_, rig.held_at);
+  std::swap(still_at_, rig.still_at);
+  std::swap(tips_, rig.tips);
+  if (!rig_) place_tips();
 }
 
 /// The angles, and so the fingertips, may jump; the shape does not, since they take hold anew.
@@ -83,6 +120,7 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   last_due_ = {};                      // as in a loop that begins
   if (rig_) state.rig = rig_->state(); // which has room for it
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
+  note_hold();
   state.held = shaping_.is_held();
   state.shape.follow(shaping_.sculptor().rest());
 }
@@ -114,28 +152,144 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
   // Settings that the loop has not taken are as if nobody had asked for them.
   change.settings.reset();
   if (settings != change.before.settings) change.settings = settings;
-  if (change.settings || change.model)
-    shaping_.prepare(asked_, *asked_model_, change.ready);
+  if (change.exchanges())
+    make_ready(change);
   else
     change.ready = {};
   offer_change();
   return true;
 }
 
-/// Of a puppet. Returns false, and changes nothing, if its points are too near to each other.
-bool DeformLoop::set_surface(SculptorOptions& sculptor, const ModelVersion& model) const {
-  if (!options_.rig) return true;
-  auto surface = surface_for(*options_.rig, model.mesh, model.layout(), sculptor.deformer);
-  if (!surface) return false;
+void DeformLoop::make_ready(PreparedChange& change) {
+  Shaping::prepare(asked_, *asked_model_, control_points(asked_puppet_), change.ready);
+  change.ready.puppet = asked_puppet_;
+  change.ready.holds_on = change.rig && puppets_[asked_puppet_] && puppets_[change.rig->before];
+}
+
+/// Without their layers.
+Eigen::Index DeformLoop::hand_count() const noexcept {
+  return std::count_if(hands_.begin(), hands_.end(),
+                       [](const Hand& hand) { return hand.is_lowest; });
+}
+
+Eigen::Index DeformLoop::control_points(std::uint32_t puppet) const noexcept {
+  const puppet::Rig* const rig = puppets_[puppet].get();
+  return rig != nullptr ? rig->starts().cols() : 5 * hand_count();
+}
+
+/// Of a puppet. Changes nothing if its points are too near to each other.
+Result<void> DeformLoop::set_surface(SculptorOptions& sculptor, const ModelVersion& model) const {
+  const puppet::Rig* const rig = puppets_[asked_puppet_].get();
+  if (rig == nullptr) return {};
+  auto surface = surface_for(*rig, model.mesh, model.layout(), sculptor.deformer);
+  if (!surface) return surface.error();
   sculptor.surface = *std::move(surface);
-  return true;
+  return {};
+}
+
+/// What first_ would be with that puppet.
+SculptorSetup DeformLoop::first_with(std::uint32_t puppet) const {
+  const auto& rig = puppets_[puppet];
+  if (rig == first_rig_) return first_;
+  SculptorSetup setup = first_;
+  deform::DeformerOptions& deformer = setup.options.deformer;
+  if (!rig) {
+    deformer.supports = *tip_supports_; // since the loop began without a puppet
+  } else {
+    deformer.supports = rig->supports();
+    if (first_rig_) // whose radii people may have scaled since
+      deformer.supports =
+          scaled(deformer.supports, deform::least_radius(first_.options.deformer.supports) /
+                                        deform::least_radius(first_rig_->supports()));
+  }
+  setup.options.piece_length =
+      first_.settings.piece_fraction * deform::least_radius(deformer.supports);
+  setup.options.surface.reset();
+  return setup;
+}
+
+/// What asked_ would be with that puppet.
+Result<SculptorSetup> DeformLoop::setup_with(std::uint32_t puppet) const {
+  const SculptorSetup first = first_with(puppet);
+  const auto& rig = puppets_[puppet];
+  const auto& before = puppets_[asked_puppet_];
+  SculptorSetup setup = with_settings(first, first, asked_.settings,
+                                      rig ? 0 : static_cast<int>(hand_count()), units_per_metre_);
+  setup.options.surface.reset();
+  if (!rig) return setup;
+  const auto of_field = [](const puppet::Rig& of) {
+    const puppet::Puppet& all = of.puppet();
+    return std::tie(all.distance, all.points, all.parts, all.masks, of.starts());
+  };
+  if (before && of_field(*rig) == of_field(*before)) {
+    setup.options.surface = asked_.options.surface;
+    return setup;
+  }
+  auto surface =
+      surface_for(*rig, asked_model_->mesh, asked_model_->layout(), setup.options.deformer);
+  if (!surface) return surface.error();
+  setup.options.surface = *std::move(surface);
+  return setup;
+}
+
+ReadyRig DeformLoop::ready_rig(std::uint32_t number, std::uint32_t before) const {
+  ReadyRig ready{number, before};
+  ready.tips = deform::Points::Zero(3, control_points(number));
+  const auto& rig = puppets_[number];
+  if (!rig) return ready;
+  ready.player.emplace(rig);
+  ready.gestures.emplace(*rig);
+  const std::size_t functions = rig->puppet().functions.size();
+  ready.held_at.resize(functions);
+  ready.still_at.resize(functions);
+  ready.from = puppets_[before]
+                   ? puppet::functions_before(puppets_[before]->puppet(), rig->puppet())
+                   : std::vector<std::size_t>(functions, puppet::no_function);
+  return ready;
+}
+
+Result<void> DeformLoop::change_puppet(std::shared_ptr<const puppet::Rig> rig) {
+  assert(rig != nullptr);
+  puppets_.push_back(std::move(rig));
+  auto changed = change_puppet(next_puppet() - 1);
+  if (!changed) puppets_.pop_back();
+  return changed;
+}
+
+Result<void> DeformLoop::change_puppet(std::uint32_t number) {
+  is_changing();
+  if (number >= puppets_.size()) return Error{Errc::bad_input, "there is no such puppet"};
+  if (number == asked_puppet_) return {};
+  if (is_still_ || (change_ && (change_->holds_still || change_->model || change_->log)))
+    return Error{Errc::failed, "the model or the recording is being changed; try it again"};
+  auto setup = setup_with(number);
+  if (!setup) return setup.error();
+  PreparedChange& change = next_change();
+  const std::uint32_t before = change.rig ? change.rig->before : asked_puppet_;
+  asked_ = *std::move(setup);
+  asked_puppet_ = number;
+  if (change.settings) { // which are asked for together with it
+    const SculptorSetup first = first_with(number);
+    change.before =
+        with_settings(first, first, change.before.settings,
+                      puppets_[number] ? 0 : static_cast<int>(hands_.size()), units_per_metre_);
+  }
+  change.rig.reset();
+  if (number != before) change.rig = ready_rig(number, before);
+  if (change.exchanges())
+    make_ready(change);
+  else
+    change.ready = {};
+  offer_change();
+  return {};
 }
 
 /// Nothing, if nothing can be done with the settings.
 std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
                                                    const LoopSettings& settings) const {
-  const int hands = options_.rig ? 0 : static_cast<int>(tips_.cols() / 5);
-  SculptorSetup setup = with_settings(before, first_, settings, hands, units_per_metre_);
+  const int hands = puppets_[asked_puppet_] ? 0 : static_cast<int>(hand_count());
+  SculptorSetup setup =
+      with_settings(before, first_with(asked_puppet_), settings, hands, units_per_metre_);
   setup.options.surface = asked_.options.surface; // others may be another version's
   const bool same =
       settings.kernel == asked_.settings.kernel && settings.radius_m == asked_.settings.radius_m;
@@ -151,7 +305,9 @@ void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   begins.state.placement.units_per_metre = units_per_metre_;
   begins.state.shape = like;
   begins.state.inputs.resize(hands_.size());
-  if (rig_) begins.state.rig.functions.resize(rig_->values().size());
+  begins.state.puppet = puppets_[asked_puppet_];
+  if (begins.state.puppet)
+    begins.state.rig.functions.resize(begins.state.puppet->puppet().functions.size());
   change.log = std::move(begins);
   offer_change();
 }
@@ -183,6 +339,7 @@ bool DeformLoop::is_changing() {
       for (const ModelVersion* at = asked_model_->before; at != nullptr; at = at->before)
         ++states_.back().subdivisions;
       first_ = asked_; // from here on, as a replay that begins here
+      first_rig_ = puppets_[asked_puppet_];
     }
     change_.reset();
   }
@@ -227,11 +384,13 @@ void DeformLoop::keep_model() {
 
 bool DeformLoop::change_to(const Awaited& awaited) {
   ModelVersion* const version = version_numbered(awaited.model);
-  if (version == nullptr || !awaited.settings.are_usable()) return false;
+  if (version == nullptr || !awaited.settings.are_usable() || awaited.puppet >= puppets_.size())
+    return false;
   if (version != asked_model_) {
     if (is_changing() || is_still_) return false;
     offer_model(*version, ModelSource::kept);
   }
+  if (awaited.puppet != asked_puppet_ && !change_puppet(awaited.puppet)) return false;
   return change_settings(awaited.settings);
 }
 
@@ -239,8 +398,10 @@ bool DeformLoop::change_to(const Awaited& awaited) {
 void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
   PreparedChange& change = next_change();
   change.model = {version.number, source};
-  if (&version != asked_model_) set_surface(asked_.options, version);
-  shaping_.prepare(asked_, version, change.ready);
+  // Points that can be solved for on one version can be on its subdivisions.
+  if (&version != asked_model_) static_cast<void>(set_surface(asked_.options, version));
+  Shaping::prepare(asked_, version, control_points(asked_puppet_), change.ready);
+  change.ready.puppet = asked_puppet_;
   change.ready.is_new_model = source == ModelSource::subdivided;
   model_before_ = asked_model_;
   if (&version != asked_model_)
@@ -254,7 +415,7 @@ void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
 void DeformLoop::go_back() {
   asked_model_ = model_before_;
   if (change_->settings) asked_ = change_->before;
-  set_surface(asked_.options, *asked_model_);
+  static_cast<void>(set_surface(asked_.options, *asked_model_));
 }
 
 /// Where a new version has taken the way that a redo would have gone, frees those of that way.

@@ -109,9 +109,9 @@ Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
     : deformer_(make(shape, control_points, options)) {}
 
 FieldStatus Sculptor::grab(const Points& tips) noexcept {
-  return either(
+  return counted(either(
       deformer_, [&](auto& type1) { return type1.grab(tips); },
-      [&](Type2Deformer& type2) { return type2.begin(tips); });
+      [&](Type2Deformer& type2) { return type2.begin(tips); }));
 }
 
 FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
@@ -135,35 +135,41 @@ FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
 }
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
-  return either(
+  return counted(either(
       deformer_, [&](auto& type1) { return type1.commit(tips); },
-      [&](Type2Deformer& type2) { return type2.begin(tips); });
+      [&](Type2Deformer& type2) { return type2.begin(tips); }));
 }
 
 FieldStatus Sculptor::grab_on(const Points& tips) noexcept {
-  return std::visit([&](auto& deformer) { return deformer.grab(tips); }, deformer_);
+  return counted(std::visit([&](auto& deformer) { return deformer.grab(tips); }, deformer_));
 }
 
 void Sculptor::release(bool is_step) noexcept {
   std::visit([&](auto& deformer) { deformer.release(is_step); }, deformer_);
 }
 
+void Sculptor::drop(bool is_step) noexcept {
+  either(
+      deformer_, [&](auto& type1) { type1.drop(is_step); },
+      [&](Type2Deformer& type2) { type2.release(is_step); });
+}
+
 FieldStatus Sculptor::reset(const Points& tips) noexcept {
-  return std::visit([&](auto& deformer) { return deformer.reset(tips); }, deformer_);
+  return counted(std::visit([&](auto& deformer) { return deformer.reset(tips); }, deformer_));
 }
 
 FieldStatus Sculptor::undo(const Points& tips) noexcept {
-  return std::visit([&](auto& deformer) { return deformer.undo(tips); }, deformer_);
+  return counted(std::visit([&](auto& deformer) { return deformer.undo(tips); }, deformer_));
 }
 
 FieldStatus Sculptor::take_back(const Points& tips) noexcept {
-  return either(
+  return counted(either(
       deformer_, [&](auto& type1) { return type1.take_back(tips); },
-      [&](Type2Deformer& type2) { return type2.undo(tips); });
+      [&](Type2Deformer& type2) { return type2.undo(tips); }));
 }
 
 FieldStatus Sculptor::redo(const Points& tips) noexcept {
-  return std::visit([&](auto& deformer) { return deformer.redo(tips); }, deformer_);
+  return counted(std::visit([&](auto& deformer) { return deformer.redo(tips); }, deformer_));
 }
 
 std::size_t Sculptor::undo_steps() const noexcept {
@@ -207,6 +213,18 @@ void Sculptor::tell(deform::SurfaceMove& move) const noexcept {
     surface->tell(move);
   else
     move.clear();
+}
+
+bool Sculptor::has_room(const deform::SurfaceMove& move) const noexcept {
+  const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_);
+  return surface == nullptr || move.vectors.cols() >= surface->vector_count();
+}
+
+deform::SurfaceMove Sculptor::room_to_tell() const {
+  deform::SurfaceMove room;
+  if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
+    room.vectors.setZero(3, surface->vector_count());
+  return room;
 }
 
 bool Sculptor::moves_anything() const noexcept {

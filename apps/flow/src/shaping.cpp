@@ -53,6 +53,7 @@ void Shaping::ask(Request request) noexcept {
 FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
                            bool completes) noexcept {
   make_room(frame);
+  if (std::exchange(leap_due_, false)) ++jumps_;
   if (!is_still_) take_steps(tips, stats);
   if (!is_still_ && !awaited_ && std::exchange(anew_due_, false) && held_) take_hold_anew(tips);
   if (!is_still_ && !held_ && hold_wanted_) {
@@ -89,7 +90,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   sculptor_->tell(frame.surface);
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  if (!sculptor_->is_told_by_fields()) ++(sculptor_->mode() == Mode::type2 ? brushed_ : leaps_);
+  if (!sculptor_->is_told_by_fields()) ++(sculptor_->mode() == Mode::type2 ? jumps_ : leaps_);
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
   // What cannot be committed now stays held, and is tried again at the next tick.
@@ -124,12 +125,13 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   stats.undo_steps = steps_to_undo();
   stats.forgotten_steps = sculptor_->forgotten_steps();
   frame.commits = stats.commits + otherwise_ended_;
-  frame.undos = stats.undos + stats.redos + stats.resets + leaps_ + brushed_;
+  frame.undos = stats.undos + stats.redos + stats.resets + leaps_ + jumps_;
   frame.leaps = leaps_;
   frame.undo_steps = undo_steps();
   frame.redo_steps = steps_to_redo();
   frame.awaited = awaited_;
   frame.steps_due = static_cast<std::uint32_t>(steps_due_.size());
+  frame.puppet = puppet_;
   list_steps(frame.steps);
   frame.steps.in_hand = is_in_hand();
 }
@@ -144,6 +146,13 @@ void Shaping::make_room(Frame& frame) noexcept {
       break;
     }
   }
+  if (!sculptor_->has_room(frame.surface)) {
+    for (auto& room : surface_room_) {
+      if (!sculptor_->has_room(room)) continue;
+      std::swap(room, frame.surface);
+      break;
+    }
+  }
   if (frame.model == model_->number) return;
   for (auto& room : shape_room_) {
     if (room.model != model_->number) continue;
@@ -153,11 +162,19 @@ void Shaping::make_room(Frame& frame) noexcept {
   }
 }
 
-void Shaping::prepare(const SculptorSetup& setup, ModelVersion& model, ReadySculptor& ready) const {
+void Shaping::prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::Index control_points,
+                      ReadySculptor& ready) {
   ready.model = &model;
-  ready.sculptor = sculptor_on(model, still_tips_.cols(), setup.options);
+  ready.sculptor = sculptor_on(model, control_points, setup.options);
   ready.settings = setup.settings;
+  ready.still_tips = ready.starts = Points::Zero(3, control_points);
   ready.room.fill(ready.sculptor->fields());
+  ready.surface_room.fill(ready.sculptor->room_to_tell());
+}
+
+bool Shaping::holds_on(const ReadySculptor& ready) const noexcept {
+  return ready.holds_on && held_ && !is_still_ && sculptor_->mode() == Mode::type1 &&
+         ready.sculptor->mode() == Mode::type1;
 }
 
 bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
@@ -165,13 +182,16 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
   ModelVersion& next = *ready.model;
   const bool other_model = &next != model_;
   const Awaited before = in_force();
-  const Awaited after{ready.settings, next.number};
+  const Awaited after{ready.settings, next.number, ready.puppet};
+  const bool other_puppet = ready.puppet != puppet_;
+  const bool holds_on = this->holds_on(ready);
   // A commit in this tick may have come before it, and then something else is to be undone next.
   const bool is_step_over = awaited_ == after && other_of(steps_due_.front()) == after;
   const bool is_refused = other_model && !ready.is_new_model && !is_step_over;
   const bool is_long_ago = !exchanged_at_ || time_ - *exchanged_at_ >= one_step;
-  const bool is_step = ready.is_new_model || (is_long_ago && !is_refused);
-  sculptor_->release(is_step && !is_step_over);
+  const bool is_step = ready.is_new_model || other_puppet || (is_long_ago && !is_refused);
+  const bool ends_step = is_step && !is_step_over;
+  holds_on ? sculptor_->drop(ends_step) : sculptor_->release(ends_step);
   in_step_ = !is_step && !is_step_over && (in_step_ || (held_ && shaped_));
   if (is_step_over) {
     const Request step = steps_due_.front();
@@ -182,20 +202,25 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
   } else if (!is_refused) {
     if (ready.is_new_model) note_model(next, before.settings);
     go_on_with(ready);
+    if (other_puppet) note_puppet(before);
     // What comes behind another model is a step of its own.
     if (settings_ != before.settings) note_settings(before.settings, is_step);
   }
-  exchanged_at_ = other_model ? std::nullopt : std::optional(time_);
+  exchanged_at_ = other_model || other_puppet ? std::nullopt : std::optional(time_);
   awaited_.reset();
   shaped_ = false;
   // Hands that cannot take hold now try it again at each tick.
-  if (held_) held_ = is_solved(sculptor_->grab_on(is_still_ ? still_tips_ : tips));
+  const Points& held_at = holds_on ? ready.starts : is_still_ ? still_tips_ : tips;
+  if (held_) held_ = is_solved(sculptor_->grab_on(held_at));
   is_still_ = false;
   if (frame.model != model_->number) {
     make_room(frame);
     show_rest(frame);
   }
-  ++otherwise_ended_;
+  if (holds_on)
+    leap_due_ = true;
+  else
+    ++otherwise_ended_;
   ++stats.changes;
   tell(frame, stats);
   return !is_refused;
@@ -206,6 +231,9 @@ void Shaping::go_on_with(ReadySculptor& ready) noexcept {
   std::swap(settings_, ready.settings);
   std::swap(sculptor_, ready.sculptor);
   std::swap(room_, ready.room);
+  std::swap(surface_room_, ready.surface_room);
+  std::swap(puppet_, ready.puppet);
+  if (still_tips_.cols() != ready.still_tips.cols()) std::swap(still_tips_, ready.still_tips);
   if (ready.model == model_) return;
   std::swap(model_, ready.model);
   std::swap(shape_room_, ready.shape_room);

@@ -53,8 +53,12 @@ bool Shaping::take_step(Request step, const Points& tips, LoopStats& stats) noex
 /// step comes before it. By the old rule (LoopOptions::pull_is_step), what they hold in type 1 goes
 /// with it.
 bool Shaping::is_change_next(Request step) const noexcept {
-  if (step == Request::reset || (step == Request::undo && is_in_hand())) return false;
-  return other_of(step).has_value();
+  if (step == Request::reset) return false;
+  const auto other = other_of(step);
+  if (!other) return false;
+  // What hands pull goes on across an edit of their puppet.
+  const bool goes_on = other->puppet != puppet_ && is_pulled() && !in_step_;
+  return step != Request::undo || goes_on || !is_in_hand();
 }
 
 /// That to which the next step leads, if it is a change.
@@ -95,7 +99,7 @@ void Shaping::step_over_change(Request step, ModelVersion& version,
 
 /// The step between two versions stands in the histories of both.
 void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) noexcept {
-  step_over_change(step, *model_, {before.settings, next.number});
+  step_over_change(step, *model_, {before.settings, next.number, before.puppet});
   if (&next == model_) return;
   step_over_change(step, next, before);
   if (step == Request::undo) next.behind = model_;
@@ -106,7 +110,7 @@ void Shaping::step_to(Request step, ModelVersion& next, const Awaited& before) n
 void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
   deform::SculptedShape& shape = model_->shape;
   const StepNote* const last = is_step ? nullptr : shape.to_undo();
-  NotedStep noted{step_now(StepKind::settings), {before, model_->number}};
+  NotedStep noted{step_now(StepKind::settings), {before, model_->number, puppet_}};
   const bool goes_on =
       last != nullptr && is_setting(NotedStep::of(*last).step.kind) && shape.redo_steps() == 0;
   if (goes_on) noted.other = NotedStep::of(*last).other;
@@ -122,8 +126,15 @@ void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcep
   const Step step = step_now(StepKind::subdivide);
   next.before = model_;
   model_->behind = nullptr; // as mark() forgets what was undone
-  model_->shape.mark(NotedStep{step, {before, next.number}}.note());
-  next.shape.mark(NotedStep{step, {before, model_->number}}.note());
+  model_->shape.mark(NotedStep{step, {before, next.number, puppet_}}.note());
+  next.shape.mark(NotedStep{step, {before, model_->number, puppet_}}.note());
+}
+
+void Shaping::note_puppet(const Awaited& before) noexcept {
+  model_->shape.mark(NotedStep{
+      step_now(StepKind::puppet),
+      {before.settings, model_->number,
+       before.puppet}}.note());
 }
 
 // What was shaped since the last step is a step of its own. By the old rule, Type-1 drops it

@@ -43,7 +43,7 @@ GestureClutch::GestureClutch(const Rig& rig) : options_(rig.puppet().clutch) {
 }
 
 double GestureClutch::bound(ClutchMeans means) const noexcept {
-  return means == ClutchMeans::fist ? options_.fist_rad : -options_.pinch_m;
+  return means == ClutchMeans::fist ? from_degrees(options_.fist_deg) : -options_.pinch_m;
 }
 
 void GestureClutch::watch(RigPlayer& player, const RigPlayer::Hands& hands,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include <nendo/base/files.hpp>
@@ -125,6 +126,23 @@ std::optional<std::size_t> Puppet::function_named(std::string_view name) const n
                                   [&](const Function& known) { return known.name == name; });
   if (found == functions.end()) return std::nullopt;
   return static_cast<std::size_t>(found - functions.begin());
+}
+
+bool operator==(const PuppetPart& one, const PuppetPart& other) noexcept {
+  const auto rest = [](const PuppetPart& part) {
+    return std::tie(part.first, part.last, part.points, part.is_affine);
+  };
+  if (one.inside.has_value() != other.inside.has_value() || rest(one) != rest(other)) return false;
+  return !one.inside || (one.inside->lowest == other.inside->lowest &&
+                         one.inside->highest == other.inside->highest);
+}
+
+bool operator==(const Puppet& one, const Puppet& other) noexcept {
+  const auto all = [](const Puppet& puppet) {
+    return std::tie(puppet.model, puppet.distance, puppet.mirrors, puppet.points, puppet.functions,
+                    puppet.parts, puppet.masks, puppet.clutch);
+  };
+  return all(one) == all(other);
 }
 
 std::string twin_of(const std::string& name) {

@@ -39,14 +39,14 @@ public:
     puppet_.distance = distance == "air" ? Distance::air : Distance::surface;
     if (distance != "air" && distance != "surface")
       reader_.complain(root, "distance must be \"surface\" or \"air\"");
-    const bool mirrors = root.get("mirror") != nullptr;
-    if (mirrors && reader_.text(root, "mirror") != "x")
+    puppet_.mirrors = root.get("mirror") != nullptr;
+    if (puppet_.mirrors && reader_.text(root, "mirror") != "x")
       reader_.complain(root, "mirror must be \"x\": the plane x = 0; or leave it out");
     if (root.get("clutch") != nullptr) read_clutch(root);
     read_points(root);
-    if (mirrors) mirror_points();
+    if (puppet_.mirrors) mirror_points();
     read_functions(root);
-    if (mirrors) mirror_functions();
+    if (puppet_.mirrors) mirror_functions();
     if (root.get("parts") != nullptr) read_list(root, "parts", [&](const auto& one) { part(one); });
     if (root.get("masks") != nullptr) read_list(root, "masks", [&](const auto& one) { mask(one); });
     check(root);
@@ -119,7 +119,7 @@ private:
         clutch.means[static_cast<std::size_t>(side)] =
             reader_.named(*table, key, clutch_means_named);
     clutch.held_s = number_within(*table, "held_s", clutch.held_s, 0.25, 5.0);
-    clutch.fist_rad = from_degrees(number_within(*table, "fist_deg", 200.0, 90.0, 250.0));
+    clutch.fist_deg = number_within(*table, "fist_deg", clutch.fist_deg, 90.0, 250.0);
     clutch.pinch_m = number_within(*table, "pinch_m", clutch.pinch_m, 0.005, 0.04);
   }
 
@@ -205,23 +205,20 @@ private:
     const toml::table* const table = reader_.table(function, "turn");
     if (table == nullptr) return;
     reader_.allow_only(*table, {"degrees", "axis", "through", "points"});
-    Move turn;
-    const double turn_rad = from_degrees(reader_.number(*table, "degrees"));
-    if (!(std::abs(turn_rad) <= from_degrees(360.0)))
+    AxisTurn& turn = read.turn.emplace();
+    turn.degrees = reader_.number(*table, "degrees");
+    if (!(std::abs(turn.degrees) <= 360.0))
       reader_.complain(*table, "degrees must be within -360 and 360");
     turn.axis = place(*table, "axis");
     turn.through = place(*table, "through");
     if (!(turn.axis.norm() > 1e-9)) reader_.complain(*table, "the axis has no direction");
-    turn.axis.stableNormalize();
     const toml::table* const points = reader_.table(*table, "points");
     if (points == nullptr) return;
     for (const auto& [key, node] : *points) {
-      turn.point = point_named(node, key.str());
       const double part = reader_.number(node, key.str());
       if (!(std::abs(part) <= largest_value))
         reader_.complain(node, std::string(key.str()) + " must be within -1000 and 1000");
-      turn.turn_rad = turn_rad * part;
-      read.moves.push_back(turn);
+      read.moves.push_back({point_named(node, key.str()), Vector3d::Zero(), part});
     }
   }
   void move(const toml::table& function, Function& read) {
@@ -245,11 +242,14 @@ private:
                       [&](const Function& known) { return known.name == twin.name; }))
         continue;
       twin.input = twin.input.mirrored();
+      twin.is_twin = true;
+      if (twin.turn) {
+        twin.turn->through = twin.turn->through.cwiseProduct(flip);
+        twin.turn->axis = -twin.turn->axis.cwiseProduct(flip); // of a mirrored turn
+      }
       for (Move& move : twin.moves) {
         move.point = find(twin_of(puppet_.points[move.point].name)).value_or(move.point);
         move.vector = move.vector.cwiseProduct(flip);
-        move.through = move.through.cwiseProduct(flip);
-        move.axis = -move.axis.cwiseProduct(flip); // of a mirrored turn
       }
       puppet_.functions.push_back(std::move(twin));
     }

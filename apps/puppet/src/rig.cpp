@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/base/units.hpp>
+
 namespace nendo::puppet {
 
 using deform::Points;
@@ -13,10 +15,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-Vector3d vector_of(const Move& move, const Vector3d& start) {
-  if (move.turn_rad == 0.0) return move.vector;
-  const Vector3d arm = start - move.through;
-  return move.vector + Eigen::AngleAxisd(move.turn_rad, move.axis) * arm - arm;
+Vector3d vector_of(const Function& function, const Move& move, const Vector3d& start) {
+  if (!move.part || !function.turn) return move.vector;
+  const double turn_rad = from_degrees(function.turn->degrees) * *move.part;
+  if (turn_rad == 0.0) return Vector3d::Zero();
+  Vector3d axis = function.turn->axis;
+  axis.stableNormalize();
+  const Vector3d arm = start - function.turn->through;
+  return Eigen::AngleAxisd(turn_rad, axis) * arm - arm;
 }
 
 constexpr double straight = 0.7; // of the way to a limit, of a function that eases
@@ -73,7 +79,7 @@ void Rig::place_vectors() {
     Points& vectors = vectors_.emplace_back(Points::Zero(3, starts_.cols()));
     for (const Move& move : function.moves) {
       const auto point = static_cast<Index>(move.point);
-      vectors.col(point) += vector_of(move, starts_.col(point));
+      vectors.col(point) += vector_of(function, move, starts_.col(point));
     }
   }
 }
@@ -89,6 +95,28 @@ deform::Supports Rig::supports() const {
   for (std::size_t at = 0; at < puppet_.points.size(); ++at)
     own.push_back({static_cast<Index>(at), {puppet_.points[at].radius}});
   return deform::with_common(std::move(own));
+}
+
+std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& after) {
+  const auto number_of = [&](const auto& is_it) {
+    const auto found = std::find_if(before.functions.begin(), before.functions.end(), is_it);
+    return found == before.functions.end()
+               ? no_function
+               : static_cast<std::size_t>(found - before.functions.begin());
+  };
+  std::vector<std::size_t> numbers;
+  for (const Function& function : after.functions)
+    numbers.push_back(number_of([&](const auto& other) { return other.name == function.name; }));
+  for (std::size_t at = 0; at < numbers.size(); ++at) { // with other names
+    if (numbers[at] != no_function) continue;
+    Function named = after.functions[at];
+    const std::size_t number = number_of([&](const Function& other) {
+      named.name = other.name;
+      return named == other;
+    });
+    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) numbers[at] = number;
+  }
+  return numbers;
 }
 
 RigPlayer::RigPlayer(std::shared_ptr<const Rig> rig)
@@ -178,6 +206,27 @@ void RigPlayer::set_input(std::size_t function, HandSignal input, const Hands& h
 
 void RigPlayer::set_symmetric(bool on) noexcept {
   state_.symmetric = on;
+  set_values();
+}
+
+void RigPlayer::go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
+                           const Hands& hands) noexcept {
+  const auto& functions = rig_->puppet().functions;
+  for (std::size_t at = 0; at < holds_.size() && at < from.size(); ++at) {
+    FunctionState& state = state_.functions[at];
+    if (from[at] < before.holds_.size()) {
+      const Function& was = before.rig_->puppet().functions[from[at]];
+      const HandSignal input = state.input;
+      state = before.state_.functions[from[at]];
+      const HandSignal played = state.input;
+      if (was.input != input) state.input = input;
+      holds_[at] = before.holds_[from[at]];
+      if (state.input == played && was.travel == functions[at].travel) continue;
+    }
+    take_hold(at, hands);
+  }
+  state_.symmetric = before.state_.symmetric;
+  state_.hand_holds = before.state_.hand_holds;
   set_values();
 }
 

@@ -50,15 +50,23 @@ Result<std::unique_ptr<RigShapes>> RigShapes::make(std::shared_ptr<const Rig> ri
   return std::unique_ptr<RigShapes>(new RigShapes(std::move(parts)));
 }
 
-Points RigShapes::at(std::span<const double> values) {
+const deform::BlockShape& RigShapes::blocks_at(std::span<const double> values) {
   Points ends;
   parts_->rig->place(values, ends);
+  return blocks_with(ends);
+}
+
+const deform::BlockShape& RigShapes::blocks_with(const Points& ends) {
   if (parts_->along)
     parts_->along->apply(ends, parts_->out);
   else
     parts_->through->apply(ends, parts_->out);
+  return parts_->out;
+}
+
+Points RigShapes::at(std::span<const double> values) {
   Points vertices;
-  parts_->shape.layout().unpack(parts_->out, vertices);
+  parts_->shape.layout().unpack(blocks_at(values), vertices);
   return vertices;
 }
 

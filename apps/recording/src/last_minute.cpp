@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include <poll.h>
@@ -42,6 +43,21 @@ LastMinute::LastMinute(std::vector<std::byte> setup, std::uint32_t setup_chunks,
                        HostClock::duration span, std::size_t bytes)
     : setup_(std::move(setup)), setup_chunks_(setup_chunks), span_(span), memory_(bytes),
       slots_(slot_count) {}
+
+LastMinute::~LastMinute() {
+  for (Lasting* at = lasting_.load(); at != nullptr;)
+    delete std::exchange(at, at->next.load());
+}
+
+void LastMinute::add_chunk(driver::ChunkType type, std::span<const std::byte> payload) {
+  auto added = std::make_unique<Lasting>();
+  driver::append_chunk(added->bytes, type, setup_chunks_ + lasting_count_, payload);
+  ++lasting_count_;
+  std::atomic<Lasting*>* end = &lasting_;
+  while (Lasting* const there = end->load())
+    end = &there->next;
+  end->store(added.release(), std::memory_order_release);
+}
 
 void LastMinute::drop_oldest() noexcept {
   const std::uint64_t oldest = oldest_.load(std::memory_order_relaxed);
@@ -96,6 +112,9 @@ void LastMinute::freeze() noexcept {
 bool LastMinute::write(int fd) const noexcept {
   if (!write_all(fd, setup_)) return false;
   std::uint32_t number = setup_chunks_;
+  for (const Lasting* at = lasting_.load(std::memory_order_acquire); at != nullptr;
+       at = at->next.load(std::memory_order_acquire), ++number)
+    if (!write_all(fd, at->bytes)) return false;
   const std::uint64_t dropped = dropped_.load(std::memory_order_acquire);
   if (dropped > 0) {
     std::array<std::byte, 10> gap{}; // an entry's head, and how many entries

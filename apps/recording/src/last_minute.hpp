@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <nendo/base/units.hpp>
+#include <nendo/driver/chunk_file.hpp>
 
 namespace nendo::recording {
 
@@ -22,6 +23,13 @@ public:
   /// it.
   LastMinute(std::vector<std::byte> setup, std::uint32_t setup_chunks, HostClock::duration span,
              std::size_t bytes);
+  ~LastMinute();
+  LastMinute(const LastMinute&) = delete;
+  LastMinute& operator=(const LastMinute&) = delete;
+
+  /// Adds a chunk behind the setup, which stays whatever is dropped. To be called by the thread
+  /// that pushes. Allocates.
+  void add_chunk(driver::ChunkType type, std::span<const std::byte> payload);
 
   /// Adds the payload of an input log chunk with that many entries, which ended at `time`. A
   /// payload larger than an eighth of the memory is dropped. Only one thread may call this.
@@ -43,12 +51,19 @@ private:
     std::uint64_t entries = 0;
     HostTime time{};
   };
+  /// A whole chunk, in a list that a signal handler may go through while it grows.
+  struct Lasting {
+    std::vector<std::byte> bytes;
+    std::atomic<Lasting*> next{nullptr};
+  };
   const Slot& slot(std::uint64_t number) const noexcept { return slots_[number % slots_.size()]; }
   std::size_t place_for(std::size_t bytes) noexcept;
   void drop_oldest() noexcept;
 
   std::vector<std::byte> setup_;
   std::uint32_t setup_chunks_;
+  std::atomic<Lasting*> lasting_{nullptr};
+  std::uint32_t lasting_count_ = 0;
   HostClock::duration span_;
   std::vector<std::byte> memory_;
   std::vector<Slot> slots_;

@@ -21,13 +21,10 @@ bool points_exist(const deform::Supports& supports, Eigen::Index points) {
 
 /// Puts the recorded puppet, if there is one, into the options.
 Result<void> set_rig(const LoopSetup& loop, const deform::Mesh& model, flow::LoopOptions& options) {
-  if (loop.puppet.empty()) return {};
-  auto read = puppet::parse_puppet(loop.puppet, "the recorded puppet");
-  if (!read) return read.error();
-  if (const auto fits = puppet::check_fits(*read, model); !fits) return fits;
-  if (static_cast<std::size_t>(loop.puppet_starts.cols()) != read->points.size())
-    return Error{Errc::bad_input, "the recorded puppet has other points than its text"};
-  options.rig = std::make_shared<const puppet::Rig>(*std::move(read), loop.puppet_starts);
+  if (loop.puppet.text.empty()) return {};
+  auto rig = rig_of(loop.puppet, model);
+  if (!rig) return rig.error();
+  options.rig = *std::move(rig);
   if (!points_exist(options.sculptor.deformer.supports, options.rig->starts().cols()))
     return Error{Errc::bad_input, std::string(without_loop)};
   auto surface = flow::surface_for(*options.rig, model, deform::BlockLayout(model.vertices),
@@ -117,6 +114,17 @@ bool LoopReplay::follow(const flow::ChangeModel& change) {
   return true;
 }
 
+/// Makes that puppet, or goes back to it. Returns false if the loop cannot have it.
+bool LoopReplay::follow(const PuppetChange& change) {
+  const auto known = puppets_.find(change.number);
+  if (known != puppets_.end()) return bool(loop_->change_puppet(known->second));
+  if (!change.puppet) return bool(loop_->change_puppet(0));
+  auto rig = rig_of(*change.puppet, loop_->model(0)->mesh);
+  if (!rig) return false;
+  puppets_[change.number] = loop_->next_puppet();
+  return bool(loop_->change_puppet(*std::move(rig)));
+}
+
 bool LoopReplay::feed(const Entry& entry) noexcept {
   if (const auto* sample = std::get_if<driver::RecordedSample>(&entry)) {
     take(*sample);
@@ -126,6 +134,8 @@ bool LoopReplay::feed(const Entry& entry) noexcept {
     exact_ = loop_->hold_still() && exact_;
   } else if (const auto* change = std::get_if<flow::ChangeModel>(&entry)) {
     exact_ = follow(*change) && exact_;
+  } else if (const auto* puppet = std::get_if<PuppetChange>(&entry)) {
+    exact_ = follow(*puppet) && exact_;
   } else if (const auto* tick = std::get_if<flow::LoggedTick>(&entry)) {
     loop_->refill_undo();
     loop_->tick(tick->number, tick->scheduled, tick->woke);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <map>
+#include <memory>
 #include <mutex>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <system_error>
@@ -56,6 +59,11 @@ public:
   }
 
   void save_last_minute() noexcept override { saves_.fetch_add(1, std::memory_order_relaxed); }
+
+  void add_puppet(std::uint32_t number, RecordedPuppet puppet) override {
+    const std::scoped_lock lock(puppets_mutex_);
+    puppets_[number] = std::make_shared<const RecordedPuppet>(std::move(puppet));
+  }
 
   Result<Recorded> end(const std::optional<ShapeSum>& shape) override {
     if (!std::exchange(ended_, true)) {
@@ -112,6 +120,24 @@ private:
     put(change.settings);
     settings_ = change.settings;
   }
+  /// The chunk with the puppet stands before the entry.
+  void add_one(const flow::ChangePuppet& change) {
+    puppet_ = PuppetChange{change.number, puppet_numbered(change.number)};
+    if (puppet_->puppet && written_puppets_.insert(change.number).second) {
+      write_chunk();
+      ByteWriter writer(payload_);
+      put_puppet_version(writer, change.number, *puppet_->puppet);
+      append(puppet_version_chunk);
+      if (last_minute_) last_minute_->add_chunk(puppet_version_chunk, payload_);
+      payload_.clear();
+    }
+    put(*puppet_);
+  }
+  std::shared_ptr<const RecordedPuppet> puppet_numbered(std::uint32_t number) {
+    const std::scoped_lock lock(puppets_mutex_);
+    const auto known = puppets_.find(number);
+    return known == puppets_.end() ? nullptr : known->second;
+  }
   /// What decides a shape, and marks, are entries; others do not come from a loop.
   template <class Command>
   void add_one(const Command& command) {
@@ -126,6 +152,7 @@ private:
   void put(const Entry& entry) {
     ByteWriter writer(payload_);
     if (std::exchange(settings_due_, false)) put_entry(writer, *settings_);
+    if (std::exchange(puppet_due_, false)) put_entry(writer, *puppet_);
     put_entry(writer, entry);
     ++entries_;
   }
@@ -145,6 +172,7 @@ private:
     entries_ = 0;
     // A chunk may be the first that is kept, so each tells the settings, if they have changed.
     settings_due_ = settings_.has_value();
+    puppet_due_ = puppet_.has_value();
   }
   void write_sent() {
     if (!options_.sent) return;
@@ -211,6 +239,11 @@ private:
   std::uint64_t entries_ = 0;                  ///< in the payload
   std::optional<flow::LoopSettings> settings_; ///< nothing: those of the setup
   bool settings_due_ = false;                  ///< at the beginning of the next chunk
+  std::optional<PuppetChange> puppet_;         ///< nothing: that of the setup
+  bool puppet_due_ = false;                    ///< as settings_due_
+  std::set<std::uint32_t> written_puppets_;
+  std::mutex puppets_mutex_;
+  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets_; ///< by their numbers
   std::array<flow::WristSwitchEdge, flow::most_inputs> switches_{};
   Recorded recorded_;
   std::optional<Error> failure_; ///< the first one

@@ -38,6 +38,9 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.options.sculptor = state.sculptor.options;
   loop.options.held = state.held;
   loop.options.rig_state = state.rig;
+  loop.options.rig = state.puppet;
+  loop.puppet = state.puppet ? RecordedPuppet{state.puppet->puppet().text, state.puppet->starts()}
+                             : RecordedPuppet{};
   loop.subdivisions += state.subdivisions;
   loop.options.settings = state.sculptor.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
@@ -46,6 +49,16 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.rest.clear();
   if (!std::equal(blocks.begin(), blocks.end(), unchanged.begin(), unchanged.end()))
     loop.rest.assign(state.shape.data(), state.shape.data() + state.shape.block_count());
+}
+
+Result<std::shared_ptr<const puppet::Rig>> rig_of(const RecordedPuppet& recorded,
+                                                  const deform::Mesh& model) {
+  auto read = puppet::parse_puppet(recorded.text, "the recorded puppet");
+  if (!read) return read.error();
+  if (const auto fits = puppet::check_fits(*read, model); !fits) return fits.error();
+  if (static_cast<std::size_t>(recorded.starts.cols()) != read->points.size())
+    return Error{Errc::bad_input, "the recorded puppet has other points than its text"};
+  return std::make_shared<const puppet::Rig>(*std::move(read), recorded.starts);
 }
 
 std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
@@ -71,7 +84,7 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
   }
   if (!setup.loop) return bytes;
   append(loop_chunk, [&](ByteWriter writer) { put_loop(writer, *setup.loop); });
-  if (!setup.loop->puppet.empty())
+  if (!setup.loop->puppet.text.empty())
     append(puppet_chunk, [&](ByteWriter writer) { put_puppet(writer, *setup.loop); });
   std::span<const deform::VertexBlock> rest(setup.loop->rest);
   while (!rest.empty()) {

@@ -217,9 +217,39 @@ std::optional<puppet::HandSignal> read_signal(ByteReader& reader) {
   return puppet::HandSignal::numbered(static_cast<Side>(side), number);
 }
 
+namespace {
+
+void put_puppet_text(ByteWriter& writer, const RecordedPuppet& puppet) {
+  writer.u32_le(static_cast<std::uint32_t>(puppet.text.size()));
+  writer.bytes(std::as_bytes(std::span(puppet.text)));
+}
+
+void put_puppet_starts(ByteWriter& writer, const RecordedPuppet& puppet) {
+  writer.u16_le(static_cast<std::uint16_t>(puppet.starts.cols()));
+  for (const double coordinate : puppet.starts.reshaped())
+    writer.f64_le(coordinate);
+}
+
+/// Returns false if there is no such text.
+bool read_puppet_text(ByteReader& reader, RecordedPuppet& puppet) {
+  constexpr std::uint32_t most_text = std::uint32_t{1} << 20;
+  const std::uint32_t size = reader.u32_le();
+  if (size == 0 || size > most_text || size > reader.remaining()) return false;
+  const auto text = reader.take(size);
+  puppet.text.assign(reinterpret_cast<const char*>(text.data()), text.size());
+  return true;
+}
+
+void read_puppet_starts(CheckedReader& checked, RecordedPuppet& puppet) {
+  puppet.starts.resize(3, static_cast<Eigen::Index>(checked.count(puppet::Puppet::most_points)));
+  for (double& coordinate : puppet.starts.reshaped())
+    coordinate = checked.number(-largest_number, largest_number);
+}
+
+} // namespace
+
 void put_puppet(ByteWriter& writer, const LoopSetup& loop) {
-  writer.u32_le(static_cast<std::uint32_t>(loop.puppet.size()));
-  writer.bytes(std::as_bytes(std::span(loop.puppet)));
+  put_puppet_text(writer, loop.puppet);
   const puppet::RigState& state = loop.options.rig_state;
   writer.u16_le(static_cast<std::uint16_t>(state.functions.size()));
   for (const puppet::FunctionState& function : state.functions) {
@@ -228,11 +258,26 @@ void put_puppet(ByteWriter& writer, const LoopSetup& loop) {
     writer.u8(static_cast<std::uint8_t>(function.held));
   }
   writer.u8(static_cast<std::uint8_t>(state.symmetric));
-  writer.u16_le(static_cast<std::uint16_t>(loop.puppet_starts.cols()));
-  for (const double coordinate : loop.puppet_starts.reshaped())
-    writer.f64_le(coordinate);
+  put_puppet_starts(writer, loop.puppet);
   for (const bool holds : state.hand_holds)
     writer.u8(static_cast<std::uint8_t>(holds));
+}
+
+void put_puppet_version(ByteWriter& writer, std::uint32_t number, const RecordedPuppet& puppet) {
+  writer.u32_le(number);
+  put_puppet_text(writer, puppet);
+  put_puppet_starts(writer, puppet);
+}
+
+std::optional<NumberedPuppet> read_puppet_version(std::span<const std::byte> payload) {
+  ByteReader reader(payload);
+  CheckedReader checked(reader);
+  NumberedPuppet read;
+  read.number = reader.u32_le();
+  if (!read_puppet_text(reader, read.puppet)) return std::nullopt;
+  read_puppet_starts(checked, read.puppet);
+  if (!checked.fine()) return std::nullopt;
+  return read;
 }
 
 namespace {
@@ -255,23 +300,17 @@ puppet::RigState read_rig_state(ByteReader& reader, CheckedReader& checked) {
 } // namespace
 
 bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop) {
-  constexpr std::uint32_t most_text = std::uint32_t{1} << 20;
   CheckedReader checked(reader);
-  const std::uint32_t size = reader.u32_le();
-  if (!loop || !loop->puppet.empty() || size == 0 || size > most_text || size > reader.remaining())
-    return false;
-  const auto text = reader.take(size);
+  RecordedPuppet read;
+  if (!loop || !loop->puppet.text.empty() || !read_puppet_text(reader, read)) return false;
   puppet::RigState state = read_rig_state(reader, checked);
-  deform::Points starts(3, static_cast<Eigen::Index>(checked.count(puppet::Puppet::most_points)));
-  for (double& coordinate : starts.reshaped())
-    coordinate = checked.number(-largest_number, largest_number);
+  read_puppet_starts(checked, read);
   if (reader.remaining() > 0) // since 1.6
     for (bool& holds : state.hand_holds)
       holds = reader.u8() != 0;
   if (!checked.fine()) return false;
-  loop->puppet.assign(reinterpret_cast<const char*>(text.data()), text.size());
+  loop->puppet = std::move(read);
   loop->options.rig_state = std::move(state);
-  loop->puppet_starts = std::move(starts);
   return true;
 }
 

@@ -86,4 +86,11 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop);
 bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loop);
 bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop);
 
+struct NumberedPuppet {
+  std::uint32_t number = 0;
+  RecordedPuppet puppet;
+};
+/// Reads what put_puppet_version() writes. Returns nothing if it is not usable.
+std::optional<NumberedPuppet> read_puppet_version(std::span<const std::byte> payload);
+
 } // namespace nendo::recording

@@ -18,6 +18,7 @@ constexpr std::size_t model_bytes = 5;
 constexpr std::size_t clutch_bytes = 3;
 constexpr std::size_t role_bytes = 4;
 constexpr std::size_t layer_bytes = 2;
+constexpr std::size_t puppet_bytes = 4;
 
 struct EntryWriter {
   ByteWriter& writer;
@@ -76,6 +77,10 @@ struct EntryWriter {
     driver::put_entry_head(writer, EntryKind::layer, layer_bytes);
     writer.u8(layer.input);
     writer.u8(static_cast<std::uint8_t>(layer.on));
+  }
+  void operator()(const PuppetChange& change) const {
+    driver::put_entry_head(writer, EntryKind::puppet, puppet_bytes);
+    writer.u32_le(change.number);
   }
   void operator()(const Gap& gap) const {
     driver::put_entry_head(writer, EntryKind::gap, gap_bytes);
@@ -254,6 +259,12 @@ bool TakeReader::take_chunk(const driver::Chunk& chunk) {
     if (fine) sent_ = *std::move(sent);
     return fine;
   }
+  if (chunk.type == puppet_version_chunk) {
+    auto read = read_puppet_version(chunk.payload);
+    if (!read) return false;
+    puppets_[read->number] = std::make_shared<const RecordedPuppet>(std::move(read->puppet));
+    return true;
+  }
   if (setup_done_ && is_setup_chunk(chunk.type)) return false; // it does not change any more
   return read_setup_chunk(chunk.type, chunk.payload, setup_);
 }
@@ -297,6 +308,11 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
     const flow::SetLayer layer{input, reader.u8() != 0};
     const bool is_layer = input < setup_.hands.size() && setup_.hands[input].layer;
     if (!reader.overrun() && is_layer) entry = layer;
+  } else if (record.is(EntryKind::puppet)) {
+    PuppetChange change{reader.u32_le(), nullptr};
+    if (const auto known = puppets_.find(change.number); known != puppets_.end())
+      change.puppet = known->second;
+    if (!reader.overrun()) entry = std::move(change);
   } else if (record.is(EntryKind::gap)) {
     const Gap gap{reader.u64_le()};
     if (!reader.overrun()) entry = gap;

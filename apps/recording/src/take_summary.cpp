@@ -42,6 +42,10 @@ public:
   void operator()(const flow::SetRole&) {}
   void operator()(const flow::SetSymmetry&) {}
   void operator()(const flow::SetLayer&) {}
+  void operator()(const PuppetChange& change) {
+    // The recorder repeats them.
+    if (std::exchange(puppet_, change.number) != change.number) ++summary_.puppet_changes;
+  }
   void operator()(const flow::Mark&) { ++marks_due_; }
   void operator()(const flow::LoggedTick& tick) {
     for (; marks_due_ > 0; --marks_due_)
@@ -65,6 +69,7 @@ private:
   TakeSummary& summary_;
   std::vector<std::uint64_t> next_sequence_;
   std::optional<flow::LoopSettings> settings_;
+  std::optional<std::uint32_t> puppet_;
   std::uint64_t next_tick_ = 0;
   std::uint64_t marks_due_ = 0; ///< of the next tick
   bool after_gap_ = false;      ///< what is not in the recording was not missed by the loop

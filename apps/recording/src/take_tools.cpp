@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <nendo/recording/loop_replay.hpp>
@@ -27,6 +28,8 @@ public:
 
   /// Appends an entry.
   Result<void> put(const Entry& entry) {
+    if (const auto* puppet = std::get_if<PuppetChange>(&entry))
+      if (auto written = put_puppet(*puppet); !written) return written;
     ByteWriter writer(payload_);
     put_entry(writer, entry);
     ++made_.entries;
@@ -82,7 +85,18 @@ private:
     return written;
   }
 
+  /// Its text stands before it, once.
+  Result<void> put_puppet(const PuppetChange& change) {
+    if (!change.puppet || !puppets_.insert(change.number).second) return {};
+    if (auto flushed = flush(); !flushed) return flushed;
+    std::vector<std::byte> payload;
+    ByteWriter writer(payload);
+    put_puppet_version(writer, change.number, *change.puppet);
+    return file_.append(puppet_version_chunk, payload);
+  }
+
   TakeFile file_;
+  std::set<std::uint32_t> puppets_; ///< in the file
   std::vector<std::byte> payload_;
   Ending ending_;
   NewTake made_;
@@ -172,13 +186,14 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
   const HostTime last = setup.begun_host + end;
   Groups groups(*reader);
   std::uint64_t left_out = 0;
-  std::optional<Entry> settings;        // the last that are left out
-  std::map<std::uint8_t, Entry> layers; // likewise, by input
+  std::optional<Entry> settings, puppet; // the last that are left out
+  std::map<std::uint8_t, Entry> layers;  // likewise, by input
   auto group = groups.next();
   for (; group && (!group->time || *group->time < first); group = groups.next()) {
     left_out += group->entries.size();
     for (const Entry& entry : group->entries) {
       if (std::holds_alternative<flow::LoopSettings>(entry)) settings = entry;
+      if (std::holds_alternative<PuppetChange>(entry)) puppet = entry;
       if (const auto* layer = std::get_if<flow::SetLayer>(&entry)) layers[layer->input] = entry;
     }
   }
@@ -193,8 +208,9 @@ Result<NewTake> cut_take(const std::filesystem::path& from, const std::filesyste
   if (!copy) return copy.error();
   if (left_out > 0) {
     if (const auto put = copy->put(Gap{left_out}); !put) return put.error();
-    if (settings)
-      if (const auto put = copy->put(*settings); !put) return put.error();
+    for (const auto& in_force : {settings, puppet})
+      if (in_force)
+        if (const auto put = copy->put(*in_force); !put) return put.error();
     for (const auto& [input, layer] : layers)
       if (const auto put = copy->put(layer); !put) return put.error();
   }

@@ -23,6 +23,7 @@ public:
   FieldStatus apply(const Points& ends, BlockShape& out);
   FieldStatus commit(const Points& ends);
   void release(bool is_step) noexcept;
+  void drop(bool is_step) noexcept;
   FieldStatus reset(const Points& tips);
   FieldStatus undo(const Points& tips);
   FieldStatus take_back(const Points& tips);
@@ -33,6 +34,10 @@ public:
 
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& rest() const noexcept { return shape_->shape(); }
+  /// Of the vectors that tell() tells.
+  Eigen::Index vector_count() const noexcept {
+    return static_cast<Eigen::Index>(field_->vector_count());
+  }
   /// Always empty: no formula of a place tells what happens there.
   const FieldSequence& fields() const noexcept { return fields_; }
   /// Tells by what the last apply() led from the rest shape to its result. Allocates only if `move`

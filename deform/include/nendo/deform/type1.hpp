@@ -53,6 +53,8 @@ public:
   /// grab(). With `is_step`, undo() can go back before it; without, only together with the next
   /// commit.
   void release(bool is_step) noexcept;
+  /// Does the same, but what was applied since the last commit is not kept: the rest shape stays.
+  void drop(bool is_step) noexcept;
   /// Makes the rest shape what it was at first, and `tips` the start points. What apply() made
   /// since the last commit is a step of its own.
   FieldStatus reset(const Points& tips);

@@ -30,6 +30,7 @@ enum class EntryKind : std::uint8_t {
   clutch = 10,
   role = 11,
   symmetry = 12,
+  puppet = 13,
   layer = 15,
 };
 

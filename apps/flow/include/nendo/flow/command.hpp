@@ -33,6 +33,10 @@ struct SetRecording {
 struct SaveShape {
   friend bool operator==(const SaveShape&, const SaveShape&) = default;
 };
+/// Writes the puppet that is played to its file.
+struct SavePuppet {
+  friend bool operator==(const SavePuppet&, const SavePuppet&) = default;
+};
 /// Writes the most recent input to a file, if the run keeps it in memory.
 struct SaveRecording {
   friend bool operator==(const SaveRecording&, const SaveRecording&) = default;
@@ -93,12 +97,19 @@ struct ChangeModel {
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
+/// The loop goes on with another puppet (DeformLoop::change_puppet()). It only tells a log.
+struct ChangePuppet {
+  std::uint32_t number = 0; ///< DeformLoop::puppet()
+  friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;
+};
+
 /// A loop obeys Request, WristMove, SetLayer and what is for puppets at the beginning of its next
-/// tick, and logs a Mark. All others are obeyed by the code that runs the loop. HoldStill and
-/// ChangeModel only tell a log what the loop did.
-using Command = std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape,
-                             SaveRecording, EndRun, Subdivide, HoldStill, ChangeModel, Mark,
-                             SetClutch, SetRole, SetSymmetry, SetLayer, Punch>;
+/// tick, and logs a Mark. All others are obeyed by the code that runs the loop. HoldStill,
+/// ChangeModel and ChangePuppet only tell a log what the loop did.
+using Command =
+    std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
+                 Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry, SetLayer,
+                 Punch, ChangePuppet, SavePuppet>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.

@@ -168,8 +168,28 @@ public:
   /// Returns the settings that were asked for last, and their sculptor's options.
   const LoopSettings& settings() const noexcept { return asked_.settings; }
   const SculptorOptions& sculptor_options() const noexcept { return asked_.options; }
-  /// Returns the puppet that the hands play; null if they touch the model.
-  const puppet::Rig* rig() const noexcept { return options_.rig.get(); }
+
+  /// Returns the puppet with which the loop began; null if the hands touched the model.
+  const puppet::Rig* rig() const noexcept { return puppets_.front().get(); }
+
+  // Other puppets. Each has a number; 0 is what the loop began with, which may be none.
+
+  /// Lets the hands go on with another puppet of the model with which the loop began. It gets
+  /// next_puppet() as its number, and is kept for undo. Functions of the same name keep their
+  /// values. In type 1 the shape changes by what the puppets differ in, and by nothing else.
+  /// Errors: bad_input (its points are too near to each other); failed (the loop holds still, or is
+  /// about to begin a log or another model: ask again later). Then nothing changes. Allocates.
+  Result<void> change_puppet(std::shared_ptr<const puppet::Rig> rig);
+  /// Does the same with one that the loop has had.
+  Result<void> change_puppet(std::uint32_t number);
+  std::uint32_t next_puppet() const noexcept { return static_cast<std::uint32_t>(puppets_.size()); }
+  /// Returns that puppet; null if it is none, and the hands touch the model.
+  const std::shared_ptr<const puppet::Rig>& puppet(std::uint32_t number) const noexcept {
+    return puppets_[number];
+  }
+  /// Returns the number of the one that was asked for last.
+  std::uint32_t newest_puppet() const noexcept { return asked_puppet_; }
+
   /// Tells whether the loop has yet to take a change.
   bool is_changing();
 
@@ -229,18 +249,27 @@ private:
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
   void place_tips() noexcept;
+  void take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept;
+  void note_hold() noexcept;
+  void tell_rig(Frame& frame) const noexcept;
   void play_rig() noexcept;
   void set_rig(const Command& command) noexcept;
   puppet::RigPlayer::Hands played_hands() const noexcept;
   puppet::RigPlayer::Hands hands_now() noexcept;
   ModelVersion* version_numbered(std::uint32_t number) const noexcept;
-  bool set_surface(SculptorOptions& sculptor, const ModelVersion& model) const;
+  Result<void> set_surface(SculptorOptions& sculptor, const ModelVersion& model) const;
+  Eigen::Index control_points(std::uint32_t puppet) const noexcept;
+  SculptorSetup first_with(std::uint32_t puppet) const;
+  Result<SculptorSetup> setup_with(std::uint32_t puppet) const;
+  ReadyRig ready_rig(std::uint32_t number, std::uint32_t before) const;
+  void make_ready(PreparedChange& change);
   std::optional<SculptorSetup> setup_for(const SculptorSetup& before,
                                          const LoopSettings& settings) const;
   PreparedChange& next_change();
   void offer_change();
   void offer_model(ModelVersion& version, ModelSource source);
   void go_back();
+  Eigen::Index hand_count() const noexcept;
   void free_others(const ChangeModel& taken);
   UndoRoom undo_room() const noexcept;
   void take_script(HostTime scheduled) noexcept;
@@ -294,11 +323,17 @@ private:
   std::array<puppet::HandState, 2> hand_states_;  ///< by side, for the rig
   /// The control points, 3 by 5 a hand, or by as many as a puppet has; model units.
   deform::Points tips_;
+  std::vector<double> held_at_;  ///< the rig's values when the hands took hold of the shape
+  std::vector<double> still_at_; ///< and when they stopped (Shaping::is_still())
   // For the thread that asks for changes:
   std::vector<std::unique_ptr<ModelVersion>> versions_;
   SculptorSetup first_;
-  ModelVersion* asked_model_;            ///< for last
-  ModelVersion* model_before_ = nullptr; ///< before that
+  std::shared_ptr<const puppet::Rig> first_rig_;            ///< of it
+  std::optional<deform::Supports> tip_supports_;            ///< of hands without a puppet
+  std::vector<std::shared_ptr<const puppet::Rig>> puppets_; ///< by their numbers
+  std::uint32_t asked_puppet_ = 0;                          ///< for last
+  ModelVersion* asked_model_;                               ///< for last
+  ModelVersion* model_before_ = nullptr;                    ///< before that
   std::uint32_t last_number_ = 0;
   // For the loop's thread:
   Shaping shaping_;

@@ -45,6 +45,9 @@ struct SculptorSetup {
   LoopSettings settings{};
 };
 
+/// Returns these supports with radii that many times as large.
+deform::Supports scaled(deform::Supports supports, double scale);
+
 /// Returns `now` with other settings. What settings do not tell stays. Radii that do not change
 /// stay as they are, with all their weights; these come back with the settings of `first`, with
 /// which it began. A puppet's points (`hands` is then 0) keep the ratios of their radii.

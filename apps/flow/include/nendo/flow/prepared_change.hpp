@@ -2,6 +2,8 @@
 // What another thread makes for a loop that runs, and hands to it ready. The loop's tick only swaps
 // pointers.
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/shaping.hpp>
 #include <nendo/hand/range_adaptation.hpp>
+#include <nendo/puppet/gesture_clutch.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::flow {
@@ -27,8 +30,9 @@ struct LoopState {
   Placement placement{};       ///< without the gaps
   bool held = true;
   SculptorSetup sculptor{};
-  std::uint32_t subdivisions = 0; ///< of the model with which the loop began
-  puppet::RigState rig{};         ///< of a puppet's player
+  std::uint32_t subdivisions = 0;              ///< of the model with which the loop began
+  puppet::RigState rig{};                      ///< of a puppet's player
+  std::shared_ptr<const puppet::Rig> puppet{}; ///< that is played; null: none
   deform::BlockShape shape;
 };
 
@@ -38,18 +42,32 @@ struct LogChange {
   LoopState state;         ///< with which the log begins, or that it led to
 };
 
+/// Another puppet, ready to be played.
+struct ReadyRig {
+  std::uint32_t number = 0;                  ///< DeformLoop::puppet()
+  std::uint32_t before = 0;                  ///< the number of the one that it replaces
+  std::optional<puppet::RigPlayer> player{}; ///< none: hands touch the model
+  std::optional<puppet::GestureClutch> gestures{};
+  std::vector<std::size_t> from{}; ///< puppet::functions_before()
+  std::vector<double> held_at{};   ///< the values with which the hands took hold of the shape
+  std::vector<double> still_at{};  ///< and those with which they stopped
+  deform::Points tips{};           ///< room for the places of its points
+};
+
 /// What a loop goes on with from a tick on. It swaps pointers, and gives back what it had before.
 struct PreparedChange {
   bool holds_still = false; ///< at the end of that tick, until the next change with a `model`
   std::optional<ChangeModel> model{};     ///< the version that `ready` works on
   std::optional<LoopSettings> settings{}; ///< the loop goes on with them
   SculptorSetup before{};                 ///< which this change of settings replaces
-  bool is_refused = false; ///< by the loop, which goes on as it was (Shaping::exchange())
+  bool is_refused = false;       ///< by the loop, which goes on as it was (Shaping::exchange())
+  std::optional<ReadyRig> rig{}; ///< the hands go on with that puppet
   ReadySculptor ready{};
   std::optional<LogChange> log{};
 
-  bool is_empty() const noexcept { return !holds_still && !model && !settings && !log; }
-  bool ends_stroke() const noexcept { return holds_still || model || settings; }
+  bool exchanges() const noexcept { return model || settings || rig; }
+  bool is_empty() const noexcept { return !holds_still && !exchanges() && !log; }
+  bool ends_stroke() const noexcept { return holds_still || exchanges(); }
 };
 
 } // namespace nendo::flow

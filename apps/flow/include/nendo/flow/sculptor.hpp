@@ -80,6 +80,8 @@ public:
   /// sculptor to take hold of. With `is_step`, undo can go back before the stroke; without, it
   /// becomes one step with the next. It does not allocate.
   void release(bool is_step) noexcept;
+  /// Does the same, but in type 1 what the fingertips have pulled since they took hold is not kept.
+  void drop(bool is_step) noexcept;
   /// Goes back to the shape as it was at first (Type1Deformer::reset, Type2Deformer::reset).
   deform::FieldStatus reset(const deform::Points& tips) noexcept;
   /// Goes back to the rest shape before the last commit, or to the shape with which the last stroke
@@ -98,6 +100,9 @@ public:
   /// Returns how many steps can no longer be undone because memory ended.
   std::size_t forgotten_steps() const noexcept;
 
+  /// Returns how often the fingertips took hold of a shape at the tips that a function was given.
+  std::uint64_t holds() const noexcept { return holds_; }
+
   /// Returns the shape that remains when no hand holds the model: the rest shape, or the shape at
   /// the end of the last stroke.
   const deform::BlockShape& rest() const noexcept;
@@ -110,13 +115,22 @@ public:
   /// Tells by what the last update() led along the surface from the rest shape to this shape; by
   /// nothing, if it measures no distances there. Allocates only if `move` has no room.
   void tell(deform::SurfaceMove& move) const noexcept;
+  bool has_room(const deform::SurfaceMove& move) const noexcept; ///< for tell()
+  /// Returns such room. Allocates.
+  deform::SurfaceMove room_to_tell() const;
   /// Tells whether the last update() moved anything.
   bool moves_anything() const noexcept;
   /// Returns what the last update() needed to stay injective; all 0 if that is not asked for.
   deform::ChainReport report() const noexcept;
 
 private:
+  deform::FieldStatus counted(deform::FieldStatus status) noexcept {
+    if (is_solved(status)) ++holds_;
+    return status;
+  }
+
   std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer> deformer_;
+  std::uint64_t holds_ = 0;
 };
 
 } // namespace nendo::flow

@@ -31,8 +31,15 @@ struct ReadySculptor {
   bool is_new_model = false;     ///< and that no step leads to yet
   std::unique_ptr<Sculptor> sculptor;
   LoopSettings settings{};
+  std::uint32_t puppet = 0; ///< that moves its control points
+  /// With another puppet, in type 1: the hands hold the shape at `starts`, as they held it, in
+  /// place of beginning anew where they are. So only what the edit asks for changes.
+  bool holds_on = false;
+  deform::Points starts{};     ///< 3 by #control points
+  deform::Points still_tips{}; ///< room for so many of them
   /// Room for its fields in the three frames of a FrameExchange, which may have had too little.
   std::array<deform::FieldSequence, 3> room;
+  std::array<deform::SurfaceMove, 3> surface_room; ///< likewise, for what a puppet tells
   struct ShapeRoom {
     static constexpr std::uint32_t none = 0xFFFFFFFF;
     std::uint32_t model = none;
@@ -78,6 +85,7 @@ public:
   const Sculptor& sculptor() const noexcept { return *sculptor_; }
   bool is_still() const noexcept { return is_still_; }
   const ModelVersion& model() const noexcept { return *model_; } ///< in force
+  std::uint32_t puppet() const noexcept { return puppet_; }      ///< in force
   const deform::BlockLayout& layout() const noexcept { return model_->layout(); }
 
   /// Lets the hands stop shaping, after shape() with `completes` and in the same tick. What they
@@ -85,9 +93,13 @@ public:
   /// take hold of it at the places where they stopped, so that nothing of their way is lost.
   /// Wait-free, without allocation.
   void hold_still(const deform::Points& tips, Frame& frame, LoopStats& stats) noexcept;
-  /// Puts another sculptor into `ready`, for that version of the model. Another thread may call it,
+  /// Puts another sculptor with that many control points into `ready`, for that version of the
+  /// model. Another thread may call it,
   /// at any time. For a version that is not in force, the caller makes `shape_room`. Allocates.
-  void prepare(const SculptorSetup& setup, ModelVersion& model, ReadySculptor& ready) const;
+  static void prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::Index control_points,
+                      ReadySculptor& ready);
+  /// Tells whether exchange() lets the hands hold on to the shape with that puppet.
+  bool holds_on(const ReadySculptor& ready) const noexcept;
   /// Lets that sculptor go on where the present one ends, which `ready` then has: after shape()
   /// with `completes`, in the same tick. A stroke ends, and the fingertips take hold anew at
   /// `tips`. Stroke and change are steps of their own; less than a second after the exchange before
@@ -105,7 +117,7 @@ public:
   void begin_anew(const deform::Points& tips, bool fences, Frame& frame, LoopStats& stats) noexcept;
 
 private:
-  Awaited in_force() const noexcept { return {settings_, model_->number}; }
+  Awaited in_force() const noexcept { return {settings_, model_->number, puppet_}; }
   deform::FieldStatus shape_by_hands(const deform::Points& tips, Frame& frame, LoopStats& stats,
                                      bool completes) noexcept;
   deform::FieldStatus show_rest(Frame& frame) noexcept;
@@ -126,6 +138,7 @@ private:
   std::optional<Awaited> other_of(Request step) const noexcept;
   void note_settings(const LoopSettings& before, bool is_step) noexcept;
   void note_model(ModelVersion& next, const LoopSettings& before) noexcept;
+  void note_puppet(const Awaited& before) noexcept;
   Step step_now(StepKind kind) const noexcept;
   const ModelVersion* version_before(const ModelVersion& version) const noexcept;
   std::size_t steps_to_undo() const noexcept;
@@ -140,6 +153,7 @@ private:
   ModelVersion* fenced_ = nullptr; ///< undo goes back to the fence there and no farther
   std::unique_ptr<Sculptor> sculptor_;
   std::array<deform::FieldSequence, 3> room_; ///< for frames that have too little
+  std::array<deform::SurfaceMove, 3> surface_room_;
   std::array<ReadySculptor::ShapeRoom, 3> shape_room_;
   deform::Points still_tips_; ///< where the hands stopped, if is_still_
   bool is_still_ = false;
@@ -152,9 +166,11 @@ private:
   bool shaped_ = false;               ///< since the hands took hold, or since the last commit
   std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
   std::uint64_t leaps_ = 0;           ///< frames in which the shape was led along the surface
-  std::uint64_t brushed_ = 0;         ///< frames in which a brush changed it
+  std::uint64_t jumps_ = 0;           ///< frames in which a brush or another puppet changed it
   bool in_step_ = false;              ///< shaped before the last change, and not a step yet
   LoopSettings settings_;             ///< in force
+  std::uint32_t puppet_ = 0;          ///< in force
+  bool leap_due_ = false;             ///< the next frame's shape is not led to by its fields
   std::optional<Awaited> awaited_;    ///< by the first step that is due
   HostClock::duration time_{};
   std::optional<HostClock::duration> exchanged_at_; ///< last

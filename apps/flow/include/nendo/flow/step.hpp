@@ -23,6 +23,7 @@ enum class StepKind : std::uint8_t {
   settings,  ///< a change of several settings at once, or within a second
   subdivide, ///< the model became finer
   brush,     ///< of one finger or more, or their strength
+  puppet,    ///< the puppet was edited
 };
 
 std::string_view name_of(StepKind kind) noexcept;

@@ -31,17 +31,27 @@ struct PuppetPoint {
   Eigen::Vector3d at = Eigen::Vector3d::Zero(); ///< near here, model units
   double radius = 1.0;                          ///< model units, > 0
   bool is_pin = false;                          ///< nothing moves it
-  bool is_mirrored = false; ///< it is on the other side of x = 0 of where `vertex` or `at` are
+  /// It is on the other side of x = 0 of where `vertex` or `at` are: a twin that no file has.
+  bool is_mirrored = false;
+  friend bool operator==(const PuppetPoint&, const PuppetPoint&) = default;
+};
+
+/// About which the points of a function turn.
+struct AxisTurn {
+  double degrees = 0.0;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX(); ///< of any length but 0
+  Eigen::Vector3d through = Eigen::Vector3d::Zero();
+  friend bool operator==(const AxisTurn&, const AxisTurn&) = default;
 };
 
 /// What a function does to one point when its value is 1.
 struct Move {
   std::size_t point = 0;                            ///< of Puppet::points
-  Eigen::Vector3d vector = Eigen::Vector3d::Zero(); ///< model units; for a turn, beside it
-  /// The point turns about this axis; the vector is where that leads, in a straight line.
-  double turn_rad = 0.0;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  Eigen::Vector3d through = Eigen::Vector3d::Zero();
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero(); ///< model units
+  /// In place of a vector: by how much of Function::turn the point turns. It goes in a straight
+  /// line to where that leads.
+  std::optional<double> part{};
+  friend bool operator==(const Move&, const Move&) = default;
 };
 
 /// One thing that the model can do, by a hand.
@@ -52,7 +62,10 @@ struct Function {
   double least = 0.0;  ///< the values between which it stays
   double most = 1.0;
   bool eases = false; ///< towards its limits it slows down, in place of stopping
-  std::vector<Move> moves;
+  std::optional<AxisTurn> turn{};
+  std::vector<Move> moves; ///< by the turn, and behind them those by vectors
+  bool is_twin = false;    ///< made by `mirror`; no file has it
+  friend bool operator==(const Function&, const Function&) = default;
 };
 
 /// Vertices that belong to no part of the surface that a point stands on, such as teeth.
@@ -62,12 +75,14 @@ struct PuppetPart {
   std::uint32_t last = 0xFFFFFFFF;     ///< up to this one
   std::vector<std::size_t> points;     ///< that they follow; empty: the surface
   bool is_affine = true;               ///< deform::FollowingPart::is_affine
+  friend bool operator==(const PuppetPart&, const PuppetPart&) noexcept;
 };
 
 /// What stays as it is, within a radius of a place.
 struct Mask {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   double radius = 0.0; ///< model units; vertices within half of it stay, and the rest eases out
+  friend bool operator==(const Mask&, const Mask&) = default;
 };
 
 /// With what a hand lets go of its functions and takes hold of them again, besides keys.
@@ -82,15 +97,21 @@ std::string_view name_of(ClutchMeans means) noexcept; ///< in the file
 std::optional<ClutchMeans> clutch_means_named(std::string_view name) noexcept;
 
 struct ClutchOptions {
-  std::array<ClutchMeans, 2> means{};    ///< of the left and the right hand
-  double held_s = 0.5;                   ///< how long a gesture must last
-  double fist_rad = from_degrees(200.0); ///< by which each finger is bent at least in a fist
-  double pinch_m = 0.02;                 ///< by which the tips are apart at most in a pinch
+  std::array<ClutchMeans, 2> means{}; ///< of the left and the right hand
+  double held_s = 0.5;                ///< how long a gesture must last
+  double fist_deg = 200.0;            ///< by which each finger is bent at least in a fist
+  double pinch_m = 0.02;              ///< by which the tips are apart at most in a pinch
+
+  friend bool operator==(const ClutchOptions&, const ClutchOptions&) = default;
 };
+
+/// At this part of a mask's radius, places move half as far as without it.
+inline constexpr double half_of_mask = 0.75;
 
 struct Puppet {
   std::string model; ///< file name, beside the puppet's file
   Distance distance = Distance::surface;
+  bool mirrors = false; ///< `mirror = "x"`: points and functions that are twins stand behind others
   std::vector<PuppetPoint> points;
   std::vector<Function> functions;
   std::vector<PuppetPart> parts;
@@ -100,6 +121,8 @@ struct Puppet {
 
   /// Returns the number of the function with that name.
   std::optional<std::size_t> function_named(std::string_view name) const noexcept;
+  /// Compares all but the text.
+  friend bool operator==(const Puppet& one, const Puppet& other) noexcept;
 
   static constexpr std::size_t most_points = 1000;
   static constexpr std::size_t most_functions = 64;
@@ -113,6 +136,9 @@ std::string twin_of(const std::string& name);
 Result<Puppet> parse_puppet(std::string_view text, std::string_view name);
 /// Reads and parses a file. Errors: those of parse_puppet(), and bad_input if it cannot be read.
 Result<Puppet> read_puppet(const std::filesystem::path& path);
+/// Returns a file for it, which parse_puppet() makes the same puppet of again. Twins are left to
+/// `mirror`. Of the comments of `puppet.text`, those at its beginning are kept.
+std::string text_of(const Puppet& puppet);
 
 /// Error: bad_input (the model has no face, or not the vertex of a point).
 Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);

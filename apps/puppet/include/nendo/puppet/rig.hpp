@@ -46,6 +46,10 @@ double value_of(const Function& function, double asked) noexcept;
 /// Returns the least that must be asked of a function, by its amount, so that it has that value,
 /// which must be within its limits.
 double asked_for(const Function& function, double value) noexcept;
+/// Returns for each function of a puppet that was edited the number that it had before; no_function
+/// if it is new.
+inline constexpr std::size_t no_function = static_cast<std::size_t>(-1);
+std::vector<std::size_t> functions_before(const Puppet& before, const Puppet& after);
 
 /// What a player of a rig needs to go on where another one is.
 struct FunctionState {
@@ -99,6 +103,11 @@ public:
   const RigState& state() const noexcept { return state_; }
   /// Goes on from that state, if it is one of as many functions. Call take_hold() then.
   void set_state(const RigState& state) noexcept;
+  /// Goes on where a player of another rig is. from: for each function, the number of the one
+  /// that it was there (functions_before()). Their values stay, as far as their limits let them,
+  /// and inputs that were chosen since stay chosen; new functions begin at 0. Does not allocate.
+  void go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
+                  const Hands& hands) noexcept;
   /// Tells whether nothing of that hand is held.
   bool has_let_go(Side side) const noexcept;
   /// Returns what was asked of that function, before its limits.

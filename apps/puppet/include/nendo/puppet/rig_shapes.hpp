@@ -6,6 +6,7 @@
 #include <span>
 
 #include <nendo/deform/mesh.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/puppet/rig.hpp>
 
 namespace nendo::puppet {
@@ -26,6 +27,10 @@ public:
   deform::Points at(std::span<const double> values);
   /// The same, for one function alone.
   deform::Points at(std::size_t function, double value);
+  /// The same, in the blocks of the model's layout, until the next call.
+  const deform::BlockShape& blocks_at(std::span<const double> values);
+  /// The same, where the points are at these places, 3 by #points.
+  const deform::BlockShape& blocks_with(const deform::Points& points);
   /// Returns the condition of the field's equations in the 1-norm (SurfaceField); 0 where distances
   /// are through the air, whose equations are solvable whatever the points are.
   double condition() const noexcept;

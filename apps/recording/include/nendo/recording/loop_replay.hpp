@@ -39,11 +39,13 @@ private:
   LoopReplay() = default;
   void take(const driver::RecordedSample& sample) noexcept;
   bool follow(const flow::ChangeModel& change);
+  bool follow(const PuppetChange& change);
 
   std::vector<std::unique_ptr<SampleRing>> rings_;
   flow::CommandRing commands_{2048};
   std::unique_ptr<flow::DeformLoop> loop_;
   std::map<std::uint32_t, std::uint32_t> versions_; ///< of the model, by their recorded numbers
+  std::map<std::uint32_t, std::uint32_t> puppets_;  ///< by their recorded numbers
   bool exact_ = true;
 };
 

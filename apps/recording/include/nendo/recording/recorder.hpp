@@ -65,6 +65,9 @@ public:
   /// Requests that what is in memory is written to a file soon. Does nothing without keep_last. Any
   /// thread may call it. Wait-free.
   virtual void save_last_minute() noexcept = 0;
+  /// Tells of a puppet (flow::DeformLoop::puppet()) before the loop gets it, for the recording to
+  /// have it. Any thread may call it. It takes a lock, which the loop never does.
+  virtual void add_puppet(std::uint32_t number, RecordedPuppet puppet) = 0;
   /// To be called after the loop's last tick. Writes the remaining entries and the ending, and
   /// joins the thread. Further calls do nothing and return the same. Error: failed, if anything
   /// could not be written; all that is in the file is whole.

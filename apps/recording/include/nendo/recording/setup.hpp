@@ -24,6 +24,14 @@ struct ShapeSum {
 };
 ShapeSum sum_of(const deform::Points& vertices) noexcept;
 
+struct RecordedPuppet {
+  std::string text{};      ///< of its file
+  deform::Points starts{}; ///< puppet::Rig::starts()
+};
+/// Makes the puppet again, for the model of the recording. Error: bad_input.
+Result<std::shared_ptr<const puppet::Rig>> rig_of(const RecordedPuppet& recorded,
+                                                  const deform::Mesh& model);
+
 struct LoopSetup {
   std::string mesh; ///< the file's name, as it was given
   ShapeSum mesh_sum;
@@ -37,8 +45,7 @@ struct LoopSetup {
   std::uint32_t subdivisions = 0;
   /// The shape at first, in the blocks of the model's layout; empty: the model.
   std::vector<deform::VertexBlock> rest{};
-  std::string puppet{};           ///< the text of its file; empty: the hands touch the model
-  deform::Points puppet_starts{}; ///< puppet::Rig::starts()
+  RecordedPuppet puppet{}; ///< without a text: the hands touch the model
 };
 
 struct Setup {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,10 +29,17 @@ struct Gap {
   std::uint64_t entries = 0; ///< 0 means an unknown number
 };
 
+/// The loop goes on with that puppet. Its text and its points stand in a chunk before, and are with
+/// the entry.
+struct PuppetChange {
+  std::uint32_t number = 0;
+  std::shared_ptr<const RecordedPuppet> puppet; ///< null: the one with which the recording began
+};
+
 using Entry =
     std::variant<driver::RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
                  flow::HoldStill, flow::ChangeModel, flow::Mark, flow::SetClutch, flow::SetRole,
-                 flow::SetSymmetry, flow::SetLayer, flow::LoggedTick, Gap>;
+                 flow::SetSymmetry, flow::SetLayer, PuppetChange, flow::LoggedTick, Gap>;
 
 template <class One, class Of = Entry>
 inline constexpr bool is_entry = false;
@@ -53,6 +62,9 @@ struct Ending {
 void put_entry(ByteWriter& writer, const Entry& entry);
 void put_ending(ByteWriter& writer, const Ending& ending);
 inline constexpr driver::ChunkType ending_chunk = driver::chunk_type("END ");
+/// Writes a puppet as a chunk, which must stand before the entries that name its number.
+void put_puppet_version(ByteWriter& writer, std::uint32_t number, const RecordedPuppet& puppet);
+inline constexpr driver::ChunkType puppet_version_chunk = driver::chunk_type("PUPV");
 /// Writes what the gloves have sent so far, by their numbers; there are at most 255.
 void put_sent(ByteWriter& writer, std::span<const driver::RecordCounts> gloves);
 inline constexpr driver::ChunkType sent_chunk = driver::chunk_type("SENT");
@@ -96,6 +108,7 @@ private:
 
   driver::ChunkReader chunks_;
   Setup setup_;
+  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets_; ///< by their numbers
   driver::LogEntries records_{{}};
   std::optional<Ending> ending_;
   std::vector<driver::RecordCounts> sent_;

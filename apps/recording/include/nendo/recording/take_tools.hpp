@@ -36,6 +36,7 @@ struct TakeSummary {
   std::uint64_t wrist_moves = 0;
   std::uint64_t settings_changes = 0;
   std::uint64_t model_changes = 0;        ///< undos and redos of them, too
+  std::uint64_t puppet_changes = 0;       ///< likewise
   std::vector<HostClock::duration> marks; ///< of flow::Mark, since the beginning
   std::uint64_t shapes = 0;
   std::uint64_t ticks = 0;

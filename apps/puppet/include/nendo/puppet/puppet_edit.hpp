@@ -1,0 +1,61 @@
+#pragma once
+// Edits of a puppet. Each returns another puppet, with the text of its file, and leaves the one
+// that it was made of as it is. What is done to a twin is done to the one whose mirror image it is,
+// on the other side. Whether a field can be made of the points, only the field tells
+// (SurfaceField::make()). Errors are bad_input, one line that names the point or the function. All
+// functions allocate.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <nendo/base/result.hpp>
+#include <nendo/puppet/rig.hpp>
+
+namespace nendo::puppet {
+
+/// A place of the surface that shall be a point.
+struct NewPoint {
+  Eigen::Vector3d at;
+  double radius = 1.0; ///< model units
+};
+
+/// Returns a puppet that has no point yet. with_function() makes it whole.
+Puppet empty_puppet(std::string_view model_name);
+
+/// Adds a point, and a function that moves it alone by `move` (model units) where `input` has gone
+/// by `travel`. Errors: the point is too near to another one, or there are too many of them.
+Result<Puppet> with_function(const Rig& rig, const NewPoint& point, const Eigen::Vector3d& move,
+                             const HandSignal& input, double travel);
+/// Adds a point that nothing moves. Errors: as with_function(), and if there is no function yet.
+Result<Puppet> with_pin(const Rig& rig, const NewPoint& point);
+/// Removes a point, and the functions that move nothing else. Error: it is the last that a function
+/// moves, or a part turns with it and three others.
+Result<Puppet> without_point(const Rig& rig, std::size_t point);
+Result<Puppet> with_radius(const Rig& rig, std::size_t point, double radius);
+/// Pins a point, or lets functions move it. Error: a function moves it.
+Result<Puppet> with_pinned(const Rig& rig, std::size_t point, bool pinned);
+/// Lets a function move the point by that vector, model units. Errors: it is a pin, or turns.
+Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point,
+                         const Eigen::Vector3d& vector);
+Result<Puppet> with_input(const Rig& rig, std::size_t function, const HandSignal& input,
+                          double travel);
+/// Gives a function another name. Errors: it is no name, or another function has it.
+Result<Puppet> with_name(const Rig& rig, std::size_t function, std::string_view name);
+/// Lets points and functions of one side have twins on the other side of x = 0, or makes points and
+/// functions of their own of these twins. Where names tell no side, they are changed.
+Result<Puppet> with_mirror(const Rig& rig, bool mirrors);
+
+/// Adds masks along a stroke of a brush, and, where the puppet mirrors, their mirror images. Places
+/// where masks of that radius are near already are passed over, so that a file stays small. Error:
+/// there are too many.
+Result<Puppet> with_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke, double radius);
+/// Removes the masks whose middle is within the radius of a place of the stroke.
+Result<Puppet> without_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke,
+                             double radius);
+
+/// Two points are at least so much of the smaller radius apart.
+inline constexpr double least_gap_of_points = 0.1;
+inline constexpr std::size_t most_painted_masks = 500;
+
+} // namespace nendo::puppet

@@ -1,0 +1,367 @@
+#include "viewer/puppet_editor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace nendo::viewer {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using puppet::HandSignal;
+using puppet::Puppet;
+using puppet::Rig;
+using puppet::RigShapes;
+
+namespace {
+
+constexpr double radius_of_diagonal = 0.12; // of new points
+constexpr double brush_of_diagonal = 0.04;
+constexpr double way_of_radius = 0.35; // of new functions, along the surface's normal
+constexpr double a_step = 1.1;         // of the wheel
+constexpr HostClock::duration wheel_rest = std::chrono::milliseconds(350);
+constexpr double stroke_step = 0.3; // of the brush's radius, between places of a stroke
+
+template <class List>
+std::size_t number_named(const List& list, const std::string& name) noexcept {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
+  return found == list.end() ? PuppetEditor::none : static_cast<std::size_t>(found - list.begin());
+}
+
+/// The name that the second puppet has and the first has not; empty if there is none. Of twins, it
+/// is the one on the side of `x`.
+template <class List>
+std::string new_name(const List& before, const List& after, double x) {
+  std::string name;
+  for (const auto& one : after) {
+    if (number_named(before, one.name) != PuppetEditor::none) continue;
+    const bool is_right = one.name.ends_with("Right");
+    if (name.empty() || (x < 0.0) == is_right) name = one.name;
+  }
+  return name;
+}
+
+} // namespace
+
+PuppetEditor::PuppetEditor()
+    : rig_(std::make_shared<const Rig>(Puppet{}, deform::Points(3, 0))), empty_(rig_) {}
+
+void PuppetEditor::begin(const deform::Mesh& loaded, const std::string& model_name,
+                         const RigPointer& rig) {
+  loaded_ = loaded;
+  const double diagonal = deform::diagonal_of(loaded.vertices);
+  new_radius_ = radius_of_diagonal * diagonal;
+  brush_radius_ = brush_of_diagonal * diagonal;
+  empty_ = std::make_shared<const Rig>(puppet::empty_puppet(model_name), deform::Points(3, 0));
+  in_force_ = rig;
+  rig_ = rig ? rig : empty_;
+  set_model(loaded);
+}
+
+void PuppetEditor::set_model(const deform::Mesh& shown) {
+  shown_ = shown;
+  shapes_.reset();
+  plain_.reset();
+  ++version_;
+  ++model_version_;
+}
+
+Result<std::unique_ptr<RigShapes>> PuppetEditor::shapes_of(const RigPointer& rig) const {
+  if (rig->puppet().points.empty()) return std::unique_ptr<RigShapes>();
+  return RigShapes::make(rig, shown_);
+}
+
+void PuppetEditor::set_rig(RigPointer rig, std::unique_ptr<RigShapes> shapes) {
+  rig_ = std::move(rig);
+  shapes_ = std::move(shapes);
+  drag_.reset();
+  ++version_;
+}
+
+void PuppetEditor::follow(const RigPointer& in_force, const flow::Frame& frame) {
+  if (in_force != in_force_) {
+    in_force_ = in_force;
+    const auto known = std::find(sent_.begin(), sent_.end(), in_force);
+    if (known != sent_.end()) {
+      sent_.erase(sent_.begin(), known + 1);
+    } else { // somebody has undone an edit
+      sent_.clear();
+      set_rig(in_force ? in_force : empty_, nullptr);
+    }
+  }
+  if (!is_on_) return;
+  look_at_hands(frame);
+  end_scaling(false);
+}
+
+void PuppetEditor::look_at_hands(const flow::Frame& frame) {
+  if (!pending_ || frame.ticks_run == 0) return;
+  std::array<puppet::HandState, 2> states;
+  puppet::RigPlayer::Hands hands{};
+  for (std::size_t slot = 0; slot < states.size(); ++slot) {
+    const flow::HandFrame& hand = frame.hands[slot];
+    if (!hand.present) continue;
+    states[slot] = {hand.angles, hand.pose, hand.T_stage_wrist};
+    hands[slot] = &states[slot];
+  }
+  if (const auto bend = bends_.follow(hands)) choose_input(bend->input, bend->travel);
+}
+
+void PuppetEditor::turn(bool on) {
+  end_scaling(true);
+  forget_place();
+  end_stroke();
+  drag_.reset();
+  brushes_ = false;
+  is_on_ = on;
+  told_ = on && rig_->puppet().points.empty()
+              ? "Click a place of the model that a finger shall move."
+              : "";
+  ++version_;
+}
+
+const deform::BlockShape* PuppetEditor::shape() {
+  if (!shapes_ && !rig_->puppet().points.empty()) {
+    auto made = shapes_of(rig_);
+    if (made) shapes_ = *std::move(made);
+  }
+  if (!shapes_) {
+    if (!plain_) plain_ = deform::BlockLayout(shown_.vertices).pack();
+    return &*plain_;
+  }
+  deform::Points places = rig_->starts();
+  if (drag_) {
+    places += rig_->vectors_of(drag_->function);
+    places.col(static_cast<Index>(drag_->point)) =
+        rig_->starts().col(static_cast<Index>(drag_->point)) + drag_->way;
+  }
+  return &shapes_->blocks_with(places);
+}
+
+/// Returns false, and changes nothing, if the edit is refused, or if no field can be made of it.
+bool PuppetEditor::apply(Result<Puppet> edited, const std::string& done) {
+  const auto refuse = [&](const Error& error) {
+    told_ = error.message;
+    ++version_;
+    return false;
+  };
+  if (!edited) return refuse(edited.error());
+  auto rig = std::make_shared<const Rig>(*std::move(edited), loaded_);
+  auto shapes = shapes_of(rig);
+  if (!shapes) return refuse(shapes.error());
+  set_rig(rig, *std::move(shapes));
+  sent_.push_back(rig);
+  to_loop_ = std::move(rig);
+  told_ = done;
+  return true;
+}
+
+std::size_t PuppetEditor::point() const noexcept {
+  return number_named(rig_->puppet().points, point_name_);
+}
+
+/// The first function that moves it; none.
+std::size_t PuppetEditor::mover_of(std::size_t point) const noexcept {
+  const auto& functions = rig_->puppet().functions;
+  for (std::size_t at = 0; at < functions.size(); ++at)
+    for (const puppet::Move& move : functions[at].moves)
+      if (move.point == point) return at;
+  return none;
+}
+
+std::size_t PuppetEditor::function() const noexcept {
+  const std::size_t chosen = number_named(rig_->puppet().functions, function_name_);
+  return chosen != none ? chosen : mover_of(point());
+}
+
+void PuppetEditor::choose_point(std::size_t point) {
+  end_scaling(true);
+  point_name_ = point == none ? "" : rig_->puppet().points[point].name;
+  const std::size_t function = number_named(rig_->puppet().functions, function_name_);
+  const std::size_t mover = mover_of(point);
+  const bool moves_it = function != none &&
+                        std::any_of(rig_->puppet().functions[function].moves.begin(),
+                                    rig_->puppet().functions[function].moves.end(),
+                                    [&](const puppet::Move& move) { return move.point == point; });
+  if (!moves_it && mover != none) function_name_ = rig_->puppet().functions[mover].name;
+  ++version_;
+}
+
+void PuppetEditor::choose_function(std::size_t function) {
+  function_name_ = rig_->puppet().functions[function].name;
+  ++version_;
+}
+
+void PuppetEditor::place(const SurfaceHit& hit) {
+  end_scaling(true);
+  pending_ = hit;
+  point_name_.clear();
+  bends_.begin();
+  told_ = "Bend the finger that shall move this place, or choose one below.";
+  ++version_;
+}
+
+void PuppetEditor::forget_place() {
+  if (!pending_) return;
+  pending_.reset();
+  told_.clear();
+  ++version_;
+}
+
+void PuppetEditor::choose_input(const HandSignal& input, double travel) {
+  if (!pending_) {
+    const std::size_t chosen = function();
+    if (chosen == none) return;
+    const std::string name = rig_->puppet().functions[chosen].name;
+    apply(puppet::with_input(*rig_, chosen, input, travel), input.name() + " plays " + name + ".");
+    return;
+  }
+  const Vector3d way = way_of_radius * new_radius_ * pending_->normal;
+  const RigPointer before = rig_;
+  if (!apply(puppet::with_function(*rig_, {pending_->at, new_radius_}, way, input, travel), ""))
+    return;
+  const double x = pending_->at.x();
+  point_name_ = new_name(before->puppet().points, rig_->puppet().points, x);
+  function_name_ = new_name(before->puppet().functions, rig_->puppet().functions, x);
+  pending_.reset();
+  told_ = input.name() + " moves " + point_name_ + ". Drag it to where it shall go.";
+}
+
+void PuppetEditor::toggle_pin() {
+  if (pending_) {
+    const RigPointer before = rig_;
+    if (!apply(puppet::with_pin(*rig_, {pending_->at, new_radius_}), "")) return;
+    point_name_ = new_name(before->puppet().points, rig_->puppet().points, pending_->at.x());
+    pending_.reset();
+    told_ = point_name_ + " stays where it is.";
+    return;
+  }
+  const std::size_t chosen = point();
+  if (chosen == none) return;
+  const bool pinned = !rig_->puppet().points[chosen].is_pin;
+  apply(puppet::with_pinned(*rig_, chosen, pinned),
+        point_name_ + (pinned ? " stays where it is." : " may be moved."));
+}
+
+void PuppetEditor::remove_point() {
+  const std::size_t chosen = point();
+  if (pending_) return forget_place();
+  if (chosen == none) return;
+  scaling_.reset();
+  if (apply(puppet::without_point(*rig_, chosen),
+            point_name_ + " is gone; an undo brings it back."))
+    point_name_.clear();
+}
+
+void PuppetEditor::rename_function(const std::string& name) {
+  const std::size_t chosen = function();
+  if (chosen == none || name == rig_->puppet().functions[chosen].name) return;
+  if (apply(puppet::with_name(*rig_, chosen, name), "")) function_name_ = name;
+}
+
+void PuppetEditor::toggle_mirror() {
+  if (rig_->puppet().points.empty()) {
+    told_ = "A puppet begins with a point that a finger moves; then it can be mirrored.";
+    return;
+  }
+  const bool mirrors = !rig_->puppet().mirrors;
+  apply(puppet::with_mirror(*rig_, mirrors),
+        mirrors ? "What is on one side is on both, and the other hand plays it."
+                : "Each side has points and functions of its own.");
+}
+
+void PuppetEditor::begin_drag(std::size_t point) {
+  choose_point(point);
+  const std::size_t function = this->function();
+  if (function == none || rig_->puppet().points[point].is_pin) return;
+  drag_ = Drag{point, function, way_of(point)};
+}
+
+void PuppetEditor::drag(const Vector3d& way) {
+  if (drag_) drag_->way += way;
+}
+
+void PuppetEditor::end_drag() {
+  if (!drag_) return;
+  const Drag done = *std::exchange(drag_, {});
+  const Vector3d before = rig_->vectors_of(done.function).col(static_cast<Index>(done.point));
+  if (done.way == before) return;
+  apply(puppet::with_move(*rig_, done.function, done.point, done.way),
+        rig_->puppet().functions[done.function].name + " moves " + point_name_ + " there.");
+}
+
+Vector3d PuppetEditor::way_of(std::size_t point) const {
+  if (drag_ && drag_->point == point) return drag_->way;
+  const std::size_t chosen = function();
+  if (chosen == none) return Vector3d::Zero();
+  return rig_->vectors_of(chosen).col(static_cast<Index>(point));
+}
+
+void PuppetEditor::scale_radius(double steps) {
+  const double factor = std::pow(a_step, std::clamp(steps, -10.0, 10.0));
+  const double diagonal = deform::diagonal_of(loaded_.vertices);
+  const auto within = [&](double radius) {
+    return std::clamp(radius * factor, 0.003 * diagonal, 2.0 * diagonal);
+  };
+  ++version_;
+  if (brushes_) {
+    brush_radius_ = within(brush_radius_);
+    return;
+  }
+  const std::size_t chosen = pending_ ? none : point();
+  if (chosen == none) {
+    new_radius_ = within(new_radius_);
+    return;
+  }
+  if (!scaling_ || scaling_->point != chosen)
+    scaling_ = Scaling{chosen, rig_->puppet().points[chosen].radius, {}};
+  scaling_->radius = within(scaling_->radius);
+  scaling_->last = HostClock::now();
+}
+
+void PuppetEditor::end_scaling(bool at_once) {
+  if (!scaling_ || (!at_once && HostClock::now() - scaling_->last < wheel_rest)) return;
+  const Scaling done = *std::exchange(scaling_, {});
+  if (done.point < rig_->puppet().points.size())
+    apply(puppet::with_radius(*rig_, done.point, done.radius), "");
+}
+
+double PuppetEditor::radius() const noexcept {
+  const std::size_t chosen = pending_ ? none : point();
+  if (chosen == none) return new_radius_;
+  return scaling_ && scaling_->point == chosen ? scaling_->radius
+                                               : rig_->puppet().points[chosen].radius;
+}
+
+void PuppetEditor::toggle_brush() {
+  if (rig_->puppet().points.empty()) {
+    told_ = "A puppet begins with a point that a finger moves; then parts of it can be masked.";
+    return;
+  }
+  forget_place();
+  brushes_ = !brushes_;
+  told_ = brushes_
+              ? "Drag over what shall stay as it is; with shift, over what may move again. The "
+                "wheel changes the brush."
+              : "";
+  ++version_;
+}
+
+void PuppetEditor::paint(const SurfaceHit& hit, bool erases) {
+  if (!stroke_.empty() && (stroke_.back() - hit.at).norm() < stroke_step * brush_radius_) return;
+  if (stroke_.empty()) erases_ = erases;
+  stroke_.push_back(hit.at);
+  ++version_;
+}
+
+void PuppetEditor::end_stroke() {
+  if (stroke_.empty()) return;
+  const auto stroke = std::exchange(stroke_, {});
+  // At three quarters of a mask's radius, places are held half.
+  apply(erases_ ? puppet::without_masks(*rig_, stroke, brush_radius_)
+                : puppet::with_masks(*rig_, stroke, brush_radius_ / puppet::half_of_mask),
+        "");
+}
+
+} // namespace nendo::viewer

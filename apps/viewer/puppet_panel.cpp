@@ -1,0 +1,107 @@
+// The part of the live window's panel that edits a puppet, and its keys.
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <nendo/hand/skeleton.hpp>
+
+#include "viewer/panel.hpp"
+#include "viewer/puppet_marks.hpp"
+#include "viewer/puppet_tool.hpp"
+#include "viewer/widgets.hpp"
+
+namespace nendo::viewer {
+namespace {
+
+/// The fingers of both hands, of which one is to be chosen.
+void choose_finger(PuppetEditor& editor) {
+  const std::size_t function = editor.function();
+  const bool is_pending = editor.pending().has_value();
+  const std::string now = is_pending || function == PuppetEditor::none
+                              ? "choose a finger"
+                              : editor.rig().puppet().functions[function].input.name();
+  ImGui::SetNextItemWidth(-1.0F);
+  if (!ImGui::BeginCombo("##finger", now.c_str())) return;
+  for (const Side side : {Side::left, Side::right})
+    for (std::size_t finger = 0; finger < hand::finger_count; ++finger) {
+      const auto signal = puppet::HandSignal::numbered(side, static_cast<std::uint8_t>(finger));
+      if (signal && ImGui::Selectable(signal->name().c_str(), signal->name() == now))
+        editor.choose_input(*signal, puppet::BendWatch::usual_rad(finger));
+    }
+  ImGui::EndCombo();
+}
+
+void list_functions(PuppetEditor& editor) {
+  const auto& functions = editor.rig().puppet().functions;
+  if (functions.empty()) return;
+  ImGui::BeginChild("functions", ImVec2(0.0F, 84.0F), true);
+  for (std::size_t at = 0; at < functions.size(); ++at) {
+    const std::string words = functions[at].name + ": " + functions[at].input.name();
+    if (ImGui::Selectable(words.c_str(), at == editor.function())) editor.choose_function(at);
+  }
+  ImGui::EndChild();
+}
+
+void name_function(PuppetEditor& editor) {
+  const std::size_t function = editor.function();
+  if (function == PuppetEditor::none) return;
+  std::array<char, 65> name{};
+  const std::string& now = editor.rig().puppet().functions[function].name;
+  std::copy_n(now.begin(), std::min(now.size(), name.size() - 1), name.begin());
+  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::InputText("##name", name.data(), name.size());
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("The function's name; ARKit's are known to other programs");
+  if (ImGui::IsItemDeactivatedAfterEdit()) editor.rename_function(name.data());
+}
+
+void edit_buttons(PuppetEditor& editor, Commands& commands) {
+  bool mirrors = editor.rig().puppet().mirrors;
+  if (ImGui::Checkbox("mirror", &mirrors)) editor.toggle_mirror();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("What is on one side is on both (j)");
+  ImGui::SameLine();
+  bool brushes = editor.brushes();
+  if (ImGui::Checkbox("brush masks", &brushes)) editor.toggle_brush();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Paint what stays; shift erases (z)");
+  if (ImGui::Button("Pin")) editor.toggle_pin();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The place, or the point, stays where it is (o)");
+  ImGui::SameLine();
+  if (ImGui::Button("Remove")) editor.remove_point();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The chosen point goes (Delete)");
+  ImGui::SameLine();
+  if (ImGui::Button("Save puppet")) commands.emplace_back(flow::SavePuppet{});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Writes the puppet's file (a)");
+}
+
+} // namespace
+
+void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
+  if (ImGui::Button(editor.is_on() ? "Play the puppet" : "Edit the puppet",
+                    ImVec2(ImGui::GetContentRegionAvail().x, 0.0F)))
+    editor.turn(!editor.is_on());
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Click, bend a finger, drag: what each finger does (Tab)");
+  if (!editor.is_on()) return;
+  if (!editor.told().empty()) ImGui::TextWrapped("%s", editor.told().c_str());
+  edit_buttons(editor, commands);
+  ImGui::Text("%s, radius %.3g", editor.brushes() ? "brush" : "point",
+              editor.brushes() ? editor.brush_radius() : editor.radius());
+  choose_finger(editor);
+  list_functions(editor);
+  name_function(editor);
+}
+
+void LiveWindow::Panel::puppet_keys(PuppetEditor& editor, Commands& commands) {
+  if (!takes_keys() || ImGui::GetIO().KeyCtrl) return;
+  if (pressed(GLFW_KEY_TAB)) editor.turn(!editor.is_on());
+  if (!editor.is_on()) return;
+  if (pressed(GLFW_KEY_J)) editor.toggle_mirror();
+  if (pressed(GLFW_KEY_O)) editor.toggle_pin();
+  if (pressed(GLFW_KEY_Z)) editor.toggle_brush();
+  if (pressed(GLFW_KEY_DELETE) || pressed(GLFW_KEY_BACKSPACE)) editor.remove_point();
+  if (pressed(GLFW_KEY_ESCAPE)) editor.forget_place();
+  if (pressed(GLFW_KEY_A)) commands.emplace_back(flow::SavePuppet{});
+}
+
+} // namespace nendo::viewer

@@ -1,0 +1,87 @@
+#include "viewer/puppet_tool.hpp"
+
+#include <imgui.h>
+
+#include "viewer/pointing.hpp"
+
+namespace nendo::viewer {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double still_px = 4.0; // a click that moves farther is a drag
+
+Vector2d pointer_now() {
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  return {static_cast<double>(at.x), static_cast<double>(at.y)};
+}
+
+} // namespace
+
+std::optional<SurfaceHit> PuppetTool::hit(const SceneWindow& window, double units_per_metre,
+                                          const PuppetEditor& editor) {
+  Ray ray = ray_at(window.stage_camera(), pointer_now(), window.scene_size());
+  ray.from *= units_per_metre;
+  return first_hit(editor.model(), ray);
+}
+
+bool PuppetTool::brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor) {
+  const bool begins = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  if (!paints_ && !begins) return false;
+  const auto place = hit(window, units_per_metre, editor);
+  if (begins) paints_ = place.has_value(); // beside the model, the mouse turns the camera
+  if (!paints_) return false;
+  if (place) editor.paint(*place, ImGui::GetIO().KeyShift);
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return true;
+  paints_ = false;
+  editor.end_stroke();
+  return true;
+}
+
+bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, PuppetEditor& editor) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const render::Camera camera = window.stage_camera();
+  const render::Size size = window.scene_size();
+  if (editor.is_dragging()) {
+    const Vector3d start = editor.rig().starts().col(static_cast<Eigen::Index>(editor.point()));
+    const Vector3d end_m = (start + editor.way_of(editor.point())) / units_per_metre;
+    editor.drag(units_per_metre *
+                way_in_picture(camera, end_m, static_cast<double>(io.MouseDelta.x),
+                               static_cast<double>(io.MouseDelta.y), size.height));
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) editor.end_drag();
+    return true;
+  }
+  hovered_ = PuppetEditor::none;
+  if (io.WantCaptureMouse && !paints_) return false;
+  if (editor.brushes()) {
+    if (io.MouseWheel != 0.0F) editor.scale_radius(static_cast<double>(io.MouseWheel));
+    return brush(window, units_per_metre, editor) || io.MouseWheel != 0.0F;
+  }
+  hovered_ = point_at(editor, camera, size, units_per_metre, pointer_now());
+  if (hovered_ != PuppetEditor::none && io.MouseWheel != 0.0F) {
+    editor.forget_place();
+    if (editor.point() != hovered_) editor.choose_point(hovered_);
+    editor.scale_radius(static_cast<double>(io.MouseWheel));
+    return true;
+  }
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    if (hovered_ != PuppetEditor::none) {
+      editor.forget_place();
+      editor.begin_drag(hovered_);
+      return true;
+    }
+    pressed_at_ = pointer_now();
+    return true; // the way to here is no drag of the camera
+  }
+  if (pressed_at_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
+    const bool is_click = (pointer_now() - *pressed_at_).norm() <= still_px;
+    pressed_at_.reset();
+    if (is_click)
+      if (const auto place = hit(window, units_per_metre, editor)) editor.place(*place);
+  }
+  return false;
+}
+
+} // namespace nendo::viewer

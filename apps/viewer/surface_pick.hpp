@@ -1,0 +1,31 @@
+#pragma once
+// What of a model is under the pointer.
+
+#include <optional>
+
+#include <nendo/deform/mesh.hpp>
+
+#include "render/camera.hpp"
+#include "render/image.hpp"
+
+namespace nendo::viewer {
+
+struct Ray {
+  Eigen::Vector3d from;
+  Eigen::Vector3d along; ///< unit length
+};
+
+/// Returns the line of sight through a pixel, counted from the picture's top left corner.
+Ray ray_at(const render::Camera& camera, const Eigen::Vector2d& pixel, render::Size size) noexcept;
+
+/// A place of a surface, with the normal of its triangle, which looks against the ray.
+struct SurfaceHit {
+  Eigen::Vector3d at;
+  Eigen::Vector3d normal;
+};
+
+/// Returns the first place of the mesh's faces that the ray meets; nothing if it meets none. It
+/// looks at all triangles.
+std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray);
+
+} // namespace nendo::viewer

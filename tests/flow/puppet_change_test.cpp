@@ -1,0 +1,254 @@
+// A loop goes on with an edited puppet: the shape changes by what the edit asks for, and by nothing
+// else.
+
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "support/any_puppet.hpp"
+#include "support/clocked_loop.hpp"
+#include "support/late_maker.hpp"
+#include "support/restraint.hpp"
+#include "support/rounds.hpp"
+
+namespace puppet_change_test {
+
+using namespace std::chrono_literals;
+using namespace nendo;
+using namespace nendo::flow;
+using nendo::test::Clocked;
+using nendo::test::gap;
+using nendo::test::rig_of;
+
+namespace {
+
+const test::LoopFixture with_puppet{.rings_of_ball = 12, .puppet = test::ball_puppet};
+
+std::shared_ptr<const puppet::Rig> edited(const Clocked& loop, const Result<puppet::Puppet>& to) {
+  REQUIRE_MESSAGE(to, (to ? "" : to.error().message));
+  return rig_of(*to, loop.test.model);
+}
+
+const puppet::Rig& rig(const Clocked& loop) {
+  return *loop.test.loop->puppet(loop.test.loop->newest_puppet());
+}
+
+template <class List>
+std::size_t named(const List& list, std::string_view name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
+  REQUIRE(found != list.end());
+  return static_cast<std::size_t>(found - list.begin());
+}
+std::size_t function(const Clocked& loop, std::string_view name) {
+  return named(rig(loop).puppet().functions, name);
+}
+std::size_t point(const Clocked& loop, std::string_view name) {
+  return named(rig(loop).puppet().points, name);
+}
+
+/// Another function and place of the same fingers.
+const char* const other_puppet = R"(
+version = 1
+model = "ball.obj"
+[points]
+north = { at = [0.0, 1.0, 0.0], radius = 0.9 }
+east = { at = [1.0, 0.0, 0.0], radius = 0.8 }
+[functions.growLeft]
+input = "left.index_flexion"
+travel_deg = 30
+curve = "ease"
+least = -0.5
+move = { north = [0.0, 0.3, 0.0], east = [0.1, 0.0, 0.0] }
+)";
+
+} // namespace
+
+TEST_SUITE("puppet change") {
+  TEST_CASE("an edit that changes nothing that acts keeps the shape bit for bit") {
+    Clocked loop(Mode::type1, with_puppet), other(Mode::type1, with_puppet);
+    other.now = loop.now;
+    CHECK(loop.stroke(0, 15) == other.stroke(0, 15));
+    const auto once_more = [&](const Result<puppet::Puppet>& to) {
+      REQUIRE(loop.test.loop->change_puppet(edited(loop, to)));
+      CHECK(loop.bent(15) == other.bent(15));
+      CHECK(loop.bent(15) == other.bent(15));
+    };
+    once_more(puppet::with_name(rig(loop), function(loop, "turn"), "otherTurn"));
+    once_more(puppet::with_name(rig(loop), function(loop, "otherTurn"), "turn"));
+    once_more(puppet::with_radius(rig(loop), point(loop, "east"), 0.7)); // as it was
+    CHECK(loop.test.loop->newest_puppet() == 3);
+    CHECK(loop.frame().puppet == 3);
+    CHECK(loop.stroke(15, 3) == other.stroke(15, 3));
+  }
+
+  TEST_CASE("after an edit the shape is that of a loop that began with the edited puppet") {
+    for (const char* distance : {"surface", "air"}) {
+      CAPTURE(distance);
+      const std::string head = std::string("distance = \"") + distance + "\"\n";
+      const std::string from = head + test::ball_puppet, to = head + other_puppet;
+      Clocked loop(Mode::type1, {.rings_of_ball = 12, .puppet = from.c_str()});
+      Clocked other(Mode::type1, {.rings_of_ball = 12, .puppet = to.c_str()});
+      other.now = loop.now;
+      loop.stroke(0, 15);
+      other.stroke(0, 15);
+      const auto puppet = puppet::parse_puppet(to, "to");
+      REQUIRE(puppet);
+      REQUIRE(loop.test.loop->change_puppet(rig_of(*puppet, loop.test.model)));
+      loop.bent(15);
+      other.bent(15);
+      for (const int counts : {15, 20, 3, 0}) {
+        const deform::Points shape = loop.bent(counts);
+        CHECK(gap(shape, other.bent(counts)) < 1e-6);
+        if (counts == 20) CHECK(gap(shape, loop.test.model.vertices) > 1e-2);
+        CHECK(loop.frame().function_count == 1);
+      }
+      // At rest nothing of the puppet before is left in the model.
+      CHECK(gap(loop.bent(0), loop.test.model.vertices) < 1e-6);
+    }
+  }
+
+  TEST_CASE("undo goes back over edits while hands play on, and redo forth again") {
+    Clocked loop(Mode::type1, with_puppet);
+    std::vector<deform::Points> shapes;
+    const std::array strokes{Eigen::Vector3d(0, -1, 0)};
+    loop.stroke(0, 12);
+    shapes.push_back(loop.bent(12));
+    for (int edit = 0; edit < 6; ++edit) {
+      const auto next = [&]() -> Result<puppet::Puppet> {
+        switch (edit) {
+        case 0:
+          return puppet::with_radius(rig(loop), point(loop, "south"), 0.5);
+        case 1:
+          return puppet::with_move(rig(loop), function(loop, "push"), point(loop, "northLeft"),
+                                   {0.2, 0, 0});
+        case 2:
+          return puppet::with_pin(rig(loop), {{0, 1, 0}, 0.6});
+        case 3:
+          return puppet::with_masks(rig(loop), strokes, 0.7);
+        case 4:
+          return puppet::with_name(rig(loop), function(loop, "turn"), "nod");
+        default:
+          return puppet::with_mirror(rig(loop), false);
+        }
+      }();
+      REQUIRE(loop.test.loop->change_puppet(edited(loop, next)));
+      loop.bent(12);
+      shapes.push_back(loop.bent(12));
+    }
+    const auto steps = loop.kinds();
+    CHECK(std::count(steps.begin(), steps.end(), StepKind::puppet) ==
+          static_cast<int>(loop.test.loop->next_puppet()) - 1);
+    const auto settled = [&](Request request) {
+      REQUIRE(loop.test.commands.try_push(request));
+      loop.bent(12);
+      REQUIRE(loop.frame().awaited);
+      REQUIRE(loop.test.loop->change_to(*loop.frame().awaited));
+      loop.bent(12);
+      return loop.bent(12);
+    };
+    std::size_t at = shapes.size() - 1;
+    const std::size_t first = shapes.size() - loop.test.loop->next_puppet();
+    for (; at > first; --at)
+      CHECK(gap(settled(Request::undo), shapes[at - 1]) < 1e-6);
+    CHECK(loop.frame().puppet == 0);
+    for (; at + 1 < shapes.size(); ++at)
+      CHECK(gap(settled(Request::redo), shapes[at + 1]) < 1e-6);
+  }
+
+  TEST_CASE("hands that touched the model play a puppet, and touch it again after an undo") {
+    Clocked loop(Mode::type1);
+    loop.stroke(0, 15);
+    const deform::Points shaped = loop.bent(15);
+    const auto puppet = puppet::parse_puppet(other_puppet, "other");
+    REQUIRE(puppet);
+    REQUIRE(loop.test.loop->change_puppet(rig_of(*puppet, loop.test.model)));
+    const deform::Points taken = loop.bent(15);
+    CHECK(gap(loop.bent(15), taken) < 1e-6); // what was shaped stays
+    CHECK(gap(taken, shaped) < 1e-3);
+    CHECK(loop.frame().function_count == 1);
+    const deform::Points played = loop.bent(25);
+    CHECK(gap(played, taken) > 1e-2);
+    CHECK(gap(loop.bent(15), taken) < 1e-6);
+    REQUIRE(loop.test.commands.try_push(Request::undo));
+    loop.bent(15);
+    REQUIRE(loop.frame().awaited);
+    REQUIRE(loop.test.loop->change_to(*loop.frame().awaited));
+    loop.bent(15);
+    loop.bent(15);
+    CHECK(loop.frame().function_count == 0);
+    CHECK(loop.frame().puppet == 0);
+    CHECK(gap(loop.bent(25), taken) > 1e-3); // by the fingertips
+  }
+
+  TEST_CASE("a puppet that cannot be solved for is refused, and changes nothing") {
+    Clocked loop(Mode::type1, with_puppet);
+    loop.stroke(0, 10);
+    puppet::Puppet puppet = rig(loop).puppet();
+    puppet.points.push_back(puppet.points.front());
+    puppet.points.back().name = "beside";
+    puppet.points.back().at.x() += 1e-9;
+    const auto refused = loop.test.loop->change_puppet(rig_of(puppet, loop.test.model));
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == Errc::bad_input);
+    CHECK(refused.error().message.find("beside") != std::string::npos);
+    CHECK(loop.test.loop->next_puppet() == 1);
+    const deform::Points shape = loop.bent(10);
+    CHECK(loop.bent(10) == shape);
+    CHECK_FALSE(loop.test.loop->change_puppet(std::uint32_t{7}));
+    REQUIRE(loop.test.loop->hold_still());
+    CHECK_FALSE(loop.test.loop->change_puppet(
+        rig_of(*puppet::parse_puppet(other_puppet, "other"), loop.test.model)));
+    loop.bent(10);
+    loop.test.loop->keep_model();
+    loop.bent(10);
+    CHECK(loop.test.loop->change_puppet(
+        rig_of(*puppet::parse_puppet(other_puppet, "other"), loop.test.model)));
+  }
+
+  TEST_CASE("ticks that take puppets allocate nothing, free nothing, lock nothing") {
+    constexpr std::uint64_t ticks = test::rounds(1500);
+    test::RestraintCounts sum;
+    std::uint32_t puppets = 0;
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      InputLog log;
+      test::LoopFixture fixture{.rings_of_ball = 6, .input_log = &log};
+      if (seed % 2 == 0) fixture.puppet = test::ball_puppet;
+      test::LoopUnderTest test(Mode::type1, fixture);
+      std::mt19937 random(seed);
+      test::LateMaker maker(seed, 1000);
+      HostTime now = HostClock::now();
+      for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+        DeformLoop& loop = *test.loop;
+        if (random() % 12 == 0)
+          static_cast<void>(loop.change_puppet(
+              test::any_puppet(loop.puppet(loop.newest_puppet()), test.model, random)));
+        if (random() % 30 == 0) loop.change_settings(test::any_settings(loop.settings(), random));
+        maker.turn(loop);
+        if (random() % 200 == 0 && maker.is_idle(loop))
+          loop.change_log(random() % 2 == 0 ? &log : nullptr, loop.frames().front().shape);
+        if (random() % 8 == 0) test.commands.try_push(requests[random() % requests.size()]);
+        test.bend(static_cast<int>(tick % 40), now += 1ms);
+        {
+          const test::Restraint restraint;
+          loop.tick(tick, now, now);
+          sum.allocations += restraint.counts().allocations;
+          sum.frees += restraint.counts().frees;
+          sum.locks += restraint.counts().locks;
+        }
+        if (random() % 2 == 0 && loop.frames().update())
+          if (const auto& awaited = loop.frames().front().awaited) loop.change_to(*awaited);
+        log.drain([](const auto&) noexcept {});
+        loop.take_state();
+        loop.refill_undo();
+      }
+      puppets += test.loop->next_puppet();
+    }
+    CHECK(sum.allocations == 0);
+    CHECK(sum.frees == 0);
+    CHECK(sum.locks == 0);
+    CHECK(puppets > static_cast<std::uint32_t>(test::rounds(100)));
+  }
+}
+
+} // namespace puppet_change_test
