@@ -17,6 +17,7 @@ namespace {
 constexpr double margin_mm = 1.0;    // around a body, where surfaces are kept from being pulled in
 constexpr double skin_mm = 0.02;     // a surface this deep is outside
 constexpr double load_mm = 0.5;      // clay springs back by that
+constexpr double give_mm = 0.3;      // by which skin gives way sideways before it drags
 constexpr double loaded_mm = 0.01;   // less does not stick
 constexpr double most_step_mm = 2.0; // of a body in a sub-step
 constexpr double most_straight_mm = 0.2; // a last push, which may fold
@@ -65,7 +66,7 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
                          std::size_t bodies, std::size_t parts_a_body, const ClayOptions& options)
     : layout_(shape.layout()), options_(options), mm_(options.units_a_mm / layout_.unit()),
       radius_(options.radius_mm * mm_), parts_a_body_(parts_a_body), from_(bodies * parts_a_body),
-      target_(from_), was_(from_), is_(from_), ways_(from_.size(), Eigen::Isometry3d::Identity()),
+      target_(from_), is_(from_), skins_(from_), ways_(from_.size(), Eigen::Isometry3d::Identity()),
       boxes_(bodies, BoxGate::shut()), search_(bodies, parts_a_body),
       chosen_(static_cast<std::size_t>(options.most_constraints)),
       loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
@@ -108,6 +109,7 @@ void ClayDeformer::Work::pack(std::span<const ContactPart> parts,
 void ClayDeformer::Work::take_hold(const BoundedShape& shape,
                                    std::span<const ContactPart> parts) noexcept {
   pack(parts, from_);
+  skins_ = from_;
   for (ContactLoad& load : loads_)
     load.clear();
   if (volume_.is_closed()) whole_volume_ = volume_.volume(shape);
@@ -136,12 +138,30 @@ bool ClayDeformer::Work::is_way_free(const BoundedShape& shape) noexcept {
 }
 
 void ClayDeformer::Work::place_at(double share) noexcept {
-  std::swap(was_, is_);
+  is_dragging_ = false;
   for (std::size_t at = 0; at < from_.size(); ++at) {
     is_[at] = between(from_[at], target_[at], share);
-    ways_[at] = is_[at].frame * was_[at].frame.inverse(Eigen::Isometry);
+    drag(at);
   }
   search_.set_parts(is_);
+}
+
+/// Skin is soft: what touches it follows a bone only when that has gone farther than the skin gives
+/// way. So a hand that trembles does not knead.
+void ClayDeformer::Work::drag(std::size_t part) noexcept {
+  const Eigen::Isometry3d before = skins_[part].frame;
+  const Eigen::Isometry3d lag = before * is_[part].frame.inverse(Eigen::Isometry);
+  double farthest = 0.0;
+  for (std::size_t at = 0; at < is_[part].corner_count; ++at)
+    farthest = std::max(farthest, (lag * is_[part].corners[at] - is_[part].corners[at]).norm());
+  const double give = give_mm * mm_;
+  if (farthest <= give) {
+    ways_[part].setIdentity();
+    return;
+  }
+  is_dragging_ = options_.friction > 0.0;
+  skins_[part].frame = between(skins_[part], is_[part], 1.0 - give / farthest).frame;
+  ways_[part] = skins_[part].frame * before.inverse(Eigen::Isometry);
 }
 
 void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart> parts,
@@ -155,6 +175,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     for (ContactLoad& load : loads_)
       load.clear();
     search_.set_parts(target_);
+    skins_ = target_;
   } else {
     double least_radius = most_step_mm * mm_ * 2.0;
     for (const ContactPart& part : target_)
@@ -186,7 +207,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
 double ClayDeformer::Work::sub_step(BoundedShape& shape, ClayReport& report) noexcept {
   for (int pass = 0;; ++pass) {
     const Found found = find(shape, pass == 0);
-    const bool slides = pass == 0 && found.is_loaded && options_.friction > 0.0;
+    const bool slides = pass == 0 && found.is_loaded && is_dragging_;
     if ((found.deepest <= skin_mm * mm_ && !slides) || pass == most_sub_step_passes)
       return found.deepest;
     if (!push(shape, slides, report)) return found.deepest;
@@ -241,7 +262,8 @@ bool ClayDeformer::Work::push(BoundedShape& shape, bool slides, ClayReport& repo
   return true;
 }
 
-/// What a place's part has done in this sub-step is the way that friction would take it.
+/// What the skin of a place's part has done in this sub-step is the way that friction would take
+/// it. Where there is no load, the limit is 0.
 void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
   for (std::size_t at = 0; at < points.size(); ++at) {
     const ContactPoint& point = points[at];

@@ -40,6 +40,7 @@ private:
   double way_to_target() const noexcept;
   bool is_way_free(const BoundedShape& shape) noexcept;
   void place_at(double share) noexcept;
+  void drag(std::size_t part) noexcept;
   double sub_step(BoundedShape& shape, ClayReport& report) noexcept;
   Found find(const BoundedShape& shape, bool loads) noexcept;
   void offer(const BoundedShape& shape, std::size_t body, std::size_t block,
@@ -57,7 +58,9 @@ private:
   std::size_t parts_a_body_;
   bool holds_ = false;
   std::vector<ContactPart> from_, target_; ///< of a call
-  std::vector<ContactPart> was_, is_;      ///< of a sub-step
+  std::vector<ContactPart> is_;            ///< of a sub-step
+  std::vector<ContactPart> skins_;         ///< frames that lag behind the bones'
+  bool is_dragging_ = false;               ///< some skin has moved
   std::vector<Eigen::Isometry3d> ways_;    ///< of each part's surface in a sub-step
   std::vector<BoxGate> boxes_;
   ContactSearch search_;
