@@ -109,7 +109,9 @@ ClayTrial measure_clay(const ClayTrialOptions& options) {
   deform::SculptedShape shape(mesh.vertices, {});
   deform::ClayDeformer clay(shape, deform::corners_of_triangles(mesh), scene.hands(),
                             hand::HandBody::part_count,
-                            {.radius_mm = options.radius_mm, .keeps_volume = options.keeps_volume});
+                            {.radius_mm = options.radius_mm,
+                             .friction = options.friction,
+                             .keeps_volume = options.keeps_volume});
   clay.begin(scene.at(0));
   return run_scene(
       options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },

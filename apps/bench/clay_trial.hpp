@@ -32,6 +32,7 @@ struct ClayTrialOptions {
   int hands = 2;
   double speed_m_s = 0.5;
   double radius_mm = 30.0;
+  double friction = 0.5; ///< the plain program has none
   bool keeps_volume = true;
   bool judges_inside = false; ///< takes long
 };

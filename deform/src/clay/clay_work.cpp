@@ -21,12 +21,13 @@ constexpr double give_mm = 0.3;      // by which skin gives way sideways before 
 constexpr double loaded_mm = 0.01;   // less does not stick
 constexpr double most_step_mm = 2.0; // of a body in a sub-step
 constexpr double most_straight_mm = 0.2; // a last push, which may fold
-constexpr double most_swell_mm = 1.0;    // of a call
+constexpr double most_swell_mm = 3.0;    // of a call
 
 constexpr double cells_a_radius = 3.0;
 constexpr double apart_in_cells = 0.6;
 constexpr double most_bound = 0.9; // of a field that does not fold
 constexpr int most_sub_step_passes = 40;
+constexpr double most_sub_steps = 1e6;  // of a call; so a way of kilometres has larger ones
 constexpr double swell_reach = 3.0;     // of radii
 constexpr double volume_is_kept = 1e-5; // relative
 
@@ -181,12 +182,13 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     for (const ContactPart& part : target_)
       for (std::size_t corner = 0; corner < part.corner_count; ++corner)
         least_radius = std::min(least_radius, part.radii[corner]);
-    const double steps = std::max(1.0, std::ceil(way / (0.5 * least_radius)));
+    const int steps =
+        static_cast<int>(std::clamp(std::ceil(way / (0.5 * least_radius)), 1.0, most_sub_steps));
     is_ = from_;
     int used = 0;
     double left = 0.0;
-    for (double step = 1.0; step <= steps && (step == 1.0 || used < options_.most_passes); ++step) {
-      gone = step / steps;
+    for (int step = 1; step <= steps && (step == 1 || used < options_.most_passes); ++step) {
+      gone = static_cast<double>(step) / steps;
       place_at(gone);
       const int before = report.passes;
       left = std::max(left, sub_step(shape, report));
