@@ -176,58 +176,73 @@ Vector3f VolumeKeeper::mean_round(const BoundedShape& shape, std::size_t place) 
   return sum / static_cast<float>(std::max(1U, starts_[place + 1] - starts_[place]));
 }
 
-double VolumeKeeper::give_back(BoundedShape& shape, ContactSearch& search, double missing,
-                               const GiveBack& how) noexcept {
-  weigh(shape, search, how);
+/// Calls visit(place) for the vertices that may move.
+template <class Visit>
+void VolumeKeeper::each_free(const Visit& visit) const {
+  for (std::size_t block = 0; block < volumes_.size(); ++block) {
+    if (is_free_[block] == 0) continue;
+    const std::size_t end = std::min(vertices_, (block + 1) * block_size);
+    for (std::size_t place = block * block_size; place < end; ++place)
+      if (weights_[place] > 0.0F) visit(place);
+  }
+}
+
+/// Sets moves_ to the weighted normals, and returns how much volume they add.
+double VolumeKeeper::direct() noexcept {
   double rate = 0.0;
-  for (std::size_t block = 0; block < volumes_.size(); ++block) {
-    if (is_free_[block] == 0) continue;
-    const std::size_t end = std::min(vertices_, (block + 1) * block_size);
-    for (std::size_t place = block * block_size; place < end; ++place) {
-      const float weight = weights_[place];
-      const std::size_t lane = place % block_size;
-      const Vector3f move =
-          weight > 0.0F ? Vector3f(weight * direction_at(place)) : Vector3f::Zero();
-      set_lane(moves_[block], lane, move);
-      rate += static_cast<double>(move.dot(lane_of(normals_[block], lane)));
-    }
-  }
-  if (!(rate > 0.0)) return 0.0;
-  const auto far = static_cast<float>(std::clamp(missing / rate, -how.most, how.most));
-  for (std::size_t block = 0; block < volumes_.size(); ++block) {
-    if (is_free_[block] == 0) continue;
-    const std::size_t end = std::min(vertices_, (block + 1) * block_size);
-    for (std::size_t place = block * block_size; place < end; ++place) {
-      const std::size_t lane = place % block_size;
-      if (weights_[place] <= 0.0F) continue;
-      const Vector3f way = mean_round(shape, place) - vertex_at(shape.shape, place);
-      const Vector3f pair = starts_[place + 1] > starts_[place]
-                                ? Vector3f(vertex_at(shape.shape, pairs_[starts_[place]].second) -
-                                           vertex_at(shape.shape, place))
-                                : Vector3f::Zero();
-      const float edge = pair.norm();
-      const float fair =
-          edge > 0.0F ? std::min(most_fairing, fairness * std::abs(far) / edge) : 0.0F;
-      set_lane(moves_[block], lane,
-               far * lane_of(moves_[block], lane) + fair * weights_[place] * way);
-    }
-  }
+  each_free([&](std::size_t place) {
+    const std::size_t lane = place % block_size;
+    const Vector3f move = weights_[place] * direction_at(place);
+    set_lane(moves_[place / block_size], lane, move);
+    rate += static_cast<double>(move.dot(lane_of(normals_[place / block_size], lane)));
+  });
+  return rate;
+}
+
+/// Scales the moves, and adds a part of the way to the middle of each vertex' neighbours, which
+/// keeps triangles fair where much swells.
+void VolumeKeeper::scale_moves(const BoundedShape& shape, float far) noexcept {
+  each_free([&](std::size_t place) {
+    const Vector3f at = vertex_at(shape.shape, place);
+    const bool has_ring = starts_[place + 1] > starts_[place];
+    const float edge =
+        has_ring ? (vertex_at(shape.shape, pairs_[starts_[place]].second) - at).norm() : 0.0F;
+    const float fair = edge > 0.0F ? std::min(most_fairing, fairness * std::abs(far) / edge) : 0.0F;
+    const Vector3f way = has_ring ? Vector3f(mean_round(shape, place) - at) : Vector3f::Zero();
+    VertexBlock& moves = moves_[place / block_size];
+    const std::size_t lane = place % block_size;
+    set_lane(moves, lane, far * lane_of(moves, lane) + fair * weights_[place] * way);
+  });
+}
+
+void VolumeKeeper::apply_moves(BoundedShape& shape) noexcept {
+  each_free([&](std::size_t place) {
+    VertexBlock& content = shape.shape.data()[place / block_size];
+    const std::size_t lane = place % block_size;
+    set_lane(content, lane, lane_of(content, lane) + lane_of(moves_[place / block_size], lane));
+  });
   const std::uint64_t stamp = BlockShape::new_stamp();
   for (std::size_t block = 0; block < volumes_.size(); ++block) {
     if (is_free_[block] == 0) continue;
     VertexBlock& content = shape.shape.data()[block];
-    const std::size_t end = std::min(vertices_, (block + 1) * block_size);
-    for (std::size_t place = block * block_size; place < end; ++place) {
-      const std::size_t lane = place % block_size;
-      set_lane(content, lane, lane_of(content, lane) + lane_of(moves_[block], lane));
-    }
-    for (std::size_t lane = end - block * block_size; lane < block_size; ++lane)
-      set_lane(content, lane, lane_of(content, end - block * block_size - 1));
+    const std::size_t used = std::min(block_size, vertices_ - block * block_size);
+    for (std::size_t lane = used; lane < block_size; ++lane) // the padding repeats the last vertex
+      set_lane(content, lane, lane_of(content, used - 1));
     shape.shape.set_stamp(block, stamp);
     shape.bounds[block] = bounds_of(content);
   }
+}
+
+double VolumeKeeper::give_back(BoundedShape& shape, ContactSearch& search, double missing,
+                               const GiveBack& how) noexcept {
+  weigh(shape, search, how);
+  const double rate = direct();
+  if (!(rate > 0.0)) return 0.0;
+  const double far = std::clamp(missing / rate, -how.most, how.most);
+  scale_moves(shape, static_cast<float>(far));
+  apply_moves(shape);
   shape.extent += how.most;
-  return static_cast<double>(far) * rate;
+  return far * rate;
 }
 
 } // namespace nendo::deform

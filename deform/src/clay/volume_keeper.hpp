@@ -46,6 +46,11 @@ private:
   bool has_changed(const BoundedShape& shape, std::size_t block) const noexcept;
   void measure(const BoundedShape& shape, std::size_t block) noexcept;
   void weigh(const BoundedShape& shape, ContactSearch& search, const GiveBack& how) noexcept;
+  template <class Visit>
+  void each_free(const Visit& visit) const;
+  double direct() noexcept;
+  void scale_moves(const BoundedShape& shape, float far) noexcept;
+  void apply_moves(BoundedShape& shape) noexcept;
   Eigen::Vector3f direction_at(std::size_t place) const noexcept;
   Eigen::Vector3f mean_round(const BoundedShape& shape, std::size_t place) const noexcept;
 
