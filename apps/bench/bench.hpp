@@ -10,6 +10,9 @@ void add_bench(cli::Command& program);
 namespace calibration_bench {
 void add(cli::Command& bench);
 }
+namespace clay_bench {
+void add(cli::Command& bench);
+}
 namespace deform_bench {
 void add(cli::Command& bench);
 }

@@ -26,7 +26,7 @@ int start(char** arguments) {
 void add(cli::Command& program) {
   cli::Command command = program.add_command(
       "bench", "Measures this program on this machine: latency, faults, load, loop, rings, hands, "
-               "calibration, fields, deformation");
+               "calibration, fields, deformation, clay");
   command.set_footer("It starts nendo-bench, which a build without benchmarks does not have.");
 }
 

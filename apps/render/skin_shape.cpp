@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <nendo/hand/hand_body.hpp>
+
 namespace nendo::render {
 
 using Eigen::Vector3f;
@@ -25,15 +27,6 @@ constexpr float at_cut_m = 13 * mm;
 constexpr std::array<Joint, 5> roots{Joint::thumb_metacarpal, Joint::index_metacarpal,
                                      Joint::middle_metacarpal, Joint::ring_metacarpal,
                                      Joint::little_metacarpal};
-
-struct Radii {
-  float knuckle, middle, end, tip; // at the finger's joints, from the knuckle to the tip
-};
-constexpr std::array<Radii, 5> radii_mm{{{11.8F, 10.2F, 9.8F, 8.0F}, // the thumb's
-                                         {10.2F, 8.8F, 7.8F, 6.7F},
-                                         {10.4F, 9.0F, 8.0F, 6.9F},
-                                         {9.8F, 8.4F, 7.5F, 6.5F},
-                                         {8.8F, 7.4F, 6.6F, 5.8F}}};
 
 Joint after(Joint joint, std::size_t steps) {
   return static_cast<Joint>(hand::index_of(joint) + steps);
@@ -130,7 +123,7 @@ void HandFlesh::add_metacarpals(const HandPose& pose) {
   const Vector3f back = axis_of(pose, Joint::wrist, 2);
   for (std::size_t finger = 1; finger < roots.size(); ++finger) {
     const Joint root = roots[finger];
-    const float head = radii_mm[finger].knuckle * mm;
+    const float head = hand::average_finger_radii[finger].knuckle_mm * mm;
     // Those of index and middle finger are fixed to the wrist.
     const Joint carrier = finger < 3 ? Joint::wrist : root;
     palm_.push_back(round_part(place_of(pose, root) - 4.5F * mm * up,
@@ -196,7 +189,7 @@ void HandFlesh::add_forearm(const HandPose& pose) {
 }
 
 void HandFlesh::add_thumb(const HandPose& pose) {
-  const Radii& radii = radii_mm[0];
+  const hand::FingerRadii& radii = hand::average_finger_radii[0];
   const auto at = [&](std::size_t step) { return place_of(pose, after(roots[0], step)); };
   const auto carried = [](std::size_t step) {
     return std::array{after(roots[0], step), after(roots[0], step)};
@@ -204,10 +197,10 @@ void HandFlesh::add_thumb(const HandPose& pose) {
   const Vector3f up = axis_of(pose, Joint::thumb_distal, 1);
   const Vector3f along = (at(3) - at(2)).normalized();
   std::vector<FleshPart>& parts = fingers_[0];
-  parts.push_back(round_part(at(0), at(1), 14 * mm, radii.knuckle * mm, 0.0F, carried(0)));
-  parts.push_back(
-      round_part(at(1), at(2), radii.knuckle * mm, radii.end * mm, along_finger_m, carried(1)));
-  parts.push_back({at(2), at(3) - radii.tip * mm * along, radii.end * mm, radii.tip * mm,
+  parts.push_back(round_part(at(0), at(1), 14 * mm, radii.knuckle_mm * mm, 0.0F, carried(0)));
+  parts.push_back(round_part(at(1), at(2), radii.knuckle_mm * mm, radii.end_mm * mm, along_finger_m,
+                             carried(1)));
+  parts.push_back({at(2), at(3) - radii.tip_mm * mm * along, radii.end_mm * mm, radii.tip_mm * mm,
                    along_finger_m, up, 0.85F, carried(2)});
   // The pad of its end.
   parts.push_back(round_part(between(at(2), at(3), 0.4F) - 2.5F * mm * up,
@@ -216,9 +209,9 @@ void HandFlesh::add_thumb(const HandPose& pose) {
 }
 
 void HandFlesh::add_finger(const HandPose& pose, std::size_t finger) {
-  const Radii& radii = radii_mm[finger];
-  const std::array<float, 4> radius_m{radii.knuckle * mm, radii.middle * mm, radii.end * mm,
-                                      radii.tip * mm};
+  const hand::FingerRadii& radii = hand::average_finger_radii[finger];
+  const std::array<float, 4> radius_m{radii.knuckle_mm * mm, radii.middle_mm * mm,
+                                      radii.end_mm * mm, radii.tip_mm * mm};
   std::vector<FleshPart>& parts = fingers_[finger];
   for (std::size_t bone = 0; bone < 3; ++bone) {
     const Joint joint = after(roots[finger], bone + 1);

@@ -172,6 +172,25 @@ TEST_SUITE("bench") {
     CHECK(is_one_line_about(unknown.err, "abacus"));
   }
 
+  TEST_CASE("bench clay tells what pressing takes, beside the plain program") {
+    const auto done = nendo::test::nendo({"bench", "clay", "--short", "--json"});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 2);
+    for (std::size_t at = 0; at < 2; ++at) {
+      const auto row = nlohmann::json::parse(lines[at]);
+      CAPTURE(lines[at]);
+      CHECK(row["plain"] == (at == 1));
+      CHECK(row["vertices"] == 2562);
+      CHECK(row["mean_us"] > 0.0);
+      CHECK(row["p99_us"] >= row["mean_us"]);
+      CHECK(row["penetration_p99_of_edge"] < 0.05);
+    }
+    const auto unknown = nendo::test::nendo({"bench", "clay", "--simd", "abacus"});
+    CHECK(unknown.exit_code == 2);
+    CHECK(is_one_line_about(unknown.err, "abacus"));
+  }
+
   TEST_CASE("bench table1 counts the paper's evaluations in 19 cells of 20, and draws them all") {
     const nendo::test::TemporaryFolder folder;
     const auto picture = folder.path() / "table1.svg";

@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
+
+#include <nendo/hand/hand_body.hpp>
 
 #include "render/hand_skin.hpp"
 
@@ -233,6 +237,32 @@ TEST_SUITE("hand_skin") {
                                            Eigen::Translation3d(-place) * pose[joint];
     CHECK(thickness(HandSkin::Mix::screws) > 0.9 * before);
     CHECK(thickness(HandSkin::Mix::linear) < 0.6 * before);
+  }
+
+  TEST_CASE("the body that presses lies close to the skin that is drawn") {
+    for (const Side side : {Side::left, Side::right}) {
+      const HandSkin skin(side);
+      const hand::HandSkeleton skeleton(side);
+      hand::JointAngles angles;
+      for (const double bend_rad : {0.05, 0.5}) {
+        for (auto& finger : angles.fingers)
+          finger = {bend_rad, 0.0, bend_rad, bend_rad};
+        const hand::HandPose pose = skeleton.pose(angles, Eigen::Isometry3d::Identity());
+        hand::HandBody body(skeleton);
+        body.follow(pose);
+        Surface surface;
+        skin.drape(pose, Eigen::Vector3d::Zero(), surface);
+        std::vector<double> distances_m;
+        for (const auto& place : surface.places) {
+          if (place.z() > -0.03F) continue; // the wrist and the forearm do not press
+          distances_m.push_back(std::abs(body.nearest(place.cast<double>()).distance_m));
+        }
+        REQUIRE(distances_m.size() > 1000);
+        std::sort(distances_m.begin(), distances_m.end());
+        CHECK(distances_m[distances_m.size() / 2] < 0.0015);
+        CHECK(distances_m[distances_m.size() * 95 / 100] < 0.006);
+      }
+    }
   }
 }
 

@@ -1,0 +1,115 @@
+// nendo bench clay: what it takes to press clay with hands, beside a plain program of the method.
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/clay_trial.hpp"
+#include "bench/simd_choice.hpp"
+#include "cli/cli.hpp"
+
+namespace nendo::bench::clay_bench {
+namespace {
+
+struct Options {
+  std::string simd;
+  bool short_form = false;
+  bool json = false;
+};
+
+struct Row {
+  const char* name;
+  ClayTrialOptions trial;
+  bool is_plain = false;
+};
+
+void print_json(const Row& row, const ClayTrial& trial) {
+  const nlohmann::ordered_json object{
+      {"row", row.name},
+      {"plain", row.is_plain},
+      {"vertices", trial.vertices},
+      {"mean_edge_mm", trial.mean_edge_mm},
+      {"hands", row.trial.hands},
+      {"speed_m_s", row.trial.speed_m_s},
+      {"radius_mm", row.trial.radius_mm},
+      {"ticks", trial.ticks},
+      {"constraints", trial.constraints},
+      {"most_constraints", trial.most_constraints},
+      {"passes", trial.passes},
+      {"distances", trial.distances},
+      {"mean_us", trial.mean_us},
+      {"p99_us", trial.p99_us},
+      {"worst_us", trial.worst_us},
+      {"penetration_p99_mm", trial.penetration_p99_mm},
+      {"penetration_p99_of_edge", trial.penetration_p99_mm / trial.mean_edge_mm},
+      {"inside_p99_mm", trial.inside_p99_mm},
+      {"worst_volume", trial.worst_volume},
+      {"last_volume", trial.last_volume},
+      {"worst_behind_mm", trial.worst_behind_mm}};
+  std::cout << object.dump() << std::endl;
+}
+
+void print_text(const Row& row, const ClayTrial& trial) {
+  std::printf("%-26s %8zu %6.1f %4d %7.1f %8.0f %8.2f %8.2f %9.4f %8.4f %7.3f %8.4f %6.1f\n",
+              row.name, trial.vertices, trial.constraints, trial.most_constraints, trial.passes,
+              trial.distances / 1e3, trial.mean_us / 1e3, trial.p99_us / 1e3,
+              trial.penetration_p99_mm / trial.mean_edge_mm,
+              trial.inside_p99_mm / trial.mean_edge_mm, 100.0 * trial.worst_volume,
+              100.0 * trial.last_volume, trial.worst_behind_mm);
+  std::fflush(stdout);
+}
+
+std::vector<Row> rows_of(bool short_form) {
+  if (short_form)
+    return {{"both hands, 0.5 m/s", {.level = 4}}, {"the same, plain", {.level = 4}, true}};
+  return {{"both hands, 0.5 m/s", {.judges_inside = true}},
+          {"the same, plain", {.judges_inside = true}, true},
+          {"the same, no volume kept", {.keeps_volume = false}},
+          {"0.075 m/s", {.speed_m_s = 0.075}},
+          {"0.075 m/s, plain", {.speed_m_s = 0.075}, true},
+          {"one hand", {.hands = 1}},
+          {"radius 20 mm", {.radius_mm = 20.0}},
+          {"radius 15 mm", {.radius_mm = 15.0}},
+          {"radius 10 mm", {.radius_mm = 10.0}},
+          {"radius 40 mm", {.radius_mm = 40.0}},
+          {"2.6 thousand vertices", {.level = 4}},
+          {"10 thousand vertices", {.level = 5}},
+          {"164 thousand vertices", {.level = 7}},
+          {"655 thousand vertices", {.level = 8}}};
+}
+
+int bench_clay(const Options& options) {
+  if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
+  if (!options.json)
+    std::printf("two hands press a ball of 120 mm by 25 mm each, scrape it, and leave, at 90 Hz\n"
+                "constraints: mean and most of a pass; distances in thousands; times in ms a tick; "
+                "penetration before the last\npush and inside triangles after it: p99, of the mean "
+                "edge; volume in %%: the worst, and the last; behind in mm\n"
+                "%-26s %8s %6s %4s %7s %8s %8s %8s %9s %8s %7s %8s %6s\n",
+                "", "vertices", "constr", "most", "passes", "dist k", "mean", "p99", "left",
+                "inside", "volume", "at end", "behind");
+  for (const Row& row : rows_of(options.short_form)) {
+    const ClayTrial trial = row.is_plain ? measure_plain_clay(row.trial) : measure_clay(row.trial);
+    options.json ? print_json(row, trial) : print_text(row, trial);
+  }
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& bench) {
+  auto options = std::make_shared<Options>();
+  cli::Command command =
+      bench.add_command("clay", "Pressing clay with whole hands, beside a plain program");
+  command.add_option("--simd", options->simd,
+                     "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
+  command.add_flag("--short", options->short_form, "A small ball only");
+  command.add_flag("--json", options->json, "One JSON object a line");
+  command.on_chosen([options] { return bench_clay(*options); });
+}
+
+} // namespace nendo::bench::clay_bench

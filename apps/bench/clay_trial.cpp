@@ -1,0 +1,131 @@
+#include "bench/clay_trial.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <nendo/deform/clay.hpp>
+#include <nendo/deform/triangles.hpp>
+
+#include "bench/clay_scene.hpp"
+#include "bench/plain_clay.hpp"
+#include "reference/icosphere.hpp"
+
+namespace nendo::bench {
+
+namespace {
+
+using deform::Mesh;
+using deform::Points;
+
+double clay_volume(const Mesh& mesh) {
+  double sum = 0.0;
+  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+    sum += mesh.vertices.col(corners[0])
+               .dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
+  });
+  return sum / 6.0;
+}
+
+double mean_edge_of(const Mesh& mesh) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k, ++count)
+      sum += (mesh.vertices.col(corners[k]) - mesh.vertices.col(corners[(k + 1) % 3])).norm();
+  });
+  return sum / static_cast<double>(count);
+}
+
+/// How deep the middles of triangles and of edges lie in the hands.
+double deepest_inside(const Mesh& mesh, std::span<const deform::ContactPart> parts) {
+  double deepest = 0.0;
+  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+    const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
+      return mesh.vertices.col(corners[k % 3]);
+    };
+    deepest = std::max(deepest, plain_depth(parts, (corner(0) + corner(1) + corner(2)) / 3.0));
+    for (std::size_t k = 0; k < 3; ++k)
+      deepest = std::max(deepest, plain_depth(parts, 0.5 * (corner(k) + corner(k + 1))));
+  });
+  return deepest;
+}
+
+double percentile_99(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[(values.size() - 1) * 99 / 100];
+}
+
+/// Runs the scene through press(parts), which returns a deform::ClayReport, and shape(points).
+template <class Press, class Shape>
+ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene,
+                    const Press& press, const Shape& shape) {
+  ClayTrial trial;
+  trial.vertices = static_cast<std::size_t>(mesh.vertices.cols());
+  trial.mean_edge_mm = mean_edge_of(mesh);
+  const double whole = clay_volume(mesh);
+  std::vector<double> times_us, left_mm, inside_mm;
+  for (int tick = 1; tick <= scene.ticks(); ++tick) {
+    const auto parts = scene.at(tick);
+    const auto begin = std::chrono::steady_clock::now();
+    const deform::ClayReport report = press(parts);
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    trial.worst_behind_mm = std::max(trial.worst_behind_mm, report.behind_mm);
+    if (report.passes == 0) continue;
+    ++trial.ticks;
+    times_us.push_back(took.count());
+    left_mm.push_back(report.penetration_mm);
+    trial.constraints += report.most_constraints;
+    trial.most_constraints = std::max(trial.most_constraints, report.most_constraints);
+    trial.passes += report.passes;
+    trial.distances += static_cast<double>(report.distances);
+    shape(mesh.vertices);
+    trial.last_volume = clay_volume(mesh) / whole - 1.0;
+    trial.worst_volume = std::max(trial.worst_volume, std::abs(trial.last_volume));
+    if (options.judges_inside) inside_mm.push_back(deepest_inside(mesh, parts));
+  }
+  shape(mesh.vertices);
+  trial.last_volume = clay_volume(mesh) / whole - 1.0;
+  const double per_tick = 1.0 / std::max(1, trial.ticks);
+  trial.constraints *= per_tick;
+  trial.passes *= per_tick;
+  trial.distances *= per_tick;
+  for (const double time_us : times_us)
+    trial.mean_us += per_tick * time_us;
+  trial.p99_us = percentile_99(times_us);
+  trial.worst_us = times_us.empty() ? 0.0 : *std::max_element(times_us.begin(), times_us.end());
+  trial.penetration_p99_mm = percentile_99(left_mm);
+  trial.inside_p99_mm = percentile_99(inside_mm);
+  trial.shape = std::move(mesh);
+  return trial;
+}
+
+} // namespace
+
+ClayTrial measure_clay(const ClayTrialOptions& options) {
+  const Mesh mesh = reference::icosphere(options.level, ClayScene::ball_radius_mm);
+  ClayScene scene(options.hands, options.speed_m_s);
+  deform::SculptedShape shape(mesh.vertices, {});
+  deform::ClayDeformer clay(shape, deform::corners_of_triangles(mesh), scene.hands(),
+                            hand::HandBody::part_count,
+                            {.radius_mm = options.radius_mm,
+                             .friction = options.friction,
+                             .keeps_volume = options.keeps_volume});
+  clay.begin(scene.at(0));
+  return run_scene(
+      options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },
+      [&](Points& points) { shape.layout().unpack(clay.shape(), points); });
+}
+
+ClayTrial measure_plain_clay(const ClayTrialOptions& options) {
+  Mesh mesh = reference::icosphere(options.level, ClayScene::ball_radius_mm);
+  ClayScene scene(options.hands, options.speed_m_s);
+  PlainClay clay(mesh.vertices, options.radius_mm);
+  clay.begin(scene.at(0));
+  return run_scene(
+      options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },
+      [&](Points& points) { points = clay.vertices(); });
+}
+
+} // namespace nendo::bench

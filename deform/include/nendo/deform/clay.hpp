@@ -1,0 +1,94 @@
+#pragma once
+// Clay: a third way of deforming, beside Type-1 and Type-2. Bodies, such as hands, push the surface
+// out of themselves. What they touch becomes one-sided conditions on a CSRBF field, of which the
+// one of least energy is taken (a complementarity problem), so that nothing is pulled. Friction
+// takes the surface along, and the volume comes back where nothing touches.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <nendo/deform/contact_part.hpp>
+#include <nendo/deform/deformer_options.hpp>
+#include <nendo/deform/sculpted_shape.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
+
+namespace nendo::deform {
+
+/// Lengths in millimetres are those of the bodies.
+struct ClayOptions {
+  double units_a_mm = 1.0;    ///< model units a millimetre, > 0
+  double radius_mm = 25.0;    ///< of the functions, > 0: how soft the clay is. About 2.5 fingers'.
+  double friction = 0.5;      ///< Coulomb's coefficient, >= 0
+  bool keeps_volume = true;   ///< only of closed, oriented surfaces
+  int most_constraints = 256; ///< of one pass
+  /// Of one call. When they are used up, the bodies' step is shortened, and the rest of their way
+  /// waits for the next call. What has begun is always finished.
+  int most_passes = 48;
+  EvaluationOptions evaluation{};
+};
+
+struct ClayReport {
+  FieldStatus status = FieldStatus::ok;
+  int sub_steps = 0;
+  int passes = 0;            ///< of all sub-steps; each is a field that does not fold
+  int most_constraints = 0;  ///< of a pass
+  int touching = 0;          ///< conditions that pushed in the last pass
+  std::size_t distances = 0; ///< from a vertex to a part
+  /// How deep a vertex still was in a body after the passes, before it was pushed straight out.
+  double penetration_mm = 0.0;
+  double behind_mm = 0.0;     ///< the way that waits for the next call
+  double volume_change = 0.0; ///< relative to that when the bodies took hold; 0 if none is kept
+};
+
+/// The model lies on a table: it is deformed, and never moved as a whole. A deformer belongs to one
+/// thread at a time.
+class ClayDeformer {
+public:
+  /// Allocates. `triangles` are the vertices of all triangles, three each; without any, or where
+  /// they are no closed surface, no volume is kept. Call release() before another deformer works on
+  /// `shape`, which must outlive this. `bodies` of `parts_a_body` parts each press.
+  ClayDeformer(SculptedShape& shape, std::span<const std::uint32_t> triangles, std::size_t bodies,
+               std::size_t parts_a_body, const ClayOptions& options);
+  ~ClayDeformer();
+  ClayDeformer(ClayDeformer&&) noexcept;
+  ClayDeformer& operator=(ClayDeformer&&) noexcept;
+
+  /// Sets where the bodies are, without deforming anything, and ends the stroke before, which
+  /// undo() can then undo. `parts` are those of the first body, and then those of the next. The
+  /// status is ok or not_finite, in which case nothing changes.
+  FieldStatus begin(std::span<const ContactPart> parts);
+  /// Does the same, but without ending the stroke before.
+  FieldStatus grab(std::span<const ContactPart> parts) { return take_hold(parts); }
+  /// Lets go until the next begin() or grab(). With `is_step`, the stroke has ended.
+  void release(bool is_step) noexcept;
+  /// Moves the bodies from where they are to `parts`, in as many sub-steps as keep each from
+  /// passing through a thin part, and deforms the shape. Does not allocate, lock or call the
+  /// system. Its cost is that of what lies near the bodies. If a number is not finite, nothing
+  /// happens and the status is not_finite. Before begin() or grab(), this is begin().
+  const ClayReport& press_to(std::span<const ContactPart> parts);
+
+  /// These do what those of Type2Deformer do; `parts` are where the bodies then are.
+  FieldStatus reset(std::span<const ContactPart> parts);
+  FieldStatus undo(std::span<const ContactPart> parts);
+  FieldStatus redo(std::span<const ContactPart> parts);
+  std::size_t undo_steps() const noexcept { return shape_->undo_steps(); }
+  std::size_t redo_steps() const noexcept { return shape_->redo_steps(); }
+  std::size_t forgotten_steps() const noexcept { return shape_->forgotten_steps(); }
+
+  const BlockLayout& layout() const noexcept { return shape_->layout(); }
+  const BlockShape& shape() const noexcept { return shape_->shape(); }
+  /// Returns what the last press_to() took.
+  const ClayReport& report() const noexcept { return report_; }
+
+private:
+  class Work;
+
+  FieldStatus take_hold(std::span<const ContactPart> parts);
+
+  SculptedShape* shape_;
+  std::unique_ptr<Work> work_;
+  ClayReport report_;
+};
+
+} // namespace nendo::deform

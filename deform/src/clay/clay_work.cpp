@@ -1,0 +1,341 @@
+#include "clay/clay_work.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "usable.hpp"
+
+namespace nendo::deform {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// In millimetres, for hands.
+constexpr double margin_mm = 1.0;    // around a body, where surfaces are kept from being pulled in
+constexpr double skin_mm = 0.02;     // a surface this deep is outside
+constexpr double load_mm = 0.5;      // clay springs back by that
+constexpr double give_mm = 0.3;      // by which skin gives way sideways before it drags
+constexpr double loaded_mm = 0.01;   // less does not stick
+constexpr double most_step_mm = 2.0; // of a body in a sub-step
+constexpr double most_straight_mm = 0.2; // a last push, which may fold
+constexpr double most_swell_mm = 3.0;    // of a call
+
+constexpr double cells_a_radius = 3.0;
+constexpr double apart_in_cells = 0.6;
+constexpr double most_bound = 0.9; // of a field that does not fold
+constexpr int most_sub_step_passes = 40;
+constexpr double most_sub_steps = 1e6;  // of a call; so a way of kilometres has larger ones
+constexpr double swell_reach = 3.0;     // of radii
+constexpr double volume_is_kept = 1e-5; // relative
+
+/// A part of the way from one pose of a body's part to another.
+ContactPart between(const ContactPart& a, const ContactPart& b, double share) noexcept {
+  ContactPart part = b;
+  for (std::size_t at = 0; at < a.corner_count; ++at) {
+    part.corners[at] = a.corners[at] + share * (b.corners[at] - a.corners[at]);
+    part.radii[at] = a.radii[at] + share * (b.radii[at] - a.radii[at]);
+  }
+  const Eigen::Quaterniond from(a.frame.linear());
+  const Eigen::Quaterniond to(b.frame.linear());
+  part.frame.linear() = from.slerp(share, to).toRotationMatrix();
+  part.frame.translation() =
+      a.frame.translation() + share * (b.frame.translation() - a.frame.translation());
+  return part;
+}
+
+Vector3d normal_at(const Vector3d& place, const NearestLanes& nearest, std::size_t lane) noexcept {
+  const Vector3d centre(nearest.x[lane], nearest.y[lane], nearest.z[lane]);
+  const Vector3d way = place - centre;
+  const double length = way.norm();
+  return length > 0.0 ? Vector3d(way / length) : Vector3d::UnitZ();
+}
+
+CsrbfField room_for(int most, double radius, const BlockLayout& layout) {
+  CsrbfField field;
+  field.centres = Points::Zero(3, most);
+  field.coefficients = Points::Zero(3, most);
+  field.radii = Eigen::VectorXd::Constant(most, layout.rounded_radius(radius));
+  return field;
+}
+
+} // namespace
+
+ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32_t> triangles,
+                         std::size_t bodies, std::size_t parts_a_body, const ClayOptions& options)
+    : layout_(shape.layout()), options_(options), mm_(options.units_a_mm / layout_.unit()),
+      radius_(options.radius_mm * mm_), parts_a_body_(parts_a_body), from_(bodies * parts_a_body),
+      target_(from_), is_(from_), skins_(from_), ways_(from_.size(), Eigen::Isometry3d::Identity()),
+      boxes_(bodies, BoxGate::shut()), search_(bodies, parts_a_body),
+      chosen_(static_cast<std::size_t>(options.most_constraints)),
+      loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
+      problem_(static_cast<std::size_t>(options.most_constraints)),
+      frictions_(static_cast<std::size_t>(options.most_constraints)),
+      field_(room_for(options.most_constraints, options.radius_mm * options.units_a_mm, layout_)),
+      evaluator_(layout_, options.most_constraints, options.evaluation),
+      volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
+      around_(BoxGate::shut()) {
+  assert(options.units_a_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
+}
+
+bool ClayDeformer::Work::accepts(std::span<const ContactPart> parts) const noexcept {
+  assert(parts.size() == from_.size());
+  const double most = most_units * layout_.unit();
+  return std::all_of(parts.begin(), parts.end(), [&](const ContactPart& part) {
+    bool usable = all_usable(part.frame.matrix(), most);
+    for (std::size_t at = 0; at < part.corner_count; ++at)
+      usable = usable && all_usable(part.corners[at], most) && part.radii[at] > 0.0 &&
+               part.radii[at] <= most;
+    return usable;
+  });
+}
+
+void ClayDeformer::Work::pack(std::span<const ContactPart> parts,
+                              std::vector<ContactPart>& packed) const noexcept {
+  const auto place = [&](const Vector3d& model) -> Vector3d {
+    return (model - layout_.origin()) / layout_.unit();
+  };
+  for (std::size_t at = 0; at < parts.size(); ++at) {
+    packed[at] = parts[at];
+    for (std::size_t corner = 0; corner < parts[at].corner_count; ++corner) {
+      packed[at].corners[corner] = place(parts[at].corners[corner]);
+      packed[at].radii[corner] /= layout_.unit();
+    }
+    packed[at].frame.translation() = place(parts[at].frame.translation());
+  }
+}
+
+void ClayDeformer::Work::take_hold(const BoundedShape& shape,
+                                   std::span<const ContactPart> parts) noexcept {
+  pack(parts, from_);
+  skins_ = from_;
+  for (ContactLoad& load : loads_)
+    load.clear();
+  if (volume_.is_closed()) whole_volume_ = volume_.volume(shape);
+  is_settling_ = swells_all_ = false;
+  around_ = BoxGate::shut();
+  holds_ = true;
+}
+
+double ClayDeformer::Work::way_to_target() const noexcept {
+  double way = 0.0;
+  for (std::size_t at = 0; at < from_.size(); ++at)
+    for (std::size_t corner = 0; corner < from_[at].corner_count; ++corner)
+      way = std::max(way, (target_[at].corners[corner] - from_[at].corners[corner]).norm() +
+                              std::abs(target_[at].radii[corner] - from_[at].radii[corner]));
+  return way;
+}
+
+/// All that a body sweeps over lies in the box of both poses.
+bool ClayDeformer::Work::is_way_free(const BoundedShape& shape) noexcept {
+  std::fill(boxes_.begin(), boxes_.end(), BoxGate::shut());
+  for (std::size_t at = 0; at < from_.size(); ++at) {
+    boxes_[at / parts_a_body_].extend(BoxGate::of(from_[at]));
+    boxes_[at / parts_a_body_].extend(BoxGate::of(target_[at]));
+  }
+  return !search_.is_any_near(shape, boxes_, margin_mm * mm_);
+}
+
+void ClayDeformer::Work::place_at(double share) noexcept {
+  is_dragging_ = false;
+  for (std::size_t at = 0; at < from_.size(); ++at) {
+    is_[at] = between(from_[at], target_[at], share);
+    drag(at);
+  }
+  search_.set_parts(is_);
+}
+
+/// Skin is soft: what touches it follows a bone only when that has gone farther than the skin gives
+/// way. So a hand that trembles does not knead.
+void ClayDeformer::Work::drag(std::size_t part) noexcept {
+  const Eigen::Isometry3d before = skins_[part].frame;
+  const Eigen::Isometry3d lag = before * is_[part].frame.inverse(Eigen::Isometry);
+  double farthest = 0.0;
+  for (std::size_t at = 0; at < is_[part].corner_count; ++at)
+    farthest = std::max(farthest, (lag * is_[part].corners[at] - is_[part].corners[at]).norm());
+  const double give = give_mm * mm_;
+  if (farthest <= give) {
+    ways_[part].setIdentity();
+    return;
+  }
+  is_dragging_ = options_.friction > 0.0;
+  skins_[part].frame = between(skins_[part], is_[part], 1.0 - give / farthest).frame;
+  ways_[part] = skins_[part].frame * before.inverse(Eigen::Isometry);
+}
+
+void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart> parts,
+                               ClayReport& report) noexcept {
+  status_ = FieldStatus::ok;
+  search_.distances() = 0;
+  pack(parts, target_);
+  const double way = way_to_target();
+  double gone = 1.0; // of the way
+  if (is_way_free(shape)) {
+    for (ContactLoad& load : loads_)
+      load.clear();
+    search_.set_parts(target_);
+    skins_ = target_;
+  } else {
+    double least_radius = most_step_mm * mm_ * 2.0;
+    for (const ContactPart& part : target_)
+      for (std::size_t corner = 0; corner < part.corner_count; ++corner)
+        least_radius = std::min(least_radius, part.radii[corner]);
+    const int steps =
+        static_cast<int>(std::clamp(std::ceil(way / (0.5 * least_radius)), 1.0, most_sub_steps));
+    is_ = from_;
+    int used = 0;
+    double left = 0.0;
+    for (int step = 1; step <= steps && (step == 1 || used < options_.most_passes); ++step) {
+      gone = static_cast<double>(step) / steps;
+      place_at(gone);
+      const int before = report.passes;
+      left = std::max(left, sub_step(shape, report));
+      used += std::max(1, report.passes - before);
+      ++report.sub_steps;
+    }
+    report.penetration_mm = left / mm_;
+    push_straight(shape);
+  }
+  report.behind_mm = (1.0 - gone) * way / mm_;
+  from_ = gone < 1.0 ? is_ : target_;
+  give_back(shape, report.passes > 0, report);
+  report.distances = search_.distances();
+  report.status = status_;
+}
+
+/// Returns how deep the surface still is.
+double ClayDeformer::Work::sub_step(BoundedShape& shape, ClayReport& report) noexcept {
+  for (int pass = 0;; ++pass) {
+    const Found found = find(shape, pass == 0);
+    const bool slides = pass == 0 && found.is_loaded && is_dragging_;
+    if ((found.deepest <= skin_mm * mm_ && !slides) || pass == most_sub_step_passes)
+      return found.deepest;
+    if (!push(shape, slides, report)) return found.deepest;
+  }
+}
+
+ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bool loads) noexcept {
+  Found found;
+  chosen_.clear(radius_ / cells_a_radius);
+  for (std::size_t body = 0; body < search_.bodies(); ++body) {
+    search_.each_near(shape, body, margin_mm * mm_,
+                      [&](std::size_t block, const NearestLanes& nearest) {
+                        if (loads) loads_[body].press(block, nearest);
+                        offer(shape, body, block, nearest, found.deepest);
+                      });
+    if (loads) loads_[body].end_round();
+    found.is_loaded = found.is_loaded || loads_[body].is_any();
+  }
+  return found;
+}
+
+void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std::size_t block,
+                               const NearestLanes& nearest, double& deepest) noexcept {
+  const auto margin = static_cast<float>(margin_mm * mm_);
+  for (std::size_t lane = 0; lane < block_size; ++lane) {
+    if (!(nearest.distance[lane] < margin)) continue;
+    const std::size_t place = block * block_size + lane;
+    const double depth = -static_cast<double>(nearest.distance[lane]);
+    const Vector3d at = vertex_at(shape.shape, place).cast<double>();
+    deepest = std::max(deepest, depth);
+    chosen_.offer({static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(body),
+                   static_cast<std::uint32_t>(nearest.part[lane]), depth, at,
+                   normal_at(at, nearest, lane)});
+  }
+}
+
+/// One field. Returns false if nothing has to move any more, or nothing can.
+bool ClayDeformer::Work::push(BoundedShape& shape, bool slides, ClayReport& report) noexcept {
+  const auto points = chosen_.choose(apart_in_cells * radius_ / cells_a_radius);
+  problem_.assign(points, radius_);
+  problem_.solve_pressure(0.5 * skin_mm * mm_);
+  if (slides) slide(points);
+  if (!apply(shape, points)) return false;
+  ++report.passes;
+  report.most_constraints = std::max(report.most_constraints, static_cast<int>(points.size()));
+  report.touching = 0;
+  for (std::size_t at = 0; at < points.size(); ++at) {
+    if (problem_.pressure(at) <= 0.0) continue;
+    ++report.touching;
+    around_.extend(BoxGate::of({{points[at].at, points[at].at}, {0.0, 0.0}, 2}));
+  }
+  return true;
+}
+
+/// What the skin of a place's part has done in this sub-step is the way that friction would take
+/// it. Where there is no load, the limit is 0.
+void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
+  for (std::size_t at = 0; at < points.size(); ++at) {
+    const ContactPoint& point = points[at];
+    ContactLoad& load = loads_[point.body];
+    const double held = load.at(point.place, -point.depth);
+    const bool is_loaded = problem_.pressure(at) + held > loaded_mm * mm_;
+    const Vector3d before = ways_[point.part].inverse(Eigen::Isometry) * point.at;
+    frictions_[at] = {is_loaded ? Vector3d(point.at - before) : Vector3d::Zero(),
+                      is_loaded ? held : -problem_.pressure(at), &load.slips(point.place)};
+  }
+  problem_.solve_friction({frictions_.data(), points.size()}, options_.friction);
+}
+
+/// The whole field, or the part of it that does not fold; the next pass does the rest.
+bool ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept {
+  const double bound = problem_.lipschitz_bound();
+  if (!(bound > 0.0)) return false;
+  const double part = std::min(1.0, most_bound / bound) * layout_.unit();
+  const auto count = static_cast<Eigen::Index>(points.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    field_.centres.col(i) = layout_.origin() + layout_.unit() * points[at].at;
+    field_.coefficients.col(i) = part * problem_.coefficient(at);
+  }
+  for (Eigen::Index i = count; i < used_; ++i)
+    field_.coefficients.col(i).setZero();
+  used_ = count;
+  if (evaluator_.set_field(field_) && evaluator_.displace(shape)) return true;
+  status_ = FieldStatus::not_finite;
+  return false;
+}
+
+/// What is left goes straight out. This may fold, but it is less than a tenth of an edge.
+void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
+  const double most = most_straight_mm * mm_;
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  for (std::size_t body = 0; body < search_.bodies(); ++body)
+    search_.each_near(shape, body, 0.0, [&](std::size_t block, const NearestLanes& nearest) {
+      if (*std::min_element(nearest.distance.begin(), nearest.distance.end()) >= 0.0F) return;
+      VertexBlock& content = shape.shape.data()[block];
+      for (std::size_t lane = 0; lane < block_size; ++lane) {
+        const double depth = -static_cast<double>(nearest.distance[lane]);
+        if (!(depth > 0.0)) continue;
+        const Vector3d at(content.x[lane], content.y[lane], content.z[lane]);
+        const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);
+        content.x[lane] = static_cast<float>(out.x());
+        content.y[lane] = static_cast<float>(out.y());
+        content.z[lane] = static_cast<float>(out.z());
+      }
+      shape.shape.set_stamp(block, stamp);
+      shape.bounds[block] = bounds_of(content);
+    });
+  shape.extent += 2.0 * most;
+}
+
+void ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
+                                   ClayReport& report) noexcept {
+  if (!volume_.is_closed() || !(std::abs(whole_volume_) > 0.0)) return;
+  if (!is_pressed && !is_settling_) return;
+  double change = volume_.volume(shape) - whole_volume_;
+  const double kept = volume_is_kept * std::abs(whole_volume_);
+  if (is_pressed || std::abs(change) > kept) {
+    const GiveBack how{radius_, most_swell_mm * mm_, swells_all_ ? nullptr : &around_,
+                       swell_reach * radius_};
+    const double given = volume_.give_back(shape, search_, -change, how);
+    swells_all_ = std::abs(given) < 0.999 * std::abs(change);
+    change += given;
+  }
+  is_settling_ = std::abs(change) > kept;
+  report.volume_change = change / whole_volume_;
+}
+
+} // namespace nendo::deform

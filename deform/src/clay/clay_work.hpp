@@ -1,0 +1,82 @@
+#pragma once
+// What a ClayDeformer works with. All lengths are in the layout's coordinates.
+
+#include <span>
+#include <vector>
+
+#include <nendo/deform/clay.hpp>
+
+#include "block_evaluator.hpp"
+#include "clay/contact_load.hpp"
+#include "clay/contact_points.hpp"
+#include "clay/contact_search.hpp"
+#include "clay/press_problem.hpp"
+#include "clay/volume_keeper.hpp"
+
+namespace nendo::deform {
+
+class ClayDeformer::Work {
+public:
+  /// Allocates.
+  Work(const SculptedShape& shape, std::span<const std::uint32_t> triangles, std::size_t bodies,
+       std::size_t parts_a_body, const ClayOptions& options);
+
+  /// Tells whether all numbers are usable. There must be as many parts as the constructor was told.
+  bool accepts(std::span<const ContactPart> parts) const noexcept;
+  /// Puts the bodies there, and takes the shape's volume as the one to keep.
+  void take_hold(const BoundedShape& shape, std::span<const ContactPart> parts) noexcept;
+  void release() noexcept { holds_ = false; }
+  bool holds() const noexcept { return holds_; }
+  /// Moves the bodies and deforms the shape.
+  void press(BoundedShape& shape, std::span<const ContactPart> parts, ClayReport& report) noexcept;
+
+private:
+  struct Found {
+    double deepest = 0.0;
+    bool is_loaded = false;
+  };
+
+  void pack(std::span<const ContactPart> parts, std::vector<ContactPart>& packed) const noexcept;
+  double way_to_target() const noexcept;
+  bool is_way_free(const BoundedShape& shape) noexcept;
+  void place_at(double share) noexcept;
+  void drag(std::size_t part) noexcept;
+  double sub_step(BoundedShape& shape, ClayReport& report) noexcept;
+  Found find(const BoundedShape& shape, bool loads) noexcept;
+  void offer(const BoundedShape& shape, std::size_t body, std::size_t block,
+             const NearestLanes& nearest, double& deepest) noexcept;
+  bool push(BoundedShape& shape, bool slides, ClayReport& report) noexcept;
+  void slide(std::span<const ContactPoint> points) noexcept;
+  bool apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept;
+  void push_straight(BoundedShape& shape) noexcept;
+  void give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
+
+  const BlockLayout& layout_;
+  ClayOptions options_;
+  double mm_; ///< a millimetre
+  double radius_;
+  std::size_t parts_a_body_;
+  bool holds_ = false;
+  std::vector<ContactPart> from_, target_; ///< of a call
+  std::vector<ContactPart> is_;            ///< of a sub-step
+  std::vector<ContactPart> skins_;         ///< frames that lag behind the bones'
+  bool is_dragging_ = false;               ///< some skin has moved
+  std::vector<Eigen::Isometry3d> ways_;    ///< of each part's surface in a sub-step
+  std::vector<BoxGate> boxes_;
+  ContactSearch search_;
+  ContactPoints chosen_;
+  std::vector<ContactLoad> loads_;
+  PressProblem problem_;
+  std::vector<Friction> frictions_;
+  CsrbfField field_;
+  Eigen::Index used_ = 0; ///< columns of the field
+  BlockEvaluator evaluator_;
+  VolumeKeeper volume_;
+  double whole_volume_ = 0.0;
+  bool is_settling_ = false; ///< some volume has not been given back yet
+  bool swells_all_ = false;  ///< what is near the contacts did not suffice
+  BoxGate around_;           ///< the contacts
+  FieldStatus status_ = FieldStatus::ok;
+};
+
+} // namespace nendo::deform

@@ -1,0 +1,134 @@
+#include "clay/contact_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nendo::deform {
+
+using Eigen::Vector3d;
+
+namespace {
+
+std::array<float, 3> as_floats(const Vector3d& vector) noexcept {
+  return {static_cast<float>(vector.x()), static_cast<float>(vector.y()),
+          static_cast<float>(vector.z())};
+}
+
+} // namespace
+
+BoxGate BoxGate::shut() noexcept {
+  BoxGate gate;
+  gate.limits.sides.fill(-std::numeric_limits<float>::infinity());
+  return gate;
+}
+
+BoxGate BoxGate::of(const ContactPart& part) noexcept {
+  BoxGate gate = shut();
+  for (std::size_t at = 0; at < part.corner_count; ++at)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double middle = part.corners[at][static_cast<Eigen::Index>(axis)];
+      float& high = gate.limits.sides[axis];
+      float& low = gate.limits.sides[axis + 4];
+      high = std::max(high, static_cast<float>(middle + part.radii[at]));
+      low = std::max(low, static_cast<float>(part.radii[at] - middle));
+    }
+  gate.limits.sides[3] = gate.limits.sides[7] = std::numeric_limits<float>::infinity();
+  return gate;
+}
+
+void BoxGate::extend(const BoxGate& other) noexcept {
+  for (std::size_t side = 0; side < 8; ++side)
+    limits.sides[side] = std::max(limits.sides[side], other.limits.sides[side]);
+}
+
+ContactSearch::ContactSearch(std::size_t bodies, std::size_t parts_a_body)
+    : bodies_(bodies), parts_a_body_(parts_a_body), parts_(bodies * parts_a_body),
+      part_boxes_(parts_.size(), BoxGate::shut()), body_boxes_(bodies, BoxGate::shut()),
+      list_(parts_a_body) {
+  cones_.reserve(3 * parts_.size());
+  planes_.reserve(parts_.size());
+}
+
+void ContactSearch::set_parts(std::span<const ContactPart> parts) noexcept {
+  cones_.clear();
+  planes_.clear();
+  std::fill(body_boxes_.begin(), body_boxes_.end(), BoxGate::shut());
+  for (std::size_t at = 0; at < parts_.size(); ++at) {
+    const ContactPart& part = parts[at];
+    parts_[at] = {static_cast<std::uint32_t>(cones_.size()), 1, no_plane};
+    add_cone(part, 0, 1);
+    if (part.corner_count == 3) {
+      add_cone(part, 1, 2);
+      add_cone(part, 2, 0);
+      parts_[at].cone_count = 3;
+      add_plane(part, parts_[at]);
+    }
+    part_boxes_[at] = BoxGate::of(part);
+    body_boxes_[at / parts_a_body_].extend(part_boxes_[at]);
+  }
+}
+
+void ContactSearch::add_cone(const ContactPart& part, std::size_t first,
+                             std::size_t second) noexcept {
+  const Vector3d way = part.corners[second] - part.corners[first];
+  const double growth = part.radii[second] - part.radii[first];
+  const double length = way.norm();
+  if (!(length > std::abs(growth))) { // one ball contains the other
+    const std::size_t whole = growth > 0.0 ? second : first;
+    const auto middle = as_floats(part.corners[whole]);
+    cones_.push_back({middle[0],
+                      middle[1],
+                      middle[2],
+                      {},
+                      0.0F,
+                      0.0F,
+                      0.0F,
+                      static_cast<float>(part.radii[whole]),
+                      0.0F});
+    return;
+  }
+  const double slope = growth / length;
+  const auto from = as_floats(part.corners[first]);
+  cones_.push_back({from[0], from[1], from[2], as_floats(way), static_cast<float>(length * length),
+                    static_cast<float>(1.0 / (length * length)),
+                    static_cast<float>(slope / std::sqrt(1.0 - slope * slope) / length),
+                    static_cast<float>(part.radii[first]), static_cast<float>(growth)});
+}
+
+void ContactSearch::add_plane(const ContactPart& part, PartEntry& entry) noexcept {
+  const Vector3d u = part.corners[1] - part.corners[0];
+  const Vector3d v = part.corners[2] - part.corners[0];
+  const Vector3d across = u.cross(v);
+  const double area = across.norm();
+  if (!(area > 1e-9 * (u.squaredNorm() + v.squaredNorm()))) return; // its edges are all of it
+  const Vector3d normal = across / area;
+  const Vector3d first = v.cross(normal) / area;
+  const Vector3d second = normal.cross(u) / area;
+  const Vector3d slope =
+      (part.radii[1] - part.radii[0]) * first + (part.radii[2] - part.radii[0]) * second;
+  if (!(slope.squaredNorm() < 1.0)) return; // one ball contains the others
+  entry.plane = static_cast<std::uint32_t>(planes_.size());
+  const auto from = as_floats(part.corners[0]);
+  planes_.push_back({from[0], from[1], from[2], as_floats(normal), as_floats(slope),
+                     static_cast<float>(1.0 / std::sqrt(1.0 - slope.squaredNorm())),
+                     as_floats(first), as_floats(second), static_cast<float>(part.radii[0])});
+}
+
+bool ContactSearch::is_any_near(const BoundedShape& shape, std::span<const BoxGate> boxes,
+                                double margin) const noexcept {
+  const auto wide = static_cast<float>(margin);
+  for (const BlockBounds& bounds : shape.bounds)
+    for (const BoxGate& box : boxes)
+      if (box.meets(bounds, wide)) return true;
+  return false;
+}
+
+std::size_t ContactSearch::list_parts(const BlockBounds& bounds, std::size_t body,
+                                      float margin) noexcept {
+  std::size_t count = 0;
+  for (std::size_t part = body * parts_a_body_; part < (body + 1) * parts_a_body_; ++part)
+    if (part_boxes_[part].meets(bounds, margin)) list_[count++] = static_cast<std::uint32_t>(part);
+  return count;
+}
+
+} // namespace nendo::deform

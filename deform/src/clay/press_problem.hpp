@@ -1,0 +1,65 @@
+#pragma once
+// The field that pushes a surface out of bodies, found by projected Gauss-Seidel. It is
+//   s(x) = sum_i (l_i n_i + t_i) psi(|x - c_i| / r),  l_i >= 0,
+// with the least energy of those that push each place c_i by its depth p_i along its normal n_i or
+// more: w = A l - p >= 0, l >= 0, l.w = 0, with A_ij = n_i.n_j psi_ij. The tangential t_i take the
+// places along, as far as Coulomb's friction permits.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "clay/contact_points.hpp"
+
+namespace nendo::deform {
+
+/// What a place's friction needs.
+struct Friction {
+  Eigen::Vector3d way;           ///< where what touches it has gone
+  double load = 0.0;             ///< in lengths, as l_i; what is pressed adds to it
+  std::uint8_t* slips = nullptr; ///< its state, which solve_friction() sets
+};
+
+class PressProblem {
+public:
+  /// Allocates for so many places.
+  explicit PressProblem(std::size_t most);
+
+  /// Sets the places and the radius. Places may coincide. The other functions are for these.
+  void assign(std::span<const ContactPoint> points, double radius) noexcept;
+  /// Finds l for these depths below `points`' own; `extra` is added to each. Returns the largest
+  /// depth that is left at a place.
+  double solve_pressure(double extra) noexcept;
+  /// Finds t, one Friction a place, in the order of the points; `coefficient` is Coulomb's. Slip
+  /// begins at the limit and ends below 0.8 of it, so that tremor does not flicker. Call it after
+  /// solve_pressure().
+  void solve_friction(std::span<const Friction> frictions, double coefficient) noexcept;
+
+  /// Returns l_i n_i + t_i.
+  Eigen::Vector3d coefficient(std::size_t i) const noexcept;
+  double pressure(std::size_t i) const noexcept { return l_[static_cast<Eigen::Index>(i)]; }
+  std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
+  /// Returns an L with |s(x) - s(y)| <= L |x - y|, by the field's norm in the native space of
+  /// Wendland's C2 (jacobian.hpp). Where L < 1, nothing folds.
+  double lipschitz_bound() const noexcept;
+
+  /// Gauss-Seidel ends after so many sweeps, or when nothing moves any more.
+  static constexpr int most_sweeps = 60;
+
+private:
+  void add_tangent(Eigen::Index i, const Eigen::Vector3d& change) noexcept;
+  bool sweep_friction(std::span<const Friction> frictions, double coefficient) noexcept;
+
+  double radius_ = 1.0;
+  Eigen::Index count_ = 0;
+  Eigen::MatrixXd psi_;       ///< psi_ij
+  Eigen::MatrixXd a_;         ///< A_ij
+  Eigen::Matrix3Xd normals_;  ///< n_i
+  Eigen::VectorXd p_, l_, w_; ///< w = A l - p
+  Eigen::MatrixX3d t_;        ///< one row a place
+  Eigen::MatrixX3d left_;     ///< of the ways, where the field does not lead yet
+};
+
+} // namespace nendo::deform
