@@ -136,8 +136,7 @@ TEST_SUITE("player") {
         settings.brush_strength = 0.1;
         if (random() % 15 == 0) loop.change_settings(settings);
         if (random() % 10 == 0)
-          // All but the last one, Request::take_hold, which a timeline refuses here.
-          taken.live.test.commands.try_push(flow::requests[random() % (flow::requests.size() - 1)]);
+          taken.live.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick);
         shapes.push_back(taken.live.test.vertices_of(frame));
         if (frame.awaited) loop.change_to(*frame.awaited);

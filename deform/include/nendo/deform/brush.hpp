@@ -28,13 +28,15 @@ inline constexpr std::uint8_t brush_count = 8;
 std::string_view name_of(Brush brush) noexcept;
 std::optional<Brush> brush_named(std::string_view name) noexcept;
 
+inline constexpr double usual_brush_strength = 0.5;
+
 struct BrushOptions {
   std::vector<Brush> of_points{}; ///< of each start point; empty: all pull
   /// How much a brush does on a way of a given length, -1 to 1. At 1, push and inflate lead as far
   /// as the fingertip goes, and on a way of one radius twist turns by one radian, scale grows by e,
   /// and smooth and flatten do 86 % of what is left to do. Below 0 each does the opposite, but
   /// smooth and flatten, which have none. Pull always leads all the way.
-  double strength = 0.5;
+  double strength = usual_brush_strength;
   /// Of the model; needed if any brush is neither pull nor none.
   std::shared_ptr<const VertexRings> rings{};
 

@@ -18,7 +18,7 @@ struct LoopSettings {
   hand::FilterOptions filter{};     ///< of both hands
   /// Of each finger, thumb to little finger, in type 2 (SculptorOptions::brushes).
   std::array<deform::Brush, 5> brushes{};
-  double brush_strength = deform::BrushOptions{}.strength; ///< -1 to 1
+  double brush_strength = deform::usual_brush_strength; ///< -1 to 1
 
   static constexpr double least_radius_m = 1e-9;
   static constexpr double most_radius_m = 1e9;

@@ -30,7 +30,7 @@ struct SculptorOptions {
   deform::DeformerOptions deformer; ///< but for its brushes
   /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
   std::array<deform::Brush, 5> brushes{};
-  double brush_strength = deform::BrushOptions{}.strength;
+  double brush_strength = deform::usual_brush_strength;
   /// Of the model; needed by some brushes (needs_rings()).
   std::shared_ptr<const deform::VertexRings> rings{};
   /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
