@@ -9,6 +9,19 @@
 
 namespace nendo::session {
 
+namespace {
+
+std::string brush_words(const flow::LoopSettings& settings) {
+  const auto& brushes = settings.brushes;
+  if (settings.mode != flow::Mode::type2 ||
+      std::all_of(brushes.begin(), brushes.end(),
+                  [](deform::Brush one) { return one == deform::Brush::pull; }))
+    return {};
+  return fmt::format(", {} at strength {:g}", flow::in_words(brushes), settings.brush_strength);
+}
+
+} // namespace
+
 RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : timeout_(timeout) {
   if (!keys_.are_available()) return;
   cli::note(
@@ -60,9 +73,8 @@ void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::Command
   commands.try_push(*command);
   const auto [least, most] =
       std::minmax_element(wanted_.now.radius_m.begin(), wanted_.now.radius_m.end());
-  report(fmt::format("{}, {} at strength {:g}, {}, {}, radius {:.1f}{} cm",
-                     name_of(wanted_.now.mode), flow::in_words(wanted_.now.brushes),
-                     wanted_.now.brush_strength, deform::name_of(wanted_.now.kernel),
+  report(fmt::format("{}{}, {}, {}, radius {:.1f}{} cm", name_of(wanted_.now.mode),
+                     brush_words(wanted_.now), deform::name_of(wanted_.now.kernel),
                      wanted_.now.injective ? "never folds" : "may fold", 100.0 * *least,
                      *least == *most ? std::string() : fmt::format(" to {:.1f}", 100.0 * *most)));
 }

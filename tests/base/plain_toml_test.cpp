@@ -76,7 +76,11 @@ TEST_SUITE("base/plain_toml") {
     CHECK(refuses("a = 1\nb = \"x", 2, "no closing quote"));
     CHECK(refuses("a = \"x\\", 1, "no closing quote"));
     CHECK(refuses("a = \"x\ny\"", 1, "no closing quote"));
-    CHECK(refuses("a = '''x\ny'''", 1, "three quotes"));
+    CHECK_FALSE(find_toml_fault("a = '''x\n'y''z'''\nb = 1"));
+    CHECK(refuses("a = '''x\ny", 2, "three quotes"));
+    CHECK(refuses("a = '''x\n''''", 2, "four quotes"));
+    CHECK(refuses("a = '''x\n\1'''", 2, "control character"));
+    CHECK(refuses("'''a''' = 1", 1, "three quotes"));
     CHECK(refuses("a = \"\"\"x\"\"\"", 1, "three quotes"));
     CHECK(refuses("a = \"\xC3\"", 1, "not UTF-8"));
     CHECK(refuses("# \xED\xA0\x80", 1, "not UTF-8"));

@@ -143,7 +143,7 @@ TEST_SUITE("press_problem") {
     CHECK(field_at(problem, points, 1.0, Vector3d::Zero()).norm() < 2.0);
   }
 
-  TEST_CASE("under a large load, places go along; the pressing field keeps its normals") {
+  TEST_CASE("under a large load, places go along, and the pressing field keeps its normals") {
     std::mt19937 random(23);
     PressProblem problem(12);
     for (int trial = 0; trial < 20; ++trial) {

@@ -65,7 +65,7 @@ TEST_SUITE("run_keys") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "shape.obj";
     TerminalProgram program({"run", "--right", "sim:sculpt", "--out", out.string()}, 200, 24);
-    REQUIRE(program.tells("[ and ] make the brush smaller, larger"));
+    REQUIRE(program.tells("[ and ] make the radii smaller, larger"));
     REQUIRE(program.tells("ticks"));
     CHECK(program.press('t'));
     REQUIRE(

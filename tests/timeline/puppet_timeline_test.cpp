@@ -110,7 +110,7 @@ TEST_SUITE("puppet_timeline") {
       // hears of the place of a tip.
       CHECK(different <= take.shapes.size() / 50);
       CHECK(worst < test::float_gap);
-      CHECK(most > 0.02);
+      CHECK(most > 0.01);
     }
   }
 

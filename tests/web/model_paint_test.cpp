@@ -55,7 +55,7 @@ FollowingClient client_of(const deform::Mesh& mesh) {
 } // namespace
 
 TEST_SUITE("model_paint") {
-  TEST_CASE("triangles come by their materials, with colours and texture coordinates; what is "
+  TEST_CASE("triangles come by their materials, with colours and texture coordinates, and what is "
             "transparent is left out") {
     const deform::Mesh mesh = row_of_quads();
     const FollowingClient client = client_of(mesh);

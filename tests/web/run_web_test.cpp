@@ -175,10 +175,10 @@ TEST_SUITE("run_web") {
     CHECK(seen.radius_m[0] == doctest::Approx(0.16)); // a fifth of the model's longest side
     CHECK(seen.mode == 1);
     browser.ask("settings type2 c4 injective one-euro 0.1 0.1 0.1 0.1 0.05 "
-                "inflate none pull push scale -0.5",
+                "pull none pull none pull -0.5",
                 [](const auto& now) { return now.mode == 2; });
     CHECK(seen.kernel == 2);
-    CHECK(seen.brushes == std::array<std::uint8_t, 5>{3, 1, 0, 2, 7});
+    CHECK(seen.brushes == std::array<std::uint8_t, 5>{0, 1, 0, 1, 0});
     CHECK(seen.strength == -0.5);
     CHECK(seen.injective);
     CHECK(seen.filtered);

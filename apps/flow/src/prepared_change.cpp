@@ -13,6 +13,15 @@
 
 namespace nendo::flow {
 
+namespace {
+
+/// Without its content.
+deform::BlockShape room_for_shape(const ModelVersion& version) {
+  return deform::BlockShape(std::vector<deform::VertexBlock>(version.layout().block_count()));
+}
+
+} // namespace
+
 // The loop's side.
 
 void DeformLoop::take_change() noexcept {
@@ -122,7 +131,10 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
   shaping_.begin_anew(tips_, change.log != nullptr, frame, stats_);
   note_hold();
   state.held = shaping_.is_held();
-  state.shape.follow(shaping_.sculptor().rest());
+  const deform::BlockShape& rest = shaping_.sculptor().rest();
+  if (state.shape.block_count() != rest.block_count())
+    std::swap(state.shape, change.of_other_model);
+  state.shape.follow(rest);
 }
 
 void DeformLoop::give_back_change() noexcept {
@@ -303,7 +315,11 @@ void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   LogChange begins;
   begins.log = log;
   begins.state.placement.units_per_metre = units_per_metre_;
-  begins.state.shape = like;
+  // A frame may be of a version before.
+  begins.state.shape = like.block_count() == asked_model_->layout().block_count()
+                           ? like
+                           : room_for_shape(*asked_model_);
+  if (change.model) begins.of_other_model = room_for_shape(*model_before_); // if it is refused
   begins.state.inputs.resize(hands_.size());
   begins.state.puppet = puppets_[asked_puppet_];
   if (begins.state.puppet)
@@ -403,6 +419,7 @@ void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
   Shaping::prepare(asked_, version, control_points(asked_puppet_), change.ready);
   change.ready.puppet = asked_puppet_;
   change.ready.is_new_model = source == ModelSource::subdivided;
+  if (change.log) change.log->of_other_model = room_for_shape(version);
   model_before_ = asked_model_;
   if (&version != asked_model_)
     change.ready.shape_room.fill({version.number, version.shape.shape()});

@@ -36,6 +36,7 @@ BrushStroke::BrushStroke(const BlockLayout& layout, Eigen::Index points,
 
 bool BrushStroke::go(const Points& from, const Points& to, BoundedShape& shape) noexcept {
   bool changed = false;
+  if (strength_ == 0.0) return changed;
   for (const OfPoint& one : points_)
     changed = go(one, (from.col(one.point) - layout_.origin()) / layout_.unit(),
                  (to.col(one.point) - layout_.origin()) / layout_.unit(), shape) ||

@@ -150,7 +150,9 @@ private:
   bool quoted() {
     const char quote = next();
     if (rest_.starts_with("\"\"\"") || rest_.starts_with("'''"))
-      return complain("a text has three quotes; write it on one line, in one pair of quotes");
+      return complain(
+          "a text has three quotes; write it on one line, in one pair of quotes, or as a "
+          "value between three single ones");
     rest_.remove_prefix(1);
     while (text_until(quote == '"' ? "\"\\\n" : "'\n")) {
       if (skip(quote)) return true;
@@ -159,7 +161,23 @@ private:
     }
     return false;
   }
+  /// A text over several lines, between three single quotes.
+  bool long_text() {
+    rest_.remove_prefix(3);
+    while (text_until("\n'")) {
+      if (rest_.starts_with("''''"))
+        return complain("a text ends with four quotes; it needs three");
+      if (rest_.starts_with("'''")) {
+        rest_.remove_prefix(3);
+        return true;
+      }
+      if (!skip('\'') && !line_break())
+        return complain("a text in three quotes has no end; add '''");
+    }
+    return false;
+  }
   bool value(int depth) {
+    if (rest_.starts_with("'''")) return long_text();
     if (next() == '"' || next() == '\'') return quoted();
     if (next() != '[' && next() != '{') return word();
     if (depth == most_toml_depth)

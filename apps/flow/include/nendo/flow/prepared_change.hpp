@@ -40,6 +40,8 @@ struct LoopState {
 struct LogChange {
   InputLog* log = nullptr; ///< null: nowhere
   LoopState state;         ///< with which the log begins, or that it led to
+  /// Room for the shape, if the change leads to another version of the model, too.
+  deform::BlockShape of_other_model;
 };
 
 /// Another puppet, ready to be played.
