@@ -16,7 +16,7 @@ using hand::Joint;
 namespace {
 
 constexpr std::array finger_names{"thumb", "index", "middle", "ring", "little"};
-constexpr float label_width = 48.0F; // of "kernel" and of fingers, beside what they name
+constexpr float label_width = 58.0F; // of "strength" and of fingers, beside what they name
 
 const char* kernel_words(deform::Wendland kernel) {
   constexpr std::array words{"Wendland C0", "Wendland C2", "Wendland C4", "Wendland C6"};

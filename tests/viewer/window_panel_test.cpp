@@ -20,7 +20,7 @@ using flow::Request;
 
 namespace {
 
-constexpr Size size{800, 600};
+constexpr Size size{800, 760};
 constexpr int panel_right = 260; // pixels from the window's left
 
 /// A person before the window.
