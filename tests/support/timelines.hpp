@@ -46,14 +46,14 @@ inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys
   for (const flow::Request request : flow::requests)
     made.events.push_back({0.1 * static_cast<double>(made.events.size()), request});
   made.events.push_back(
-      {2.5, flow::ChangeSettings{{.mode = flow::Mode::type2,
-                                  .injective = true,
-                                  .radius_m = {0.1, 0.2, 0.3, step(random), 0.5},
-                                  .piece_fraction = 0.07,
-                                  .brushes = {deform::Brush::twist, deform::Brush::pull,
-                                              deform::Brush::none, deform::Brush::smooth,
-                                              deform::Brush::scale},
-                                  .brush_strength = -0.3}}});
+      {2.5, flow::ChangeSettings{
+                {.mode = flow::Mode::type2,
+                 .injective = true,
+                 .radius_m = {0.1, 0.2, 0.3, step(random), 0.5},
+                 .piece_fraction = 0.07,
+                 .brushes = {deform::Brush::twist, deform::Brush::pull, deform::Brush::none,
+                             deform::Brush::smooth, deform::Brush::scale},
+                 .brush_strength = -0.3}}});
   return made;
 }
 
