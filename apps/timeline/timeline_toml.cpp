@@ -214,10 +214,12 @@ deform::Points read_starts(TomlReader& reader, const toml::table& table,
   deform::Points starts = deform::Points::Zero(3, static_cast<Eigen::Index>(puppet.points.size()));
   const toml::table* const places = reader.table(table, "starts");
   if (places == nullptr) return starts;
-  for (const auto& [key, node] : *places)
+  for (const auto& [key, node] : *places) {
+    const std::string name(key.str());
     if (std::none_of(puppet.points.begin(), puppet.points.end(),
-                     [&](const auto& point) { return point.name == key.str(); }))
-      reader.complain(node, "the puppet has no point '" + std::string(key.str()) + "'");
+                     [&name](const auto& point) { return point.name == name; }))
+      reader.complain(node, "the puppet has no point '" + name + "'");
+  }
   for (std::size_t at = 0; at < puppet.points.size(); ++at) {
     const std::string& name = puppet.points[at].name;
     const toml::node* const place = reader.find(*places, name);

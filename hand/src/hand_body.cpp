@@ -139,6 +139,9 @@ private:
   Corner corner(const Vector3d& place_m, double radius_mm) const noexcept {
     return {place_m, radius_mm * scale_m_};
   }
+  Corner corner(const Vector3d& place_m, float radius_mm) const noexcept {
+    return corner(place_m, static_cast<double>(radius_mm));
+  }
   void add(const Corner& from, const Corner& to, Joint carrier) noexcept {
     parts_[count_++] = {{from.place_m, to.place_m, to.place_m},
                         {from.radius_m, to.radius_m, to.radius_m},
@@ -150,7 +153,8 @@ private:
         {a.place_m, b.place_m, c.place_m}, {a.radius_m, b.radius_m, c.radius_m}, 3, carrier};
   }
   /// The last ball of a finger ends where the finger ends.
-  Corner end_of(const Vector3d& from_m, const Vector3d& tip_m, double radius_mm) const noexcept {
+  Corner end_of(const Vector3d& from_m, const Vector3d& tip_m, float of_tip_mm) const noexcept {
+    const auto radius_mm = static_cast<double>(of_tip_mm);
     const double length_m = (tip_m - from_m).norm();
     const double share = length_m > 0.0 ? std::min(1.0, radius_mm * scale_m_ / length_m) : 0.0;
     return corner(tip_m - share * (tip_m - from_m), radius_mm);

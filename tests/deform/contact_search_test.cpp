@@ -52,7 +52,7 @@ TEST_SUITE("contact_search") {
         std::vector<double> found(shape.shape.block_count() * block_size, 1e9);
         search.each_near(shape, body, margin, [&](std::size_t block, const NearestLanes& nearest) {
           for (std::size_t lane = 0; lane < block_size; ++lane) {
-            const double distance = nearest.distance[lane];
+            const auto distance = static_cast<double>(nearest.distance[lane]);
             const std::size_t place = block * block_size + lane;
             found[place] = distance;
             if (distance > margin) continue;
@@ -61,7 +61,9 @@ TEST_SUITE("contact_search") {
             const Vector3d at = vertex_at(shape.shape, place).cast<double>();
             CHECK(std::abs(sampled_distance(parts[part], at) - distance) < 1e-5);
             const Vector3d out =
-                (at - Vector3d(nearest.x[lane], nearest.y[lane], nearest.z[lane])).normalized();
+                (at -
+                 Eigen::Vector3f(nearest.x[lane], nearest.y[lane], nearest.z[lane]).cast<double>())
+                    .normalized();
             CHECK(std::abs(sampled_distance(parts[part], at + 1e-3 * out) - distance - 1e-3) <
                   2e-5);
           }

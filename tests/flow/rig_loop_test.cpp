@@ -168,7 +168,8 @@ TEST_SUITE("rig_loop") {
     const Frame held = after(0, WristSwitch::on);
     CHECK(held.let_go == std::array{false, false});
     for (std::size_t at = 0; at < held.function_count; ++at)
-      CHECK(held.functions[at] == doctest::Approx(bent.functions[at]).epsilon(1e-5));
+      CHECK(held.functions[at] ==
+            doctest::Approx(static_cast<double>(bent.functions[at])).epsilon(1e-5));
     CHECK(after(5, WristSwitch::off).functions != held.functions);
     CHECK(test.loop->frames().front().commits == 0);
   }

@@ -63,7 +63,8 @@ TEST_SUITE("overdub_command") {
     REQUIRE(round.exit_code == 0);
     for (const auto& [name, gloves, ticks] :
          {std::tuple{"mouth", 2U, 135U}, {"brows", 3U, 135U}, {"round", 4U, 180U}}) {
-      CAPTURE(name);
+      const std::string named = name;
+      CAPTURE(named);
       const auto replay = takes.replayed(name);
       CHECK(replay["exact"] == true);
       CHECK(replay["same_shape"] == true);
@@ -116,7 +117,8 @@ TEST_SUITE("overdub_command") {
         {{"--over", takes.path("missing.nendo")}, "missing.nendo"},
     };
     for (const auto& [arguments, message] : wrong) {
-      CAPTURE(message);
+      const std::string wanted = message;
+      CAPTURE(wanted);
       const auto refused = takes.run(arguments, "refused");
       CAPTURE(refused.err);
       CHECK(refused.exit_code != 0);

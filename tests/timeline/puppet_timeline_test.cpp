@@ -266,8 +266,8 @@ TEST_SUITE("puppet_timeline") {
       twin.row(0) = -twin.row(0).eval();
       worst = std::max(worst, (twin - shape).cwiseAbs().maxCoeff());
       most = std::max(most, (shape - model.vertices).cwiseAbs().maxCoeff());
-      apart = std::max(
-          apart, std::abs(double{one->frame().functions[3]} - double{other->frame().functions[3]}));
+      apart = std::max(apart, static_cast<double>(std::abs(one->frame().functions[3] -
+                                                           other->frame().functions[3])));
     }
     CHECK(worst < test::float_gap);
     CHECK(most > 0.05);
@@ -351,7 +351,8 @@ TEST_SUITE("puppet_timeline") {
       const auto player = playing(timeline, model);
       while (player->next() && player->time_s() < key.time_s - 1e-9) {
       }
-      CHECK(double{player->frame().functions[1]} == doctest::Approx(value)); // frownLeft, jawOpen
+      CHECK(static_cast<double>(player->frame().functions[1]) ==
+            doctest::Approx(value)); // frownLeft, jawOpen
     }
     timeline.rig_state.functions[1].input = *puppet::HandSignal::named("right.index_tip_z");
     std::string text = test::symmetric_puppet;

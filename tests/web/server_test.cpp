@@ -185,11 +185,12 @@ TEST_SUITE("server") {
   }
 
   TEST_CASE("over the network, too, a follower has the shape that the loop ends with") {
-    for (const auto& [mode, puppet] :
-         {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
-          {flow::Mode::type2, nullptr},
-          {flow::Mode::type1, test::ball_puppet},
-          {flow::Mode::type2, test::ball_puppet}}) {
+    for (const auto& way : {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
+                            {flow::Mode::type2, nullptr},
+                            {flow::Mode::type1, test::ball_puppet},
+                            {flow::Mode::type2, test::ball_puppet}}) {
+      const flow::Mode mode = way.first;
+      const char* const puppet = way.second;
       CAPTURE(name_of(mode));
       CAPTURE((puppet != nullptr));
       auto served = std::make_unique<Served>(mode, ServerLimits{}, puppet);

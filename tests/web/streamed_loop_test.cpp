@@ -21,10 +21,11 @@ using nendo::test::StreamedLoop;
 TEST_SUITE("streamed_loop" * doctest::skip(!nendo::test::restraint_is_counted)) {
   TEST_CASE("with a stream that is active and asked for shapes, a tick makes no system call, no "
             "allocation and takes no lock") {
-    for (const auto& [mode, puppet] :
-         {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
-          {flow::Mode::type2, nullptr},
-          {flow::Mode::type1, test::ball_puppet}}) {
+    for (const auto& way : {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
+                            {flow::Mode::type2, nullptr},
+                            {flow::Mode::type1, test::ball_puppet}}) {
+      const flow::Mode mode = way.first;
+      const char* const puppet = way.second;
       CAPTURE(name_of(mode));
       CAPTURE((puppet != nullptr));
       StreamedLoop streamed(mode, {.injective = deform::InjectiveOptions{}, .puppet = puppet});

@@ -131,7 +131,7 @@ std::string function_lines(const Puppet& puppet, const Function& function) {
 }
 
 std::string part_lines(const Puppet& puppet, const PuppetPart& part) {
-  constexpr std::uint32_t no_end = PuppetPart{}.last;
+  const std::uint32_t no_end = PuppetPart{}.last;
   std::string text = "\n[[parts]]\n";
   if (part.inside)
     text += "inside = [" + toml_vector(part.inside->lowest) + ", " +

@@ -47,7 +47,8 @@ ContactPart between(const ContactPart& a, const ContactPart& b, double share) no
 }
 
 Vector3d normal_at(const Vector3d& place, const NearestLanes& nearest, std::size_t lane) noexcept {
-  const Vector3d centre(nearest.x[lane], nearest.y[lane], nearest.z[lane]);
+  const Vector3d centre =
+      Eigen::Vector3f(nearest.x[lane], nearest.y[lane], nearest.z[lane]).cast<double>();
   const Vector3d way = place - centre;
   const double length = way.norm();
   return length > 0.0 ? Vector3d(way / length) : Vector3d::UnitZ();
@@ -309,7 +310,8 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
       for (std::size_t lane = 0; lane < block_size; ++lane) {
         const double depth = -static_cast<double>(nearest.distance[lane]);
         if (!(depth > 0.0)) continue;
-        const Vector3d at(content.x[lane], content.y[lane], content.z[lane]);
+        const Vector3d at =
+            Eigen::Vector3f(content.x[lane], content.y[lane], content.z[lane]).cast<double>();
         const Vector3d out = at + std::min(depth, most) * normal_at(at, nearest, lane);
         content.x[lane] = static_cast<float>(out.x());
         content.y[lane] = static_cast<float>(out.y());
