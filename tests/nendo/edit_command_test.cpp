@@ -84,7 +84,7 @@ TEST_SUITE("edit_command") {
     const auto path = [&](const char* name) { return (folder.path() / name).string(); };
     const std::string take = path("face.nendo"), file = path("face.timeline.toml");
     const auto run = test::nendo({"run", "--puppet", "face", "--left", "sim:faces", "--right",
-                                  "sim:faces", "--duration", "1.6", "--rate", "30", "--out",
+                                  "sim:faces", "--duration", "2.2", "--rate", "30", "--out",
                                   path("face.obj"), "--record", take});
     CAPTURE(run.err);
     REQUIRE(run.exit_code == 0);
@@ -102,7 +102,7 @@ TEST_SUITE("edit_command") {
     };
     const std::string table = EditedRun::fine({"show", file, "--functions"});
     CHECK(table.find("at rest") != std::string::npos);
-    CHECK(table.find("mouthSmileLeft 0.") != std::string::npos);
+    CHECK(table.find("mouthSmileLeft ") != std::string::npos);
     const json before = functions(file);
     EditedRun::fine({"mirror", file, "--out", path("mirrored.timeline.toml")});
     const json after = functions(path("mirrored.timeline.toml"));
