@@ -90,13 +90,23 @@ void print_function(const OpenRig& open, std::size_t at) {
   }
 }
 
+/// As --radius takes them.
+std::string radii_text(const puppet::PuppetPoint& point) {
+  std::string text;
+  for (const deform::Support& support : point.supports()) {
+    text += fmt::format("{}{:.4g}", text.empty() ? "" : "+", support.radius);
+    if (support.weight != 1.0) text += fmt::format(":{:.4g}", support.weight);
+  }
+  return text;
+}
+
 void print_points(const OpenRig& open) {
   fmt::print("points\n");
   for (std::size_t at = 0; at < open.rig().puppet().points.size(); ++at) {
     const puppet::PuppetPoint& point = open.rig().puppet().points[at];
-    fmt::print("  {:<20} at {}  radius {:.4g}{}\n", point.name,
-               place_text(open.rig().starts().col(static_cast<Eigen::Index>(at))), point.radius,
-               point.is_pin ? ", pin" : "");
+    fmt::print("  {:<20} at {}  radius {}{}\n", point.name,
+               place_text(open.rig().starts().col(static_cast<Eigen::Index>(at))),
+               radii_text(point), point.is_pin ? ", pin" : "");
   }
 }
 

@@ -27,15 +27,38 @@ Eigen::RowVectorXd at_place(const MatrixXd& values, const SurfacePlace& place) {
   return row;
 }
 
+/// A point's radii, with weights whose sum is 1.
+std::vector<Support> radii_of(const SurfacePoint& point) {
+  if (point.mix.empty()) return {Support{point.radius, 1.0}};
+  std::vector<Support> radii = point.mix;
+  double sum = 0.0;
+  for (const Support& support : radii)
+    sum += support.weight;
+  for (Support& support : radii)
+    support.weight /= sum;
+  return radii;
+}
+
+double largest_of(const std::vector<Support>& radii) {
+  double largest = 0.0;
+  for (const Support& support : radii)
+    largest = std::max(largest, support.radius);
+  return largest;
+}
+
 /// The functions at the mesh's vertices: #vertices by #points.
 MatrixXd functions_on(const Mesh& mesh, const SurfaceSetup& setup) {
   const SurfaceGraph graph(mesh);
   MatrixXd values(mesh.vertices.cols(), static_cast<Index>(setup.points.size()));
   for (Index j = 0; j < values.cols(); ++j) {
     const SurfacePoint& point = setup.points[static_cast<std::size_t>(j)];
-    const VectorXd distances = graph.distances(point.place, point.radius);
-    for (Index v = 0; v < values.rows(); ++v)
-      values(v, j) = wendland(setup.kernel, distances[v] / point.radius);
+    const std::vector<Support> radii = radii_of(point);
+    const VectorXd distances = graph.distances(point.place, largest_of(radii));
+    for (Index v = 0; v < values.rows(); ++v) {
+      values(v, j) = 0.0;
+      for (const Support& support : radii)
+        values(v, j) += support.weight * wendland(setup.kernel, distances[v] / support.radius);
+    }
   }
   return values;
 }
@@ -94,9 +117,10 @@ VectorXd weights_by_nearness(const Mesh& mesh, const SurfaceSetup& setup,
   VectorXd weights(static_cast<Index>(points.size()));
   for (std::size_t k = 0; k < points.size(); ++k) {
     const SurfacePoint& point = setup.points[static_cast<std::size_t>(points[k])];
+    const double radius = largest_of(radii_of(point));
     const double squared =
         (point.place.in(mesh.vertices) - mesh.vertices.col(vertex)).squaredNorm();
-    weights[static_cast<Index>(k)] = 1.0 / (squared + least * point.radius * point.radius);
+    weights[static_cast<Index>(k)] = 1.0 / (squared + least * radius * radius);
   }
   return weights / weights.sum();
 }

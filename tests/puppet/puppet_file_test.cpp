@@ -50,6 +50,29 @@ bool refuses(const std::string& text, std::string_view with) {
 } // namespace
 
 TEST_SUITE("puppet file") {
+  TEST_CASE("a point may have several radii with weights, and so has its twin") {
+    const std::string mixed =
+        replaced(whole, "radius = 1.5", "radius = [0.5, 1.5], weights = [2, 0.25]");
+    const auto parsed = parse_puppet(mixed, "p.toml");
+    REQUIRE(parsed);
+    for (const std::size_t at : {1, 3}) {
+      CHECK(parsed->points[at].mix == std::vector<deform::Support>{{0.5, 2.0}, {1.5, 0.25}});
+      CHECK(parsed->points[at].radius == 1.5);
+    }
+    const auto again = parse_puppet(text_of(*parsed), "p.toml");
+    REQUIRE(again);
+    CHECK(*again == *parsed);
+    const auto alike = parse_puppet(replaced(whole, "radius = 1.5", "radius = [3, 1]"), "p.toml");
+    REQUIRE(alike);
+    CHECK(alike->points[1].mix == std::vector<deform::Support>{{3.0, 1.0}, {1.0, 1.0}});
+    CHECK(*parse_puppet(text_of(*alike), "p.toml") == *alike);
+    for (const char* const wrong :
+         {"radius = []", "radius = [1, 0]", "radius = [1, nan]", "radius = [1, 2, 3, 4, 5]",
+          "radius = [1, \"2\"]", "radius = 1, weights = [1]", "radius = [1, 2], weights = [1]",
+          "radius = [1, 2], weights = [1, -1]"})
+      CHECK(refuses(replaced(whole, "radius = 1.5", wrong), "p.toml:6"));
+  }
+
   TEST_CASE("a mirrored file has twins of what is named Left: other hand, other side") {
     const auto parsed = parse_puppet(whole, "p.toml");
     REQUIRE(parsed);

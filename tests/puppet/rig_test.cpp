@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/surface_graph.hpp>
 #include <nendo/puppet/rig_check.hpp>
 
 #include "support/test_meshes.hpp"
@@ -201,6 +203,53 @@ TEST_SUITE("rig") {
     mesh.face_corners.clear();
     mesh.face_starts = {0};
     CHECK_FALSE(check_fits(*puppet, mesh));
+  }
+
+  TEST_CASE("a mix of radii is the mean of their functions along the surface, exactly linear") {
+    const deform::Mesh mesh = ball();
+    const std::string file = "version = 1\nmodel = \"ball\"\n[points]\n"
+                             "top = { at = [0.0, 1.0, 0.0], radius = [0.4, 1.6], weights = [3, 1] "
+                             "}\n[functions.up]\ninput = \"left.thumb_flexion\"\n"
+                             "travel_deg = 50\nmove = { top = [0.0, 0.2, 0.1] }\n";
+    auto shapes = RigShapes::make(rig_of(file, mesh), mesh);
+    REQUIRE(shapes);
+    const auto place = deform::nearest_place(mesh, {0.0, 1.0, 0.0});
+    const Eigen::VectorXd distances = deform::SurfaceGraph(mesh).distances(place, 2.0);
+    const auto psi = [](double t) { // Wendland's, from the paper
+      return t >= 1.0 ? 0.0 : std::pow(1.0 - t, 4) * (4.0 * t + 1.0);
+    };
+    const Points half = (*shapes)->at(0, 0.5), full = (*shapes)->at(0, 1.0);
+    double top = 0.0; // of the function, at the point's own place in its face
+    const auto mixed = [&](double d) { return 0.75 * psi(d / 0.4) + 0.25 * psi(d / 1.6); };
+    for (std::size_t k = 0; k < 3; ++k)
+      top += place.weights[k] * mixed(distances[place.corners[k]]);
+    for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) {
+      const Eigen::Vector3d wanted = mixed(distances[v]) / top * Eigen::Vector3d(0.0, 0.2, 0.1);
+      CHECK((full.col(v) - mesh.vertices.col(v) - wanted).norm() < 1e-6);
+      CHECK((full.col(v) + mesh.vertices.col(v) - 2.0 * half.col(v)).norm() < 1e-6);
+    }
+  }
+
+  TEST_CASE("a mix of radii interpolates through the air, too, narrower than its widest radius") {
+    const deform::Mesh mesh = ball();
+    const auto moved = [&](const char* radius) {
+      std::string file = "version = 1\nmodel = \"ball\"\ndistance = \"air\"\n[points]\n"
+                         "top = { at = [0.0, 1.0, 0.0], radius = RADIUS }\n"
+                         "side = { at = [1.0, 0.0, 0.0], radius = 0.7 }\n"
+                         "[functions.up]\ninput = \"left.thumb_flexion\"\n"
+                         "travel_deg = 50\nmove = { top = [0.0, 0.2, 0.0] }\n";
+      file.replace(file.find("RADIUS"), 6, radius);
+      auto shapes = RigShapes::make(rig_of(file, mesh), mesh);
+      REQUIRE(shapes);
+      const Points all = (*shapes)->at(0, 1.0) - mesh.vertices;
+      Eigen::Index highest = 0;
+      mesh.vertices.row(1).maxCoeff(&highest);
+      CHECK((all.col(highest) - Eigen::Vector3d(0.0, 0.2, 0.0)).norm() < 1e-6);
+      return all.norm();
+    };
+    const double narrow = moved("0.4"), wide = moved("1.6"), mixed = moved("[0.4, 1.6]");
+    CHECK(narrow < mixed);
+    CHECK(mixed < wide);
   }
 
   TEST_CASE("points that are too near to each other are named") {

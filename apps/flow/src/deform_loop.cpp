@@ -85,10 +85,12 @@ surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::Blo
   if (rig.puppet().distance == puppet::Distance::air)
     return std::shared_ptr<const deform::SurfaceField>();
   deform::SurfaceSetup setup = puppet::surface_setup(rig.puppet(), model, options.csrbf.kernel);
-  for (deform::SurfacePoint& point : setup.points) // where all are equal, none has one of its own
-    point.radius = options.supports.shared.front().radius;
+  for (deform::SurfacePoint& point : setup.points)
+    point.mix.clear();
   for (const deform::OwnSupport& own : options.supports.own)
-    setup.points[static_cast<std::size_t>(own.point)].radius = own.support.radius;
+    setup.points[static_cast<std::size_t>(own.point)].mix.push_back(own.support);
+  for (deform::SurfacePoint& point : setup.points) // where all are equal, none has one of its own
+    if (point.mix.empty()) point.mix = options.supports.shared;
   return deform::SurfaceField::make(model, layout, setup);
 }
 

@@ -194,7 +194,8 @@ deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
   const auto parts = deform::SurfaceGraph(model).parts();
   const auto places = places_on(puppet, model, parts);
   for (std::size_t at = 0; at < places.size(); ++at)
-    setup.points.push_back({places[at], puppet.points[at].radius, puppet.points[at].name});
+    setup.points.push_back(
+        {places[at], puppet.points[at].radius, puppet.points[at].name, puppet.points[at].mix});
   setup.parts = following_parts(puppet, model, parts, places);
   if (puppet.masks.empty()) return setup;
   setup.mask = Eigen::VectorXd::Ones(model.vertices.cols());

@@ -223,7 +223,11 @@ Result<Puppet> with_radius(const Rig& rig, std::size_t point, double radius) {
   if (!(radius > 0.0 && radius <= largest))
     return refused("a radius must be more than 0, and at most 1e9");
   EditedPuppet draft(rig);
-  draft.puppet().points[draft.source_of_point(point)].radius = rounded(radius, radius);
+  PuppetPoint& edited = draft.puppet().points[draft.source_of_point(point)];
+  const double scale = radius / edited.radius;
+  for (deform::Support& support : edited.mix)
+    support.radius = rounded(scale * support.radius, scale * support.radius);
+  edited.radius = rounded(radius, radius);
   return draft.done();
 }
 

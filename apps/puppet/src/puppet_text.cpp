@@ -94,11 +94,24 @@ std::string_view comments_before(std::string_view text) {
   return text.substr(0, end);
 }
 
+void add_radii(const PuppetPoint& point, std::vector<std::string>& entries) {
+  if (point.mix.empty()) return entries.push_back("radius = " + toml_number(point.radius));
+  std::string radii, weights;
+  bool are_alike = true;
+  for (const deform::Support& support : point.mix) {
+    radii += (radii.empty() ? "" : ", ") + toml_number(support.radius);
+    weights += (weights.empty() ? "" : ", ") + toml_number(support.weight);
+    are_alike = are_alike && support.weight == 1.0;
+  }
+  entries.push_back("radius = [" + radii + "]");
+  if (!are_alike) entries.push_back("weights = [" + weights + "]");
+}
+
 std::string point_line(const PuppetPoint& point) {
   std::vector<std::string> entries;
   entries.push_back(point.vertex ? "vertex = " + std::to_string(*point.vertex)
                                  : "at = " + toml_vector(point.at));
-  entries.push_back("radius = " + toml_number(point.radius));
+  add_radii(point, entries);
   if (point.is_pin) entries.emplace_back("pin = true");
   return point.name + " = " + toml_table(entries) + "\n";
 }

@@ -131,16 +131,50 @@ private:
     for (const auto& [key, node] : *points) {
       const toml::table* const table = reader_.as_table(node, key.str());
       if (table == nullptr || reader_.error()) return;
-      reader_.allow_only(*table, {"vertex", "at", "radius", "pin"});
+      reader_.allow_only(*table, {"vertex", "at", "radius", "weights", "pin"});
       PuppetPoint& point = puppet_.points.emplace_back();
       point.name = name(key, node);
-      point.radius = length(*table, "radius");
+      read_radius(*table, point);
       point.is_pin = table->get("pin") != nullptr && reader_.truth(*table, "pin");
       if (table->get("vertex") != nullptr)
         point.vertex = static_cast<std::uint32_t>(reader_.count(*table, "vertex", 0xFFFFFFFE));
       else
         point.at = place(*table, "at");
     }
+  }
+  /// One radius, or a list of them with a list of weights.
+  void read_radius(const toml::table& table, PuppetPoint& point) {
+    const toml::node* const node = reader_.find(table, "radius");
+    if (node == nullptr) return;
+    if (!node->is_array()) {
+      point.radius = length(table, "radius");
+      if (table.get("weights") != nullptr)
+        reader_.complain(table, "weights belong to several radii, and there is one");
+      return;
+    }
+    const std::vector<double> radii = positive_numbers(table, "radius");
+    const std::vector<double> weights = table.get("weights") == nullptr
+                                            ? std::vector<double>(radii.size(), 1.0)
+                                            : positive_numbers(table, "weights");
+    if (weights.size() != radii.size())
+      reader_.complain(table, "there must be as many weights as radii");
+    if (reader_.error()) return;
+    for (std::size_t at = 0; at < radii.size(); ++at)
+      point.mix.push_back({radii[at], weights[at]});
+    point.radius = *std::max_element(radii.begin(), radii.end());
+  }
+  std::vector<double> positive_numbers(const toml::table& table, std::string_view key) {
+    const toml::array* const list = reader_.array(table, key);
+    if (list == nullptr) return {};
+    if (list->empty() || list->size() > PuppetPoint::most_radii)
+      reader_.complain(*list, std::string(key) + " must be a list of 1 to 4 numbers");
+    std::vector<double> values;
+    for (const toml::node& node : *list) {
+      values.push_back(reader_.number(node, key));
+      if (!(values.back() >= 1e-9 && values.back() <= largest))
+        reader_.complain(node, std::string(key) + " must be within 1e-9 and 1e9");
+    }
+    return values;
   }
   void mirror_points() {
     const std::size_t count = puppet_.points.size();
@@ -298,6 +332,11 @@ private:
     if (puppet_.functions.empty()) reader_.complain(root, "there are no functions; add one");
     if (puppet_.points.size() > Puppet::most_points)
       reader_.complain(root, "there are more than 1000 points");
+    std::size_t radii = 0;
+    for (const PuppetPoint& point : puppet_.points)
+      radii += point.supports().size();
+    if (radii > Puppet::most_points)
+      reader_.complain(root, "the points have more than 1000 radii together");
     if (puppet_.functions.size() > Puppet::most_functions)
       reader_.complain(root, "there are more than 64 functions");
     for (const Function& function : puppet_.functions)

@@ -93,7 +93,8 @@ void Rig::place(std::span<const double> values, Points& points) const {
 deform::Supports Rig::supports() const {
   std::vector<deform::OwnSupport> own;
   for (std::size_t at = 0; at < puppet_.points.size(); ++at)
-    own.push_back({static_cast<Index>(at), {puppet_.points[at].radius}});
+    for (const deform::Support& support : puppet_.points[at].supports())
+      own.push_back({static_cast<Index>(at), support});
   return deform::with_common(std::move(own));
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/deform/supports.hpp>
 #include <nendo/deform/surface_graph.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/deform/wendland.hpp>
@@ -23,6 +24,9 @@ struct SurfacePoint {
   SurfacePlace place;
   double radius = 1.0; ///< along the surface, model units, > 0
   std::string name{};  ///< for errors; empty: its number
+  /// In place of `radius`, unless it is empty. The point's function is then the weighted mean of
+  /// those of these radii, so that it is narrow at the top and wide at the foot.
+  std::vector<Support> mix{};
 };
 
 /// Vertices that no function reaches along the surface, because they belong to another part of it.

@@ -13,6 +13,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/base/units.hpp>
+#include <nendo/deform/supports.hpp>
 #include <nendo/deform/surface_field.hpp>
 #include <nendo/puppet/hand_signal.hpp>
 
@@ -29,10 +30,16 @@ struct PuppetPoint {
   std::string name;
   std::optional<std::uint32_t> vertex{};        ///< where it is; or else
   Eigen::Vector3d at = Eigen::Vector3d::Zero(); ///< near here, model units
-  double radius = 1.0;                          ///< model units, > 0
+  double radius = 1.0;                          ///< model units, > 0; the largest of `mix`
   bool is_pin = false;                          ///< nothing moves it
   /// It is on the other side of x = 0 of where `vertex` or `at` are: a twin that no file has.
   bool is_mirrored = false;
+  std::vector<deform::Support> mix{}; ///< several radii with their weights; empty: one
+  /// Returns the mix, or the one radius with a weight of 1.
+  std::vector<deform::Support> supports() const {
+    return mix.empty() ? std::vector{deform::Support{radius, 1.0}} : mix;
+  }
+  static constexpr std::size_t most_radii = 4; ///< of a mix
   friend bool operator==(const PuppetPoint&, const PuppetPoint&) = default;
 };
 
@@ -124,7 +131,7 @@ struct Puppet {
   /// Compares all but the text.
   friend bool operator==(const Puppet& one, const Puppet& other) noexcept;
 
-  static constexpr std::size_t most_points = 1000;
+  static constexpr std::size_t most_points = 1000; ///< and radii of all points together
   static constexpr std::size_t most_functions = 64;
 };
 

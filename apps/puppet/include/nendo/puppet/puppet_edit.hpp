@@ -32,6 +32,7 @@ Result<Puppet> with_pin(const Rig& rig, const NewPoint& point);
 /// Removes a point, and the functions that move nothing else. Error: it is the last that a function
 /// moves, or a part turns with it and three others.
 Result<Puppet> without_point(const Rig& rig, std::size_t point);
+/// Gives a point that radius. All radii of a mix change as its largest one does.
 Result<Puppet> with_radius(const Rig& rig, std::size_t point, double radius);
 /// Pins a point, or lets functions move it. Error: a function moves it.
 Result<Puppet> with_pinned(const Rig& rig, std::size_t point, bool pinned);
