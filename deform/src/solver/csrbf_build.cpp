@@ -10,9 +10,6 @@ namespace nendo::deform {
 
 namespace {
 
-/// Up to here a dense factor costs less than finding out how sparse one would be.
-constexpr Eigen::Index least_sparse_points = 100;
-
 /// Seconds since the last question; never asks the clock unless told to.
 class Laps {
 public:
@@ -83,7 +80,7 @@ KernelSystem::Assembled CsrbfSolver::State::assemble(const OwnFunctions& own, Sy
     return system->assemble(options_, ordered_starts_, ordered_supports_, own);
   };
   if (choices.storage == Storage::sparse ||
-      (choices.storage == Storage::by_size && n > least_sparse_points)) {
+      (choices.storage == Storage::by_size && n > lean_size)) {
     const bool must = choices.storage == Storage::sparse;
     const auto assembled = assemble_in(2, [&] { return make_sparse_system(must); });
     effort.sparse = assembled != KernelSystem::Assembled::too_dense;

@@ -34,8 +34,8 @@ public:
   virtual Eigen::Index factor_entries() const noexcept = 0;
 };
 
-/// Returns a system for up to CsrbfSolver::lean_size points, which loops over fixed storage without
-/// allocation.
+/// Returns a system for up to CsrbfSolver::lean_size points, which loops over storage that it
+/// keeps, without allocation once it has had room for as many.
 std::unique_ptr<KernelSystem> make_lean_system();
 /// Returns a system that uses Eigen's blocked Cholesky.
 std::unique_ptr<KernelSystem> make_dense_system();

@@ -1,5 +1,5 @@
-#include <array>
 #include <cassert>
+#include <vector>
 
 #include "solver/dense_assembly.hpp"
 #include "solver/kernel_system.hpp"
@@ -8,15 +8,15 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr Eigen::Index most = CsrbfSolver::lean_size;
-
 class LeanSystem final : public KernelSystem {
 public:
   void reserve(Eigen::Index points) override {
-    assert(points <= most);
+    assert(points <= CsrbfSolver::lean_size);
     n_ = points;
     lower_.resize(n_, n_);
     diagonal_.resize(n_);
+    factor_.resize(static_cast<std::size_t>(n_ * n_)); // as vectors do, it keeps what it had
+    inverse_pivots_.resize(static_cast<std::size_t>(n_));
   }
 
   Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
@@ -85,15 +85,15 @@ public:
 
 private:
   using Row = Eigen::RowVector4d;
-  static std::size_t index(Eigen::Index row, Eigen::Index column) noexcept {
-    return static_cast<std::size_t>(column * most + row);
+  std::size_t index(Eigen::Index row, Eigen::Index column) const noexcept {
+    return static_cast<std::size_t>(column * n_ + row);
   }
 
   Eigen::Index n_ = 0;
   Eigen::MatrixXd lower_;
   Eigen::VectorXd diagonal_;
-  alignas(16) std::array<double, static_cast<std::size_t>(most* most)> factor_{};
-  std::array<double, static_cast<std::size_t>(most)> inverse_pivots_{};
+  std::vector<double> factor_;
+  std::vector<double> inverse_pivots_;
 };
 
 } // namespace

@@ -63,7 +63,9 @@ struct SolverEffort {
 /// belongs to one thread at a time.
 class CsrbfSolver {
 public:
-  static constexpr Eigen::Index lean_size = 32;
+  /// So that two hands and most puppets fit. Up to here a dense factor costs less than finding out
+  /// how sparse one would be.
+  static constexpr Eigen::Index lean_size = 100;
   /// With more points than this, supports that hold more than an eighth of them are too_dense. A
   /// factor of more than `most_factor_entries`, which take 800 MB, is too_dense as well.
   static constexpr Eigen::Index most_dense_points = 4096;
