@@ -32,7 +32,7 @@ struct RunStatus {
   bool fresh = false;              ///< it is another one than at the call before
   const GloveStatuses& gloves;
   bool recording = false; ///< to a file
-  /// The puppet that is played from this frame on; null: none.
+  /// The puppet whose functions made the frame; null: none.
   const std::shared_ptr<const puppet::Rig>& puppet;
 };
 

@@ -14,11 +14,12 @@ inline std::shared_ptr<const puppet::Rig> rig_of(const puppet::Puppet& puppet,
   return std::make_shared<const puppet::Rig>(puppet, model);
 }
 
-/// Returns the puppet after an edit; the same one, if the edit is refused. Without a puppet, it is
-/// that of the ball.
+/// Returns the puppet after an edit; the same one, if the edit is refused, or if it would have more
+/// points than that. Without a puppet, it is that of the ball.
 template <class Random>
 std::shared_ptr<const puppet::Rig> any_puppet(const std::shared_ptr<const puppet::Rig>& now,
-                                              const deform::Mesh& model, Random& random) {
+                                              const deform::Mesh& model, Random& random,
+                                              std::size_t most = 10) {
   if (!now) return rig_of(*puppet::parse_puppet(ball_puppet, "a test's puppet"), model);
   const auto number = [&](double least, double most) {
     return least + (most - least) * static_cast<double>(random() % 1000) / 1000.0;
@@ -55,7 +56,6 @@ std::shared_ptr<const puppet::Rig> any_puppet(const std::shared_ptr<const puppet
       return puppet::with_move(*now, function, point, vector(0.2));
     }
   }();
-  constexpr std::size_t most = 10; // points, so that type 2 solves for them without allocation
   return edited && edited->points.size() <= most ? rig_of(*edited, model) : now;
 }
 

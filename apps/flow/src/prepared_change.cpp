@@ -54,7 +54,6 @@ void DeformLoop::finish_change(Frame& frame) noexcept {
     else if (!holds_on)
       note_hold();
     taken_->is_refused = !shaping_.exchange(taken_->ready, tips_, frame, stats_);
-    if (taken_->rig) tell_rig(frame);
   }
   if (taken_->log) begin_anew(*taken_->log, frame);
 }
@@ -71,7 +70,7 @@ void DeformLoop::take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept {
     const auto hands = hands_now();
     rig_ ? rig.player->go_on_from(*rig_, rig.from, hands) : rig.player->take_hold(hands);
     for (std::size_t at = 0; at < rig.held_at.size(); ++at)
-      rig.held_at[at] = rig.from[at] < held_at_.size() ? held_at_[rig.from[at]] : 0.0;
+      if (rig.from[at] < held_at_.size()) rig.held_at[at] = held_at_[rig.from[at]];
     rig.player->rig().place(rig.held_at, ready.starts);
     rig.player->write(rig.tips);
   }
@@ -249,9 +248,14 @@ ReadyRig DeformLoop::ready_rig(std::uint32_t number, std::uint32_t before) const
   ready.tips = deform::Points::Zero(3, control_points(number));
   const auto& rig = puppets_[number];
   if (!rig) return ready;
+  const auto earlier = played_.find(number);
   ready.player.emplace(rig);
   ready.gestures.emplace(*rig);
   const std::size_t functions = rig->puppet().functions.size();
+  if (earlier != played_.end()) {
+    ready.player->remember(earlier->second.player);
+    ready.held_at = earlier->second.held_at;
+  }
   ready.held_at.resize(functions);
   ready.still_at.resize(functions);
   ready.from = puppets_[before]
@@ -349,7 +353,11 @@ bool DeformLoop::is_changing() {
     is_still_ = change_->holds_still;
     if (change_->is_refused) go_back();
     if (change_->model) free_others(*change_->model);
+    if (auto& rig = change_->rig; rig && rig->player)
+      played_.insert_or_assign(rig->before,
+                               Played{*std::move(rig->player), std::move(rig->held_at)});
     if (change_->log) {
+      played_.clear(); // no undo leads back there
       states_.push_back(std::move(change_->log->state));
       states_.back().sculptor = asked_; // nobody has asked for others since
       for (const ModelVersion* at = asked_model_->before; at != nullptr; at = at->before)

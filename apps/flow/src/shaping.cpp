@@ -53,6 +53,7 @@ void Shaping::ask(Request request) noexcept {
 FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
                            bool completes) noexcept {
   make_room(frame);
+  frame.puppet = puppet_;
   if (std::exchange(leap_due_, false)) ++jumps_;
   if (!is_still_) take_steps(tips, stats);
   if (!is_still_ && !awaited_ && std::exchange(anew_due_, false) && held_) take_hold_anew(tips);
@@ -131,7 +132,6 @@ void Shaping::tell(Frame& frame, LoopStats& stats) noexcept {
   frame.redo_steps = steps_to_redo();
   frame.awaited = awaited_;
   frame.steps_due = static_cast<std::uint32_t>(steps_due_.size());
-  frame.puppet = puppet_;
   list_steps(frame.steps);
   frame.steps.in_hand = is_in_hand();
 }

@@ -143,6 +143,8 @@ void RigPlayer::take_hold(std::size_t function, const Hands& hands) noexcept {
 }
 
 void RigPlayer::take_hold(const Hands& hands) noexcept {
+  for (std::uint32_t& grips : grips_)
+    ++grips;
   for (std::size_t at = 0; at < holds_.size(); ++at)
     take_hold(at, hands);
 }
@@ -173,6 +175,7 @@ void RigPlayer::set_values() noexcept {
 void RigPlayer::set_clutch(Side side, std::uint8_t finger, bool holds,
                            const Hands& hands) noexcept {
   bool& hand_holds = state_.hand_holds[static_cast<std::size_t>(side)];
+  ++grips_[static_cast<std::size_t>(side)];
   const bool is_alone = holds && finger != all_fingers && !hand_holds; // of a hand that let go
   for (std::size_t at = 0; at < holds_.size(); ++at) {
     FunctionState& state = state_.functions[at];
@@ -190,6 +193,7 @@ void RigPlayer::toggle_clutch(Side side, const Hands& hands) noexcept {
   bool& hand_holds = state_.hand_holds[static_cast<std::size_t>(side)];
   if (hand_holds && has_let_go(side)) return set_clutch(side, all_fingers, true, hands);
   hand_holds = !hand_holds;
+  ++grips_[static_cast<std::size_t>(side)];
   for (std::size_t at = 0; at < holds_.size(); ++at)
     if (state_.functions[at].input.side() == side && state_.functions[at].held)
       take_hold(at, hands);
@@ -210,6 +214,13 @@ void RigPlayer::set_symmetric(bool on) noexcept {
   set_values();
 }
 
+void RigPlayer::remember(const RigPlayer& earlier) {
+  if (earlier.holds_.size() != holds_.size()) return;
+  state_.functions = earlier.state_.functions;
+  holds_ = earlier.holds_;
+  known_ = earlier.grips_;
+}
+
 void RigPlayer::go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
                            const Hands& hands) noexcept {
   const auto& functions = rig_->puppet().functions;
@@ -223,11 +234,16 @@ void RigPlayer::go_on_from(const RigPlayer& before, std::span<const std::size_t>
       if (was.input != input) state.input = input;
       holds_[at] = before.holds_[from[at]];
       if (state.input == played && was.travel == functions[at].travel) continue;
+    } else if (known_) {
+      const auto slot = static_cast<std::size_t>(state.input.side());
+      if ((*known_)[slot] == before.grips_[slot]) continue;
     }
     take_hold(at, hands);
   }
   state_.symmetric = before.state_.symmetric;
   state_.hand_holds = before.state_.hand_holds;
+  grips_ = before.grips_;
+  known_.reset();
   set_values();
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -332,8 +333,13 @@ private:
   std::optional<deform::Supports> tip_supports_;            ///< of hands without a puppet
   std::vector<std::shared_ptr<const puppet::Rig>> puppets_; ///< by their numbers
   std::uint32_t asked_puppet_ = 0;                          ///< for last
-  ModelVersion* asked_model_;                               ///< for last
-  ModelVersion* model_before_ = nullptr;                    ///< before that
+  struct Played {
+    puppet::RigPlayer player;
+    std::vector<double> held_at;
+  };
+  std::map<std::uint32_t, Played> played_; ///< as puppets were when others replaced them
+  ModelVersion* asked_model_;              ///< for last
+  ModelVersion* model_before_ = nullptr;   ///< before that
   std::uint32_t last_number_ = 0;
   // For the loop's thread:
   Shaping shaping_;

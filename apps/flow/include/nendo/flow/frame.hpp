@@ -78,7 +78,7 @@ struct Frame {
   deform::SurfaceMove surface;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
   std::uint32_t model = 0;   ///< the version of the model that `shape` is of
-  std::uint32_t puppet = 0;  ///< the number of the puppet that is played from here on
+  std::uint32_t puppet = 0;  ///< the number of the puppet whose functions made this frame
   /// The values of a puppet's functions, in their order, and how many there are; 0 without a
   /// puppet.
   std::array<float, puppet::Puppet::most_functions> functions{};

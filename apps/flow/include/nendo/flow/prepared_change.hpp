@@ -51,9 +51,11 @@ struct ReadyRig {
   std::optional<puppet::RigPlayer> player{}; ///< none: hands touch the model
   std::optional<puppet::GestureClutch> gestures{};
   std::vector<std::size_t> from{}; ///< puppet::functions_before()
-  std::vector<double> held_at{};   ///< the values with which the hands took hold of the shape
-  std::vector<double> still_at{};  ///< and those with which they stopped
-  deform::Points tips{};           ///< room for the places of its points
+  /// The values with which the hands took hold of the shape; of new functions 0, or what they were
+  /// when this puppet was played before.
+  std::vector<double> held_at{};
+  std::vector<double> still_at{}; ///< and those with which they stopped
+  deform::Points tips{};          ///< room for the places of its points
 };
 
 /// What a loop goes on with from a tick on. It swaps pointers, and gives back what it had before.

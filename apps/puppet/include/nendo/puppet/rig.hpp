@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -103,9 +104,14 @@ public:
   const RigState& state() const noexcept { return state_; }
   /// Goes on from that state, if it is one of as many functions. Call take_hold() then.
   void set_state(const RigState& state) noexcept;
+  /// Takes over from an earlier player of the same rig what go_on_from() needs for functions that
+  /// come back, as by an undo. Call it before.
+  void remember(const RigPlayer& earlier);
   /// Goes on where a player of another rig is. from: for each function, the number of the one
   /// that it was there (functions_before()). Their values stay, as far as their limits let them,
-  /// and inputs that were chosen since stay chosen; new functions begin at 0. Does not allocate.
+  /// and inputs that were chosen since stay chosen. Functions that come back (remember()) go on as
+  /// if they had not been away, or, if their hand has taken hold anew meanwhile, from the values
+  /// that they had; new functions begin at 0. Does not allocate.
   void go_on_from(const RigPlayer& before, std::span<const std::size_t> from,
                   const Hands& hands) noexcept;
   /// Tells whether nothing of that hand is held.
@@ -131,7 +137,9 @@ private:
   std::shared_ptr<const Rig> rig_;
   std::vector<std::size_t> twins_; ///< of each function; itself, if it has none
   std::vector<Hold> holds_;
-  std::array<Kept, 2> kept_{}; ///< by side
+  std::array<std::uint32_t, 2> grips_{};              ///< by side: how often it took hold
+  std::optional<std::array<std::uint32_t, 2>> known_; ///< grips_ of the player it remembers
+  std::array<Kept, 2> kept_{};                        ///< by side
   RigState state_;
   std::vector<double> values_;
 };
