@@ -23,39 +23,20 @@ std::size_t twin_number(const puppet::Puppet& puppet, std::size_t function) {
   return puppet.function_named(puppet::twin_of(name)).value_or(function);
 }
 
-/// All other numbers of a mirrored hand are those of the hand. This one changes its sign.
-bool is_sideways(const puppet::HandSignal& input) {
-  return input.name().ends_with("_tip_x");
-}
-
-Result<puppet::HandSignal> mirrored(const puppet::Puppet& puppet, std::size_t function,
-                                    const puppet::HandSignal& input) {
-  if (!is_sideways(input)) return input.mirrored();
-  return Error{Errc::usage,
-               "the puppet's " + puppet.functions[function].name + " listens to " + input.name() +
-                   ", which goes the other way in a mirror; let it listen to an angle"};
-}
-
 /// Twins change their places, and each function listens to the other hand.
-Result<void> mirror_roles(Timeline& timeline) {
+void mirror_roles(Timeline& timeline) {
   const puppet::Puppet& puppet = timeline.rig->puppet();
   const std::vector<puppet::FunctionState> before = timeline.rig_state.functions;
-  for (std::size_t at = 0; at < before.size(); ++at) {
-    const auto input = mirrored(puppet, at, before[at].input);
-    if (!input) return input.error();
-    timeline.rig_state.functions[twin_number(puppet, at)] = {before[at].asked, *input,
-                                                             before[at].held};
-  }
+  for (std::size_t at = 0; at < before.size(); ++at)
+    timeline.rig_state.functions[twin_number(puppet, at)] = {
+        before[at].asked, before[at].input.mirrored(), before[at].held};
   for (Event& event : timeline.events) {
     if (auto* const clutch = std::get_if<flow::SetClutch>(&event.command))
       clutch->side = other_of(clutch->side);
-    auto* const role = std::get_if<flow::SetRole>(&event.command);
-    if (role == nullptr) continue;
-    const auto input = mirrored(puppet, role->function, role->input);
-    if (!input) return input.error();
-    *role = {static_cast<std::uint16_t>(twin_number(puppet, role->function)), *input};
+    if (auto* const role = std::get_if<flow::SetRole>(&event.command))
+      *role = {static_cast<std::uint16_t>(twin_number(puppet, role->function)),
+               role->input.mirrored()};
   }
-  return {};
 }
 
 } // namespace
@@ -67,8 +48,7 @@ Result<void> mirror(Timeline& timeline, double plane_x_m) {
     for (Key& key : hand.keys)
       mirror_key(key, plane_x_m);
   }
-  if (result.rig)
-    if (auto done = mirror_roles(result); !done) return done;
+  if (result.rig) mirror_roles(result);
   if (std::string wrong = complaint_about(result); !wrong.empty())
     return Error{Errc::usage, std::move(wrong)};
   timeline = std::move(result);

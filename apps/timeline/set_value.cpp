@@ -78,9 +78,7 @@ Result<void> move_tip(Timeline& timeline, const KeyRef& at, const puppet::HandSi
   const Key& key = track.keys[at.key];
   const Eigen::Isometry3d T_stage_wrist = key.wrist_pose();
   const auto tips = track.skeleton().pose(key.angles, T_stage_wrist).fingertip_positions();
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();
-  const std::size_t tip_axis = input.number() - hand::finger_count - hand::angle_count;
-  way[static_cast<Eigen::Index>(tip_axis % 3)] = by_m;
+  const Eigen::Vector3d way = by_m * input.direction();
   constexpr double near_m = 1e-3;
   const Eigen::Vector3d target_m = tips.col(input.finger()) + T_stage_wrist.linear() * way;
   const auto set = set_tip(timeline, at.side, at.key, static_cast<hand::Finger>(input.finger()),

@@ -11,6 +11,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/surface_graph.hpp>
+#include <nendo/hand/angle.hpp>
 #include <nendo/puppet/rig_check.hpp>
 
 #include "support/test_meshes.hpp"
@@ -92,6 +93,37 @@ double asymmetry(const Points& shape, const Points& rest) {
 } // namespace
 
 TEST_SUITE("rig") {
+  TEST_CASE("hands that mirror each other have the same signals, all of them") {
+    std::array<HandState, 2> states;
+    for (std::size_t at = 0; at < hand::angle_count; ++at)
+      for (HandState& state : states)
+        state.angles[hand::angle_at(at)] = 0.05 + 0.01 * static_cast<double>(at);
+    const Eigen::Isometry3d wrist = Eigen::Translation3d(0.3, 0.1, -0.2) *
+                                    Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized());
+    Eigen::Isometry3d mirrored = wrist; // about x = 0
+    mirrored.translation().x() = -mirrored.translation().x();
+    mirrored.matrix().block<1, 2>(0, 1) *= -1.0;
+    mirrored.matrix().block<2, 1>(1, 0) *= -1.0;
+    states[0].T_world_wrist = wrist;
+    states[1].T_world_wrist = mirrored;
+    for (const Side side : {Side::left, Side::right}) {
+      HandState& state = states[static_cast<std::size_t>(side)];
+      state.pose = hand::HandSkeleton(side, {}).pose(state.angles, state.T_world_wrist);
+    }
+    std::size_t sideways = 0;
+    for (std::uint8_t number = 0; const auto left = HandSignal::numbered(Side::left, number);
+         ++number) {
+      const auto right = left->mirrored();
+      CAPTURE(right.name());
+      CHECK(left->of(states[0]) == doctest::Approx(right.of(states[1])));
+      sideways += right.name().ends_with("_tip_x") && std::abs(right.of(states[1])) > 1e-3 ? 1 : 0;
+    }
+    CHECK(sideways >= 4);
+    // A right thumb is on the left of its palm, and so is a left little finger.
+    CHECK(HandSignal::named("right.thumb_tip_x")->of(states[1]) < 0.0);
+    CHECK(HandSignal::named("left.little_tip_x")->of(states[0]) > 0.0);
+  }
+
   TEST_CASE("hands that stay as they took hold leave the model as it is") {
     const deform::Mesh mesh = ball();
     const auto rig = rig_of(text, mesh);

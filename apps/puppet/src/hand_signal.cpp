@@ -65,6 +65,13 @@ std::uint8_t HandSignal::finger() const noexcept {
   return std::min(static_cast<std::uint8_t>((number_ - hand::finger_count) / 4), no_finger);
 }
 
+Eigen::Vector3d HandSignal::direction() const noexcept {
+  const auto axis = static_cast<Eigen::Index>((number_ - first_tip) % 3);
+  Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis);
+  if (side_ == Side::left && axis == 0) direction = -direction; // x points to a left hand's thumb
+  return direction;
+}
+
 double HandSignal::of(const HandState& hand) const noexcept {
   if (number_ < hand::finger_count) return flexion(hand.angles, number_);
   if (number_ < first_tip) return hand.angles[hand::angle_at(number_ - hand::finger_count)];
@@ -73,7 +80,7 @@ double HandSignal::of(const HandState& hand) const noexcept {
       hand.pose.fingertip_positions().col(static_cast<Eigen::Index>(tip / 3));
   const Eigen::Vector3d place =
       hand.T_world_wrist.linear().transpose() * (world - hand.T_world_wrist.translation());
-  return place[static_cast<Eigen::Index>(tip % 3)];
+  return direction().dot(place);
 }
 
 } // namespace nendo::puppet

@@ -22,7 +22,8 @@ struct HandState {
 /// One number of a hand's pose. Its name is the hand, a point, and one of
 /// - thumb_flexion to little_flexion: what all joints of the finger are bent by, radians;
 /// - a joint angle (hand::Angle): thumb_roll, index_mcp_abduction, wrist_yaw and so on, radians;
-/// - thumb_tip_x to little_tip_z: the fingertip's place along an axis of the wrist, metres.
+/// - thumb_tip_x to little_tip_z: the fingertip's place along an axis of the wrist, metres. x goes
+///   to the side of the little finger, so that hands that mirror each other have the same signals.
 class HandSignal {
 public:
   HandSignal() = default;
@@ -40,6 +41,8 @@ public:
   static constexpr std::uint8_t no_finger = 5;
   /// Returns the finger to which it belongs, 0 thumb to 4 little finger; no_finger: palm or wrist.
   std::uint8_t finger() const noexcept;
+  /// Of a fingertip's place: the way along which the signal grows, in the axes of the wrist.
+  Eigen::Vector3d direction() const noexcept;
   /// Returns its value. Wait-free; no allocation.
   double of(const HandState& hand) const noexcept;
   friend bool operator==(const HandSignal&, const HandSignal&) = default;
