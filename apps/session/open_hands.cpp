@@ -80,6 +80,21 @@ Result<void> check_switch(flow::SwitchAction action, const std::vector<gloves::O
                                 " no wrist switch that nendo can read; leave --switch out"};
 }
 
+/// The other clutches are poses, which every glove can make.
+void note_missing_switches(const puppet::Puppet& puppet,
+                           const std::vector<gloves::OpenHand>& hands) {
+  for (const gloves::OpenHand& hand : hands) {
+    const std::size_t slot = flow::Placement::index_of(hand.side);
+    if (puppet.clutch.means[slot] != puppet::ClutchMeans::wrist_switch ||
+        hand.glove->info().abilities.wrist_switch)
+      continue;
+    cli::note("the puppet's [clutch] gives the " + std::string(name_of(hand.side)) +
+              " hand the wrist switch, and " + hand.glove->info().source +
+              " has none that nendo can read; that hand lets go and takes hold by the key " +
+              (hand.side == Side::left ? "," : "'"));
+  }
+}
+
 } // namespace
 
 Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
@@ -92,6 +107,7 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
   if (!options.over) // whose gloves had the switch
     if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
       return fine.error();
+  if (options.puppet) note_missing_switches(*options.puppet, *hands);
   RunHands opened{*std::move(hands), {}};
   {
     const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));

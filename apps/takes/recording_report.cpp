@@ -41,6 +41,17 @@ void print_glove(const driver::GloveInfo& info, const GloveSummary& glove) {
               number(glove.lost));
 }
 
+/// A take in layers plays some joints of a hand over what was recorded before.
+void print_layer(const flow::HandInput& hand, const GloveSummary& glove) {
+  std::printf("  %-12s a layer: plays %s; ", "",
+              flow::in_words(hand.side, hand.layer->joints).c_str());
+  if (glove.punches == 0)
+    std::printf("%s all the time\n", hand.layer->on ? "in" : "out");
+  else
+    std::printf("%s at first, punched in or out %llu times\n", hand.layer->on ? "in" : "out",
+                number(glove.punches));
+}
+
 void print_loop(const TakeSummary& summary) {
   const recording::LoopSetup& loop = *summary.setup.loop;
   std::printf("  %-12s %s, %g Hz, %s; %llu ticks, %llu missed;", "loop",
@@ -86,6 +97,12 @@ ordered_json gloves_json(const TakeSummary& summary) {
       ordered_json& value = line[std::string(name)];
       if (glove.sent) value = count; // otherwise null: nobody knows
     }
+    const auto& hands = summary.setup.hands;
+    line["layer"] = nullptr; // of the whole hand
+    if (at < hands.size() && hands[at].layer)
+      line["layer"] = {{"plays", flow::in_words(hands[at].side, hands[at].layer->joints)},
+                       {"in_at_first", hands[at].layer->on},
+                       {"punches", glove.punches}};
     gloves.push_back(std::move(line));
   }
   return gloves;
@@ -124,8 +141,11 @@ void print_take(const std::string& file, const TakeSummary& summary) {
               setup.program.empty() ? "" : ", by ", printable(setup.program).c_str(),
               setup.wearer.empty() ? "" : ", worn by ", printable(setup.wearer).c_str(),
               number(summary.bytes));
-  for (std::size_t at = 0; at < summary.gloves.size(); ++at)
+  for (std::size_t at = 0; at < summary.gloves.size(); ++at) {
     print_glove(setup.gloves[at], summary.gloves[at]);
+    if (at < setup.hands.size() && setup.hands[at].layer)
+      print_layer(setup.hands[at], summary.gloves[at]);
+  }
   if (setup.loop) print_loop(summary);
   if (!summary.marks.empty()) print_marks(summary);
   if (summary.gaps > 0)

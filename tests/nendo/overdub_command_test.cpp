@@ -70,6 +70,14 @@ TEST_SUITE("overdub_command") {
       CHECK(replay["same_shape"] == true);
       const auto info = takes.info(name);
       CHECK(info["gloves"].size() == gloves);
+      CHECK(info["gloves"][0]["layer"]["plays"] == "left.thumb");
+      CHECK(info["gloves"][1]["layer"]["plays"] == "right.index");
+      if (gloves > 2) {
+        CHECK(info["gloves"][2]["layer"]["plays"] == "right.ring,right.little");
+        CHECK(info["gloves"][2]["layer"]["punches"] >= 2);
+        CHECK(info["gloves"][2]["layer"]["in_at_first"] == false);
+      }
+      if (gloves > 3) CHECK(info["gloves"][3]["layer"]["plays"] == "left");
       CHECK(replay["ticks"].get<unsigned>() >= ticks * 9 / 10); // on a machine that is late
       CHECK(replay["ticks"].get<unsigned>() <= ticks + 30);
       CHECK(

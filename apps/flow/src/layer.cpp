@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <nendo/base/side.hpp>
 #include <nendo/hand/angle.hpp>
 #include <nendo/hand/joints.hpp>
 
@@ -38,6 +37,25 @@ std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexce
     hands[side == "left" ? 0 : 1].bits |= angles->bits;
   }
   return hands;
+}
+
+std::string in_words(Side side, AngleSet angles) {
+  const std::string hand(name_of(side));
+  if (angles == AngleSet::all()) return hand;
+  std::string words;
+  const auto add = [&](std::string_view part) {
+    words += (words.empty() ? "" : ",") + hand + "." + std::string(part);
+  };
+  for (std::size_t at = 0; at < hand::angle_count; ++at) {
+    if (!angles.has(hand::angle_at(at))) continue;
+    const std::string_view name = name_of(hand::angle_at(at));
+    const std::string_view part = name.substr(0, name.find('_'));
+    const auto whole = angles_named(part);
+    const bool has_whole = whole && (angles.bits & whole->bits) == whole->bits;
+    add(has_whole ? part : name);
+    if (has_whole) angles.bits &= ~whole->bits;
+  }
+  return words;
 }
 
 void Layer::pass(HostClock::duration time) noexcept {

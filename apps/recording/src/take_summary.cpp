@@ -41,7 +41,9 @@ public:
   void operator()(const flow::SetClutch&) {}
   void operator()(const flow::SetRole&) {}
   void operator()(const flow::SetSymmetry&) {}
-  void operator()(const flow::SetLayer&) {}
+  void operator()(const flow::SetLayer& layer) {
+    if (layer.input < summary_.gloves.size()) ++summary_.gloves[layer.input].punches;
+  }
   void operator()(const PuppetChange& change) {
     // The recorder repeats them.
     if (std::exchange(puppet_, change.number) != change.number) ++summary_.puppet_changes;

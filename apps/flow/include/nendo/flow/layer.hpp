@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include <nendo/base/side.hpp>
 #include <nendo/base/units.hpp>
 #include <nendo/hand/joint_angles.hpp>
 
@@ -35,6 +36,9 @@ std::optional<AngleSet> angles_named(std::string_view part) noexcept;
 /// between, each a hand (left, right), or a hand, a point and one of its parts, such as
 /// "left.index,right". Returns nothing if the text is not that.
 std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexcept;
+
+/// Returns what that parses as the angles of that hand, with whole parts by their names.
+std::string in_words(Side side, AngleSet angles);
 
 /// What makes a layer of an input. Where no input before it is of the same hand, it lies over that
 /// hand at rest, in the pose of its own first sample.

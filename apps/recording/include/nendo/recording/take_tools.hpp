@@ -25,6 +25,7 @@ struct GloveSummary {
   HostTime last{};
   HostClock::duration longest_pause{};      ///< between two samples
   std::optional<driver::RecordCounts> sent; ///< nothing: nobody has counted
+  std::uint64_t punches = 0;                ///< of a layer: how often it came in or went out
 
   double rate_hz() const noexcept; ///< 0 if there are less than two samples
 };
