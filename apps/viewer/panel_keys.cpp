@@ -80,7 +80,8 @@ void LiveWindow::Panel::keys(const flow::Frame& frame, const Gauges& gauges, Sce
     draw_key_list(key_table,
                   "right drag on a hand moves it, with shift turns it, with the wheel\n"
                   "pushes and pulls it; while a puppet is edited, a click places a point, a\n"
-                  "drag of a point tells where it goes, the wheel over one how far it reaches",
+                  "drag of a point tells where it goes, with shift how it turns, the wheel over\n"
+                  "one how far it reaches",
                   keys_shown);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace nendo::viewer {
@@ -131,7 +132,9 @@ const deform::BlockShape* PuppetEditor::shape() {
     return &*plain_;
   }
   deform::Points places = rig_->starts();
-  if (drag_) {
+  if (drag_ && drag_->turn) {
+    places += drag_->vectors;
+  } else if (drag_) {
     places += rig_->vectors_of(drag_->function);
     places.col(static_cast<Index>(drag_->point)) =
         rig_->starts().col(static_cast<Index>(drag_->point)) + drag_->way;
@@ -282,9 +285,55 @@ void PuppetEditor::drag(const Vector3d& way) {
   if (drag_) drag_->way += way;
 }
 
+/// The nearest pin: a limb turns about its root.
+Vector3d PuppetEditor::pivot_of(std::size_t point) const {
+  const auto& starts = rig_->starts();
+  const auto& points = rig_->puppet().points;
+  const Vector3d from = starts.col(static_cast<Index>(point));
+  const deform::Box box = deform::finite_box_of(loaded_.vertices);
+  Vector3d pivot = 0.5 * (box.lowest + box.highest);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t at = 0; at < points.size(); ++at) {
+    const Vector3d place = starts.col(static_cast<Index>(at));
+    if (!points[at].is_pin || (place - from).norm() >= least) continue;
+    least = (place - from).norm();
+    pivot = place;
+  }
+  return pivot;
+}
+
+void PuppetEditor::begin_turn(std::size_t point, const Vector3d& to_viewer) {
+  begin_drag(point);
+  if (!drag_) return;
+  const auto& known = rig_->puppet().functions[drag_->function].turn;
+  drag_->turn = known ? *known : puppet::AxisTurn{0.0, to_viewer, pivot_of(point)};
+  turn_by(0.0);
+}
+
+void PuppetEditor::turn_by(double degrees) {
+  if (!drag_ || !drag_->turn) return;
+  puppet::AxisTurn& turn = *drag_->turn;
+  turn.degrees = std::clamp(turn.degrees + degrees, -360.0, 360.0);
+  drag_->vectors = puppet::vectors_with_turn(*rig_, drag_->function, drag_->point, turn);
+  drag_->way = drag_->vectors.col(static_cast<Index>(drag_->point));
+}
+
+const puppet::AxisTurn* PuppetEditor::dragged_turn() const noexcept {
+  return drag_ && drag_->turn ? &*drag_->turn : nullptr;
+}
+
 void PuppetEditor::end_drag() {
   if (!drag_) return;
   const Drag done = *std::exchange(drag_, {});
+  if (done.turn) {
+    const puppet::Function& function = rig_->puppet().functions[done.function];
+    const double before = function.turn ? function.turn->degrees : 0.0;
+    if (done.turn->degrees == before) return;
+    const std::string name = function.name;
+    apply(puppet::with_turn(*rig_, done.function, done.point, *done.turn),
+          name + " turns by " + std::to_string(std::lround(done.turn->degrees)) + " degrees.");
+    return;
+  }
   const Vector3d before = rig_->vectors_of(done.function).col(static_cast<Index>(done.point));
   if (done.way == before) return;
   apply(puppet::with_move(*rig_, done.function, done.point, done.way),
@@ -292,6 +341,7 @@ void PuppetEditor::end_drag() {
 }
 
 Vector3d PuppetEditor::way_of(std::size_t point) const {
+  if (drag_ && drag_->turn) return drag_->vectors.col(static_cast<Index>(point));
   if (drag_ && drag_->point == point) return drag_->way;
   const std::size_t chosen = function();
   if (chosen == none) return Vector3d::Zero();

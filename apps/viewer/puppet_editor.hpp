@@ -65,6 +65,13 @@ public:
 
   void begin_drag(std::size_t point);
   void drag(const Eigen::Vector3d& way);
+  /// Likewise, of the turn of the chosen function: of all points that it turns. One that turns
+  /// none gets a turn about the line to the viewer through the nearest pin, or, without pins,
+  /// through the middle of the model.
+  void begin_turn(std::size_t point, const Eigen::Vector3d& to_viewer);
+  void turn_by(double degrees);
+  /// The turn that is dragged; null: none.
+  const puppet::AxisTurn* dragged_turn() const noexcept;
   void end_drag();
   bool is_dragging() const noexcept { return drag_.has_value(); }
   /// Returns where that point goes in the chosen function, while it is dragged, too.
@@ -96,6 +103,8 @@ private:
     std::size_t point = none;
     std::size_t function = none;
     Eigen::Vector3d way;
+    std::optional<puppet::AxisTurn> turn{}; ///< in place of the way
+    deform::Points vectors{};               ///< by the turn
   };
   struct Scaling {
     std::size_t point = none;
@@ -108,6 +117,7 @@ private:
   void look_at_hands(const flow::Frame& frame);
   void end_scaling(bool at_once);
   std::size_t mover_of(std::size_t point) const noexcept;
+  Eigen::Vector3d pivot_of(std::size_t point) const;
 
   deform::Mesh loaded_, shown_;
   RigPointer rig_, empty_;

@@ -1,6 +1,10 @@
 #include "viewer/puppet_tool.hpp"
 
+#include <cmath>
+
 #include <imgui.h>
+
+#include <nendo/base/units.hpp>
 
 #include "viewer/pointing.hpp"
 
@@ -18,7 +22,27 @@ Vector2d pointer_now() {
   return {static_cast<double>(at.x), static_cast<double>(at.y)};
 }
 
+/// By which the mouse has turned what is at that pixel, counter-clockwise.
+double turned_deg(const Vector2d& pivot, const Vector2d& from, const Vector2d& to) {
+  constexpr double least_px = 4.0; // nearer to the pivot, no direction is meant
+  const Vector2d a = from - pivot, b = to - pivot;
+  if (a.norm() < least_px || b.norm() < least_px) return 0.0;
+  return to_degrees(std::atan2(a.y() * b.x() - a.x() * b.y(), a.dot(b))); // y points down
+}
+
 } // namespace
+
+void PuppetTool::turn(const render::Camera& camera, render::Size size, double units_per_metre,
+                      PuppetEditor& editor) {
+  const puppet::AxisTurn turn = *editor.dragged_turn();
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  const Vector2d to = pointer_now();
+  const Vector2d from = to - Vector2d(static_cast<double>(moved.x), static_cast<double>(moved.y));
+  const auto pivot = pixel_of(camera, turn.through / units_per_metre, size);
+  if (!pivot) return;
+  const bool away = camera.axes().row(2).dot(turn.axis) < 0.0;
+  editor.turn_by((away ? -1.0 : 1.0) * turned_deg(*pivot, from, to));
+}
 
 std::optional<SurfaceHit> PuppetTool::hit(const SceneWindow& window, double units_per_metre,
                                           const PuppetEditor& editor) {
@@ -44,6 +68,11 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
   const ImGuiIO& io = ImGui::GetIO();
   const render::Camera camera = window.stage_camera();
   const render::Size size = window.scene_size();
+  if (editor.dragged_turn() != nullptr) {
+    turn(camera, size, units_per_metre, editor);
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) editor.end_drag();
+    return true;
+  }
   if (editor.is_dragging()) {
     const Vector3d start = editor.rig().starts().col(static_cast<Eigen::Index>(editor.point()));
     const Vector3d end_m = (start + editor.way_of(editor.point())) / units_per_metre;
@@ -69,7 +98,10 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     if (hovered_ != PuppetEditor::none) {
       editor.forget_place();
-      editor.begin_drag(hovered_);
+      if (io.KeyShift)
+        editor.begin_turn(hovered_, camera.axes().row(2).transpose());
+      else
+        editor.begin_drag(hovered_);
       return true;
     }
     pressed_at_ = pointer_now();

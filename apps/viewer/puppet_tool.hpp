@@ -11,12 +11,14 @@ namespace nendo::viewer {
 class PuppetTool {
 public:
   /// Does what the mouse asks for: a click places a point, or chooses one; a drag of a point sets
-  /// where it goes; the wheel over one sets its radius; the brush paints. Returns true if the mouse
-  /// does nothing else then.
+  /// where it goes, with shift how it turns; the wheel over one sets its radius; the brush paints.
+  /// Returns true if the mouse does nothing else then.
   bool follow(const SceneWindow& window, double units_per_metre, PuppetEditor& editor);
   std::size_t hovered() const noexcept { return hovered_; } ///< point under the mouse; none
 
 private:
+  static void turn(const render::Camera& camera, render::Size size, double units_per_metre,
+                   PuppetEditor& editor);
   bool brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor);
   static std::optional<SurfaceHit> hit(const SceneWindow& window, double units_per_metre,
                                        const PuppetEditor& editor);

@@ -59,6 +59,10 @@ private:
     else
       made.at = vector();
     made.radius = size();
+    if (one_in(3)) {
+      made.mix = {{made.radius, size()}, {0.5 * made.radius, one_in(2) ? 1.0 : size()}};
+      if (one_in(2)) std::swap(made.mix[0], made.mix[1]);
+    }
     made.is_pin = !may_move;
     return made;
   }
@@ -360,6 +364,53 @@ TEST_SUITE("puppet edit") {
     CHECK(ball.puppet().masks.size() < count);
     ball.take(without_masks(ball.rig, stroke, 0.2));
     CHECK(ball.puppet().masks.empty());
+  }
+
+  TEST_CASE("a turn takes the place of ways, and a turned function's angle is changed") {
+    Ball ball = with_two_points();
+    const std::size_t point = ball.point("point2"), function = ball.function("move2");
+    const AxisTurn turn{30.0, {0, 0, 2}, {0.0, 0.5, 0.0}};
+    const deform::Points preview = vectors_with_turn(ball.rig, function, point, turn);
+    ball.take(with_turn(ball.rig, function, point, turn));
+    CHECK((ball.rig.vectors_of(function) - preview).norm() < 1e-12);
+    const Vector3d start = ball.rig.starts().col(static_cast<Eigen::Index>(point));
+    const double x = start.x(), y = start.y() - 0.5, c = std::cos(from_degrees(30.0)), s = 0.5;
+    const Vector3d end(c * x - s * y, s * x + c * y + 0.5, start.z());
+    CHECK(
+        (ball.rig.vectors_of(function).col(static_cast<Eigen::Index>(point)) - end + start).norm() <
+        1e-9);
+    // Another point turns with it, and its way goes.
+    const std::size_t other = ball.point("point1");
+    ball.take(with_turn(ball.rig, function, other, {-45.0, {0, 0, 1}, {0, 0.5, 0}}));
+    CHECK(ball.puppet().functions[function].moves.size() == 2);
+    CHECK(ball.puppet().functions[function].turn->degrees == -45.0);
+    CHECK(ball.rig.vectors_of(function).col(static_cast<Eigen::Index>(other)).norm() > 0.1);
+    CHECK_FALSE(with_turn(ball.rig, function, point, {10.0, {0, 0, 0}, {0, 0, 0}}));
+    CHECK_FALSE(with_turn(ball.rig, function, point, {400.0, {0, 0, 1}, {0, 0, 0}}));
+    CHECK_FALSE(with_turn(ball.rig, function, point, {std::nan(""), {0, 0, 1}, {0, 0, 0}}));
+  }
+
+  TEST_CASE("a turn of a twin is the mirrored turn of the other side") {
+    Ball ball = with_two_points(true);
+    const auto& functions = ball.puppet().functions;
+    const auto twin = std::find_if(functions.begin(), functions.end(),
+                                   [](const Function& one) { return one.is_twin; });
+    REQUIRE(twin != functions.end());
+    const auto number = static_cast<std::size_t>(twin - functions.begin());
+    const std::size_t point = twin->moves.front().point;
+    const AxisTurn turn{20.0, {0.1, 0.2, 1.0}, {-0.1, 0.3, 0.2}};
+    const deform::Points preview = vectors_with_turn(ball.rig, number, point, turn);
+    const std::string source = twin_of(twin->name);
+    ball.take(with_turn(ball.rig, number, point, turn));
+    CHECK((ball.rig.vectors_of(number).col(static_cast<Eigen::Index>(point)) -
+           preview.col(static_cast<Eigen::Index>(point)))
+              .norm() < 1e-9);
+    Vector3d image =
+        ball.rig.vectors_of(ball.function(source))
+            .col(static_cast<Eigen::Index>(ball.point(twin_of(ball.puppet().points[point].name))));
+    image.x() = -image.x();
+    CHECK((image - preview.col(static_cast<Eigen::Index>(point))).norm() < 1e-2);
+    CHECK(image.norm() > 0.05);
   }
 
   TEST_CASE("edits of a shipped puppet keep all that they do not change") {

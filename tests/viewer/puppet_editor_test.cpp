@@ -1,5 +1,7 @@
 // A puppet made by clicks, as a window does it, without a window.
 
+#include <cmath>
+
 #include <doctest/doctest.h>
 
 #include "support/flow_fixtures.hpp"
@@ -103,6 +105,33 @@ TEST_SUITE("puppet editor") {
     REQUIRE(maker.hand_over());
     CHECK((maker.editor.way_of(point) - way - Vector3d(0.2, 0.05, 0)).norm() < 1e-3);
     CHECK(maker.moved() == 0.0);
+
+    // With shift it turns about the middle of the ball, which has no pin, in the picture's plane.
+    maker.editor.begin_turn(point, {0, 0, 1});
+    REQUIRE(maker.editor.dragged_turn() != nullptr);
+    CHECK(maker.editor.dragged_turn()->through.norm() < 0.02);
+    maker.editor.turn_by(20.0);
+    maker.editor.turn_by(10.0);
+    const Vector3d turned = maker.editor.way_of(point);
+    CHECK(turned.norm() == doctest::Approx(2.0 * std::sin(from_degrees(15.0))).epsilon(0.02));
+    CHECK(turned.x() < 0.0); // from the top, counter-clockwise
+    CHECK(maker.moved() == doctest::Approx(turned.norm()).epsilon(0.02));
+    CHECK_FALSE(maker.editor.take());
+    maker.editor.end_drag();
+    REQUIRE(maker.hand_over());
+    CHECK(maker.puppet().functions[0].turn->degrees == 30.0);
+    CHECK((maker.editor.way_of(point) - turned).norm() < 1e-3);
+    maker.editor.begin_drag(point); // without shift, what turns is not moved
+    maker.editor.drag({0.1, 0.0, 0.0});
+    maker.editor.end_drag();
+    CHECK_FALSE(maker.editor.take());
+    CHECK(maker.editor.told().find("shift") != std::string::npos);
+    maker.editor.begin_turn(point, {1, 0, 0}); // about its own axis, wherever one looks from
+    maker.editor.turn_by(-50.0);
+    maker.editor.end_drag();
+    REQUIRE(maker.hand_over());
+    CHECK(maker.puppet().functions[0].turn->degrees == -20.0);
+    CHECK(maker.puppet().functions[0].turn->axis == Vector3d(0, 0, 1));
 
     // The other finger is already bent; what counts is what it does after the click.
     maker.editor.place(Maker::place({1, 0, 0}));

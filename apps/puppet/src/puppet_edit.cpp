@@ -260,12 +260,62 @@ Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point
     if (move.point != moved) continue;
     if (move.part)
       return refused(edited.name + " turns '" + puppet.points[moved].name +
-                     "' with other points; change its turn in the file");
+                     "' with other points; a drag with shift changes the turn");
     move.vector = by;
     return draft.done();
   }
   edited.moves.push_back({moved, by, {}});
   return draft.done();
+}
+
+namespace {
+
+/// The points that turn stand first.
+void set_turn(Function& function, std::size_t point, const AxisTurn& turn) {
+  auto& moves = function.moves;
+  const bool turned_before = function.turn.has_value();
+  function.turn = turn;
+  std::erase_if(moves, [&](const Move& move) { return move.point == point && !move.part; });
+  for (Move& move : moves)
+    if (!turned_before) move = {move.point, Vector3d::Zero(), 1.0};
+  if (std::none_of(moves.begin(), moves.end(),
+                   [&](const Move& move) { return move.point == point; }))
+    moves.insert(moves.begin(), {point, Vector3d::Zero(), 1.0});
+}
+
+AxisTurn flipped(const AxisTurn& turn) { // of a mirrored turn
+  return {turn.degrees, -flipped(turn.axis), flipped(turn.through)};
+}
+
+} // namespace
+
+Result<Puppet> with_turn(const Rig& rig, std::size_t function, std::size_t point,
+                         const AxisTurn& turn) {
+  constexpr double least_axis = 1e-9;
+  if (!(std::abs(turn.degrees) <= 360.0) || !turn.axis.allFinite() || !turn.through.allFinite() ||
+      !(turn.axis.norm() > least_axis))
+    return refused("a turn needs an axis, and at most 360 degrees");
+  EditedPuppet draft(rig);
+  Puppet& puppet = draft.puppet();
+  if (puppet.points[point].is_pin)
+    return refused("'" + puppet.points[point].name + "' is a pin, and stays where it is");
+  const bool is_twin = puppet.functions[function].is_twin;
+  Function& edited = puppet.functions[draft.source_of_function(function)];
+  AxisTurn wanted = is_twin ? flipped(turn) : turn;
+  wanted.degrees = rounded(wanted.degrees, 100.0);
+  wanted.axis = rounded(wanted.axis, 1.0);
+  wanted.through = rounded(wanted.through, puppet.points[point].radius);
+  set_turn(edited, is_twin ? draft.twin_of_point(point) : point, wanted);
+  return draft.done();
+}
+
+deform::Points vectors_with_turn(const Rig& rig, std::size_t function, std::size_t point,
+                                 const AxisTurn& turn) {
+  Puppet puppet;
+  puppet.points = rig.puppet().points;
+  puppet.functions.push_back(rig.puppet().functions[function]);
+  set_turn(puppet.functions[0], point, turn);
+  return Rig(std::move(puppet), rig.starts()).vectors_of(0);
 }
 
 Result<Puppet> with_input(const Rig& rig, std::size_t function, const HandSignal& input,
@@ -369,9 +419,7 @@ private:
     function.input = function.input.mirrored();
     for (Move& move : function.moves)
       move.vector = flipped(move.vector);
-    if (!function.turn) return;
-    function.turn->through = flipped(function.turn->through);
-    function.turn->axis = -flipped(function.turn->axis);
+    if (function.turn) function.turn = flipped(*function.turn);
   }
   template <class List>
   static std::string left_name(const List& list, const std::string& name) {

@@ -39,6 +39,14 @@ Result<Puppet> with_pinned(const Rig& rig, std::size_t point, bool pinned);
 /// Lets a function move the point by that vector, model units. Errors: it is a pin, or turns.
 Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point,
                          const Eigen::Vector3d& vector);
+/// Lets a function turn the point so. Points that the function turns already go on doing so, by
+/// their parts; if it turned none, all that it moves turn. Errors: it is a pin, or the turn has no
+/// axis or more than 360 degrees.
+Result<Puppet> with_turn(const Rig& rig, std::size_t function, std::size_t point,
+                         const AxisTurn& turn);
+/// Returns where the function would move each point then: 3 by #points, model units.
+deform::Points vectors_with_turn(const Rig& rig, std::size_t function, std::size_t point,
+                                 const AxisTurn& turn);
 Result<Puppet> with_input(const Rig& rig, std::size_t function, const HandSignal& input,
                           double travel);
 /// Gives a function another name. Errors: it is no name, or another function has it.
