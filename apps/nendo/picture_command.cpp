@@ -15,6 +15,7 @@
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "nendo/commands.hpp"
+#include "render/distance_paint.hpp"
 #include "render/picture.hpp"
 #include "takes/key_poses.hpp"
 #include "takes/take.hpp"
@@ -36,6 +37,7 @@ struct Options {
   std::string captions;      ///< with commas; empty: none
   std::uint32_t columns = 0; ///< 0: as many as make the sheet nearly square
   bool numbered = false;
+  std::string colour = "model";
 };
 
 constexpr std::uint32_t most_panels = 64;
@@ -86,6 +88,8 @@ Result<Wanted> check(const Options& options) {
   if (!options.numbered && pixels > 6e7)
     return bad("--size " + options.size, "too large for " + std::to_string(panels) +
                                              " pictures on one sheet; use less, or --numbered");
+  if (options.colour != "model" && options.colour != "distance")
+    return bad("--colour " + options.colour, "use model or distance");
   if (const auto fine = cli::check_place("--out", options.out, {".png"}); !fine)
     return fine.error();
   return Wanted{*view, *size};
@@ -188,6 +192,25 @@ Result<void> write_panels(const Options& options, const std::vector<Panel>& pane
   return {};
 }
 
+/// Paints the model of each scene by how far its places went, with one scale for all of them.
+void colour_by_distance(const takes::Take& take, const std::vector<SceneFrame>& frames,
+                        std::vector<Scene>& scenes) {
+  const auto rest_of = [&](const SceneFrame& frame) -> const deform::Mesh& {
+    return frame.mesh ? *frame.mesh : take.rest;
+  };
+  double farthest = 0.0;
+  for (const SceneFrame& frame : frames)
+    farthest = std::max(farthest, farthest_way(rest_of(frame), frame.vertices));
+  const double scale = farthest > 0.0 ? farthest : 1.0;
+  for (std::size_t at = 0; at < frames.size(); ++at)
+    scenes[at].model.paint = paint_by_distance(rest_of(frames[at]), frames[at].vertices, scale);
+  const double part = farthest / std::max(deform::diagonal_of(take.rest.vertices), 1e-300);
+  char text[96];
+  std::snprintf(text, sizeof text, "dark red went %.4g, which is %.1f %% of the model's diagonal",
+                farthest, 100.0 * part);
+  cli::note(text);
+}
+
 Result<void> make_picture(const Options& options) {
   const auto wanted = check(options);
   if (!wanted) return wanted.error();
@@ -197,14 +220,21 @@ Result<void> make_picture(const Options& options) {
   if (!times) return times.error();
   const SceneBuilder builder(take->rest, take->units_per_metre);
   std::vector<Scene> scenes;
+  std::vector<SceneFrame> frames;
   for (const double time : *times) {
-    const auto scene_frame = take->frame_at(time);
+    auto scene_frame = take->frame_at(time);
     if (!scene_frame) return scene_frame.error();
     if (scene_frame->mesh == nullptr)
       builder.build(*scene_frame, {}, scenes.emplace_back());
     else // the model has become finer; it fills the same box
       SceneBuilder(*scene_frame->mesh, builder.units_per_metre())
           .build(*scene_frame, {}, scenes.emplace_back());
+    if (options.colour == "distance") frames.push_back(*std::move(scene_frame));
+  }
+  if (options.colour == "distance") {
+    if (!(take->duration_s > 0.0))
+      return bad("--colour distance", "is for a recording or a timeline; a mesh went nowhere");
+    colour_by_distance(*take, frames, scenes);
   }
   return write_panels(options,
                       options.turntable > 0
@@ -235,6 +265,9 @@ void add(cli::Command& program) {
   command.add_option("--strip", options->strip,
                      "Of a recording: so many moments from its begin to its end, on one sheet");
   command.add_option("--columns", options->columns, "Pictures in a row of the sheet");
+  command.add_option("--colour", options->colour,
+                     "model: as it is; distance: of a recording, how far each place went from "
+                     "rest, from grey to dark red");
   command.add_flag("--numbered", options->numbered,
                    "In place of a sheet: files of their own, FILE-00.png and so on");
   command.on_chosen([options] {

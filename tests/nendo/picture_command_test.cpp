@@ -70,6 +70,8 @@ TEST_SUITE("picture") {
       CHECK_FALSE(std::filesystem::exists(with.out));
     };
     refused({"--view", "up"}, "--view up", 2);
+    refused({"--colour", "distance"}, "--colour distance", 2);
+    refused({"--colour", "red"}, "--colour red", 2);
     refused({"--size", "0x0"}, "--size 0x0", 2);
     refused({"--size", "8192x8192", "--turntable", "9"}, "--size", 2);
     refused({"--turntable", "1"}, "--turntable", 2);
@@ -111,6 +113,22 @@ TEST_SUITE("picture") {
     CHECK(strip->size().width > 192);
     const auto plain = drawn({"--key-poses", "3"});
     CHECK(drawn({"--key-poses", "3", "--captions", "a,b,c"}) != plain);
+    const auto coloured = drawn({"--time", "1.4", "--colour", "distance"});
+    CHECK(coloured != drawn({"--time", "1.4"}));
+    const auto red_of = [&](const char* time) { // pixels that went far
+      const auto made = test::nendo({"picture", take, "--out", with.out, "--size", "96x96",
+                                     "--time", time, "--colour", "distance"});
+      CHECK(made.exit_code == 0);
+      const auto image = read_png(with.out);
+      REQUIRE(image);
+      int red = 0;
+      for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 96; ++x)
+          red += image->at(x, y)[0] > 2 * image->at(x, y)[2] ? 1 : 0;
+      return red;
+    };
+    CHECK(red_of("1.4") > 20);
+    CHECK(red_of("0") == 0);
     const auto late = test::nendo({"picture", take, "--out", with.out, "--time", "9"});
     CHECK(late.exit_code == 2);
     CHECK(is_one_line_about(late.err, "--time"));
