@@ -74,6 +74,9 @@ int make_timeline(const MakeOptions& options) {
   if (const auto written = timeline::write_timeline(options.out, made->timeline); !written)
     return cli::report(written.error());
   if (!made->exact) takes::note_missing(options.take);
+  if (made->has_last_puppet)
+    cli::note(options.take + ": the puppet was edited in it; the timeline plays all of it with the "
+                             "last one");
   if (options.json)
     print_json(options, *made);
   else

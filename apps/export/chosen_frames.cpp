@@ -78,6 +78,9 @@ bool ChosenFrames::is_nearer(double moment_s) const {
 
 void ChosenFrames::hold_nearest(double moment_s) {
   while (is_ahead_ && is_nearer(moment_s)) {
+    const flow::Frame& frame = source_->frame();
+    if (made_ == 0 || frame.puppet != held_.puppet || frame.model != held_.model)
+      puppet_ = source_->puppet();
     held_ = source_->frame();
     held_s_ = source_->time_s();
     is_ahead_ = source_->next();

@@ -49,6 +49,9 @@ public:
   const std::optional<double>& rate_hz() const noexcept { return choice_.rate_hz; }
   std::uint64_t made() const noexcept { return made_; } ///< by next()
 
+  /// Returns the puppet of the frame; nothing if the hands touch the model.
+  std::optional<takes::PlayedPuppet> puppet() const { return even_ ? puppet_ : source_->puppet(); }
+
   const takes::FrameSource& source() const noexcept { return *source_; }
   /// Writes the latest frame's shape to `out`, 3 by #vertices, in the mesh's order and in model
   /// units.
@@ -71,7 +74,8 @@ private:
   std::optional<std::uint64_t> count_;
   std::uint64_t made_ = 0;
   flow::Frame held_;
-  double held_s_ = 0.0; ///< the own time of held_
+  double held_s_ = 0.0;                         ///< the own time of held_
+  std::optional<takes::PlayedPuppet> puppet_{}; ///< of held_
 };
 
 } // namespace nendo::exporting

@@ -63,9 +63,11 @@ void add_targets(std::size_t at, const puppet::Function& function, const Eigen::
 } // namespace
 
 std::optional<FunctionMorphs> FunctionMorphs::make(const takes::PlayedPuppet& puppet,
-                                                   const deform::BlockLayout& layout) {
+                                                   const deform::BlockLayout& layout,
+                                                   const flow::Frame& first,
+                                                   const Points& vertices) {
   if (puppet.sculptor.mode != flow::Mode::type1) return std::nullopt;
-  const puppet::Rig& rig = puppet.rig;
+  const puppet::Rig& rig = *puppet.rig;
   std::vector<Eigen::Matrix3Xf> ways =
       puppet.sculptor.surface ? ways_along(*puppet.sculptor.surface, rig)
                               : ways_through_air(puppet.sculptor.deformer, rig, layout.original());
@@ -81,20 +83,30 @@ std::optional<FunctionMorphs> FunctionMorphs::make(const takes::PlayedPuppet& pu
   const bool finite = std::all_of(targets.begin(), targets.end(),
                                   [](const Target& target) { return target.way.allFinite(); });
   if (!finite) return std::nullopt;
-  return FunctionMorphs(std::move(targets), layout);
+  FunctionMorphs morphs(std::move(targets), layout);
+  Eigen::Matrix3Xf rest = vertices.cast<float>() - morphs.moved_by(first);
+  const double apart = (rest - morphs.rest_).cast<double>().colwise().norm().maxCoeff();
+  if (!(apart <= morphs.most_)) morphs.rest_ = std::move(rest);
+  return morphs;
 }
 
 FunctionMorphs::FunctionMorphs(std::vector<Target> targets, const deform::BlockLayout& layout)
     : targets_(std::move(targets)), rest_(layout.original().cast<float>()),
       most_(ControlMorphs::most_error * layout.diagonal()) {}
 
-bool FunctionMorphs::add(const flow::Frame& frame, const Points& vertices) {
-  Eigen::Matrix3Xf moved = rest_;
+Eigen::Matrix3Xf FunctionMorphs::moved_by(const flow::Frame& frame) const {
+  Eigen::Matrix3Xf moved = Eigen::Matrix3Xf::Zero(3, rest_.cols());
   for (const Target& target : targets_) {
     const float weight = target.weight_at(frame.functions[target.function]);
-    weights_.push_back(weight);
     if (weight > 0.0F) moved += weight * target.way;
   }
+  return moved;
+}
+
+bool FunctionMorphs::add(const flow::Frame& frame, const Points& vertices) {
+  for (const Target& target : targets_)
+    weights_.push_back(target.weight_at(frame.functions[target.function]));
+  const Eigen::Matrix3Xf moved = rest_ + moved_by(frame);
   const double error = (moved.cast<double>() - vertices).colwise().norm().maxCoeff();
   greatest_error_ = std::max(greatest_error_, error);
   return error <= most_; // not so if it is not a number

@@ -34,9 +34,13 @@ public:
 
   /// Makes the targets of all functions, whether the take uses them or not. Returns nothing if the
   /// puppet is not linear (Type-2), or if the field cannot be solved. `layout` must be that of the
-  /// puppet's model, and outlive this. Allocates.
+  /// puppet's model. With a frame and its vertices, the rest shape is what these are without the
+  /// functions, where that is not the model itself: something was shaped before, as by a puppet
+  /// that was edited since. Allocates.
   static std::optional<FunctionMorphs> make(const takes::PlayedPuppet& puppet,
-                                            const deform::BlockLayout& layout);
+                                            const deform::BlockLayout& layout,
+                                            const flow::Frame& first,
+                                            const deform::Points& vertices);
 
   /// Adds a frame with its vertices, in the mesh's order. Returns false if a vertex differs from
   /// the sum by more than ControlMorphs::most_error of the model's diagonal. This object is then of
@@ -46,12 +50,15 @@ public:
   /// Returns the greatest error of the frames so far, in model units. It is measured in 32-bit
   /// floats, as a reader of the targets computes them.
   double greatest_error() const noexcept { return greatest_error_; }
+  /// Returns the rest shape, 3 by #vertices, in the mesh's order, model units.
+  const Eigen::Matrix3Xf& rest() const noexcept { return rest_; }
   const std::vector<Target>& targets() const noexcept { return targets_; }
   /// Returns the weights of all targets, one frame after another, from 0 to 1.
   const std::vector<float>& weights() const noexcept { return weights_; }
 
 private:
   FunctionMorphs(std::vector<Target> targets, const deform::BlockLayout& layout);
+  Eigen::Matrix3Xf moved_by(const flow::Frame& frame) const;
 
   std::vector<Target> targets_;
   Eigen::Matrix3Xf rest_;

@@ -128,7 +128,34 @@ Result<Exported> hands_alone(takes::FrameSource& source, const Choice& choice,
   return finish(document, Json::array(), *played, *frames, choice.rate_hz, path);
 }
 
-/// What an exact export needs to know of its frames, which must be of one version of the model.
+/// A model, and when it begins to be shown, since the first frame.
+struct Shown {
+  GlbFile::Index node;
+  float begin_s;
+};
+
+/// Shows each model in its time only. A node whose scale is 0 is hidden (glTF 2.0, 3.5.3).
+void show_one_by_one(const std::vector<Shown>& models, double units_per_metre, Document& document) {
+  if (models.size() < 2) return;
+  const auto scale = static_cast<float>(1.0 / units_per_metre);
+  for (std::size_t at = 0; at < models.size(); ++at) {
+    std::vector<float> times_s{0.0F};
+    std::vector<float> scales{at == 0 ? scale : 0.0F};
+    const auto change = [&](float time_s, float to) {
+      times_s.push_back(time_s);
+      scales.push_back(to);
+    };
+    if (at > 0) change(models[at].begin_s, scale);
+    if (at + 1 < models.size()) change(models[at + 1].begin_s, 0.0F);
+    Eigen::Matrix3Xf vectors(3, static_cast<Eigen::Index>(scales.size()));
+    for (std::size_t key = 0; key < scales.size(); ++key)
+      vectors.col(static_cast<Eigen::Index>(key)).setConstant(scales[key]);
+    document.animate(models[at].node, "scale", "STEP", document.file.add_scalars(times_s, true),
+                     document.file.add_vectors(vectors, GlbFile::Use::animation, false));
+  }
+}
+
+/// What an exact export needs to know of its frames.
 struct SumTake {
   takes::FrameSource& source;
   ChosenFrames& frames;
@@ -137,12 +164,115 @@ struct SumTake {
   const std::filesystem::path& path;
 };
 
-/// Exports shapes that are weighted sums of targets. `add_targets` puts them into the model, and
-/// returns the weights of all frames. Nothing, if not all shapes are such sums.
-template <class Morphs, class AddTargets>
-Result<std::optional<Exported>> by_sums(const SumTake& take, Morphs& morphs, MorphBasis basis,
-                                        const AddTargets& add_targets) {
+/// A model whose shapes are weighted sums of its targets, and the weights of the frames in which it
+/// is shown.
+struct SummedModel {
+  GltfModel model;
+  std::uint32_t version = 0;
+  std::vector<float> times_s{};
+  std::vector<float> weights{};
+  double greatest_error = 0.0; ///< model units
+};
+
+/// Adds the models, which follow each other in time, to their document.
+Result<Exported> finish_sums(const SumTake& take, const std::vector<SummedModel>& models,
+                             MorphBasis basis, const Played& played, Document& document) {
+  const double diagonal = take.source.layout(models.front().version).diagonal();
+  const GltfMaterials materials(take.source.model(models.front().version).look, document.file);
+  MorphReport report;
+  report.basis = basis;
+  report.models = models.size();
+  report.diagonal_m = diagonal / played.units_per_metre;
+  std::vector<Shown> shown;
+  Json roots = Json::array();
+  for (const SummedModel& one : models) {
+    if (!one.weights.empty()) {
+      const auto times = document.file.add_scalars(one.times_s, true);
+      document.animate(one.model.node(), "weights", "LINEAR", times,
+                       document.file.add_scalars(one.weights, false));
+      report.keys += one.times_s.size();
+    }
+    MorphReport own = report;
+    own.greatest_error = one.greatest_error / diagonal;
+    one.model.add_to(document.file, materials, played.units_per_metre, own);
+    report.targets += one.model.target_count();
+    report.greatest_error = std::max(report.greatest_error, own.greatest_error);
+    shown.push_back({one.model.node(), one.times_s.front()});
+    roots.push_back(one.model.node());
+  }
+  show_one_by_one(shown, played.units_per_metre, document);
+  auto done =
+      finish(document, std::move(roots), played, take.frames, take.choice.rate_hz, take.path);
+  if (done) done->morphs = report;
+  return done;
+}
+
+/// Makes a model of each puppet on each version of its model.
+class FunctionModels {
+public:
+  FunctionModels(const SumTake& take, GlbFile& file) : take_(take), file_(file) {}
+
+  /// Returns false if a shape is no sum of the functions.
+  bool add(const flow::Frame& frame, float time_s, const deform::Points& vertices) {
+    if (models_.empty() || frame.puppet != puppet_ || frame.model != models_.back().version) {
+      end();
+      if (!begin(frame, vertices)) return false;
+    }
+    models_.back().times_s.push_back(time_s);
+    return morphs_->add(frame, vertices);
+  }
+  std::vector<SummedModel>& finish() {
+    end();
+    return models_;
+  }
+
+private:
+  bool begin(const flow::Frame& frame, const deform::Points& vertices) {
+    const auto puppet = take_.frames.puppet();
+    if (!puppet) return false;
+    morphs_ = FunctionMorphs::make(*puppet, take_.source.layout(frame.model), frame, vertices);
+    if (!morphs_) return false;
+    puppet_ = frame.puppet;
+    deform::Mesh mesh = take_.source.model(frame.model);
+    mesh.vertices = morphs_->rest().cast<double>();
+    models_.push_back({GltfModel(mesh, file_), frame.model});
+    models_.back().model.add_function_targets(*morphs_, file_);
+    return true;
+  }
+  void end() {
+    if (!morphs_) return;
+    models_.back().weights = morphs_->weights();
+    models_.back().greatest_error = morphs_->greatest_error();
+    morphs_.reset();
+  }
+
+  const SumTake& take_;
+  GlbFile& file_;
+  std::vector<SummedModel> models_;
+  std::uint32_t puppet_ = 0;
+  std::optional<FunctionMorphs> morphs_; ///< of the last model
+};
+
+/// Nothing, if the take is not linear in the functions of its puppets.
+Result<std::optional<Exported>> by_functions(const SumTake& take) {
+  Document document(take.options);
+  FunctionModels models(take, document.file);
+  const auto played =
+      play(take.frames, take.options.hands,
+           [&](const flow::Frame& frame, float time_s, const deform::Points& vertices) {
+             return models.add(frame, time_s, vertices);
+           });
+  if (!played) return played.error();
+  if (!played->to_the_end) return std::optional<Exported>();
+  auto done = finish_sums(take, models.finish(), MorphBasis::functions, *played, document);
+  if (!done) return done.error();
+  return std::optional<Exported>(*std::move(done));
+}
+
+/// The same by the control vectors of a take whose model stays one.
+Result<std::optional<Exported>> by_control_vectors(const SumTake& take) {
   const std::uint32_t version = take.source.frame().model;
+  ControlMorphs morphs(take.source.layout(version));
   const auto played = play(take.frames, take.options.hands,
                            [&](const flow::Frame& frame, float, const deform::Points& vertices) {
                              return morphs.add(frame, vertices);
@@ -150,54 +280,14 @@ Result<std::optional<Exported>> by_sums(const SumTake& take, Morphs& morphs, Mor
   if (!played) return played.error();
   if (!played->to_the_end) return std::optional<Exported>();
   Document document(take.options);
-  GltfModel model(take.source.model(version), document.file);
-  const std::vector<float> weights = add_targets(model, document.file);
-  if (!weights.empty()) {
-    const auto times = document.file.add_scalars(played->times_s, true);
-    document.animate(model.node(), "weights", "LINEAR", times,
-                     document.file.add_scalars(weights, false));
-  }
-  const double diagonal = take.source.layout(version).diagonal();
-  MorphReport report;
-  report.basis = basis;
-  report.targets = model.target_count();
-  report.keys = weights.empty() ? 0 : played->times_s.size();
-  report.greatest_error = morphs.greatest_error() / diagonal;
-  report.diagonal_m = diagonal / played->units_per_metre;
-  model.add_to(document.file, GltfMaterials(take.source.model(version).look, document.file),
-               played->units_per_metre, report);
-  auto done = finish(document, Json::array({model.node()}), *played, take.frames,
-                     take.choice.rate_hz, take.path);
+  std::vector<SummedModel> models;
+  models.push_back(
+      {GltfModel(take.source.model(version), document.file), version, played->times_s});
+  models.back().weights = models.back().model.add_control_targets(morphs, document.file);
+  models.back().greatest_error = morphs.greatest_error();
+  auto done = finish_sums(take, models, MorphBasis::control_vectors, *played, document);
   if (!done) return done.error();
-  done->morphs = report;
   return std::optional<Exported>(*std::move(done));
-}
-
-/// Nothing, if the take is not linear in the functions of a puppet.
-Result<std::optional<Exported>> by_functions(takes::FrameSource& source, const Choice& choice,
-                                             const GltfOptions& options,
-                                             const std::filesystem::path& path) {
-  auto frames = ChosenFrames::make(source, choice);
-  if (!frames) return frames.error();
-  auto morphs = FunctionMorphs::make(*source.puppet(), source.layout(source.frame().model));
-  if (!morphs) return std::optional<Exported>();
-  return by_sums({source, *frames, choice, options, path}, *morphs, MorphBasis::functions,
-                 [&](GltfModel& model, GlbFile& file) {
-                   model.add_function_targets(*morphs, file);
-                   return morphs->weights();
-                 });
-}
-
-/// Nothing, if the take is not linear in control vectors.
-Result<std::optional<Exported>> by_control_vectors(takes::FrameSource& source, const Choice& choice,
-                                                   const GltfOptions& options,
-                                                   const std::filesystem::path& path) {
-  auto frames = ChosenFrames::make(source, choice);
-  if (!frames) return frames.error();
-  ControlMorphs morphs(source.layout(source.frame().model));
-  return by_sums(
-      {source, *frames, choice, options, path}, morphs, MorphBasis::control_vectors,
-      [&](GltfModel& model, GlbFile& file) { return model.add_control_targets(morphs, file); });
 }
 
 /// Consecutive frames of one version of the model, which have a mesh of their own.
@@ -248,28 +338,6 @@ private:
 
 using Segments = std::vector<std::unique_ptr<Segment>>;
 
-/// Shows each segment in its time only. A node whose scale is 0 is hidden (glTF 2.0, 3.5.3).
-void show_one_by_one(const Segments& segments, double units_per_metre, Document& document) {
-  if (segments.size() < 2) return;
-  const auto scale = static_cast<float>(1.0 / units_per_metre);
-  for (std::size_t at = 0; at < segments.size(); ++at) {
-    std::vector<float> times_s{0.0F};
-    std::vector<float> scales{at == 0 ? scale : 0.0F};
-    const auto change = [&](float time_s, float to) {
-      times_s.push_back(time_s);
-      scales.push_back(to);
-    };
-    if (at > 0) change(segments[at]->begin_s(), scale);
-    if (at + 1 < segments.size()) change(segments[at + 1]->begin_s(), 0.0F);
-    Eigen::Matrix3Xf vectors(3, static_cast<Eigen::Index>(scales.size()));
-    for (std::size_t key = 0; key < scales.size(); ++key)
-      vectors.col(static_cast<Eigen::Index>(key)).setConstant(scales[key]);
-    document.animate(segments[at]->model().node(), "scale", "STEP",
-                     document.file.add_scalars(times_s, true),
-                     document.file.add_vectors(vectors, GlbFile::Use::animation, false));
-  }
-}
-
 std::uint64_t weight_count(const Segments& segments) {
   std::uint64_t count = 0;
   for (const auto& segment : segments)
@@ -291,7 +359,10 @@ MorphReport add_models(const Segments& segments, const GltfMaterials& materials,
     report.greatest_error = std::max(report.greatest_error, own.greatest_error);
   }
   report.models = segments.size();
-  show_one_by_one(segments, played.units_per_metre, document);
+  std::vector<Shown> shown;
+  for (const auto& segment : segments)
+    shown.push_back({segment->model().node(), segment->begin_s()});
+  show_one_by_one(shown, played.units_per_metre, document);
   return report;
 }
 
@@ -336,17 +407,18 @@ Result<Exported> by_key_shapes(takes::FrameSource& source, const Choice& choice,
 Result<Exported> export_model(const OpenFrames& open, const Choice& choice,
                               const GltfOptions& options, const std::filesystem::path& path,
                               std::unique_ptr<takes::FrameSource> source) {
-  if (source->has_one_model()) {
-    std::vector<decltype(&by_functions)> ways{by_control_vectors};
-    if (source->puppet()) ways.insert(ways.begin(), by_functions);
-    for (const auto way : ways) {
-      auto exact = way(*source, choice, options, path);
-      if (!exact) return exact.error();
-      if (*exact) return *std::move(*exact);
-      auto again = open();
-      if (!again) return again.error();
-      source = *std::move(again);
-    }
+  std::vector<decltype(&by_functions)> ways;
+  if (source->puppet()) ways.push_back(by_functions);
+  if (source->has_one_model()) ways.push_back(by_control_vectors);
+  for (const auto way : ways) {
+    auto frames = ChosenFrames::make(*source, choice);
+    if (!frames) return frames.error();
+    auto exact = way({*source, *frames, choice, options, path});
+    if (!exact) return exact.error();
+    if (*exact) return *std::move(*exact);
+    auto again = open();
+    if (!again) return again.error();
+    source = *std::move(again);
   }
   return by_key_shapes(*source, choice, options, path);
 }

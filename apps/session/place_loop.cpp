@@ -115,6 +115,9 @@ Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<glove
   const auto joining = placement_for(hands, inputs, model, options.puppet.has_value());
   if (const auto played = play_over(options, inputs); !played) return played.error();
   PlacedSetup setup{std::move(inputs), take.loop->placement, options.loop};
+  const Eigen::Index points = setup.options.rig ? setup.options.rig->starts().cols() : 0;
+  for (const auto& [number, puppet] : options.over->take.puppets)
+    setup.spare_points = std::max(setup.spare_points, puppet->starts.cols() - points);
   for (const auto& hand : hands) {
     const std::size_t slot = flow::Placement::index_of(hand.side);
     const bool was_there =
@@ -176,10 +179,12 @@ FrameCapacity frame_capacity(const PlacedLoop& placed) {
       placed.setup.spare_points;
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
-  const Eigen::Index functions = std::max(deformer.supports.functions(points), 2 * points);
+  const Eigen::Index functions =
+      std::max(deformer.supports.functions(points) + placed.setup.spare_points, 2 * points);
   const int links = deformer.injective.value_or(deform::InjectiveOptions{}).most_links;
   return {static_cast<std::size_t>(std::max(links, deform::Type2Deformer::most_pieces)),
-          static_cast<std::size_t>(functions), static_cast<std::size_t>(rig ? 2 * points : 0)};
+          static_cast<std::size_t>(functions),
+          static_cast<std::size_t>(rig || placed.setup.spare_points > 0 ? 2 * points : 0)};
 }
 
 } // namespace nendo::session

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
@@ -140,6 +141,9 @@ private:
     if (puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())
       change_puppet();
+    if (taken_puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
+        !models_.is_handing_over())
+      follow_taken_puppet();
     if (record_ && !recorder_.is_changing() && !models_.is_handing_over())
       recorder_.set_file(*std::exchange(record_, {}), frame);
     tell(recorder_.follow());
@@ -148,8 +152,12 @@ private:
   // What the take changes, and its loop does not do by itself.
   void follow_take() noexcept {
     if (options_.over)
-      options_.over->take.script->for_others().drain(
-          [this](const flow::Command& command) noexcept { dispatch(command); });
+      options_.over->take.script->for_others().drain([this](const flow::Command& command) noexcept {
+        if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
+          taken_puppet_ = change->number; // only the newest counts
+        else
+          dispatch(command);
+      });
   }
   void follow_layers(const flow::Frame& frame) {
     if (frame.ticks_run == 0) return;
@@ -169,12 +177,31 @@ private:
   void change_puppet() {
     flow::DeformLoop& loop = *placed_.loop;
     const std::shared_ptr<const puppet::Rig> rig = std::exchange(puppet_, nullptr);
-    const auto functions = static_cast<std::size_t>(2 * rig->starts().cols());
+    const auto functions =
+        static_cast<std::size_t>(rig->supports().functions(rig->starts().cols()));
     if (!participants_.sinks.empty() && functions > frame_capacity(placed_).functions)
       return report("a puppet with so many points more cannot be published; save it, and begin "
                     "again with it");
     recorder_.add_puppet(loop.next_puppet(), *rig);
     if (const auto changed = loop.change_puppet(rig); !changed) report(changed.error().message);
+  }
+  /// To a puppet of the take, which the loop has already if the take has changed to it before.
+  void follow_taken_puppet() {
+    const std::uint32_t number = *std::exchange(taken_puppet_, {});
+    flow::DeformLoop& loop = *placed_.loop;
+    const auto& puppets = options_.over->take.puppets;
+    const auto of_take = puppets.find(number);
+    const auto known = taken_puppets_.find(number);
+    if (of_take == puppets.end() || known != taken_puppets_.end()) {
+      const auto changed = loop.change_puppet(of_take == puppets.end() ? 0 : known->second);
+      if (!changed) report(changed.error().message);
+      return;
+    }
+    auto rig = recording::rig_of(*of_take->second, loop.model(0)->mesh);
+    if (!rig) return report(rig.error().message);
+    taken_puppets_[number] = loop.next_puppet();
+    puppet_ = *std::move(rig);
+    change_puppet();
   }
   void tell(const std::optional<std::string>& message) {
     if (message) report(*message);
@@ -223,7 +250,7 @@ private:
   // Commands that came just before the end are still obeyed, if the loop ticks at all.
   void wait_until_taken() {
     const auto is_due = [this] {
-      return loop_commands_.size() > 0 || settings_ || puppet_ || record_ ||
+      return loop_commands_.size() > 0 || settings_ || puppet_ || taken_puppet_ || record_ ||
              recorder_.is_changing() || models_.is_due() || models_.is_handing_over() ||
              placed_.loop->is_changing();
     };
@@ -328,6 +355,8 @@ private:
   bool ends_ = false;                                    ///< somebody has asked for the end
   std::optional<flow::LoopSettings> settings_;           ///< not passed on yet
   std::shared_ptr<const puppet::Rig> puppet_;            ///< not passed on yet
+  std::optional<std::uint32_t> taken_puppet_;            ///< likewise, by the take's number
+  std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
   std::optional<bool> record_;                           ///< to a file, or not; not done yet
   PlacedLoop placed_; ///< outlives what another thread may be making of its model
   RunRecorder recorder_;

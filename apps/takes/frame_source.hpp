@@ -10,10 +10,10 @@
 
 namespace nendo::takes {
 
-/// The puppet that makes the shapes of the frames, on the first version of the model.
+/// The puppet that makes the shape of a frame, on the frame's version of the model.
 struct PlayedPuppet {
-  const puppet::Rig& rig;
-  const flow::SculptorOptions& sculptor; ///< as of the latest frame
+  std::shared_ptr<const puppet::Rig> rig;
+  flow::SculptorOptions sculptor; ///< as of that frame
 };
 
 class FrameSource {
@@ -25,7 +25,8 @@ public:
   virtual const deform::BlockLayout& layout(std::uint32_t version) const = 0; ///< of its shapes
   /// Tells whether all frames are of the first version.
   virtual bool has_one_model() const { return true; }
-  /// Returns the puppet, or nothing if the hands touch the model. It refers to this source.
+  /// Returns the puppet of frame(), or of the first frame before next(); nothing if the hands touch
+  /// the model.
   virtual std::optional<PlayedPuppet> puppet() const { return std::nullopt; }
   virtual double rate_hz() const = 0;    ///< of the frames, as far as it is even
   virtual double duration_s() const = 0; ///< time_s() of the last frame

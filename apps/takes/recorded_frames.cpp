@@ -16,14 +16,12 @@ struct Extent {
   double first_s = 0.0;
   double last_s = 0.0;
   bool has_one_model = true;
-  bool has_one_puppet = true;
 };
 
 Extent extent_of(recording::TakeReader reader) {
   Extent extent;
   while (const auto entry = reader.next()) {
     if (std::holds_alternative<flow::ChangeModel>(*entry)) extent.has_one_model = false;
-    if (std::holds_alternative<recording::PuppetChange>(*entry)) extent.has_one_puppet = false;
     const auto* const tick = std::get_if<flow::LoggedTick>(&*entry);
     if (tick == nullptr) continue;
     extent.last_s = time_after(extent.last_s, reader.setup(), *tick);
@@ -56,14 +54,14 @@ Result<std::unique_ptr<RecordedFrames>> RecordedFrames::open(const std::filesyst
   frames->rate_hz_ = rate_of(frames->setup().loop->options, extent);
   frames->duration_s_ = extent.last_s;
   frames->has_one_model_ = extent.has_one_model;
-  frames->has_one_puppet_ = extent.has_one_puppet;
   return frames;
 }
 
 std::optional<PlayedPuppet> RecordedFrames::puppet() const {
-  const flow::DeformLoop& loop = replay_->loop();
-  if (loop.rig() == nullptr || !has_one_puppet_) return std::nullopt;
-  return PlayedPuppet{*loop.rig(), loop.sculptor_options()};
+  flow::DeformLoop& loop = replay_->loop();
+  const auto& rig = loop.puppet(loop.frames().front().puppet);
+  if (!rig) return std::nullopt;
+  return PlayedPuppet{rig, loop.sculptor_options()};
 }
 
 bool RecordedFrames::next() {

@@ -47,7 +47,6 @@ private:
   double duration_s_ = 0.0;
   double time_s_ = 0.0;
   bool has_one_model_ = true;
-  bool has_one_puppet_ = true;
 };
 
 } // namespace nendo::takes

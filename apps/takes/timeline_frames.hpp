@@ -42,7 +42,7 @@ public:
   std::optional<PlayedPuppet> puppet() const override {
     const auto& rig = player_->timeline().rig;
     if (!rig) return std::nullopt;
-    return PlayedPuppet{*rig, player_->sculptor_options()};
+    return PlayedPuppet{rig, player_->sculptor_options()};
   }
   double rate_hz() const override { return player_->timeline().rate_hz; }
   double duration_s() const override { return player_->last_time_s(); }

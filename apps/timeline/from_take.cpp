@@ -60,21 +60,52 @@ Timeline begin_timeline(const Setup& setup, const std::filesystem::path& take) {
   return timeline;
 }
 
-/// The puppet as the loop has it before its first tick.
-void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state, Timeline& timeline) {
-  if (loop.rig() == nullptr) return;
-  timeline.rig = std::make_shared<const puppet::Rig>(*loop.rig());
-  timeline.rig_state = first_state(*timeline.rig);
-  timeline.rig_state.symmetric = state.symmetric;
-  if (state.functions.size() == timeline.rig_state.functions.size())
-    timeline.rig_state.functions = state.functions;
-  timeline.sculptor.surface = loop.sculptor_options().surface;
+/// The last change of the puppet; nothing if it is one all the time.
+std::optional<recording::PuppetChange> last_change_in(TakeReader reader) {
+  std::optional<recording::PuppetChange> last;
+  while (const auto entry = reader.next())
+    if (const auto* change = std::get_if<recording::PuppetChange>(&*entry)) last = *change;
+  return last;
 }
 
-/// Roles of functions that the puppet has not say nothing; a loop passes over them, too.
-bool is_of(const flow::Command& command, const puppet::Rig& rig) {
-  const auto* role = std::get_if<flow::SetRole>(&command);
-  return role == nullptr || role->function < rig.puppet().functions.size();
+/// The options with another puppet than that of the loop's beginning.
+void use_puppet(const puppet::Rig& first, const puppet::Rig& rig, flow::SculptorOptions& options) {
+  deform::Supports& supports = options.deformer.supports;
+  const double pieces = options.piece_length / deform::least_radius(supports);
+  const double scale = deform::least_radius(supports) / deform::least_radius(first.supports());
+  supports = flow::scaled(rig.supports(), scale); // people may have scaled the radii
+  options.piece_length = pieces * deform::least_radius(supports);
+  options.surface.reset(); // a player makes it
+}
+
+/// The puppet before the first tick, or the one that took its place.
+void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state,
+                 std::shared_ptr<const puppet::Rig> last, Timeline& timeline) {
+  const auto& first = loop.puppet(0);
+  timeline.rig = last ? std::move(last) : first;
+  if (!timeline.rig) return;
+  timeline.rig_state = first_state(*timeline.rig);
+  timeline.rig_state.symmetric = state.symmetric;
+  timeline.sculptor.surface = loop.sculptor_options().surface;
+  if (timeline.rig != first) use_puppet(*first, *timeline.rig, timeline.sculptor);
+  const auto from = puppet::functions_before(first->puppet(), timeline.rig->puppet());
+  for (std::size_t at = 0; at < from.size(); ++at) {
+    if (from[at] >= state.functions.size()) continue;
+    puppet::FunctionState& kept = timeline.rig_state.functions[at];
+    const puppet::HandSignal input = kept.input; // which an edit may have chosen
+    kept = state.functions[from[at]];
+    if (first->puppet().functions[from[at]].input != input) kept.input = input;
+  }
+}
+
+/// Returns the number in the timeline's puppet of a function of the one that is played then;
+/// nothing if it has none such.
+std::optional<std::uint16_t> number_in(const puppet::Rig& timelines, const puppet::Rig& played,
+                                       std::uint16_t function) {
+  const auto from = puppet::functions_before(played.puppet(), timelines.puppet());
+  const auto found = std::find(from.begin(), from.end(), std::size_t{function});
+  if (found == from.end()) return std::nullopt;
+  return static_cast<std::uint16_t>(found - from.begin());
 }
 
 // Follows a replay, and keeps a key a tick of each hand, and what the ticks did.
@@ -94,9 +125,17 @@ public:
       takes_hold_ = true;
   }
 
-  /// What a puppet is told, and marks.
-  void hear_told(const flow::Command& command) {
-    if (flow::is_for_puppet(command)) told_.push_back(command);
+  /// What the puppet is told that is played then, and marks. Roles of functions that it has not say
+  /// nothing; a loop passes over them, too.
+  void hear_told(const flow::Command& command, const flow::DeformLoop& loop) {
+    const auto& played = loop.puppet(loop.newest_puppet());
+    const auto* role = std::get_if<flow::SetRole>(&command);
+    if (role != nullptr && played && timeline_.rig) {
+      if (const auto number = number_in(*timeline_.rig, *played, role->function))
+        told_.emplace_back(flow::SetRole{*number, role->input});
+    } else if (flow::is_for_puppet(command)) {
+      told_.push_back(command);
+    }
     if (std::holds_alternative<flow::Mark>(command)) marks_.push_back(command);
   }
 
@@ -134,6 +173,7 @@ public:
     see_events(time_s, frame, stats);
     if (std::exchange(is_still_, false)) still_at_s_ = time_s;
     awaited_ = frame.awaited;
+    puppet_ = frame.puppet;
   }
   bool has_seen() const noexcept { return first_.has_value(); }
 
@@ -169,7 +209,7 @@ private:
     const double period_s = 1.0 / timeline_.rate_hz;
     const double next_s = time_s < before_s + 1.5 * period_s ? time_s : before_s + period_s;
     for (const flow::Command& command : told_)
-      if (timeline_.rig && is_of(command, *timeline_.rig)) add(next_s, command);
+      if (timeline_.rig) add(next_s, command);
     told_.clear();
   }
 
@@ -182,6 +222,8 @@ private:
     const bool is_step_over = is_done && !steps_.empty() &&
                               (steps_.front() == flow::Request::redo || frame.redo_steps > 0);
     if (std::exchange(answers_step_, false) && is_step_over) settings_.reset();
+    // Over an edit of the puppet, which the timeline has not.
+    if (is_step_over && awaited_ && awaited_->puppet != puppet_) steps_.erase(steps_.begin());
     for (; steps_.size() > frame.steps_due; steps_.erase(steps_.begin()))
       add(time_s, steps_.front());
   }
@@ -216,14 +258,18 @@ private:
   bool is_still_ = false;                      ///< from the next tick on
   double still_at_s_ = 0.0;                    ///< the end of the last tick that shaped
   std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
+  std::uint32_t puppet_ = 0;                   ///< in the last tick
   std::optional<flow::LoggedTick> first_;
 };
 
-void hear_told(const recording::Entry& entry, Follower& follower) {
-  if (const auto* mark = std::get_if<flow::Mark>(&entry)) follower.hear_told(*mark);
-  if (const auto* clutch = std::get_if<flow::SetClutch>(&entry)) follower.hear_told(*clutch);
-  if (const auto* role = std::get_if<flow::SetRole>(&entry)) follower.hear_told(*role);
-  if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&entry)) follower.hear_told(*symmetry);
+void hear_told(const recording::Entry& entry, const flow::DeformLoop& loop, Follower& follower) {
+  const auto hear = [&](const auto* command) {
+    if (command != nullptr) follower.hear_told(*command, loop);
+  };
+  hear(std::get_if<flow::Mark>(&entry));
+  hear(std::get_if<flow::SetClutch>(&entry));
+  hear(std::get_if<flow::SetRole>(&entry));
+  hear(std::get_if<flow::SetSymmetry>(&entry));
 }
 
 // Of frames or of events; empty if nothing does.
@@ -263,17 +309,26 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
         "its model. Record from the beginning of the run, with --record");
   MadeTimeline made;
   made.timeline = begin_timeline(setup, take);
-  keep_puppet((*replay)->loop(), setup.loop->options.rig_state, made.timeline);
+  auto scanned = TakeReader::open(take);
+  if (!scanned) return scanned.error();
+  const auto change = last_change_in(*std::move(scanned));
+  std::shared_ptr<const puppet::Rig> last;
+  if (change && (*replay)->loop().rig() == nullptr)
+    return bad("begins a puppet on the way, and a timeline has one from the beginning on; save the "
+               "puppet, and record a run with it by --puppet FILE");
+  if (change && change->puppet) {
+    auto rig = recording::rig_of(*change->puppet, model);
+    if (!rig) return bad(rig.error().message);
+    last = *std::move(rig);
+  }
+  made.has_last_puppet = change.has_value();
+  keep_puppet((*replay)->loop(), setup.loop->options.rig_state, std::move(last), made.timeline);
   Follower follower(made.timeline, setup.loop->options);
   while (const auto entry = reader->next()) {
     if (const auto* request = std::get_if<flow::Request>(&*entry)) follower.hear(*request);
-    hear_told(*entry, follower);
+    hear_told(*entry, (*replay)->loop(), follower);
     if (const auto* still = std::get_if<flow::HoldStill>(&*entry)) follower.hear(*still);
     if (const auto* change = std::get_if<flow::ChangeModel>(&*entry)) follower.hear(*change);
-    if (std::holds_alternative<recording::PuppetChange>(*entry))
-      return bad(
-          "edits its puppet on the way, which a timeline cannot; save the puppet, and record "
-          "a run with it by --puppet FILE");
     const auto* settings = std::get_if<flow::LoopSettings>(&*entry);
     if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "

@@ -61,6 +61,9 @@ void Server::set_settings(const flow::LoopSettings& settings, bool recorded) {
   work_->set_settings(settings, recorded);
 }
 
+void Server::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
+  work_->set_puppet(number, rig);
+}
 void Server::set_steps(const flow::StepList& steps) {
   work_->set_steps(steps);
 }

@@ -102,6 +102,16 @@ void Server::Work::set_steps(const flow::StepList& steps) {
   wake();
 }
 
+void Server::Work::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (facts_[puppet_fact] && number == puppet_) return;
+    puppet_ = number;
+    facts_[puppet_fact] = std::make_shared<const std::vector<std::byte>>(message_of(number, rig));
+  }
+  wake();
+}
+
 std::size_t Server::Work::clients() const noexcept {
   return static_cast<std::size_t>(
       std::count_if(connections_.begin(), connections_.end(), [](const Connection& connection) {

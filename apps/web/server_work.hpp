@@ -29,6 +29,7 @@ public:
   void report(std::string message);
   void set_settings(const flow::LoopSettings& settings, bool recorded);
   void set_steps(const flow::StepList& steps);
+  void set_puppet(std::uint32_t number, const puppet::Rig* rig);
 
   const Endpoint endpoint;
   const std::string token;
@@ -87,12 +88,13 @@ private:
 
   const ServerLimits limits_;
   Descriptor listener_, waker_;
-  std::mutex mutex_;              ///< guards the next nine
+  std::mutex mutex_;              ///< guards the next ten
   std::optional<Presented> next_; ///< set by present() and not taken yet
   std::uint16_t loops_ = 0;
   std::string report_; ///< the newest one; empty if it has been sent
   flow::LoopSettings settings_;
   std::uint64_t steps_version_ = 0;
+  std::uint32_t puppet_ = 0;
   Facts facts_; ///< as messages; null before they are known
   bool recorded_ = false;
   std::vector<Weights> weights_; ///< the newest last

@@ -158,6 +158,30 @@ SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) no
   return message;
 }
 
+std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig) {
+  const std::span<const puppet::Function> functions =
+      rig != nullptr ? std::span(rig->puppet().functions) : std::span<const puppet::Function>();
+  std::size_t bytes = puppet_head_bytes;
+  for (const puppet::Function& function : functions)
+    bytes += 2 + function.name.size() + function.input.name().size();
+  std::vector<std::byte> message(bytes);
+  WireWriter out(message);
+  out.put(static_cast<std::uint8_t>(MessageType::puppet));
+  out.put(std::uint8_t{0});
+  out.put(static_cast<std::uint16_t>(functions.size()));
+  out.put(number);
+  const auto put_text = [&out](const std::string& text) { // of at most 64 letters
+    out.put(static_cast<std::uint8_t>(text.size()));
+    for (const char letter : text)
+      out.put(letter);
+  };
+  for (const puppet::Function& function : functions) {
+    put_text(function.name);
+    put_text(function.input.name());
+  }
+  return message;
+}
+
 std::vector<std::byte> message_of(const flow::StepList& steps) {
   std::vector<std::byte> message(history_head_bytes + history_step_bytes * steps.count);
   WireWriter out(message);

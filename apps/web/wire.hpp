@@ -22,7 +22,8 @@ enum class MessageType : std::uint8_t {
   report = 3,
   settings = 4,
   history = 5,
-  weights = 6
+  weights = 6,
+  puppet = 7
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
@@ -125,6 +126,7 @@ static_assert(sizeof(SettingsMessage) == 64);
 /// Of the history's message.
 inline constexpr std::size_t history_head_bytes = 8;
 inline constexpr std::size_t history_step_bytes = 8;
+inline constexpr std::size_t puppet_head_bytes = 8; ///< of the puppet's message
 
 /// Tells whether a joint's rotation is sent with each frame. The other joints do not move relative
 /// to their parents.
@@ -178,6 +180,8 @@ UpdateHead head_of(const flow::Frame& frame) noexcept;
 SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept;
 /// Returns the message with the steps of the history. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);
+/// Returns the message with the functions of a puppet, or that there is none. Allocates.
+std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig);
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
 /// Writes the frame's step: the vectors of its surface, if it has one, or else its fields. `origin`
 /// and `unit` are those of the loop's BlockLayout. Functions whose coefficient is zero are left

@@ -2,9 +2,12 @@
 // those of the loop that was recorded; the exporter replays it.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <doctest/doctest.h>
+
+#include <nendo/puppet/puppet_edit.hpp>
 
 #include "export/control_morphs.hpp"
 #include "export/gltf_export.hpp"
@@ -61,7 +64,19 @@ struct PuppetMotion {
   std::string distance = "surface";
   flow::Mode mode = flow::Mode::type1;
   std::optional<flow::Request> request{}; ///< halfway, while the hands are bent
+  bool edits = false; ///< at a third and at two thirds, while the hands are bent
 };
+
+/// The ear goes farther out; a pin becomes a point that a function moves.
+std::shared_ptr<const puppet::Rig> edited(const puppet::Rig& rig, bool first,
+                                          const deform::Mesh& model) {
+  const auto to =
+      first ? puppet::with_move(rig, *rig.puppet().function_named("earWiggle"), 1, {0.5, 0.1, 0.0})
+            : puppet::with_function(rig, {{0, 0, -1}, 0.6}, {0, 0, -0.3},
+                                    *puppet::HandSignal::named("right.middle_flexion"), 0.4);
+  if (!to) throw std::runtime_error(to.error().message);
+  return std::make_shared<const puppet::Rig>(*to, model);
+}
 
 /// Hands bend and stretch, and the frames are kept as they were made.
 struct RecordedPuppet {
@@ -81,6 +96,11 @@ struct RecordedPuppet {
       const HostTime woke = played.setup.begun_host + (tick + 1) * std::chrono::milliseconds(10);
       const double turn = 6.283185307179586 * static_cast<double>(tick) / (ticks - 1);
       test.bend(static_cast<int>(30.0 * (1.0 - std::cos(turn))), woke);
+      if (motion.edits && (tick == 20 || tick == 40)) {
+        const auto& now = test.loop->puppet(test.loop->newest_puppet());
+        if (!played.change_puppet(edited(*now, tick == 20, test.model)))
+          throw std::runtime_error("the edit was refused");
+      }
       if (motion.request && tick == ticks / 2) test.commands.try_push(*motion.request);
       test.loop->tick(tick, woke, woke);
       test.loop->frames().update();
@@ -88,6 +108,7 @@ struct RecordedPuppet {
       times_s.push_back(seconds_between(played.setup.begun_host, woke));
       shapes.push_back(test.vertices_of(frame));
       values.push_back(frame.functions);
+      puppets.push_back(frame.puppet);
     }
     if (!played.end()) throw std::runtime_error("not recorded");
   }
@@ -118,6 +139,7 @@ struct RecordedPuppet {
   std::vector<double> times_s;
   std::vector<deform::Points> shapes;
   std::vector<decltype(flow::Frame::functions)> values;
+  std::vector<std::uint32_t> puppets;
 };
 
 std::vector<std::string> target_names(const Glb& glb) {
@@ -199,6 +221,45 @@ TEST_SUITE("puppet_export") {
     REQUIRE(done);
     CHECK(done->morphs->basis == MorphBasis::functions);
     CHECK(take.farthest_off(take.read()) < ControlMorphs::most_error);
+  }
+
+  TEST_CASE("a puppet that is edited on the way is a model of its own from there on, exact") {
+    for (const std::string distance : {"surface", "air"}) {
+      for (const auto& request :
+           {std::optional<flow::Request>(), std::optional(flow::Request::commit)}) {
+        if (distance == "air" && request) continue; // no sum, as without edits
+        CAPTURE(distance);
+        const RecordedPuppet take({.distance = distance, .request = request, .edits = true});
+        const auto done = take.export_it();
+        REQUIRE(done);
+        REQUIRE(done->morphs);
+        CHECK(done->morphs->basis == MorphBasis::functions);
+        CHECK(done->morphs->models == 3);
+        const Glb glb = take.read();
+        CHECK(target_names(glb) == names);
+        const std::vector<std::string> last = glb.json["meshes"][2]["extras"]["targetNames"];
+        CHECK(last.size() == names.size() + 1);
+        std::array<int, 3> frames{};
+        double worst = 0.0;
+        for (std::size_t at = 0; at < take.shapes.size(); ++at) {
+          const std::size_t shown = take.puppets[at];
+          REQUIRE(shown < frames.size());
+          ++frames[shown];
+          const double time_s = take.since_first_s(at);
+          worst = std::max(worst, test::farthest(glb.vertices(shown, time_s), take.shapes[at]));
+          for (std::size_t node = 0; node < frames.size(); ++node)
+            CHECK((glb.animated(node, "scale", time_s + 1e-6, Eigen::Vector3d::Zero()).norm() >
+                   0.0) == (node == shown));
+        }
+        CHECK(*std::min_element(frames.begin(), frames.end()) > 15);
+        CHECK(worst < ControlMorphs::most_error * take.diagonal());
+        // At other rates the frames are held while the take goes on.
+        const auto slow = take.export_it({.rate_hz = 24.0});
+        REQUIRE(slow);
+        CHECK(slow->morphs->basis == MorphBasis::functions);
+        CHECK(slow->morphs->models == 3);
+      }
+    }
   }
 
   TEST_CASE("shapes that are no sums of the functions are told, and are as near as is asked for") {

@@ -6,14 +6,17 @@
 #include <fstream>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <doctest/doctest.h>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/puppet/puppet_edit.hpp>
 #include <nendo/recording/loop_replay.hpp>
 #include <nendo/recording/take_tools.hpp>
 
 #include "session/open_hands.hpp"
+#include "support/flow_fixtures.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
 #include "takes/recorded_model.hpp"
@@ -205,9 +208,87 @@ private:
   bool stays_;
 };
 
+/// Makes a puppet, edits it twice, undoes the last edit, and ends the run.
+class PuppetMaker final : public PacingObserver {
+public:
+  explicit PuppetMaker(const deform::Mesh& mesh) : mesh_(mesh) {}
+  void update(const RunStatus& status, flow::CommandRing& commands) override {
+    wait();
+    if (!status.fresh || ++frames_ % 25 != 0) return;
+    const std::size_t step = frames_ / 25;
+    if (step == 1) make(puppet::parse_puppet(test::ball_puppet, "a test's puppet"));
+    if (step == 2) make(puppet::with_radius(*status.puppet, 0, 0.6));
+    if (step == 3)
+      make(puppet::with_function(*status.puppet, {{0, 1, 0}, 0.5}, {0, 0.3, 0},
+                                 *puppet::HandSignal::named("left.index_flexion"), 0.5));
+    if (step == 4) {
+      commands.try_push(flow::Request::let_go);
+      commands.try_push(flow::Request::undo);
+    }
+    if (step == 6) commands.try_push(flow::EndRun{});
+  }
+  std::shared_ptr<const puppet::Rig> take_puppet() override { return std::exchange(rig_, nullptr); }
+  void report(const std::string& message) override { FAIL(message); }
+
+private:
+  void make(const Result<puppet::Puppet>& puppet) {
+    REQUIRE(puppet);
+    rig_ = std::make_shared<const puppet::Rig>(*puppet, mesh_);
+  }
+
+  const deform::Mesh& mesh_;
+  std::shared_ptr<const puppet::Rig> rig_;
+  std::size_t frames_ = 0;
+};
+
 } // namespace
 
 TEST_SUITE("run_session") {
+  TEST_CASE("a take whose puppet was edited on the way is played over with all its puppets") {
+    Run run;
+    run.options.left = run.options.right = "sim:faces";
+    const auto file = [&](const char* name) { return (run.folder.path() / name).string(); };
+    run.options.recording.file = file("take.nendo");
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    {
+      auto opened = open_hands(run.options, run.mesh, run.event_count);
+      REQUIRE(opened);
+      PuppetMaker maker(run.mesh);
+      RunParticipants participants{[](const auto&, double) {}};
+      participants.observers.push_back(&maker);
+      REQUIRE(run_session(run.options, opened->hands, run.mesh, participants));
+    }
+    replay(file("take.nendo"));
+    const auto before = recording::summarise(file("take.nendo"));
+    REQUIRE(before);
+    CHECK(before->puppet_changes >= 4);
+
+    const OverdubArguments arguments{file("take.nendo"), "left.index", "", ""};
+    auto over = read_overdub(arguments);
+    REQUIRE(over);
+    CHECK((*over)->take.puppets.size() >= 3);
+    run.options.over = *over;
+    run.options.right.clear();
+    const auto live = live_part(arguments, run.options);
+    REQUIRE(live);
+    run.options.live = *live;
+    REQUIRE(take_over_settings(run.mesh, run.options));
+    run.options.recording = {};
+    run.options.recording.file = file("over.nendo");
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    auto opened = open_hands(run.options, run.mesh, run.event_count);
+    REQUIRE(opened);
+    Asker asker({}); // a sink, whose room the puppets must fit
+    const RunParticipants participants{[](const auto&, double) {}, {&asker}, {}};
+    REQUIRE(run_session(run.options, opened->hands, run.mesh, participants));
+    replay(file("over.nendo"));
+    const auto after = recording::summarise(file("over.nendo"));
+    REQUIRE(after);
+    CHECK(after->is_whole());
+    CHECK(after->puppet_changes == before->puppet_changes);
+    CHECK(after->requests == before->requests);
+  }
+
   TEST_CASE("a take that is played over does again what people asked of it, and is punched") {
     Run run;
     const auto file = [&](const char* name) { return (run.folder.path() / name).string(); };

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <nendo/puppet/puppet_edit.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "support/rounds.hpp"
@@ -111,6 +112,63 @@ TEST_SUITE("puppet_timeline") {
       CHECK(different <= take.shapes.size() / 50);
       CHECK(worst < test::float_gap);
       CHECK(most > 0.01);
+    }
+  }
+
+  TEST_CASE("a take whose puppet was edited on the way is a timeline with the last puppet") {
+    for (const char* distance : {"", "distance = \"air\""}) {
+      const std::string text = distance + std::string(test::ball_puppet);
+      Played take(Mode::type1, text.c_str());
+      auto& test = take.live.test;
+      const HostTime begin = HostClock::now();
+      const auto now = [&]() -> const puppet::Rig& {
+        return *test.loop->puppet(test.loop->newest_puppet());
+      };
+      const auto edit = [&](const Result<puppet::Puppet>& to) {
+        REQUIRE(to);
+        REQUIRE(take.live.change_puppet(std::make_shared<const puppet::Rig>(*to, test.model)));
+      };
+      std::size_t last_edit = 0;
+      for (std::uint64_t tick = 0; tick < 160; ++tick) {
+        const int bent = static_cast<int>(tick % 40 < 20 ? tick % 20 : 20 - tick % 20);
+        test.bend(bent, begin + tick * std::chrono::milliseconds(11));
+        if (tick == 45) edit(puppet::with_radius(now(), 1, 0.6));
+        if (tick == 60) edit(puppet::with_name(now(), 0, "swellLeft"));
+        if (tick == 75)
+          test.commands.try_push(flow::SetRole{0, *puppet::HandSignal::named("left.ring_flexion")});
+        if (tick == 90) edit(puppet::with_move(now(), 0, 0, {0.3, 0.0, 0.1}));
+        if (tick == 105) test.commands.try_push(flow::Request::let_go);
+        if (tick == 108) test.commands.try_push(flow::Request::undo); // of the stroke
+        if (tick == 111) test.commands.try_push(flow::Request::undo); // of the edit
+        if (tick == 116) test.commands.try_push(flow::Request::grab);
+        const flow::Frame& frame = test.frame_after_tick(tick);
+        take.see(frame);
+        if (frame.awaited) {
+          REQUIRE(test.loop->change_to(*frame.awaited));
+          last_edit = tick + 2;
+        }
+      }
+      REQUIRE(last_edit > 111);
+      const puppet::Puppet last = now().puppet();
+      CHECK(last.functions[0].name == "swellLeft");
+      const MadeTimeline made = take.made(none);
+      CHECK(made.has_last_puppet);
+      const Timeline& timeline = made.timeline;
+      CHECK(timeline.rig->puppet() == last);
+      CHECK(count<flow::SetRole>(timeline) == 1);
+      CHECK(count<flow::Request>(timeline) == 3); // the edit's undo is none here
+      const auto player = playing(through_text(timeline), test.model);
+      REQUIRE(player->next());
+      Points shape;
+      double before = 0.0, after = 0.0;
+      for (std::size_t at = 0; at < take.shapes.size(); ++at) {
+        REQUIRE(player->next());
+        player->layout().unpack(player->frame().shape, shape);
+        double& worst = at >= last_edit ? after : before;
+        worst = std::max(worst, (shape - take.shapes[at]).cwiseAbs().maxCoeff());
+      }
+      CHECK(after < test::float_gap);
+      CHECK(before > 1e-2);
     }
   }
 

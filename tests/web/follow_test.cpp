@@ -369,6 +369,37 @@ TEST_SUITE("follow") {
     CHECK(streamed.test.loop->stats().changes > 15);
   }
 
+  TEST_CASE("a puppet's follower goes on with each puppet that an edit or an undo brings") {
+    for (const bool begins_with_one : {true, false}) {
+      CAPTURE(begins_with_one);
+      StreamedLoop streamed =
+          begins_with_one ? puppet_loop(flow::Mode::type1) : StreamedLoop(flow::Mode::type1);
+      Followed followed(streamed);
+      std::mt19937 random(23);
+      double worst = 0.0;
+      int compared = 0, bent = 0;
+      flow::DeformLoop& loop = *streamed.test.loop;
+      for (int tick = 0; tick < 400; ++tick) {
+        bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
+        if (tick % 20 == 10)
+          static_cast<void>(loop.change_puppet(
+              test::any_puppet(loop.puppet(loop.newest_puppet()), streamed.test.model, random, 5)));
+        if (tick % 60 == 40) streamed.test.commands.try_push(flow::Request::undo);
+        const auto shape = streamed.tick(bent);
+        if (const auto& awaited = loop.frames().front().awaited) loop.change_to(*awaited);
+        followed.pass();
+        if (!followed.is_up_to_date()) continue;
+        worst = std::max(worst, followed.gap(shape));
+        ++compared;
+      }
+      CHECK(followed.client.good);
+      CHECK(loop.next_puppet() > 8);
+      CHECK(worst < 1e-5);
+      CHECK(compared > 250);
+      CHECK(followed.client.weights > 3);
+    }
+  }
+
   TEST_CASE("a follower whose weights are late gets neither steps nor shapes until it has them") {
     StreamedLoop streamed = puppet_loop(flow::Mode::type1);
     Followed followed(streamed);

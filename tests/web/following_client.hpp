@@ -63,7 +63,8 @@ public:
     if (type == 4) take_settings(in);
     if (type == 5) take_steps(in);
     if (type == 6) take_weights(in);
-    return type >= 1 && type <= 6 && in.at == message.size();
+    if (type == 7) take_puppet(in);
+    return type >= 1 && type <= 7 && in.at == message.size();
   }
 
   /// The shape, in the mesh's order and units.
@@ -107,6 +108,9 @@ public:
   // Of the latest message of steps.
   std::vector<std::pair<std::uint32_t, float>> steps; ///< kind, and seconds
   std::size_t undoable = 0;
+  // Of the latest puppet message.
+  std::uint32_t puppet = 0;
+  std::vector<std::pair<std::string, std::string>> functions; ///< name, and signal
   // Of the latest messages.
   std::uint64_t number = 0; ///< the frame that vertices() is of; 0: none
   std::uint64_t newest = 0; ///< the frame of the last update
@@ -193,6 +197,18 @@ private:
       kind = in.take<std::uint32_t>();
       at_s = in.take<float>();
     }
+  }
+
+  void take_puppet(Bytes& in) {
+    in.at += 1;
+    functions.resize(in.take<std::uint16_t>());
+    puppet = in.take<std::uint32_t>();
+    for (auto& [function, signal] : functions)
+      for (std::string* text : {&function, &signal}) {
+        text->clear();
+        for (auto left = in.take<std::uint8_t>(); left > 0; --left)
+          *text += in.take<char>();
+      }
   }
 
   void take_shape(Bytes& in) {

@@ -145,6 +145,9 @@ TEST_SUITE("run_web") {
     CHECK(seen.coats.size() > 5);
     browser.follow_until([&] { return seen.vectors > 0 && seen.updates > 100; });
     CHECK(seen.update_bytes < 1200);
+    CHECK(std::find(seen.functions.begin(), seen.functions.end(),
+                    std::pair<std::string, std::string>("jawOpen", "right.thumb_flexion")) !=
+          seen.functions.end());
     REQUIRE(browser.client->send_text("let go"));
     browser.follow_until([&] { return !seen.held; });
     CHECK(seen.good);

@@ -19,7 +19,7 @@ public:
   }
   bool has_ticks() const noexcept { return ticks_ > 0; }
   bool is_exact() const noexcept { return exact_; }
-  bool edits_puppet() const noexcept { return edits_puppet_; }
+  auto& puppets() noexcept { return puppets_; }
   std::uint64_t samples_of(std::size_t glove) const { return samples_[glove]; }
 
   std::unique_ptr<flow::InputScript> finish() {
@@ -43,7 +43,10 @@ private:
     if (change.source == flow::ModelSource::subdivided) put(flow::Command(flow::Subdivide{}));
   }
   void add_one(const flow::HoldStill&) {}
-  void add_one(const PuppetChange&) { edits_puppet_ = true; }
+  void add_one(const PuppetChange& change) {
+    if (change.puppet) puppets_[change.number] = change.puppet;
+    put(flow::Command(flow::ChangePuppet{change.number}));
+  }
   void add_one(const Gap&) { exact_ = false; }
   void add_one(const flow::LoggedTick& tick) {
     if (ticks_++ == 0) first_ = tick.scheduled;
@@ -64,7 +67,7 @@ private:
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, flow::most_inputs> samples_{};
   bool exact_ = true;
-  bool edits_puppet_ = false;
+  decltype(TakeInput::puppets) puppets_;
 };
 
 } // namespace
@@ -75,11 +78,7 @@ Result<TakeInput> read_take_input(const std::filesystem::path& path) {
   ScriptMaker script;
   while (const auto entry = reader->next())
     script.add(*entry);
-  if (script.edits_puppet())
-    return Error{Errc::bad_input, path.string() +
-                                      ": the puppet is edited in it; save the puppet, and "
-                                      "record a take with it by --puppet FILE"};
-  TakeInput input{reader->setup(), nullptr, reader->sent()};
+  TakeInput input{reader->setup(), nullptr, std::move(script.puppets()), reader->sent()};
   if (!input.setup.loop || !script.has_ticks())
     return Error{Errc::bad_input, path.string() + ": " + std::string(without_loop)};
   if (input.sent.size() != input.setup.gloves.size()) { // nobody has counted more than arrived

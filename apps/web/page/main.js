@@ -80,6 +80,7 @@ function open(model) {
     if (type === 3) panel.tell(new TextDecoder().decode(data.slice(4)))
     else if (type === 4) takeSettings(readSettings(data))
     else if (type === 5) panel.setHistory(readSteps(data))
+    else if (type === 7) panel.setPuppet(readPuppet(data))
     else if (type === 6) takeWeights(readWeights(data), model)
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
@@ -144,7 +145,7 @@ window.nendo = {
   ask, counts,
   vertices: () => Array.from(scene.shape.vertices()),
   state: () => latest && { number: Number(latest.number), held: latest.held, commits: latest.commits, undos: latest.undos,
-    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.settings.recorded, settings: panel.settings, history: panel.history,
+    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.settings.recorded, settings: panel.settings, history: panel.history, puppet: panel.puppet,
     wrists: latest.hands.map(hand => hand && { place: hand.joints[1].place, turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
     open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },
 }

@@ -53,7 +53,7 @@ class Panel {
       if (this.noted) this.tell('')
       ask(request)
     }
-    Object.assign(this, { camera: null, live: false, noted: false, settings: null, history: null })
+    Object.assign(this, { camera: null, live: false, noted: false, settings: null, history: null, puppet: null })
     this.late = new Chart(element('chart-late'), 'late', 'ms')
     this.rate = new Chart(element('chart-rate'), 'ticks a second', 'Hz')
     this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
@@ -168,6 +168,16 @@ class Panel {
     const { undoable } = this.history
     for (let step = undoable + (this.update && this.update.inHand ? 1 : 0); step > at; --step) this.ask('undo')
     for (let step = undoable; step < at; ++step) this.ask('redo')
+  }
+  // What each function listens to; an edited puppet takes the place of the one before.
+  setPuppet(puppet) {
+    this.puppet = puppet
+    element('puppet').hidden = puppet.functions.length === 0
+    element('functions').replaceChildren(...puppet.functions.map(({ name, signal }) => {
+      const line = document.createElement('div')
+      line.textContent = `${name}: ${signal}`
+      return line
+    }))
   }
   setSettings(settings) {
     this.settings = settings

@@ -95,6 +95,18 @@ function readWeights(buffer) {
   }
 }
 
+function readPuppet(buffer) {
+  const view = new DataView(buffer)
+  let at = 8
+  const text = () => {
+    const count = view.getUint8(at), words = new TextDecoder().decode(new Uint8Array(buffer, at + 1, count))
+    at += 1 + count
+    return words
+  }
+  const functions = Array.from({ length: view.getUint16(2, true) }, () => ({ name: text(), signal: text() }))
+  return { number: view.getUint32(4, true), functions }
+}
+
 // Three of a quaternion's parts, 15 bits each; the largest one follows.
 function readTurn(view, at) {
   const words = [view.getUint16(at, true), view.getUint16(at + 2, true), view.getUint16(at + 4, true)]

@@ -97,7 +97,8 @@ struct ChangeModel {
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
-/// The loop goes on with another puppet (DeformLoop::change_puppet()). It only tells a log.
+/// The loop goes on with another puppet (DeformLoop::change_puppet()). It only tells a log, and who
+/// plays that log.
 struct ChangePuppet {
   std::uint32_t number = 0; ///< DeformLoop::puppet()
   friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;

@@ -74,8 +74,8 @@ public:
 
   /// Tells whether all of it has been played. Never, if it repeats.
   bool has_ended() const noexcept { return ended_.load(std::memory_order_acquire); }
-  /// What a loop does not obey by itself: changes of settings, and Subdivide. Whoever runs the loop
-  /// takes them from here.
+  /// What a loop does not obey by itself: changes of settings and puppets, and Subdivide. Whoever
+  /// runs the loop takes them from here.
   CommandRing& for_others() noexcept { return for_others_; }
 
 private:

@@ -1,7 +1,9 @@
 #pragma once
 // All input of a recording in memory, for a run that plays it once more with other hands over it.
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -15,6 +17,9 @@ struct TakeInput {
   /// What the loop took: all samples, and of the commands all but those that the next loop makes
   /// itself (HoldStill, and a ChangeModel to a version that was there).
   std::unique_ptr<flow::InputScript> script;
+  /// The puppets to which it changes (flow::ChangePuppet), by their numbers. One that is not here
+  /// is that with which the recording began.
+  std::map<std::uint32_t, std::shared_ptr<const RecordedPuppet>> puppets{};
   std::vector<driver::RecordCounts> sent; ///< of each glove, by its number
   bool is_exact = true;                   ///< nothing is missing
 };
