@@ -64,6 +64,8 @@ function(nendo_settings target scope)
 endfunction()
 
 # nendo_kind(<target> <kind>): what differs between a `library`, a `room` of the program, a `test` and an `optimised_test`.
+# What takes time when the program runs is in the libraries and in rooms that are OPTIMISED as they are. The other rooms take
+# a quarter less time to compile as they are compiled here.
 # Where NENDO_PCH is on, the headers that most files see are read once for all targets of a kind. The preset dev has it off,
 # and clang-tidy and clangd read that preset's flags: they show whether each file includes what it uses.
 function(nendo_kind target kind)
@@ -81,7 +83,7 @@ function(nendo_kind_options target kind)
   endif()
   if(kind STREQUAL "test")
     target_compile_options(${target} PRIVATE -O0)
-  elseif(kind STREQUAL "optimised_test")
+  elseif(kind MATCHES "room|optimised_test")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
 endfunction()
@@ -135,15 +137,19 @@ function(nendo_library name)
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 endfunction()
 
-# nendo_room(<name> SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not installed. Its
-# includes are quoted and begin with the room's folder.
+# nendo_room(<name> [OPTIMISED] SOURCES ... LIBRARIES ...): a room of the program's own, nendo::<name>, which is not
+# installed. Its includes are quoted and begin with the room's folder.
 function(nendo_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMISED" "" "SOURCES;LIBRARIES" ${ARGN})
   set(target nendo_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(nendo::${name} ALIAS ${target})
   nendo_settings(${target} PRIVATE)
-  nendo_kind(${target} room)
+  if(ARG_OPTIMISED)
+    nendo_kind(${target} library)
+  else()
+    nendo_kind(${target} room)
+  endif()
   target_compile_definitions(${target} PRIVATE NENDO_VERSION="${PROJECT_VERSION}")
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/apps)
   if(ARG_LIBRARIES)
