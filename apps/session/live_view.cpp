@@ -21,7 +21,10 @@ class LiveView final : public Observer {
 public:
   LiveView(std::unique_ptr<LiveWindow> window, const ViewOptions& options, const RunOptions& run)
       : window_(std::move(window)), options_(options) {
-    gauges_.model = std::filesystem::path(run.mesh).filename().string();
+    model_name_ = std::filesystem::path(run.mesh).filename().string();
+    gauges_.model = model_name_;
+    if (run.over)
+      gauges_.model += " over " + std::filesystem::path(run.over->file).filename().string();
     gauges_.rate_hz = run.loop.rate_hz;
     edits_ = !run.puppet_file.empty() && !run.puppet; // there is none yet
   }
@@ -30,13 +33,15 @@ public:
     const PlacedLoop& placed = start.placed;
     const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
     window_->begin(placed.loop->layout(), builder, placed.loop->settings());
-    window_->editor().begin(start.model, gauges_.model, placed.loop->puppet(0));
+    window_->editor().begin(start.model, model_name_, placed.loop->puppet(0));
     if (edits_) window_->editor().turn(true);
   }
 
   void update(const RunStatus& status, flow::CommandRing& commands) override {
     for (std::size_t slot = 0; slot < status.gloves.size(); ++slot) {
       gauges_.gloves[slot] = status.gloves[slot].source;
+      if (gauges_.gloves[slot].empty())
+        gauges_.gloves[slot] = "the recording"; // that is played over
       if (status.gloves[slot].uncalibrated) gauges_.gloves[slot] += " (uncalibrated)";
       gauges_.counts[slot] = status.gloves[slot].counts;
     }
@@ -72,6 +77,7 @@ private:
   std::unique_ptr<LiveWindow> window_;
   ViewOptions options_;
   Gauges gauges_;
+  std::string model_name_; ///< in a puppet's file
   std::uint32_t shown_ = 0;
   bool edits_ = false;      ///< from the beginning
   std::uint32_t model_ = 0; ///< that the window has

@@ -120,6 +120,8 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
     commands.emplace_back(flow::Subdivide{});
   if (button(gauges.recording ? "End recording" : "Record", "A recording from here on (t)"))
     commands.emplace_back(flow::SetRecording{!gauges.recording});
+  if (button("Punch", "The gloves' layer comes in, or goes out (o)"))
+    commands.emplace_back(flow::Punch{});
   told = note.empty() ? gauges.report : note;
   if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());
 }

@@ -55,7 +55,7 @@ TEST_SUITE("puppet file") {
         replaced(whole, "radius = 1.5", "radius = [0.5, 1.5], weights = [2, 0.25]");
     const auto parsed = parse_puppet(mixed, "p.toml");
     REQUIRE(parsed);
-    for (const std::size_t at : {1, 3}) {
+    for (const std::size_t at : {std::size_t{1}, std::size_t{3}}) {
       CHECK(parsed->points[at].mix == std::vector<deform::Support>{{0.5, 2.0}, {1.5, 0.25}});
       CHECK(parsed->points[at].radius == 1.5);
     }

@@ -108,9 +108,9 @@ TEST_SUITE("rig") {
     states[1].T_world_wrist = mirrored;
     for (const Side side : {Side::left, Side::right}) {
       HandState& state = states[static_cast<std::size_t>(side)];
-      state.pose = hand::HandSkeleton(side, {}).pose(state.angles, state.T_world_wrist);
+      state.pose = hand::HandSkeleton(side).pose(state.angles, state.T_world_wrist);
     }
-    std::size_t sideways = 0;
+    int sideways = 0;
     for (std::uint8_t number = 0; const auto left = HandSignal::numbered(Side::left, number);
          ++number) {
       const auto right = left->mirrored();

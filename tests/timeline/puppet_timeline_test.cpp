@@ -150,7 +150,7 @@ TEST_SUITE("puppet_timeline") {
       }
       REQUIRE(last_edit > 111);
       const puppet::Puppet last = now().puppet();
-      CHECK(last.functions[0].name == "swellLeft");
+      CHECK(last.function_named("swellLeft"));
       const MadeTimeline made = take.made(none);
       CHECK(made.has_last_puppet);
       const Timeline& timeline = made.timeline;

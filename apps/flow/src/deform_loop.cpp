@@ -168,7 +168,10 @@ void DeformLoop::take_script(HostTime scheduled) noexcept {
       stats_.ticks == 0 ? HostClock::duration::zero() : scheduled - first_due_;
   options_.script->play(since_first, [this](const InputLogEntry& entry) noexcept {
     if (const auto* taken = std::get_if<TakenSample>(&entry)) {
-      if (taken->hand < hands_.size()) take(taken->hand, taken->sample);
+      if (taken->hand >= hands_.size()) return;
+      take(taken->hand, taken->sample);
+      const Hand& hand = hands_[taken->hand];
+      if (hand.is_topmost) ++stats_.samples[hand.slot];
     } else if (const auto* command = std::get_if<Command>(&entry)) {
       apply(*command);
     }
