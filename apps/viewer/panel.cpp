@@ -272,8 +272,10 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   ImGui::SetNextWindowSizeConstraints(ImVec2(Panel::width_px, 0.0F),
                                       ImVec2(Panel::width_px, std::max(40.0F, high)));
   if (std::exchange(panel_->fold_asked, false)) ImGui::SetNextWindowCollapsed(!panel_->folded);
-  const bool open =
-      ImGui::Begin("Nendo", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+  // Without navigation, or Tab, which begins to edit a puppet, would also begin to edit a number.
+  const bool open = ImGui::Begin("Nendo", nullptr,
+                                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                                     ImGuiWindowFlags_NoNavInputs);
   panel_->folded = ImGui::IsWindowCollapsed();
   if (open) {
     ImGui::TextWrapped("%s   (? for keys)", gauges.model.c_str());
