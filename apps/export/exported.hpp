@@ -30,7 +30,7 @@ struct MorphReport {
   MorphBasis basis = MorphBasis::key_shapes;
   bool has_puppet = false; ///< in the take, whatever the basis is
   std::size_t targets = 0;
-  std::size_t models = 1;  ///< one after another, where the model became another one
+  std::size_t models = 1;  ///< one after another, where the model or its puppet changed
   std::size_t keys = 0;    ///< moments between which weights are interpolated
   double tolerance = 0.0;  ///< of key shapes, as a fraction of the model's diagonal; otherwise 0
   double diagonal_m = 0.0; ///< of the model, on the stage

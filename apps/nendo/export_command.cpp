@@ -250,7 +250,7 @@ void print_no_functions(const exporting::MorphReport& morphs) {
 void print_morphs(const exporting::MorphReport& morphs) {
   if (morphs.models > 1)
     std::cout << fmt::format("{} meshes, one after another: each is shown in its time, where the "
-                             "model became another one\n",
+                             "model, or its puppet, became another one\n",
                              morphs.models);
   if (morphs.basis != exporting::MorphBasis::key_shapes) {
     const bool named = morphs.basis == exporting::MorphBasis::functions;
