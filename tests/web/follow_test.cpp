@@ -8,6 +8,7 @@
 
 #include "following_client.hpp"
 #include "streamed_loop.hpp"
+#include "support/any_puppet.hpp"
 #include "web/feed.hpp"
 #include "web/weights_message.hpp"
 
