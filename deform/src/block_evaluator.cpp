@@ -62,7 +62,12 @@ BlockEvaluator& BlockEvaluator::operator=(BlockEvaluator&&) noexcept = default;
 bool BlockEvaluator::set_field(const CsrbfField& field) noexcept {
   for (auto& room : parts_->lists)
     room.reserve(static_cast<std::size_t>(field.centres.cols()));
+  parts_->is_halfway = field.is_halfway;
   return parts_->field.assign(field, BlockField::Zeros::left_out);
+}
+
+void BlockEvaluator::make_room_for_halves(const BlockLayout& layout) {
+  parts_->places.emplace(layout.pack());
 }
 
 bool BlockEvaluator::fits(const BoundedShape& shape) const noexcept {
@@ -124,15 +129,39 @@ bool BlockEvaluator::fits_measured(BoundedShape& shape) const noexcept {
 }
 
 bool BlockEvaluator::displace(BoundedShape& shape) noexcept {
+  const bool has_places = std::exchange(parts_->has_places, false);
   if (!fits_measured(shape)) return false;
+  if (parts_->is_halfway) {
+    look(shape);
+    return true;
+  }
   shape.extent += parts_->field.bound(shape.extent);
   const std::uint64_t stamp = BlockShape::new_stamp();
-  BlockPass pass = pass_over(shape, shape.shape.data(), *parts_);
+  BlockPass pass = pass_over(has_places ? *parts_->places : shape, shape.shape.data(), *parts_);
+  if (has_places) pass.base = shape.shape.data();
   pass.new_bounds = shape.bounds.data();
   run(pass, *parts_, [&](std::size_t block, bool reached) {
     if (reached) shape.shape.set_stamp(block, stamp);
   });
   return true;
+}
+
+/// Of a field that is halfway.
+void BlockEvaluator::look(const BoundedShape& shape) noexcept {
+  BoundedShape& places = *parts_->places;
+  const std::uint64_t stamp = BlockShape::new_stamp();
+  BlockPass pass = pass_over(shape, places.shape.data(), *parts_);
+  pass.new_bounds = places.bounds.data();
+  run(pass, *parts_, [&](std::size_t block, bool reached) {
+    if (reached) {
+      places.shape.set_stamp(block, stamp);
+    } else {
+      places.shape.follow(shape.shape, block);
+      places.bounds[block] = shape.bounds[block];
+    }
+  });
+  places.extent = shape.extent + parts_->field.bound(shape.extent);
+  parts_->has_places = true;
 }
 
 std::size_t BlockEvaluator::count_pairs(const BoundedShape& shape) noexcept {

@@ -32,6 +32,8 @@ public:
   BlockEvaluator(BlockEvaluator&&) noexcept;
   BlockEvaluator& operator=(BlockEvaluator&&) noexcept;
 
+  /// Allocates for fields that are halfway (CsrbfField::is_halfway).
+  void make_room_for_halves(const BlockLayout& layout);
   /// Sets the field for the next calls. Returns false, and sets the zero field, if a number in it
   /// is not finite or is too large for float. Allocates only for more entries than ever before.
   bool set_field(const CsrbfField& field) noexcept;
@@ -39,7 +41,8 @@ public:
   /// from `from`. Returns false, and makes `to` equal to `from`, if the result might not be finite.
   bool displace(const BoundedShape& from, BlockShape& to) noexcept;
   /// Computes shape += s(shape), with its bounds and stamps. Returns false, and does nothing, if
-  /// the result might not be finite.
+  /// the result might not be finite. A field that is halfway is kept for the next call, which must
+  /// be for the same shape.
   bool displace(BoundedShape& shape) noexcept;
   /// Returns the number of pairs of a block and a support that reaches its bounds. displace() lists
   /// these pairs before it evaluates; each has 64 influences.
@@ -52,6 +55,7 @@ public:
 private:
   bool fits(const BoundedShape& shape) const noexcept;
   bool fits_measured(BoundedShape& shape) const noexcept;
+  void look(const BoundedShape& shape) noexcept;
 
   std::unique_ptr<Parts> parts_;
 };

@@ -82,6 +82,7 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
   const double error = float_error * largest_coefficient_ * std::sqrt(overlapping);
   const bool has_polynomial = usable && !field.polynomial.isZero(0.0);
   view_ = {.kernel = field.kernel,
+           .keep_volume = field.keep_volume,
            .centres = {x_.get(), y_.get(), z_.get(), squared_radius_.get(), names_.get(), count},
            .entries = entries_.data(),
            .precise_entries = error > tolerance_ || !in_range_ ? precise_entries_.data() : nullptr,
@@ -91,13 +92,16 @@ bool BlockField::assign(const CsrbfField& field, Zeros zeros) {
 
 /// At `at`, all in units.
 void BlockField::assign_entry(std::size_t at, const Eigen::Vector3d& centre, double radius,
-                              const Eigen::Vector3d& coefficient, Wendland kernel) {
+                              const Eigen::Vector3d& coefficient, const CsrbfField& field) {
+  const bool keeps_volume = field.keep_volume > 0.0;
   const double r = std::clamp(radius, 1.0 / most_units, most_units);
   const double inverse = 1.0 / r;
-  const Eigen::Vector3d scaled =
-      kernel_factor(kernel) * power(inverse, weight_power(kernel)) * coefficient;
+  const double factor =
+      keeps_volume ? 1.0 : kernel_factor(field.kernel) * power(inverse, weight_power(field.kernel));
+  const Eigen::Vector3d scaled = factor * coefficient;
+  const double inner = keeps_volume ? 15.0 * field.keep_volume * inverse * inverse : 1.25 * r;
   precise_entries_[at] = {
-      centre[0], centre[1], centre[2], r, inverse, 1.25 * r, {scaled[0], scaled[1], scaled[2]}};
+      centre[0], centre[1], centre[2], r, inverse, inner, {scaled[0], scaled[1], scaled[2]}};
   const FieldEntry<double>& entry = precise_entries_[at];
   entries_[at] = {as_float(centre[0]),
                   as_float(centre[1]),
@@ -126,10 +130,12 @@ bool BlockField::assign_entries(const CsrbfField& field, Zeros zeros) {
     const Eigen::Vector3d coefficient = field.coefficients.col(i) * inverse_unit_;
     const double radius = field.radii[i] * inverse_unit_;
     finite = finite && radius > 0.0 && centre.allFinite() && coefficient.allFinite();
-    const double largest = coefficient.cwiseAbs().maxCoeff();
+    // The matrices do not turn each coordinate by itself, and their norm is at most 1.
+    const double largest =
+        field.keep_volume > 0.0 ? coefficient.norm() : coefficient.cwiseAbs().maxCoeff();
     sum_of_coefficients_ += largest;
     largest_coefficient_ = std::max(largest_coefficient_, largest);
-    assign_entry(at, centre, radius, coefficient, field.kernel);
+    assign_entry(at, centre, radius, coefficient, field);
   }
   return finite;
 }

@@ -42,7 +42,7 @@ private:
   void reserve(Eigen::Index entries);
   bool assign_entries(const CsrbfField& field, Zeros zeros);
   void assign_entry(std::size_t at, const Eigen::Vector3d& centre, double radius,
-                    const Eigen::Vector3d& coefficient, Wendland kernel);
+                    const Eigen::Vector3d& coefficient, const CsrbfField& field);
 
   Eigen::Vector3d origin_;
   double inverse_unit_; ///< exact: units are powers of two

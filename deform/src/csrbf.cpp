@@ -2,6 +2,7 @@
 #include <cassert>
 
 #include "solver/csrbf_state.hpp"
+#include "solver/volume_assembly.hpp"
 #include "usable.hpp"
 
 namespace nendo::deform {
@@ -11,13 +12,25 @@ void CsrbfSolver::State::solve_in_place(Rows& a, Eigen::Matrix4d& b, const Eigen
   if (has_polynomial() && !is_polynomial_apart()) b += polynomial_.solve(a, sums);
 }
 
+void CsrbfSolver::State::take_right_side(const Points& displacements) {
+  right_side_.resize(rows_of(displacements.cols()), 4);
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const auto displacement = displacements.col(order_[k]);
+    if (!keeps_volume()) {
+      right_side_.row(row) << displacement.transpose(), 0.0;
+      continue;
+    }
+    right_side_.middleRows<3>(3 * row).setZero();
+    right_side_.block<3, 1>(3 * row, 0) = displacement;
+  }
+}
+
 FieldStatus CsrbfSolver::State::solve(const Points& displacements, CsrbfField& field) {
   assert(displacements.cols() == starts_.cols());
   if (!usable_) return FieldStatus::singular;
   if (!all_usable(displacements)) return FieldStatus::not_finite;
-  right_side_.resize(displacements.cols(), 4);
-  for (std::size_t k = 0; k < order_.size(); ++k)
-    right_side_.row(static_cast<Eigen::Index>(k)) << displacements.col(order_[k]).transpose(), 0.0;
+  take_right_side(displacements);
   Eigen::Matrix4d b = Eigen::Matrix4d::Zero();
   Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();
   if (is_polynomial_apart()) {
@@ -40,15 +53,32 @@ FieldStatus CsrbfSolver::State::solve(const Points& displacements, CsrbfField& f
   return merged_ ? FieldStatus::merged : FieldStatus::ok;
 }
 
+/// Of the start point that has this place in the order of elimination.
+Eigen::Vector3d CsrbfSolver::State::coefficient(Eigen::Index place) const {
+  if (keeps_volume()) return solution_.block<3, 1>(3 * place, 0);
+  return solution_.row(place).head<3>();
+}
+
+void CsrbfSolver::State::take_own_coefficients() {
+  own_coefficients_.resize(static_cast<Eigen::Index>(supports.own.size()), 4);
+  for (std::size_t e = 0; e < supports.own.size(); ++e) {
+    auto row = own_coefficients_.row(static_cast<Eigen::Index>(e));
+    if (keeps_volume()) {
+      const OwnSupport& own = ordered_supports_.own[e];
+      row << own_volume_coefficient(options_, ordered_starts_, own, solution_).transpose(), 0.0;
+    } else {
+      row = own_.coefficient(e, solution_);
+    }
+  }
+}
+
 /// The field in the order in which the start points came; not if it is not finite.
 bool CsrbfSolver::State::write(CsrbfField& field, const Eigen::Matrix4d& b) {
   // The square leaves room for sums and for the product with any usable coordinate.
   constexpr double largest_coefficient = largest_number * largest_number;
   Eigen::Matrix<double, 3, 4> polynomial = Eigen::Matrix<double, 3, 4>::Zero();
   if (has_polynomial()) polynomial = polynomial_.in_world(b);
-  own_coefficients_.resize(static_cast<Eigen::Index>(own_.size()), 4);
-  for (std::size_t e = 0; e < own_.size(); ++e)
-    own_coefficients_.row(static_cast<Eigen::Index>(e)) = own_.coefficient(e, solution_);
+  take_own_coefficients();
   double heaviest = 1.0;
   for (const Support& support : supports.shared)
     heaviest = std::max(heaviest, support.weight);
@@ -60,6 +90,8 @@ bool CsrbfSolver::State::write(CsrbfField& field, const Eigen::Matrix4d& b) {
   const Eigen::Index n = starts_.cols();
   const Eigen::Index functions = supports.functions(n);
   field.kernel = options_.kernel;
+  field.keep_volume = options_.keep_volume;
+  field.is_halfway = false;
   field.polynomial = polynomial;
   field.centres.resize(3, functions);
   field.radii.resize(functions);
@@ -70,7 +102,7 @@ bool CsrbfSolver::State::write(CsrbfField& field, const Eigen::Matrix4d& b) {
     field.radii.segment(begin, n).setConstant(support.radius);
     for (std::size_t k = 0; k < order_.size(); ++k)
       field.coefficients.col(begin + order_[k]) =
-          support.weight * solution_.row(static_cast<Eigen::Index>(k)).head<3>().transpose();
+          support.weight * coefficient(static_cast<Eigen::Index>(k));
     begin += n;
   }
   for (std::size_t e = 0; e < supports.own.size(); ++e) {

@@ -51,6 +51,10 @@ struct BlockEvaluator::Parts {
   std::array<ListRoom, 2> lists;
   std::vector<std::uint8_t> reached;
   std::optional<SpinWorker> worker;
+  /// Where vertices are asked for the next field, if the field before it was halfway.
+  std::optional<BoundedShape> places;
+  bool is_halfway = false; ///< the field is
+  bool has_places = false;
 
   /// Calls range(begin, end, thread) for pieces of `count` blocks. One thread takes them from the
   /// front and the other from the back until they meet, so that each finds most of its pieces in

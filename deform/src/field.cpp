@@ -39,4 +39,21 @@ void displace(const CsrbfField& field, const Points& points, Points& out) {
   }
 }
 
+void displace(std::span<const CsrbfField> fields, const Points& points, Points& out) {
+  out = points;
+  Points places; // where the next field is evaluated, if not where the points are
+  Points moved;
+  for (const CsrbfField& field : fields) {
+    if (field.is_halfway) {
+      displace(field, out, places);
+    } else if (places.size() == 0) {
+      displace(field, out, out);
+    } else {
+      displace(field, places, moved);
+      out += moved - places;
+      places.resize(3, 0);
+    }
+  }
+}
+
 } // namespace nendo::deform

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <nendo/deform/field.hpp>
+#include <nendo/deform/volume_kernel.hpp>
 
 namespace nendo::deform {
 
@@ -17,7 +18,15 @@ inline void add_term(const CsrbfField& field, Eigen::Index i, const Eigen::Vecto
   const double radius = field.radii[i];
   const double squared = (x - field.centres.col(i)).squaredNorm();
   if (!(squared < radius * radius)) return;
-  sum += wendland(field.kernel, std::sqrt(squared) / radius) * field.coefficients.col(i);
+  const double t = std::sqrt(squared) / radius;
+  if (field.keep_volume <= 0.0) {
+    sum += wendland(field.kernel, t) * field.coefficients.col(i);
+    return;
+  }
+  const Eigen::Vector3d u = (x - field.centres.col(i)) / radius;
+  const VolumeKernel kernel = volume_kernel(field.kernel, field.keep_volume, t);
+  sum += kernel.identity * field.coefficients.col(i) +
+         kernel.offset * u.dot(field.coefficients.col(i)) * u;
 }
 
 } // namespace nendo::deform

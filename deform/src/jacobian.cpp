@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <nendo/deform/volume_kernel.hpp>
+
 #include "simd/probe_kernels.hpp"
 
 namespace nendo::deform {
@@ -38,9 +40,15 @@ double largest_eigenvalue_bound(Eigen::Matrix3d matrix) noexcept {
   return scale * std::sqrt(std::sqrt(matrix.norm()));
 }
 
+/// Of the kernel with r = 1.
+double steepest_slope(const CsrbfField& field) noexcept {
+  const double slope = std::abs(wendland_slope(field.kernel, wendland_steepest_at(field.kernel)));
+  if (field.keep_volume <= 0.0) return slope;
+  return (1.0 - field.keep_volume) * slope + field.keep_volume * volume_kernel_steepest;
+}
+
 double steepest(const CsrbfField& field, Eigen::Index i) noexcept {
-  const double slope = wendland_slope(field.kernel, wendland_steepest_at(field.kernel));
-  return field.coefficients.col(i).norm() * std::abs(slope) / field.radii[i];
+  return field.coefficients.col(i).norm() * steepest_slope(field) / field.radii[i];
 }
 
 /// Let c_i be the centre nearest to x: then |x - c_j| >= |c_i - c_j| / 2, and beyond its steepest
@@ -54,7 +62,9 @@ double sum_bound(const CsrbfField& field) noexcept {
       const double apart = (field.centres.col(i) - field.centres.col(j)).norm();
       const double t = 0.5 * apart / field.radii[j];
       if (!(t < 1.0)) continue;
-      const double slope = wendland_slope(field.kernel, std::max(t, peak));
+      const double slope = field.keep_volume > 0.0
+                               ? steepest_slope(field) // it does not fall everywhere
+                               : wendland_slope(field.kernel, std::max(t, peak));
       sum += field.coefficients.col(j).norm() * std::abs(slope) / field.radii[j];
     }
     largest = std::max(largest, sum);
@@ -104,6 +114,18 @@ double native_bound(const CsrbfField& field) noexcept {
   return sum;
 }
 
+/// u: from the centre, in radii; not 0.
+void add_volume_term(const CsrbfField& field, Eigen::Index i, const Eigen::Vector3d& u,
+                     Eigen::Matrix3d& jacobian) noexcept {
+  const Eigen::Vector3d a = field.coefficients.col(i) / field.radii[i];
+  const VolumeKernel kernel = volume_kernel(field.kernel, field.keep_volume, u.norm());
+  const VolumeKernel slope = volume_kernel_slope(field.kernel, field.keep_volume, u.norm());
+  const double along = u.dot(a);
+  jacobian += (slope.identity * a + slope.offset * along * u) * u.transpose() +
+              kernel.offset * u * a.transpose();
+  jacobian.diagonal().array() += kernel.offset * along;
+}
+
 } // namespace
 
 Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) noexcept {
@@ -115,6 +137,10 @@ Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) n
     const double squared = offset.squaredNorm();
     if (!(squared < radius * radius) || squared == 0.0) continue;
     const double distance = std::sqrt(squared);
+    if (field.keep_volume > 0.0) {
+      add_volume_term(field, i, offset / radius, jacobian);
+      continue;
+    }
     const double slope = wendland_slope(field.kernel, distance / radius) / (radius * distance);
     jacobian.noalias() += field.coefficients.col(i) * (slope * offset).transpose();
   }
@@ -124,7 +150,10 @@ Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) n
 double lipschitz_bound(const CsrbfField& field) noexcept {
   const double affine = field.polynomial.rightCols<3>().norm();
   const double sum = sum_bound(field);
-  const double bound = affine + std::min(sum, native_bound(field));
+  // The native norm of matrix-valued kernels is another one.
+  const double native =
+      field.keep_volume > 0.0 ? std::numeric_limits<double>::infinity() : native_bound(field);
+  const double bound = affine + std::min(sum, native);
   const bool finite = std::isfinite(affine + sum) && field.coefficients.allFinite();
   return finite ? bound : std::numeric_limits<double>::infinity();
 }

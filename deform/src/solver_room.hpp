@@ -21,4 +21,9 @@ Supports rounded(Supports supports, const BlockLayout& layout);
 /// Returns, for each point, the least radius of the functions that have it as their centre.
 Eigen::VectorXd least_radii(const Supports& supports, Eigen::Index points);
 
+/// Tells whether strokes keep the volume, in midpoint steps.
+inline bool keeps_volume(const DeformerOptions& options) noexcept {
+  return options.csrbf.keep_volume > 0.0;
+}
+
 } // namespace nendo::deform

@@ -10,6 +10,17 @@
 
 namespace nendo::deform {
 
+namespace {
+
+constexpr int most_steps = 16; // of a way: four radii
+
+std::size_t most_fields_of_type1(const DeformerOptions& options) {
+  if (keeps_volume(options)) return 2 * static_cast<std::size_t>(most_steps);
+  return options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1;
+}
+
+} // namespace
+
 Type1Deformer::Type1Deformer(Points rest, Eigen::Index control_points,
                              const DeformerOptions& options)
     : Type1Deformer(std::make_unique<SculptedShape>(std::move(rest), options), control_points,
@@ -27,19 +38,24 @@ Type1Deformer::Type1Deformer(SculptedShape& shape, Eigen::Index control_points,
       displacements_(starts_), asked_(starts_),
       supports_(rounded(options.supports, shape.layout())), solver_(options.csrbf),
       field_(room_for_field(supports_, control_points, options.csrbf.kernel)),
-      fields_(options.injective ? static_cast<std::size_t>(options.injective->most_links) : 1,
-              field_),
+      fields_(most_fields_of_type1(options), field_),
       evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
                                                   options.evaluation)),
       weights_(std::make_unique<CardinalWeights>(shape.layout(), control_points, field_,
-                                                 options.evaluation.weight_bytes)) {
-  if (options.injective) {
+                                                 keeps_volume(options)
+                                                     ? 0 // they would be matrices
+                                                     : options.evaluation.weight_bytes)) {
+  if (keeps_volume(options)) {
+    steps_.emplace(control_points, supports_, options.csrbf, most_steps);
+    evaluator_->make_room_for_halves(shape.layout());
+  } else if (options.injective) {
     chain_.emplace(control_points, supports_, options.csrbf, *options.injective);
-    // Not of the present shape, which another thread may be changing.
-    linked_ = std::make_unique<BoundedShape>(shape.layout().pack());
   } else {
     make_room(solver_, supports_, control_points);
+    return;
   }
+  // Not of the present shape, which another thread may be changing.
+  linked_ = std::make_unique<BoundedShape>(shape.layout().pack());
 }
 
 Type1Deformer::~Type1Deformer() = default;
@@ -61,10 +77,12 @@ FieldStatus Type1Deformer::grab(const Points& starts) {
 FieldStatus Type1Deformer::build(const Points& starts) {
   for (Eigen::Index i = 0; i < starts.cols(); ++i)
     asked_.col(i) = shape_->layout().rounded(starts.col(i));
-  const FieldStatus status = chain_ ? chain_->grab(asked_) : solver_.build(asked_, supports_);
+  const FieldStatus status = steps_   ? steps_->grab(asked_)
+                             : chain_ ? chain_->grab(asked_)
+                                      : solver_.build(asked_, supports_);
   if (!is_solved(status)) {
     // The failed build took the place of the good one.
-    if (!chain_ && grabbed_ && status != FieldStatus::not_finite)
+    if (!steps_ && !chain_ && grabbed_ && status != FieldStatus::not_finite)
       solver_.build(rounded_, supports_);
     return status;
   }
@@ -86,6 +104,7 @@ void Type1Deformer::take_hold() {
 
 FieldStatus Type1Deformer::apply(const Points& ends, BlockShape& out) {
   assert(ends.cols() == starts_.cols());
+  if (grabbed_ && steps_) return apply_steps(ends, out);
   if (grabbed_ && chain_) return apply_links(ends, out);
   FieldStatus status = FieldStatus::singular;
   if (grabbed_) {
@@ -118,7 +137,7 @@ FieldStatus Type1Deformer::apply_links(const Points& ends, BlockShape& out) {
     const bool any = chain_->next();
     in_links_ = any && chain_->places() != asked_;
     if (in_links_) {
-      status = follow_links();
+      status = follow_links(*chain_);
     } else {
       field_ = chain_->field();
       if (any) fields_.push(field_);
@@ -132,17 +151,33 @@ FieldStatus Type1Deformer::apply_links(const Points& ends, BlockShape& out) {
   return status;
 }
 
+/// On failure, the shape is the last good one.
+FieldStatus Type1Deformer::apply_steps(const Points& ends, BlockShape& out) {
+  asked_ = ends - starts_;
+  FieldStatus status = steps_->go(asked_);
+  if (is_solved(status)) {
+    fields_.clear();
+    displacements_ = asked_;
+    in_links_ = steps_->next();
+    if (in_links_) status = follow_links(*steps_);
+    status = std::max(status, steps_->status());
+  }
+  draw(out);
+  return status;
+}
+
 /// From the first, which is made.
-FieldStatus Type1Deformer::follow_links() {
+template <class Chain>
+FieldStatus Type1Deformer::follow_links(Chain& chain) {
   FieldStatus status = FieldStatus::ok;
   linked_->follow(rest_shape());
   do {
-    const CsrbfField& link = chain_->field();
+    const CsrbfField& link = chain.field();
     if (evaluator_->set_field(link) && evaluator_->displace(*linked_))
       fields_.push(link);
     else
       status = FieldStatus::not_finite;
-  } while (chain_->next());
+  } while (chain.next());
   return status;
 }
 

@@ -16,8 +16,12 @@ namespace {
 
 static_assert(Type2Deformer::most_pieces == FingertipCurve::most_pieces);
 
+constexpr int most_steps_of_piece = 2;
+
 /// Of one call.
 std::size_t most_fields(const DeformerOptions& options) {
+  if (keeps_volume(options))
+    return static_cast<std::size_t>(2 * most_steps_of_piece * FingertipCurve::most_pieces);
   return static_cast<std::size_t>(options.injective ? options.injective->most_links
                                                     : FingertipCurve::most_pieces);
 }
@@ -51,6 +55,11 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
   if (options.brushes.rings && !options.brushes.are_all_pull())
     brushes_ = std::make_unique<BrushStroke>(shape.layout(), control_points, options);
   if (pulling_points_.empty()) return;
+  if (keeps_volume(options)) {
+    steps_.emplace(pulling_.cols(), supports_, options.csrbf, most_steps_of_piece);
+    evaluator_->make_room_for_halves(shape.layout());
+    return;
+  }
   make_room(solver_, supports_, pulling_.cols());
   if (!options.injective) return;
   chain_.emplace(pulling_.cols(), supports_, options.csrbf, *options.injective);
@@ -146,7 +155,8 @@ const Points& Type2Deformer::pulling(const Points& tips) {
 /// From current_ to next_.
 FieldStatus Type2Deformer::apply_piece() {
   FieldStatus status = FieldStatus::ok;
-  if (!pulling_points_.empty()) status = chain_ ? apply_links() : pull_piece();
+  if (!pulling_points_.empty())
+    status = steps_ ? apply_steps() : chain_ ? apply_links() : pull_piece();
   if (brushes_ && brushes_->go(current_, next_, shape_->parts().now)) {
     is_brushed_ = true;
     shape_->parts().is_changed = true;
@@ -163,6 +173,20 @@ FieldStatus Type2Deformer::pull_piece() {
   FieldStatus status = solver_.build(rounded_, supports_);
   if (is_solved(status)) status = solver_.solve(step_, field_);
   return is_solved(status) ? std::max(status, apply(field_)) : status;
+}
+
+/// As pull_piece(), but in midpoint steps.
+FieldStatus Type2Deformer::apply_steps() {
+  step_ = pulling(next_);
+  pulling(current_);
+  step_ -= pulling_;
+  for (Eigen::Index i = 0; i < pulling_.cols(); ++i)
+    rounded_.col(i) = shape_->layout().rounded(pulling_.col(i));
+  FieldStatus status = steps_->grab(rounded_);
+  if (is_solved(status)) status = std::max(status, steps_->go(step_));
+  while (is_solved(status) && steps_->next())
+    status = std::max(status, apply(steps_->field()));
+  return std::max(status, steps_->status());
 }
 
 FieldStatus Type2Deformer::apply(const CsrbfField& field) {

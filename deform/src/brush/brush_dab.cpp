@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include <nendo/deform/volume_kernel.hpp>
+
 namespace nendo::deform {
 
 namespace {
@@ -25,8 +27,8 @@ double square_distance(const BlockBounds& bounds, const Eigen::Vector3d& from) n
 
 } // namespace
 
-BrushDabs::BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel)
-    : rings_(std::move(rings)), kernel_(kernel) {
+BrushDabs::BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume)
+    : rings_(std::move(rings)), kernel_(kernel), keep_volume_(keep_volume) {
   reached_.reserve(rings_->vertex_count());
 }
 
@@ -52,7 +54,7 @@ bool BrushDabs::dab(const Dab& dab, BoundedShape& shape) noexcept {
   if (!find_plane(shape.shape)) return false;
   const double part = -std::expm1(-2.0 * std::abs(turns));
   move_each(shape.shape, [&](const Eigen::Vector3d& x, double weight) -> Eigen::Vector3d {
-    if (dab.brush == Brush::push) return -dab.way * weight * normal_;
+    if (dab.brush == Brush::push) return -dab.way * pushed((x - dab.centre) / dab.radius, weight);
     if (dab.brush == Brush::flatten) return -part * weight * normal_.dot(x - middle_) * normal_;
     const Eigen::Vector3d from_axis = x - middle_;
     return Eigen::AngleAxisd(turns * weight, normal_) * from_axis - from_axis;
@@ -100,6 +102,13 @@ bool BrushDabs::find_plane(const BlockShape& shape) noexcept {
   middle_ /= whole;
   normal_ /= length;
   return true;
+}
+
+/// Where the mean normal leads there: u, in radii from the centre.
+Eigen::Vector3d BrushDabs::pushed(const Eigen::Vector3d& u, double weight) const noexcept {
+  if (keep_volume_ <= 0.0) return weight * normal_;
+  const VolumeKernel kernel = volume_kernel(kernel_, keep_volume_, u.norm());
+  return kernel.identity * normal_ + kernel.offset * u.dot(normal_) * u;
 }
 
 template <class MoveOf>

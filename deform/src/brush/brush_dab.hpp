@@ -26,7 +26,7 @@ struct Dab {
 class BrushDabs {
 public:
   /// Allocates 32 bytes a vertex.
-  BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel);
+  BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume);
 
   /// Changes the shape, with its bounds and stamps. Returns false, and changes nothing, if no
   /// vertex is within reach or the result might not be finite.
@@ -46,12 +46,14 @@ private:
   void move_along_normals(double way) noexcept;
   void smooth(const Dab& dab, const BlockShape& shape) noexcept;
   void keep_volume() noexcept;
+  Eigen::Vector3d pushed(const Eigen::Vector3d& u, double weight) const noexcept;
   template <class MoveOf>
   void move_each(const BlockShape& shape, const MoveOf& move_of) noexcept;
   bool write(BoundedShape& shape) const noexcept;
 
   std::shared_ptr<const VertexRings> rings_;
   Wendland kernel_;
+  double keep_volume_;                               ///< of Brush::push (CsrbfOptions)
   std::vector<Reached> reached_;                     ///< in block order
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< of the reached surface
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero(); ///< its mean, of unit length

@@ -25,7 +25,7 @@ double reach_of(Eigen::Index point, const Supports& supports) {
 BrushStroke::BrushStroke(const BlockLayout& layout, Eigen::Index points,
                          const DeformerOptions& options)
     : layout_(layout), strength_(options.brushes.strength),
-      dabs_(options.brushes.rings, options.csrbf.kernel) {
+      dabs_(options.brushes.rings, options.csrbf.kernel, options.csrbf.keep_volume) {
   assert(options.brushes.of_points.size() == static_cast<std::size_t>(points));
   for (Eigen::Index point = 0; point < points; ++point) {
     const Brush brush = options.brushes.of_points[static_cast<std::size_t>(point)];

@@ -116,6 +116,106 @@ HWY_INLINE void displace_block(const FieldView& field, const FieldEntry<Real>* e
   }
 }
 
+/// The parts of volume_kernel.hpp that all centres share.
+template <class Real>
+struct VolumeParts {
+  Wendland air;
+  Real air_factor; ///< 1 - keep, with the kernel's constant factor
+  Real keep;
+};
+
+/// Returns psi / kernel_factor.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V air_weight(D d, Wendland air, V o) {
+  switch (air) {
+  case Wendland::c0:
+    return weight<Wendland::c0>(d, o);
+  case Wendland::c2:
+    return weight<Wendland::c2>(d, o);
+  case Wendland::c4:
+    return weight<Wendland::c4>(d, o);
+  case Wendland::c6:
+    break;
+  }
+  return weight<Wendland::c6>(d, o);
+}
+
+/// Adds (A I + B u u^T) a for each place: A a + B (u.a) u.
+template <bool has_air, class D, class V = hn::Vec<D>>
+HWY_INLINE void add_volume_entry(D d, const VolumeParts<hn::TFromD<D>>& parts,
+                                 const FieldEntry<hn::TFromD<D>>& entry,
+                                 const Vectors3<V> (&places)[abreast],
+                                 Vectors3<V> (&sums)[abreast]) {
+  using Real = hn::TFromD<D>;
+  const V one = hn::Set(d, Real(1));
+  const V inverse = hn::Set(d, entry.inverse_radius);
+  const Vectors3<V> a{hn::Set(d, entry.coefficient[0]), hn::Set(d, entry.coefficient[1]),
+                      hn::Set(d, entry.coefficient[2])};
+  for (std::size_t n = 0; n < abreast; ++n) {
+    const V x = hn::Sub(places[n].x, hn::Set(d, entry.x));
+    const V y = hn::Sub(places[n].y, hn::Set(d, entry.y));
+    const V z = hn::Sub(places[n].z, hn::Set(d, entry.z));
+    const V along = hn::MulAdd(x, a.x, hn::MulAdd(y, a.y, hn::Mul(z, a.z)));
+    const V t = hn::Mul(hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)))), inverse);
+    const V o = hn::Max(hn::Sub(one, t), hn::Zero(d));
+    const V o2 = hn::Mul(o, o);
+    const V o4 = hn::Mul(o2, o2);
+    const V linear = hn::NegMulAdd(hn::Set(d, Real(20)), t, hn::Set(d, Real(4)));
+    V w = hn::Mul(hn::Mul(hn::Set(d, parts.keep), o4), hn::MulAdd(t, linear, one));
+    if constexpr (has_air)
+      w = hn::MulAdd(hn::Set(d, parts.air_factor), air_weight(d, parts.air, o), w);
+    const V b = hn::Mul(hn::Mul(hn::Set(d, entry.inner), o4), along);
+    sums[n].x = hn::MulAdd(w, a.x, hn::MulAdd(b, x, sums[n].x));
+    sums[n].y = hn::MulAdd(w, a.y, hn::MulAdd(b, y, sums[n].y));
+    sums[n].z = hn::MulAdd(w, a.z, hn::MulAdd(b, z, sums[n].z));
+  }
+}
+
+/// Fields that keep the volume, which have no polynomial.
+template <bool has_air, class Real>
+struct VolumeDisplacement {
+  VolumeParts<Real> parts;
+  const FieldEntry<Real>* entries;
+  const BlockPass& pass;
+
+  HWY_INLINE void on_block(std::size_t block, const std::uint32_t* list, std::size_t size) {
+    pass.reached[block] = size > 0 ? 1 : 0;
+    if (size == 0) return;
+    const hn::ScalableTag<Real> d;
+    using V = hn::Vec<decltype(d)>;
+    const VertexBlock& from = pass.from[block];
+    const VertexBlock& base = pass.base == nullptr ? from : pass.base[block];
+    for (std::size_t lane = 0; lane < block_size; lane += abreast * hn::Lanes(d)) {
+      Vectors3<V> places[abreast];
+      Vectors3<V> sums[abreast];
+      load_places(d, from, lane, places);
+      for (Vectors3<V>& sum : sums)
+        sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+      for (std::size_t at = 0; at < size; ++at)
+        add_volume_entry<has_air>(d, parts, entries[list[at]], places, sums);
+      load_places(d, base, lane, places);
+      for (std::size_t n = 0; n < abreast; ++n)
+        places[n] = sum_of(places[n], sums[n]);
+      store_places(d, places, pass.to[block], lane, false);
+    }
+  }
+};
+
+template <class Real>
+void displace_keeping_volume(const FieldView& field, const FieldEntry<Real>* entries,
+                             const BlockPass& pass) {
+  const double air = 1.0 - field.keep_volume;
+  const VolumeParts<Real> parts{field.kernel, static_cast<Real>(air * kernel_factor(field.kernel)),
+                                static_cast<Real>(field.keep_volume)};
+  if (air > 0.0) {
+    VolumeDisplacement<true, Real> work{parts, entries, pass};
+    for_each_block(field.centres, pass, work);
+  } else {
+    VolumeDisplacement<false, Real> work{parts, entries, pass};
+    for_each_block(field.centres, pass, work);
+  }
+}
+
 template <Wendland kernel, class Real>
 struct Displacement {
   const FieldView& field;
@@ -152,6 +252,13 @@ void displace_with(const FieldView& field, const BlockPass& pass) {
 }
 
 void displace_any(const FieldView& field, const BlockPass& pass) {
+  if (field.keep_volume > 0.0) {
+    if (field.precise_entries != nullptr)
+      displace_keeping_volume(field, field.precise_entries, pass);
+    else
+      displace_keeping_volume(field, field.entries, pass);
+    return;
+  }
   switch (field.kernel) {
   case Wendland::c0:
     return displace_with<Wendland::c0>(field, pass);

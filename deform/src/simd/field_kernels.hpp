@@ -13,13 +13,14 @@ namespace nendo::deform {
 
 /// The numbers of a centre that the evaluation needs. Kernels are functions of o = max(1 - t, 0).
 /// c0 and c2 use r o instead, which saves a product; their coefficients are divided by the same
-/// power of r. The coefficients also contain the kernel's constant factor (kernel_factor).
+/// power of r. The coefficients also contain the kernel's constant factor (kernel_factor). Fields
+/// that keep the volume use o, and the coefficients as they are.
 template <class Real>
 struct FieldEntry {
   Real x, y, z;
   Real radius;
   Real inverse_radius;
-  Real inner; ///< 1.25 r
+  Real inner; ///< 1.25 r; of fields that keep the volume 15 keep / r^2
   std::array<Real, 3> coefficient;
 };
 
@@ -87,6 +88,7 @@ constexpr std::size_t list_room(std::size_t entries) noexcept {
 
 struct FieldView {
   Wendland kernel;
+  double keep_volume; ///< 0 to 1; above 0, the kernel is that of volume_kernel.hpp
   CentreArrays centres;
   const FieldEntry<float>* entries;
   const FieldEntry<double>* precise_entries; ///< used instead if not null: sums in double
@@ -99,6 +101,9 @@ struct FieldView {
 struct BlockPass {
   const VertexBlock* from;
   VertexBlock* to;
+  /// What the field's displacements at `from` are added to; null: `from`. Only for fields that keep
+  /// the volume.
+  const VertexBlock* base = nullptr;
   const BlockBounds* bounds; ///< of `from`
   BlockBounds* new_bounds;   ///< of `to`, where blocks were written; may be `bounds`, may be null
   std::uint8_t* reached;

@@ -38,14 +38,13 @@ void CsrbfSolver::State::reserve(Eigen::Index points) {
     each->shared.reserve(1);
     each->own.reserve(count);
   }
-  right_side_.resize(points, 4);
-  solution_.resize(points, 4);
-  correction_.resize(points, 4);
+  for (Rows* rows : {&right_side_, &solution_, &correction_})
+    rows->resize(rows_of(points), 4);
   if (has_polynomial()) polynomial_.reserve(points);
   if (points > lean_size) return;
   usable_ = false;
   if (!systems_[0]) systems_[0] = make_lean_system();
-  systems_[0]->reserve(points);
+  systems_[0]->reserve(rows_of(points));
 }
 
 /// Step 1: the start points along an octree, if there are many.
@@ -79,6 +78,9 @@ KernelSystem::Assembled CsrbfSolver::State::assemble(const OwnFunctions& own, Sy
     system = systems[at].get();
     return system->assemble(options_, ordered_starts_, ordered_supports_, own);
   };
+  if (keeps_volume() && n > most_volume_points) return KernelSystem::Assembled::too_dense;
+  if (keeps_volume())
+    return n <= lean_size ? assemble_in(0, make_lean_system) : assemble_in(1, make_dense_system);
   if (choices.storage == Storage::sparse ||
       (choices.storage == Storage::by_size && n > lean_size)) {
     const bool must = choices.storage == Storage::sparse;
@@ -122,7 +124,7 @@ FieldStatus CsrbfSolver::State::build(const Points& starts) {
   Laps laps(starts.cols() > lean_size);
   put_in_order(starts);
   effort.order_s = laps.lap();
-  if (!own_.evaluate(options_.kernel, ordered_starts_, ordered_supports_))
+  if (!keeps_volume() && !own_.evaluate(options_.kernel, ordered_starts_, ordered_supports_))
     return FieldStatus::too_dense;
   const auto assembled = assemble(own_, systems_, system_);
   effort.assembly_s = laps.lap();
@@ -131,7 +133,11 @@ FieldStatus CsrbfSolver::State::build(const Points& starts) {
   effort.analysis_s = laps.lap();
   const double shared_size = SharedKernel(options_.kernel, ordered_supports_).at(0.0);
   const double points = static_cast<double>(std::max<std::size_t>(order_.size(), 1));
-  FieldStatus status = factorise(*system_, shared_size + own_.trace() / points);
+  double own_size = own_.trace() / points;
+  if (keeps_volume())
+    for (const OwnSupport& own : supports.own)
+      own_size += own.support.weight / points;
+  FieldStatus status = factorise(*system_, shared_size + own_size);
   if (status == FieldStatus::ok && has_polynomial()) status = factorise_polynomial(shared_size);
   effort.factor_s = laps.lap();
   effort.matrix_entries = system_->matrix_entries();

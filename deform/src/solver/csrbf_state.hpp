@@ -30,7 +30,14 @@ public:
 private:
   using Systems = std::array<std::unique_ptr<KernelSystem>, 3>; ///< lean, dense, sparse
 
-  bool has_polynomial() const noexcept { return options_.polynomial != Polynomial::none; }
+  bool keeps_volume() const noexcept { return options_.keep_volume > 0.0; }
+  /// Of M: three a start point, where its entries are matrices.
+  Eigen::Index rows_of(Eigen::Index points) const noexcept {
+    return keeps_volume() ? 3 * points : points;
+  }
+  bool has_polynomial() const noexcept {
+    return options_.polynomial != Polynomial::none && !keeps_volume();
+  }
   /// Tells whether p(x) is solved apart. With own functions it cannot join M, since a solution
   /// would then not be certain for every choice. So p(x) is what the shared functions alone would
   /// make it, and all functions together make up the rest.
@@ -41,6 +48,9 @@ private:
   FieldStatus factorise(KernelSystem& system, double size);
   FieldStatus factorise_polynomial(double size);
   void solve_in_place(Rows& a, Eigen::Matrix4d& b, const Eigen::Matrix4d& sums);
+  void take_right_side(const Points& displacements);
+  Eigen::Vector3d coefficient(Eigen::Index place) const;
+  void take_own_coefficients();
   bool write(CsrbfField& field, const Eigen::Matrix4d& b);
 
   CsrbfOptions options_;

@@ -35,7 +35,7 @@ bool assemble_dense(const CsrbfOptions& options, const Points& starts, const Sup
     add_own(own, lower);
   }
   // The own functions' part of the diagonal is wanted as it is until all ties are found.
-  diagonal.setConstant(kernel.at(0.0));
+  diagonal.setConstant((1.0 + options.smoothing) * kernel.at(0.0));
   bool merged = false;
   for (Eigen::Index j = 0; j < n; ++j)
     for (Eigen::Index i = j + 1; i < n; ++i) {

@@ -2,6 +2,7 @@
 
 #include "solver/dense_assembly.hpp"
 #include "solver/kernel_system.hpp"
+#include "solver/volume_assembly.hpp"
 
 namespace nendo::deform {
 
@@ -11,9 +12,13 @@ class DenseSystem final : public KernelSystem {
 public:
   Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
                      const OwnFunctions& own) override {
-    lower_.resize(starts.cols(), starts.cols());
-    diagonal_.resize(starts.cols());
-    const bool merged = assemble_dense(options, starts, supports, own, lower_, diagonal_);
+    const bool keeps_volume = options.keep_volume > 0.0;
+    const Eigen::Index rows = keeps_volume ? 3 * starts.cols() : starts.cols();
+    lower_.resize(rows, rows);
+    diagonal_.resize(rows);
+    const bool merged = keeps_volume
+                            ? assemble_volume(options, starts, supports, lower_)
+                            : assemble_dense(options, starts, supports, own, lower_, diagonal_);
     return merged ? Assembled::merged : Assembled::ok;
   }
 

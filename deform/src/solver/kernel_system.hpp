@@ -15,7 +15,7 @@ public:
   enum class Assembled { ok, merged, too_dense };
 
   virtual ~KernelSystem() = default;
-  /// Allocates for this many points, in systems whose assemble() must not allocate.
+  /// Allocates for this many rows, in systems whose assemble() must not allocate.
   virtual void reserve(Eigen::Index) {}
   /// Assembles M. The start points are in the order of elimination, unless factorise() reorders
   /// them.
@@ -34,8 +34,8 @@ public:
   virtual Eigen::Index factor_entries() const noexcept = 0;
 };
 
-/// Returns a system for up to CsrbfSolver::lean_size points, which loops over storage that it
-/// keeps, without allocation once it has had room for as many.
+/// Returns a system for up to CsrbfSolver::lean_size points, which loops over storage that only
+/// grows: no allocation once it has had as many rows.
 std::unique_ptr<KernelSystem> make_lean_system();
 /// Returns a system that uses Eigen's blocked Cholesky.
 std::unique_ptr<KernelSystem> make_dense_system();

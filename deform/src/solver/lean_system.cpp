@@ -1,8 +1,8 @@
-#include <cassert>
 #include <vector>
 
 #include "solver/dense_assembly.hpp"
 #include "solver/kernel_system.hpp"
+#include "solver/volume_assembly.hpp"
 
 namespace nendo::deform {
 
@@ -10,19 +10,23 @@ namespace {
 
 class LeanSystem final : public KernelSystem {
 public:
-  void reserve(Eigen::Index points) override {
-    assert(points <= CsrbfSolver::lean_size);
-    n_ = points;
+  void reserve(Eigen::Index rows) override {
+    n_ = rows;
     lower_.resize(n_, n_);
     diagonal_.resize(n_);
-    factor_.resize(static_cast<std::size_t>(n_ * n_)); // as vectors do, it keeps what it had
-    inverse_pivots_.resize(static_cast<std::size_t>(n_));
+    if (n_ <= stride_) return;
+    stride_ = n_ + n_ % 2; // columns begin at whole SSE registers
+    factor_.resize(static_cast<std::size_t>(stride_ * stride_));
+    inverse_pivots_.resize(static_cast<std::size_t>(stride_));
   }
 
   Assembled assemble(const CsrbfOptions& options, const Points& starts, const Supports& supports,
                      const OwnFunctions& own) override {
-    reserve(starts.cols());
-    const bool merged = assemble_dense(options, starts, supports, own, lower_, diagonal_);
+    const bool keeps_volume = options.keep_volume > 0.0;
+    reserve(keeps_volume ? 3 * starts.cols() : starts.cols());
+    const bool merged = keeps_volume
+                            ? assemble_volume(options, starts, supports, lower_)
+                            : assemble_dense(options, starts, supports, own, lower_, diagonal_);
     return merged ? Assembled::merged : Assembled::ok;
   }
 
@@ -86,10 +90,11 @@ public:
 private:
   using Row = Eigen::RowVector4d;
   std::size_t index(Eigen::Index row, Eigen::Index column) const noexcept {
-    return static_cast<std::size_t>(column * n_ + row);
+    return static_cast<std::size_t>(column * stride_ + row);
   }
 
   Eigen::Index n_ = 0;
+  Eigen::Index stride_ = 0; ///< from one column of the factor to the next; never shrinks
   Eigen::MatrixXd lower_;
   Eigen::VectorXd diagonal_;
   std::vector<double> factor_;

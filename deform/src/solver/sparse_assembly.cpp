@@ -17,8 +17,8 @@ public:
           const OwnFunctions& own)
       : starts_(starts), own_(own), kernel_(options.kernel, supports), ties_(options, supports),
         reach_(std::max(kernel_.reach(), ties_.reach())), squared_reach_(squared_or_more(reach_)),
-        grid_(starts, reach_), own_diagonal_(starts.cols()),
-        ties_diagonal_(Eigen::VectorXd::Zero(starts.cols())),
+        grid_(starts, reach_), diagonal_((1.0 + options.smoothing) * kernel_.at(0.0)),
+        own_diagonal_(starts.cols()), ties_diagonal_(Eigen::VectorXd::Zero(starts.cols())),
         column_(static_cast<std::size_t>(starts.cols()), 0.0),
         in_use_(static_cast<std::size_t>(starts.cols()), 0),
         functions_of_(static_cast<std::size_t>(starts.cols())) {
@@ -50,7 +50,7 @@ public:
   void finish_diagonal(SparseLower& lower) const {
     for (Eigen::Index j = 0; j < lower.size(); ++j) {
       const auto at = static_cast<std::size_t>(lower.begins[static_cast<std::size_t>(j)]);
-      lower.values[at] = own_diagonal_[j] + (kernel_.at(0.0) + ties_diagonal_[j]);
+      lower.values[at] = own_diagonal_[j] + (diagonal_ + ties_diagonal_[j]);
     }
   }
 
@@ -98,6 +98,7 @@ private:
   double reach_;
   double squared_reach_;
   PointGrid grid_;
+  double diagonal_; ///< of the shared part
   Eigen::VectorXd own_diagonal_, ties_diagonal_;
   std::vector<double> column_;
   std::vector<char> in_use_;

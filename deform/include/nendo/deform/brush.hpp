@@ -16,7 +16,7 @@ namespace nendo::deform {
 enum class Brush : std::uint8_t {
   pull,    ///< the surface follows the fingertip
   none,    ///< nothing
-  push,    ///< the surface goes in, against its mean normal
+  push,    ///< the surface goes in, against its mean normal; with keep_volume it comes out nearby
   inflate, ///< each vertex goes out, along its own normal
   smooth,  ///< each vertex goes to the mean of its neighbours; the volume stays
   flatten, ///< the surface becomes the plane that fits it best

@@ -27,6 +27,12 @@ struct CsrbfOptions {
   /// continuous, and the field stays below about 0.25 / merge_fraction times the displacements, or
   /// five times that with several radii. Beyond this distance, interpolation is exact.
   double merge_fraction = 1e-6;
+  /// 0, air, to 1, clay (volume_kernel.hpp). Above 0 there is no polynomial, and one field keeps
+  /// the volume only as far as it is short: longer ways are for MidpointChain.
+  double keep_volume = 0.0;
+  /// Above 0, start points need not go exactly where they are told to: of a diagonal entry of the
+  /// equations, what is added to it. Points that come close together are then not torn apart.
+  double smoothing = 0.0;
 };
 
 enum class FieldStatus {
@@ -70,6 +76,8 @@ public:
   /// factor of more than `most_factor_entries`, which take 800 MB, is too_dense as well.
   static constexpr Eigen::Index most_dense_points = 4096;
   static constexpr Eigen::Index most_factor_entries = Eigen::Index{1} << 26;
+  /// With keep_volume, whose matrix has three rows a point, more points than this are too_dense.
+  static constexpr Eigen::Index most_volume_points = 1024;
   /// More pairs of an own function and a start point in its reach than this are too_dense.
   static constexpr std::size_t most_own_values = std::size_t{1} << 23;
 

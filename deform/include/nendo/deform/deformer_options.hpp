@@ -7,6 +7,7 @@
 #include <nendo/deform/brush.hpp>
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/injective_chain.hpp>
+#include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/deform/supports.hpp>
 #include <nendo/deform/undo_memory.hpp>
 

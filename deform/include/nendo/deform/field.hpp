@@ -1,6 +1,9 @@
 #pragma once
 // The displacement field of the paper (Sato, Savchenko, Ohbuchi 2004, section 2.4):
 //   s(x) = sum_i a_i psi(|x - c_i| / r_i) + p(x),   p(x) = b0 + b1 x + b2 y + b3 z.
+// With keep_volume, the matrices of volume_kernel.hpp are in the place of psi.
+
+#include <span>
 
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/wendland.hpp>
@@ -16,6 +19,10 @@ struct CsrbfField {
   Points coefficients;   ///< a_i, 3 by #centres
   Eigen::Matrix<double, 3, 4> polynomial =
       Eigen::Matrix<double, 3, 4>::Zero(); ///< p(x) = P (1, x, y, z)
+  double keep_volume = 0.0;                ///< 0, air, to 1, clay
+  /// The first half of a midpoint step. Nothing moves by it: the next field moves each x by what it
+  /// is at x + s(x).
+  bool is_halfway = false;
 
   /// Returns s(x).
   Eigen::Vector3d displacement_at(const Eigen::Vector3d& x) const noexcept;
@@ -25,5 +32,7 @@ struct CsrbfField {
 /// only if its size differs. Fields of 256 functions and more are evaluated with the help of a
 /// grid, which allocates memory; the result is the same to the last bit.
 void displace(const CsrbfField& field, const Points& points, Points& out);
+/// Applies fields one after another, with those that are halfway. `out` may be `points` itself.
+void displace(std::span<const CsrbfField> fields, const Points& points, Points& out);
 
 } // namespace nendo::deform

@@ -14,7 +14,8 @@ Eigen::Matrix3d jacobian_at(const CsrbfField& field, const Eigen::Vector3d& x) n
 /// coefficients. If L < 1, x -> x + s(x) is a homeomorphism of space: nothing folds, and nothing
 /// that was apart meets. L is the lesser of two bounds, each of which takes O(n^2) for n centres:
 ///   the largest sum of |a_i| max |psi'| / r_i over the supports that reach one place;
-///   the field's norm in the kernel's native space, which accounts for coefficients that cancel.
+///   the field's norm in the kernel's native space, which accounts for coefficients that cancel;
+///   not of fields that keep the volume.
 /// Returns infinity if the field is not finite.
 double lipschitz_bound(const CsrbfField& field) noexcept;
 
@@ -31,7 +32,7 @@ public:
   /// the axes where a field of this kernel with this centre alone is steepest. reserve() must have
   /// been called for ring_size * n points.
   void start_round(const Points& starts, const Eigen::VectorXd& radii, Wendland kernel) noexcept;
-  /// Takes the points through this field.
+  /// Takes the points through this field, which is not one that keeps the volume.
   void advance(const CsrbfField& field) noexcept;
 
   /// Returns the least determinant that any point has had since the start; 1 if there are no

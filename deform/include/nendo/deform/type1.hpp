@@ -25,7 +25,8 @@ class Type1Deformer {
 public:
   /// Allocates for the rest shape (3 by #vertices) and for `control_points` start points. With
   /// `injective`, every apply() goes straight from the start points in as many links as it takes,
-  /// so that the shape depends on the ends alone, also where a pair is held apart.
+  /// so that the shape depends on the ends alone, also where a pair is held apart. With keep_volume
+  /// it goes there in midpoint steps; the two do not go together, and `injective` is then left out.
   Type1Deformer(Points rest, Eigen::Index control_points, const DeformerOptions& options);
   /// Works on a shape that other deformers work on before or after it. Call release() or grab()
   /// before another one does. `shape` must outlive the deformer.
@@ -76,8 +77,8 @@ public:
   const BlockLayout& layout() const noexcept { return shape_->layout(); }
   const BlockShape& rest() const noexcept { return shape_->shape(); }
   /// Returns the fields that make the last apply()'s shape from the rest shape: one, or one for
-  /// each link. The centres are the start points rounded by BlockLayout::rounded(); those of later
-  /// links are where the link before leads.
+  /// each link, or two for each midpoint step. The centres are the start points rounded by
+  /// BlockLayout::rounded(); those of later links are where the link before leads.
   const FieldSequence& fields() const noexcept { return fields_; }
   /// Returns what the last apply() took; all is 0 unless the deformer is injective.
   ChainReport report() const noexcept { return chain_ ? chain_->report() : ChainReport{}; }
@@ -90,7 +91,9 @@ private:
   const BoundedShape& rest_shape() const noexcept;
   void absorb();
   FieldStatus apply_links(const Points& ends, BlockShape& out);
-  FieldStatus follow_links();
+  FieldStatus apply_steps(const Points& ends, BlockShape& out);
+  template <class Chain>
+  FieldStatus follow_links(Chain& chain);
   FieldStatus build(const Points& starts);
   CsrbfSolver& solver() noexcept { return chain_ ? chain_->start_solver() : solver_; }
   void take_hold();
@@ -109,6 +112,7 @@ private:
   std::unique_ptr<BlockEvaluator> evaluator_;
   std::unique_ptr<CardinalWeights> weights_;
   std::optional<InjectiveChain> chain_;
+  std::optional<MidpointChain> steps_;   ///< with keep_volume
   std::unique_ptr<BoundedShape> linked_; ///< the shape that a chain of several links makes
   bool in_links_ = false;                ///< the last apply() made it so
   bool grabbed_ = false;

@@ -32,7 +32,8 @@ public:
 
   /// Allocates for the shape (3 by #vertices) and for `control_points` fingertips. piece_length is
   /// > 0, in model units. With `injective`, a piece is made in as many links as it takes; a call
-  /// makes at most InjectiveOptions::most_links, and the rest waits for the next call.
+  /// makes at most InjectiveOptions::most_links, and the rest waits for the next call. With
+  /// keep_volume it is made in one midpoint step or two, and `injective` is left out.
   Type2Deformer(Points shape, Eigen::Index control_points, double piece_length,
                 const DeformerOptions& options);
   /// Works on a shape that other deformers work on before or after it. Call release() before
@@ -105,6 +106,7 @@ private:
   FieldStatus pull_piece();
   FieldStatus apply_piece();
   FieldStatus apply_links();
+  FieldStatus apply_steps();
   FieldStatus apply(const CsrbfField& field);
 
   std::unique_ptr<SculptedShape> own_; ///< null if it was given
@@ -122,6 +124,7 @@ private:
   FieldSequence fields_;
   std::unique_ptr<BlockEvaluator> evaluator_;
   std::optional<InjectiveChain> chain_;
+  std::optional<MidpointChain> steps_; ///< with keep_volume
   int most_links_ = 0;
   ChainReport report_;
   std::unique_ptr<BrushStroke> brushes_; ///< null: all pull, or do nothing

@@ -1,0 +1,57 @@
+#pragma once
+// Long ways of fields that keep the volume. A field without divergence keeps it only while it is a
+// velocity. So a way is cut into steps, each by the midpoint rule: a point is asked for the field
+// half a step on, at the place where the field at its beginning leads by then. Both fields
+// interpolate there, so start points go exactly where they are told to, step by step.
+
+#include <array>
+
+#include <nendo/deform/csrbf.hpp>
+
+namespace nendo::deform {
+
+/// Call go(), then apply field() to the shape as long as next() is true, in the order in which
+/// displace() applies several fields. A step has two, of which the first is halfway. After the
+/// constructor nothing allocates, locks or calls the system, up to CsrbfSolver::lean_size points.
+class MidpointChain {
+public:
+  /// Of the least radius. A quarter leaves 0.01 % of the volume of a stroke of one radius. Steps
+  /// end at whole multiples of it, and the last is what remains: the shape is continuous in the
+  /// way.
+  static constexpr double step_length = 0.25;
+
+  /// A way longer than `most_steps` such steps is cut into so many longer ones.
+  MidpointChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf, int most_steps);
+  ~MidpointChain();
+  MidpointChain(MidpointChain&&) noexcept;
+  MidpointChain& operator=(MidpointChain&&) noexcept;
+
+  /// Freezes the start points (3 by points). On failure, the last good ones stay.
+  FieldStatus grab(const Points& starts);
+  /// Goes straight from the start points by these displacements (3 by points). If one is not
+  /// usable, no step follows.
+  FieldStatus go(const Points& displacements) noexcept;
+  /// Makes the next field. Returns false if there is none, or if the step to it has no solution,
+  /// which status() then tells.
+  bool next() noexcept;
+
+  const CsrbfField& field() const noexcept { return fields_[is_halfway_ ? 0 : 1]; }
+  /// Returns the worst status of all steps of the last way.
+  FieldStatus status() const noexcept { return status_; }
+
+private:
+  FieldStatus make_step(double part) noexcept;
+
+  Supports supports_;
+  double most_length_;                 ///< of a step
+  std::array<CsrbfSolver, 2> solvers_; ///< one has the start points' factor
+  std::size_t kept_ = 0;               ///< which is the start points'
+  Points starts_, displacements_, places_, step_;
+  std::array<CsrbfField, 2> fields_; ///< of a step: halfway, and the whole
+  int most_steps_;
+  double done_ = 0.0, part_ = 1.0; ///< of the way; of it in a step
+  bool is_halfway_ = false;        ///< of a step the first field was the last
+  FieldStatus status_ = FieldStatus::singular;
+};
+
+} // namespace nendo::deform
