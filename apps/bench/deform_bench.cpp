@@ -1,6 +1,6 @@
 // nendo bench deform: both types of deformation beside a plain loop that the compiler vectorises,
-// on the meshes and radii of the paper's Table 1, and models of a million and ten million vertices
-// beside two floors.
+// on the meshes and radii of the paper's Table 1; clay beside air; and models of a million and ten
+// million vertices beside two floors.
 
 #include <algorithm>
 #include <cstdio>
@@ -96,6 +96,29 @@ void bench_large(int cells, int repetitions, bool json) {
     print_large(measure_large(cells, repetitions), json);
 }
 
+void print_volume(const VolumeTimes& times, bool json) {
+  if (json) {
+    const nlohmann::ordered_json object{{"vertices", times.vertices},
+                                        {"air_ns_an_influence", times.air_ns},
+                                        {"between_ns_an_influence", times.between_ns},
+                                        {"clay_ns_an_influence", times.clay_ns},
+                                        {"type1_us", times.type1_us},
+                                        {"type1_evaluated_us", times.evaluated1_us},
+                                        {"type1_clay_us", times.type1_clay_us},
+                                        {"type2_us", times.type2_us},
+                                        {"type2_clay_us", times.type2_clay_us}};
+    std::cout << object.dump() << std::endl;
+    return;
+  }
+  std::printf("\n%zu vertices, ten supports that reach all of them, a way of a third of a radius\n"
+              "  an influence: air %.3f ns, half of each %.3f ns, clay %.3f ns, %.2f times air\n"
+              "  type 1: air %.0f us, evaluated %.0f us, clay %.0f us\n"
+              "  type 2, a piece of a twentieth of a radius: air %.0f us, clay %.0f us\n",
+              times.vertices, times.air_ns, times.between_ns, times.clay_ns,
+              times.clay_ns / times.air_ns, times.type1_us, times.evaluated1_us,
+              times.type1_clay_us, times.type2_us, times.type2_clay_us);
+}
+
 int bench_deform(const Options& options) {
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
   const int repetitions = options.short_form ? 3 : 60;
@@ -113,6 +136,7 @@ int bench_deform(const Options& options) {
                    : print_cell_text(plane.cols(), radius, times);
     }
   }
+  print_volume(measure_volume(options.short_form ? 63 : 223, repetitions), options.json);
   if (options.short_form) {
     bench_large(150, repetitions, options.json);
   } else {

@@ -161,4 +161,77 @@ LargeTimes measure_large(int cells, int repetitions) {
   return times;
 }
 
+namespace {
+
+double ns_of_volume(const Points& mesh, const Points& starts, double radius, double keep_volume,
+                    int repetitions) {
+  const BlockLayout layout(mesh);
+  const BoundedShape rest(layout.pack());
+  BlockShape out = rest.shape;
+  BlockEvaluator evaluator(layout, starts.cols(), {});
+  CsrbfField field;
+  field.keep_volume = keep_volume;
+  field.centres = starts;
+  field.radii = Eigen::VectorXd::Constant(starts.cols(), radius);
+  field.coefficients = Points::Constant(3, starts.cols(), 0.01 * radius);
+  evaluator.set_field(field);
+  Best best;
+  for (int n = 0; n < repetitions; ++n)
+    best.measure(layout.vertex_count(), [&](std::size_t) { evaluator.displace(rest, out); });
+  return 1e3 * best.us() /
+         static_cast<double>(static_cast<std::size_t>(starts.cols()) * layout.vertex_count());
+}
+
+double us_of_type1(const Points& mesh, const Points& starts, const Points& way, double radius,
+                   double keep_volume, std::size_t weight_bytes, int repetitions) {
+  Type1Deformer deformer(mesh, starts.cols(), radius, {.keep_volume = keep_volume},
+                         {.weight_bytes = weight_bytes});
+  BlockShape out = deformer.rest();
+  deformer.grab(starts);
+  Best best;
+  for (int n = 0; n < repetitions; ++n)
+    best.measure(static_cast<std::size_t>(mesh.cols()), [&](std::size_t k) {
+      deformer.apply(starts + (1.0 - 0.01 * static_cast<double>(k % 10)) * way, out);
+    });
+  return best.us();
+}
+
+/// Back and forth, a piece a call.
+double us_of_type2(const Points& mesh, const Points& starts, const Points& way, double radius,
+                   double keep_volume, int repetitions) {
+  const double longest = std::sqrt(way.colwise().squaredNorm().maxCoeff());
+  const double piece = radius / 20.0;
+  Type2Deformer deformer(mesh, starts.cols(), radius, piece, {.keep_volume = keep_volume});
+  deformer.begin(starts);
+  Best best;
+  std::size_t step = 0;
+  for (int n = 0; n < repetitions; ++n)
+    best.measure(static_cast<std::size_t>(mesh.cols()), [&](std::size_t) {
+      deformer.end_at(starts + (++step % 2 == 0 ? 0.0 : piece / longest) * way);
+    });
+  return best.us();
+}
+
+} // namespace
+
+VolumeTimes measure_volume(int cells, int repetitions) {
+  const Points mesh = reference::table1_plane(cells);
+  const Points starts = reference::spread_starts();
+  const double radius = 200.0; // the plane's is 50
+  Points way(3, starts.cols());
+  way.colwise() = radius / 3.0 * Eigen::Vector3d(0.6, 0.0, -0.8);
+  VolumeTimes times;
+  times.vertices = static_cast<std::size_t>(mesh.cols());
+  times.air_ns = ns_of_volume(mesh, starts, radius, 0.0, repetitions);
+  times.between_ns = ns_of_volume(mesh, starts, radius, 0.5, repetitions);
+  times.clay_ns = ns_of_volume(mesh, starts, radius, 1.0, repetitions);
+  const std::size_t weights = deform::EvaluationOptions{}.weight_bytes;
+  times.type1_us = us_of_type1(mesh, starts, way, radius, 0.0, weights, repetitions);
+  times.evaluated1_us = us_of_type1(mesh, starts, way, radius, 0.0, 0, repetitions);
+  times.type1_clay_us = us_of_type1(mesh, starts, way, radius, 1.0, 0, repetitions);
+  times.type2_us = us_of_type2(mesh, starts, way, radius, 0.0, repetitions);
+  times.type2_clay_us = us_of_type2(mesh, starts, way, radius, 1.0, repetitions);
+  return times;
+}
+
 } // namespace nendo::bench

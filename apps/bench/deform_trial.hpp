@@ -40,4 +40,20 @@ struct LargeTimes {
 
 LargeTimes measure_large(int cells, int repetitions);
 
+/// Ten supports that reach all of a model, whose start points go a third of a radius: what it costs
+/// to keep the volume.
+struct VolumeTimes {
+  std::size_t vertices = 0;
+  double air_ns = 0.0;     ///< an influence
+  double between_ns = 0.0; ///< with keep_volume of a half
+  double clay_ns = 0.0;
+  double type1_us = 0.0;      ///< a tick, with weights if there is room for them
+  double evaluated1_us = 0.0; ///< without
+  double type1_clay_us = 0.0;
+  double type2_us = 0.0; ///< a piece of a twentieth of a radius
+  double type2_clay_us = 0.0;
+};
+
+VolumeTimes measure_volume(int cells, int repetitions);
+
 } // namespace nendo::bench

@@ -51,10 +51,9 @@ nlohmann::ordered_json key_json(const Timeline& timeline, const HandTrack& hand,
 }
 
 nlohmann::ordered_json settings_json(const flow::LoopSettings& settings) {
-  return {{"mode", name_of(settings.mode)},
-          {"kernel", deform::name_of(settings.kernel)},
-          {"injective", settings.injective},
-          {"radius_m", settings.radius_m},
+  return {{"mode", name_of(settings.mode)},           {"kernel", deform::name_of(settings.kernel)},
+          {"injective", settings.injective},          {"keep_volume", settings.keep_volume},
+          {"hold", flow::name_of(settings.hold)},     {"radius_m", settings.radius_m},
           {"piece_fraction", settings.piece_fraction}};
 }
 

@@ -5,11 +5,13 @@
 #include <optional>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include <nendo/deform/control_vectors.hpp>
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/injective_chain.hpp>
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/midpoint_chain.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
@@ -77,6 +79,32 @@ Result<FieldStatus> deform_at_once(Points& vertices, const ControlVectors& vecto
     return Error{Errc::bad_input, options.vectors + ": " + std::string(describe(status))};
   displace(field, vertices, vertices);
   return status;
+}
+
+/// Of ways of 64 radii; longer ones take longer steps.
+constexpr int most_volume_steps = 256;
+
+Result<FieldStatus> deform_keeping_volume(Points& vertices, const ControlVectors& vectors,
+                                          const Supports& supports, const CsrbfOptions& csrbf,
+                                          const Options& options) {
+  MidpointChain chain(vectors.starts.cols(), supports, csrbf, most_volume_steps);
+  FieldStatus status = chain.grab(vectors.starts);
+  if (is_solved(status)) status = std::max(status, chain.go(vectors.displacements));
+  std::vector<CsrbfField> step;
+  while (is_solved(status) && chain.next()) {
+    step.push_back(chain.field());
+    if (step.back().is_halfway) continue;
+    displace(step, vertices, vertices);
+    step.clear();
+  }
+  status = std::max(status, chain.status());
+  if (is_solved(status)) return status;
+  const bool many = vectors.starts.cols() > CsrbfSolver::most_volume_points;
+  return Error{Errc::bad_input,
+               options.vectors + ": " +
+                   (many ? "--keep-volume takes at most " +
+                               std::to_string(CsrbfSolver::most_volume_points) + " control vectors"
+                         : std::string(describe(status)))};
 }
 
 /// Ordinary strokes need ten; thousands mean displacements of thousands of radii.
@@ -153,6 +181,8 @@ Result<void> check_out(const Options& options) {
 Result<void> deform_file(const Options& options) {
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
+  if (options.injective && csrbf->keep_volume > 0.0)
+    return Error{Errc::usage, std::string(session::keep_volume_or_injective)};
   if (const auto fine = check_out(options); !fine) return fine.error();
   auto mesh = read_mesh(options.mesh);
   if (!mesh) return mesh.error();
@@ -163,9 +193,10 @@ Result<void> deform_file(const Options& options) {
   note_oddities(*mesh, *vectors, *supports, options);
 
   const Points before = mesh->vertices;
-  const auto status = options.injective
-                          ? deform_in_links(mesh->vertices, *vectors, *supports, *csrbf, options)
-                          : deform_at_once(mesh->vertices, *vectors, *supports, *csrbf, options);
+  const auto by = csrbf->keep_volume > 0.0 ? deform_keeping_volume
+                  : options.injective      ? deform_in_links
+                                           : deform_at_once;
+  const auto status = by(mesh->vertices, *vectors, *supports, *csrbf, options);
   if (!status) return status.error();
   if (*status == FieldStatus::merged) {
     cli::note(options.vectors +

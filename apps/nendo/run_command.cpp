@@ -34,6 +34,7 @@ struct CommandOptions {
   session::RunOptions run;
   std::string radius;
   std::string mode; ///< empty: type1, or type2 with a brush
+  std::string hold = "tips";
   std::string switch_action = "none";
   session::FilterArguments filter;
   session::KernelArguments kernel;
@@ -173,6 +174,17 @@ Result<void> check(CommandOptions& options) {
   const auto csrbf = options.kernel.parse();
   if (!csrbf) return csrbf.error();
   run.loop.sculptor.deformer.csrbf = *csrbf;
+  if (options.injective && csrbf->keep_volume > 0.0)
+    return Error{Errc::usage, std::string(session::keep_volume_or_injective)};
+  const auto hold = flow::hold_named(options.hold);
+  if (!hold) return Error{Errc::usage, "--hold " + options.hold + ": unknown; use tips or hand"};
+  run.loop.sculptor.hold = *hold;
+  if (*hold == flow::Hold::hand && run.loop.sculptor.mode == flow::Mode::type2)
+    return Error{Errc::usage,
+                 "--hold hand: type 2 follows the ways of fingertips; use --mode type1"};
+  if (*hold == flow::Hold::hand && csrbf->keep_volume > 0.0)
+    return Error{Errc::usage, "--hold hand and --keep-volume: 90 points with matrices take longer "
+                              "than a tick has; give one of them"};
   if (options.injective && options.not_injective)
     return Error{Errc::usage, "--injective and --no-injective: give one of them"};
   if (!(run.loop.rate_hz >= flow::TickGrid::least_rate_hz &&
@@ -193,6 +205,14 @@ Result<void> check(CommandOptions& options) {
   if (run.out.empty()) run.out = dated_name();
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine;
   if (auto fine = read_puppet(options); !fine) return fine;
+  if (run.puppet && *hold == flow::Hold::hand)
+    return Error{Errc::usage, "--hold hand: a puppet's own points move it; leave it out"};
+  if (run.puppet && csrbf->keep_volume > 0.0 && run.puppet->distance != puppet::Distance::air &&
+      run.loop.sculptor.mode == flow::Mode::type1)
+    return Error{Errc::usage, "--keep-volume: " + run.puppet_file +
+                                  " measures its distances along the surface, where no kernel is "
+                                  "known that keeps the volume; use --mode type2, or distance = "
+                                  "\"air\" in it"};
   if (auto fine = read_take(options); !fine) return fine;
   if (run.mesh.empty() && !run.over) run.mesh = cli::shipped_model("moai.obj").string();
   if (options.view.window && run.out_puppet.file.empty() && !run.over)
@@ -330,6 +350,9 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
   gloves::add_calibration_options(command, run_options.calibration);
   gloves::add_hand_length(command, run_options.length);
   session::add_kernel_options(command, options.kernel);
+  command.add_option("--hold", options.hold,
+                     "What of a hand holds the model in type 1: tips, or hand, 45 points all over "
+                     "it");
   command.add_flag("--injective", options.injective,
                    "Never fold: in links that each stay injective; fingertips whose ways cross are "
                    "held apart. By default with models of up to " +
@@ -376,10 +399,10 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
   command.add_option("--frames", options->view.frames,
                      "The window's pictures after which it ends; 0: when it is closed");
   command.on_chosen([options, command] {
-    options->decided_by_take =
-        command.first_given({"--puppet", "--mode", "--radius", "--kernel", "--polynomial",
-                             "--injective", "--no-injective", "--rate", "--policy", "--switch",
-                             "--filter", "--filter-min-cutoff", "--filter-beta"});
+    options->decided_by_take = command.first_given(
+        {"--puppet", "--mode", "--radius", "--kernel", "--polynomial", "--keep-volume", "--hold",
+         "--injective", "--no-injective", "--rate", "--policy", "--switch", "--filter",
+         "--filter-min-cutoff", "--filter-beta"});
     return run(*options);
   });
 }

@@ -77,10 +77,13 @@ std::size_t FrameRecord::put_field(const deform::CsrbfField& field, std::size_t 
   const std::size_t end = at + field_words + functions * function_words;
   if (end > words_.size()) return 0;
   nendo_publish_field head{};
-  head.kernel = kernel_number(field.kernel);
+  const bool keeps_volume = field.keep_volume > 0.0;
+  head.kernel = kernel_number(field.kernel) | (keeps_volume ? NENDO_PUBLISH_KEEPS_VOLUME : 0U) |
+                (field.is_halfway ? NENDO_PUBLISH_HALFWAY : 0U);
   head.functions = static_cast<std::uint32_t>(functions);
   const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = field.polynomial;
   std::memcpy(head.polynomial, rows.data(), sizeof head.polynomial);
+  if (keeps_volume) head.polynomial[0] = field.keep_volume;
   std::memcpy(&words_[at], &head, sizeof head);
   at += field_words;
   for (Eigen::Index n = 0; n < field.centres.cols(); ++n, at += function_words) {

@@ -144,8 +144,14 @@ Result<deform::CsrbfOptions> KernelArguments::parse() const {
     return Error{Errc::usage,
                  "--polynomial " + polynomial + ": unknown; use none, constant or linear"};
   }
+  if (!(keep_volume >= 0.0 && keep_volume <= 1.0))
+    return Error{Errc::usage, "--keep-volume: use 0, air, to 1, clay"};
+  if (keep_volume > 0.0 && *known_polynomial != deform::Polynomial::none)
+    return Error{Errc::usage, "--keep-volume and --polynomial " + polynomial +
+                                  ": a polynomial stretches the whole model; leave it out"};
   options.kernel = *known_kernel;
   options.polynomial = *known_polynomial;
+  options.keep_volume = keep_volume;
   return options;
 }
 
@@ -154,6 +160,8 @@ void add_kernel_options(cli::Command& command, KernelArguments& arguments) {
                      "wendland-c0, wendland-c2, wendland-c4 or wendland-c6");
   command.add_option("--polynomial", arguments.polynomial,
                      "none, constant or linear; anything but none moves the whole model");
+  command.add_option("--keep-volume", arguments.keep_volume,
+                     "From 0, air, to 1, clay: what is pressed in comes out nearby");
 }
 
 Result<void> BrushArguments::parse(const std::string& mode, flow::SculptorOptions& sculptor) const {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -46,14 +47,19 @@ struct FilterArguments {
 };
 void add_filter_options(cli::Command& command, FilterArguments& arguments);
 
-/// The options --kernel and --polynomial.
+/// The options --kernel, --polynomial and --keep-volume.
 struct KernelArguments {
   std::string kernel = "wendland-c2";
   std::string polynomial = "none";
+  double keep_volume = 0.0;
 
   /// Error: usage, naming the known names.
   Result<deform::CsrbfOptions> parse() const;
 };
+/// Why --keep-volume and --injective do not go together.
+inline constexpr std::string_view keep_volume_or_injective =
+    "--keep-volume and --injective: links are cut for kernels without matrices; give one of them. "
+    "The steps of --keep-volume are short enough for a lone finger not to fold the surface";
 void add_kernel_options(cli::Command& command, KernelArguments& arguments);
 
 /// The options --brush and --strength.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <nendo/flow/finger_supports.hpp>
+#include <nendo/hand/held_points.hpp>
 
 namespace nendo::session {
 namespace {
@@ -173,10 +174,10 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
-  const auto points =
-      (rig ? rig->starts().cols()
-           : 5 * static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs))) +
-      placed.setup.spare_points;
+  const auto points = (rig ? rig->starts().cols()
+                           : static_cast<Eigen::Index>(hand::held_point_count *
+                                                       flow::count_hands(placed.setup.inputs))) +
+                      placed.setup.spare_points;
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions =

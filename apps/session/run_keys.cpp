@@ -29,7 +29,8 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "redoes, x "
       "resets; " +
       std::string("[ and ] make the radii smaller, larger; m the other mode, n the next kernel, ") +
-      "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; e "
+      "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; z "
+      "more clay, from all to air; j the whole hand holds, or its tips; e "
       "makes the model finer; t records; . marks the moment; o punches a layer in or out; s saves; "
       "comma and quote let one hand go of a puppet, y plays both its sides by one; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
@@ -66,6 +67,8 @@ void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::Command
   if (key == 'n') wanted_.next_kernel();
   if (key == 'i') wanted_.toggle_folding();
   if (key == 'w') wanted_.next_brush();
+  if (key == 'z') wanted_.next_volume();
+  if (key == 'j') wanted_.toggle_hold();
   if (key == '-') wanted_.weaken();
   if (key == '=') wanted_.strengthen();
   const auto command = wanted_.ask();
@@ -73,10 +76,14 @@ void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::Command
   commands.try_push(*command);
   const auto [least, most] =
       std::minmax_element(wanted_.now.radius_m.begin(), wanted_.now.radius_m.end());
-  report(fmt::format("{}{}, {}, {}, radius {:.1f}{} cm", name_of(wanted_.now.mode),
-                     brush_words(wanted_.now), deform::name_of(wanted_.now.kernel),
-                     wanted_.now.injective ? "never folds" : "may fold", 100.0 * *least,
-                     *least == *most ? std::string() : fmt::format(" to {:.1f}", 100.0 * *most)));
+  report(fmt::format(
+      "{}{}{}, {}, {}, radius {:.1f}{} cm", name_of(wanted_.now.mode),
+      wanted_.now.hold == flow::Hold::hand ? ", whole hand" : "", brush_words(wanted_.now),
+      deform::name_of(wanted_.now.kernel),
+      wanted_.now.keep_volume > 0.0 ? fmt::format("{:g} of clay", wanted_.now.keep_volume)
+      : wanted_.now.injective       ? "never folds"
+                                    : "may fold",
+      100.0 * *least, *least == *most ? std::string() : fmt::format(" to {:.1f}", 100.0 * *most)));
 }
 
 // The loop is asked in any case, because it may be a few ticks ahead of `steps`.

@@ -145,7 +145,8 @@ void print_filter(const hand::FilterOptions& filter, const flow::LoopStats& stat
 }
 
 void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
-  if (!options.loop.sculptor.deformer.injective) return;
+  const auto& deformer = options.loop.sculptor.deformer;
+  if (!deformer.injective || deformer.csrbf.keep_volume > 0.0) return;
   if (options.verbose)
     print_row("injective", fmt::format("at most {} links a tick, bound in one step {:.3g}, least "
                                        "determinant {:.3g}; fingertips held apart in {} ticks",
@@ -185,6 +186,12 @@ std::string brush_words(const flow::SculptorOptions& sculptor) {
          fmt::format(" at strength {:g}", sculptor.brush_strength);
 }
 
+std::string hold_words(const flow::SculptorOptions& sculptor) {
+  const double keep_volume = sculptor.deformer.csrbf.keep_volume;
+  return (sculptor.hold == flow::Hold::hand ? ", whole hand" : "") +
+         (keep_volume > 0.0 ? fmt::format(", {:g} of clay", keep_volume) : std::string());
+}
+
 } // namespace
 
 void print_summary_text(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
@@ -192,7 +199,8 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   const auto& stats = outcome.stats;
   const flow::SculptorOptions& sculptor = outcome.sculptor;
   std::cout << fmt::format("\nnendo run: {:.1f} s, {}, {}, radius {:.3g}\n", outcome.elapsed_s,
-                           std::string(flow::name_of(sculptor.mode)) + brush_words(sculptor),
+                           std::string(flow::name_of(sculptor.mode)) + hold_words(sculptor) +
+                               brush_words(sculptor),
                            deform::name_of(sculptor.deformer.csrbf.kernel), outcome.radius);
   for (const auto& hand : hands)
     print_hand(hand, outcome);

@@ -124,6 +124,8 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
                     {"radius", outcome.radius},
                     {"brushes", flow::in_words(outcome.sculptor.brushes)},
                     {"brush_strength", outcome.sculptor.brush_strength},
+                    {"keep_volume", outcome.sculptor.deformer.csrbf.keep_volume},
+                    {"hold", flow::name_of(outcome.sculptor.hold)},
                     {"rate_hz", options.loop.rate_hz},
                     {"policy", flow::describe_policy(options.loop)},
                     {"threads", options.loop.sculptor.deformer.evaluation.threads},

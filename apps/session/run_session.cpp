@@ -137,7 +137,8 @@ private:
     const bool awaits = frame.awaited.has_value(); // by an undo or a redo
     if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
-      report("settings that nothing can be done with; the run goes on as it was");
+      report("settings that nothing can be done with; the run goes on as it was (a puppet whose "
+             "distances go along the surface cannot keep the volume in type 1)");
     if (puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())
       change_puppet();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/tips_of_hand.hpp>
 
 namespace nendo::timeline {
 namespace {
@@ -19,6 +20,13 @@ flow::ShapingOptions shaping_options(const Timeline& timeline,
   options.pull_is_step = timeline.pull_is_step;
   options.changes_at_once = true;
   return options;
+}
+
+flow::SculptorSetup first_setup(const Timeline& timeline) {
+  flow::SculptorSetup setup{timeline.sculptor,
+                            flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre)};
+  if (timeline.rig) setup.options.hold = flow::Hold::fingertips; // its points hold
+  return setup;
 }
 
 flow::UndoRoom undo_room() {
@@ -75,10 +83,9 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
 }
 
 Player::Player(Timeline timeline, const deform::Mesh& model)
-    : timeline_(std::move(timeline)), tips_(deform::Points::Zero(3, timeline_.point_count())),
-      first_{timeline_.sculptor,
-             flow::settings_of(timeline_.sculptor, {}, timeline_.units_per_metre)},
-      now_(first_), versions_{first_version(model)},
+    : timeline_(std::move(timeline)),
+      tips_(deform::Points::Zero(3, control_points(timeline_.sculptor))),
+      first_(first_setup(timeline_)), now_(first_), versions_{first_version(model)},
       shaping_(*versions_.front(), tips_.cols(), shaping_options(timeline_, first_)),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
   for (const auto& track : timeline_.hands)
@@ -107,7 +114,6 @@ double Player::last_time_s() const noexcept {
 }
 
 void Player::pose_hands(double time_s) {
-  Eigen::Index column = 0;
   for (const Hand& hand : hands_) {
     const Key key = hand.curve.at(time_s);
     flow::HandFrame& shown = frame_.hands[hand.slot];
@@ -116,13 +122,25 @@ void Player::pose_hands(double time_s) {
     shown.pose = hand.skeleton.pose(key.angles, shown.T_stage_wrist);
     shown.present = true;
     shown.samples = made_ + 1;
-    if (puppet_) {
-      puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
-      continue;
-    }
-    tips_.middleCols<5>(column) = timeline_.units_per_metre * shown.pose.fingertip_positions();
-    column += 5;
+    if (puppet_) puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
   }
+  if (!puppet_) place_tips(tips_);
+}
+
+/// Where the hands are in this frame.
+void Player::place_tips(deform::Points& tips) const noexcept {
+  const Eigen::Index points = tips.cols() / static_cast<Eigen::Index>(hands_.size());
+  Eigen::Index column = 0;
+  for (const Hand& hand : hands_) {
+    flow::write_tips(frame_.hands[hand.slot].pose, timeline_.units_per_metre, points, column, tips);
+    column += points;
+  }
+}
+
+Eigen::Index Player::control_points(const flow::SculptorOptions& sculptor) const noexcept {
+  return timeline_.rig
+             ? timeline_.point_count()
+             : sculptor.points_of_hand() * static_cast<Eigen::Index>(timeline_.hands.size());
 }
 
 void Player::play_puppet() {
@@ -180,10 +198,12 @@ bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   now_ = std::move(wanted);
   if (puppet_ && awaited.settings != before) puppet_->take_hold();
   flow::ReadySculptor ready;
-  flow::Shaping::prepare(now_, model, tips_.cols(), ready);
+  flow::Shaping::prepare(now_, model, control_points(now_.options), ready);
   ready.is_new_model = is_new_model;
   if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
+  if (ready.tips.cols() != tips_.cols()) place_tips(ready.tips);
   shaping_.exchange(ready, tips_, frame_, stats_);
+  if (shaping_.sculptor().control_points() != tips_.cols()) std::swap(tips_, ready.tips);
   return true;
 }
 

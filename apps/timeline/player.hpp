@@ -57,6 +57,8 @@ private:
   Player(Timeline timeline, const deform::Mesh& model);
   double time_of(std::uint64_t frame) const noexcept;
   void pose_hands(double time_s);
+  void place_tips(deform::Points& tips) const noexcept;
+  Eigen::Index control_points(const flow::SculptorOptions& sculptor) const noexcept;
   void play_puppet();
   bool ask_what_is_due(double time_s);
   void ask(const Event& event);

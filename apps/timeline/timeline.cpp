@@ -56,6 +56,7 @@ std::string complaint_about(const flow::SculptorOptions& sculptor, Eigen::Index 
       return "supports: there is no fingertip, or point of a puppet, " + std::to_string(own.point);
   if (!within(options.csrbf.merge_fraction, 0.0, 1.0))
     return "merge_fraction must lie within 0 and 1";
+  if (!within(options.csrbf.keep_volume, 0.0, 1.0)) return "keep_volume must lie within 0 and 1";
   constexpr std::size_t most_weight_bytes = std::size_t{1} << 28;
   if (options.evaluation.weight_bytes > most_weight_bytes)
     return "weight_bytes must be at most " + std::to_string(most_weight_bytes);
@@ -87,7 +88,8 @@ std::string complaint_about(const Event& event, const puppet::Rig* rig) {
   if (!within(event.time_s, 0.0, longest_s)) return "its time must lie within 0 and 1000000 s";
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command);
       change != nullptr && !change->settings.are_usable())
-    return "radii must lie within 1e-9 and 1e9 m, piece_fraction within 0.001 and 1000";
+    return "radii must lie within 1e-9 and 1e9 m, piece_fraction within 0.001 and 1000, "
+           "keep_volume within 0 and 1";
   const bool is_known = std::holds_alternative<flow::Request>(command) ||
                         std::holds_alternative<flow::ChangeSettings>(command) ||
                         std::holds_alternative<flow::Subdivide>(command) ||
@@ -120,7 +122,9 @@ std::string complaint_about(const puppet::Rig* rig, const puppet::RigState& stat
 std::string words_of(const flow::LoopSettings& settings) {
   std::string words = std::string(name_of(settings.mode)) + ", " +
                       std::string(deform::name_of(settings.kernel)) +
-                      (settings.injective ? ", never folds, radius" : ", radius");
+                      (settings.injective ? ", never folds" : "") +
+                      (settings.keep_volume > 0.0 ? ", keeps volume" : "") +
+                      (settings.hold == flow::Hold::hand ? ", whole hand" : "") + ", radius";
   const auto [least, most] =
       std::minmax_element(settings.radius_m.begin(), settings.radius_m.end());
   char radius[64];

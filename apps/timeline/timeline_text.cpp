@@ -72,6 +72,8 @@ std::string sculptor_text(const flow::SculptorOptions& sculptor, bool is_puppet)
                      line("kernel", toml_string(name_of(options.csrbf.kernel))) +
                      line("polynomial", toml_string(name_of(options.csrbf.polynomial))) +
                      line("merge_fraction", decimal_text(options.csrbf.merge_fraction)) +
+                     line("keep_volume", decimal_text(options.csrbf.keep_volume)) +
+                     line("hold", toml_string(name_of(sculptor.hold))) +
                      line("weight_bytes", std::to_string(options.evaluation.weight_bytes)) +
                      supports_text(options.supports, is_puppet ? "point" : "tip");
   if (options.injective)
@@ -89,7 +91,9 @@ std::string settings_text(const flow::LoopSettings& settings) {
          ", radius_m = " + list(settings.radius_m) +
          ", piece_fraction = " + decimal_text(settings.piece_fraction) +
          ", brushes = " + brush_names(settings.brushes) +
-         ", brush_strength = " + decimal_text(settings.brush_strength) + " }";
+         ", brush_strength = " + decimal_text(settings.brush_strength) +
+         ", keep_volume = " + decimal_text(settings.keep_volume) +
+         ", hold = " + toml_string(name_of(settings.hold)) + " }";
 }
 
 std::string key_text(const Key& key) {

@@ -70,6 +70,13 @@ void read_brushes(TomlReader& reader, const toml::table& table,
   }
 }
 
+/// Older files have neither.
+void read_hold(TomlReader& reader, const toml::table& table, double& keep_volume,
+               flow::Hold& hold) {
+  if (table.get("keep_volume") != nullptr) keep_volume = reader.number(table, "keep_volume");
+  if (table.get("hold") != nullptr) hold = reader.named(table, "hold", flow::hold_named);
+}
+
 void read_sculptor(TomlReader& reader, const toml::table& root, bool is_puppet,
                    flow::SculptorOptions& sculptor) {
   const toml::table* const table = reader.table(root, "sculptor");
@@ -77,8 +84,9 @@ void read_sculptor(TomlReader& reader, const toml::table& root, bool is_puppet,
   // order and storage stand in older files; they are ignored.
   reader.allow_only(*table, {"mode", "piece_length", "kernel", "polynomial", "merge_fraction",
                              "order", "storage", "weight_bytes", "shared", "own", "injective",
-                             "brushes", "brush_strength"});
+                             "brushes", "brush_strength", "keep_volume", "hold"});
   auto& options = sculptor.deformer;
+  read_hold(reader, *table, options.csrbf.keep_volume, sculptor.hold);
   read_brushes(reader, *table, sculptor.brushes, sculptor.brush_strength);
   sculptor.mode = reader.named(*table, "mode", flow::mode_named);
   sculptor.piece_length = reader.number(*table, "piece_length");
@@ -138,7 +146,8 @@ flow::LoopSettings read_settings(TomlReader& reader, const toml::table& event) {
   const toml::table* const table = reader.table(event, "settings");
   if (table == nullptr) return settings;
   reader.allow_only(*table, {"mode", "kernel", "injective", "radius_m", "piece_fraction", "brushes",
-                             "brush_strength"});
+                             "brush_strength", "keep_volume", "hold"});
+  read_hold(reader, *table, settings.keep_volume, settings.hold);
   read_brushes(reader, *table, settings.brushes, settings.brush_strength);
   settings.mode = reader.named(*table, "mode", flow::mode_named);
   settings.kernel = reader.named(*table, "kernel", deform::wendland_named);

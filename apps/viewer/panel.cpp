@@ -184,6 +184,19 @@ void LiveWindow::Panel::settings() {
     ImGui::EndCombo();
   }
   brushes(chosen);
+  auto clay = static_cast<float>(chosen.keep_volume);
+  if (ImGui::SliderFloat("volume", &clay, 0.0F, 1.0F, "%.2f"))
+    chosen.keep_volume =
+        std::clamp(std::round(100.0 * static_cast<double>(clay)) / 100.0, 0.0, 1.0);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("From air to clay: what is pressed in comes out nearby (z). Above 0, "
+                      "fingertips hold, and no links keep the surface from folding");
+  bool whole_hand = chosen.hold == flow::Hold::hand;
+  ImGui::Checkbox("whole hand", &whole_hand);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("All of a hand holds the model in type 1, not its fingertips alone (j)");
+  chosen.hold = whole_hand ? flow::Hold::hand : flow::Hold::fingertips;
+  ImGui::SameLine();
   ImGui::Checkbox("never folds", &chosen.injective);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("No field folds the surface (i)");
   ImGui::SameLine();

@@ -64,8 +64,16 @@ std::optional<flow::Command> settings_in(Words words) noexcept {
     brush = *named;
   }
   std::array<double, 1> strength{};
-  if (!words.take(strength) || !words.are_over()) return std::nullopt;
+  if (!words.take(strength)) return std::nullopt;
   settings.brush_strength = strength[0];
+  if (!words.are_over()) { // older clients know neither
+    std::array<double, 1> keep_volume{};
+    if (!words.take(keep_volume)) return std::nullopt;
+    const auto hold = flow::hold_named(words.next());
+    if (!hold || !words.are_over()) return std::nullopt;
+    settings.keep_volume = keep_volume[0];
+    settings.hold = *hold;
+  }
   if (!settings.are_usable()) return std::nullopt;
   for (const double radius_m : settings.radius_m)
     if (radius_m < min_radius_m || radius_m > max_radius_m) return std::nullopt;

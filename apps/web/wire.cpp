@@ -83,10 +83,13 @@ void write_field(const deform::CsrbfField& field, const deform::CsrbfField* befo
   for (Eigen::Index at = 0; at < field.centres.cols(); ++at)
     if (!is_nothing(field, at)) ++functions;
   out.put(static_cast<std::uint8_t>(field.kernel));
+  const bool keeps_volume = field.keep_volume > 0.0;
   out.put(static_cast<std::uint8_t>((polynomial ? 1U : 0U) | (one_radius ? 2U : 0U) |
-                                    (follows ? 4U : 0U)));
+                                    (follows ? 4U : 0U) | (keeps_volume ? 8U : 0U) |
+                                    (field.is_halfway ? 16U : 0U)));
   out.put(functions);
   if (one_radius) out.put(as_float(unit / field.radii[0]));
+  if (keeps_volume) out.put(as_float(field.keep_volume));
   if (polynomial) write_polynomial(field, origin, unit, out);
   for (Eigen::Index at = 0; at < field.centres.cols(); ++at) {
     if (is_nothing(field, at)) continue;
@@ -155,6 +158,8 @@ SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) no
   for (std::size_t finger = 0; finger < settings.brushes.size(); ++finger)
     message.brushes[finger] = static_cast<std::uint8_t>(settings.brushes[finger]);
   message.brush_strength = settings.brush_strength;
+  message.keep_volume = as_float(settings.keep_volume);
+  message.hold = static_cast<std::uint8_t>(settings.hold);
   return message;
 }
 

@@ -72,7 +72,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 4;
+  std::uint32_t version = 5;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;
@@ -115,10 +115,11 @@ struct SettingsMessage {
   std::uint8_t mode = 1;
   std::uint8_t kernel = 0;
   std::uint8_t flags = 0; ///< bit 0: injective; 1: the one-euro filter; 2: it is recorded
-  std::uint32_t spare = 0;
+  float keep_volume = 0.0F;
   double radius_m[5]{};
   std::uint8_t brushes[5]{};
-  std::uint8_t spare_too[3]{};
+  std::uint8_t hold = 0;
+  std::uint8_t spare[2]{};
   double brush_strength = 0.0;
 };
 static_assert(sizeof(SettingsMessage) == 64);

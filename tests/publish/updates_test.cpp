@@ -31,7 +31,9 @@ double wendland(std::uint32_t kernel, double t) {
 Eigen::Vector3d moved(const nendo_publish_field& field, const nendo_publish_function* functions,
                       const Eigen::Vector3d& x) {
   Eigen::Vector3d result = x;
-  for (int row = 0; row < 3; ++row) {
+  const bool keeps_volume = (field.kernel & NENDO_PUBLISH_KEEPS_VOLUME) != 0;
+  const double keep = keeps_volume ? field.polynomial[0] : 0.0;
+  for (int row = 0; row < 3 && !keeps_volume; ++row) {
     const double* const p = field.polynomial + 4 * row;
     result[row] += p[0] + p[1] * x[0] + p[2] * x[1] + p[3] * x[2];
   }
@@ -41,9 +43,15 @@ Eigen::Vector3d moved(const nendo_publish_field& field, const nendo_publish_func
                                std::pow(x[2] - f.centre[2], 2));
     const double t = d / f.radius;
     if (t >= 1.0) continue;
-    const double psi = wendland(field.kernel, t);
+    const double psi = wendland(field.kernel & 0xFFU, t);
+    const double o4 = std::pow(1.0 - t, 4);
+    const double identity = (1.0 - keep) * psi + keep * o4 * (1.0 + 4.0 * t - 20.0 * t * t);
+    double along = 0.0;
     for (int axis = 0; axis < 3; ++axis)
-      result[axis] += f.coefficient[axis] * psi;
+      along += (x[axis] - f.centre[axis]) / f.radius * f.coefficient[axis];
+    for (int axis = 0; axis < 3; ++axis)
+      result[axis] += identity * f.coefficient[axis] +
+                      keep * 15.0 * o4 * along * (x[axis] - f.centre[axis]) / f.radius;
   }
   return result;
 }
@@ -52,11 +60,17 @@ Points through_fields(const std::vector<std::uint64_t>& record, const Points& fr
   const auto& head = test::head_of(record);
   const std::uint64_t* at = record.data() + sizeof head / 8;
   Points shape = from;
+  Points places = from; // at which the next field is asked
   for (std::uint32_t n = 0; n < head.fields; ++n) {
     const auto& field = *reinterpret_cast<const nendo_publish_field*>(at);
     const auto* const functions = reinterpret_cast<const nendo_publish_function*>(&field + 1);
-    for (Eigen::Index v = 0; v < shape.cols(); ++v)
-      shape.col(v) = moved(field, functions, shape.col(v).eval());
+    const bool halfway = (field.kernel & NENDO_PUBLISH_HALFWAY) != 0;
+    for (Eigen::Index v = 0; v < shape.cols(); ++v) {
+      const Eigen::Vector3d place = places.col(v);
+      const Eigen::Vector3d by = moved(field, functions, place) - place;
+      if (!halfway) shape.col(v) += by;
+      places.col(v) = halfway ? (shape.col(v) + by).eval() : shape.col(v).eval();
+    }
     at += (sizeof field + field.functions * sizeof *functions) / 8;
   }
   CHECK(8 * static_cast<std::uint64_t>(at - record.data()) == sizeof head + head.fields_bytes);

@@ -72,6 +72,31 @@ TEST_SUITE("loop_replay") {
     }
   }
 
+  TEST_CASE("a whole hand, and clay, are replayed bit for bit") {
+    for (const Mode mode : {Mode::type1, Mode::type2}) {
+      for (const double keep_volume : {0.0, 0.6}) {
+        if (mode == Mode::type2 && keep_volume == 0.0) continue; // as above
+        CAPTURE(name_of(mode));
+        CAPTURE(keep_volume);
+        RecordedLoop live(mode);
+        auto& test = live.test;
+        test.options.sculptor.hold = flow::Hold::hand;
+        test.options.sculptor.deformer.csrbf.keep_volume = keep_volume;
+        test.loop = std::make_unique<flow::DeformLoop>(test.model, test.placement, test.inputs,
+                                                       test.options);
+        live.setup = test::setup_of(test);
+        live.record();
+        test::play(live, 300);
+        const auto recorded = live.end();
+        REQUIRE(recorded);
+        const auto replay = replayed(live.path, test.model);
+        CHECK(replay->is_exact());
+        CHECK(replay->loop().final_shape() == test.loop->final_shape());
+        CHECK((test.loop->final_shape() - test.model.vertices).cwiseAbs().maxCoeff() > 1e-3);
+      }
+    }
+  }
+
   TEST_CASE("a loop that goes on with what one before it has learned is replayed with that") {
     RecordedLoop before(Mode::type1, FilterKind::off, true);
     test::play(before, 600);

@@ -79,6 +79,9 @@ def loop(b):
     o["subdivisions"] = b.take("I")
     o["pull_is_step"] = b.take("B")
     o.update(brushes(b))
+    o.update(hold(b))
+    if "settings" in o:
+        o["settings"].update(hold(b))
     return o
 
 
@@ -99,6 +102,10 @@ def brushes(b):
     return {"brushes": b.take("5B"), "strength": b.take("d")}
 
 
+def hold(b):
+    return {"keep_volume": b.take("d"), "hold": b.take("B")}
+
+
 def head(b):
     return {"wall": b.take("q"), "host": b.take("q"), "program": b.text(), "wearer": b.text()}
 
@@ -114,7 +121,7 @@ def sent(b):
 
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
-             6: lambda e: {**settings(e), **brushes(e)}, 9: lambda e: {"mark": 1}, 10: lambda e: {"clutch": e.take("3B")}, 11: lambda e: {"role": e.take("HBB")},
+             6: lambda e: {**settings(e), **brushes(e), **hold(e)}, 9: lambda e: {"mark": 1}, 10: lambda e: {"clutch": e.take("3B")}, 11: lambda e: {"role": e.take("HBB")},
              12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():

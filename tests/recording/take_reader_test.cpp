@@ -114,6 +114,9 @@ Setup unusual_setup() {
                                           deform::Brush::none, deform::Brush::pull,
                                           deform::Brush::scale};
   setup.loop->options.sculptor.brush_strength = -0.25;
+  setup.loop->options.sculptor.hold = flow::Hold::hand;
+  setup.loop->options.sculptor.deformer.csrbf.keep_volume = 0.75;
+  setup.loop->options.settings->keep_volume = 0.125;
   setup.loop->rest.resize(2);
   setup.loop->rest[1].y[2] = -0.5F;
   setup.loop->rest[1].z[63] = 0.25F;
@@ -128,6 +131,10 @@ Setup read_back(const std::vector<std::byte>& bytes) {
   return reader->setup();
 }
 
+bool is_hold(const json& line, double keep_volume, flow::Hold hold) {
+  return line["keep_volume"] == keep_volume && line["hold"] == static_cast<int>(hold);
+}
+
 bool is_settings(const json& line, const flow::LoopSettings& settings) {
   const auto& filter = settings.filter;
   return line["mode"] == static_cast<int>(settings.mode) &&
@@ -135,6 +142,7 @@ bool is_settings(const json& line, const flow::LoopSettings& settings) {
          line["injective"] == static_cast<int>(settings.injective) &&
          line["filter"] == static_cast<int>(filter.kind) && line["radii"] == settings.radius_m &&
          line["piece"] == settings.piece_fraction &&
+         is_hold(line, settings.keep_volume, settings.hold) &&
          line["cutoffs"] == std::array{filter.min_cutoff_hz, filter.beta_hz_per_rad_s,
                                        filter.derivative_cutoff_hz};
 }
@@ -210,6 +218,7 @@ TEST_SUITE("take_reader") {
     CHECK(lines[at]["pull_is_step"] == 0);
     CHECK(is_settings(lines[at]["settings"], *options.settings));
     CHECK(are_brushes(lines[at], options.sculptor));
+    CHECK(is_hold(lines[at], 0.75, flow::Hold::hand));
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");
     REQUIRE(lines[at]["blocks"].size() == 2);

@@ -97,6 +97,9 @@ flow::LoopSettings any_settings(const flow::LoopSettings& before, Random& random
   if (random() % 3 == 0)
     settings.brushes[random() % 5] = static_cast<deform::Brush>(random() % deform::brush_count);
   if (random() % 6 == 0) settings.brush_strength = -1.0 + 0.1 * static_cast<double>(random() % 21);
+  if (random() % 5 == 0) settings.keep_volume = 0.25 * static_cast<double>(random() % 5);
+  if (random() % 5 == 0)
+    settings.hold = settings.hold == flow::Hold::hand ? flow::Hold::fingertips : flow::Hold::hand;
   return settings;
 }
 

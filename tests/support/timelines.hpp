@@ -35,6 +35,8 @@ inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys
   deformer.supports.shared = {{step(random), 1.0}, {step(random), 0.25}};
   deformer.supports.own = {{3, {step(random), 2.0}}};
   deformer.csrbf.kernel = deform::Wendland::c4;
+  deformer.csrbf.keep_volume = random() % 2 == 0 ? 0.0 : 0.6;
+  made.sculptor.hold = random() % 2 == 0 ? flow::Hold::fingertips : flow::Hold::hand;
   if (random() % 2 == 0) deformer.injective.emplace();
   for (const Side side : {Side::left, Side::right}) {
     made.hands.push_back({side, {0.18 + 0.01 * step(random), 0.08}, {}});
@@ -53,7 +55,9 @@ inline timeline::Timeline random_timeline(std::mt19937& random, std::size_t keys
                  .piece_fraction = 0.07,
                  .brushes = {deform::Brush::twist, deform::Brush::pull, deform::Brush::none,
                              deform::Brush::smooth, deform::Brush::scale},
-                 .brush_strength = -0.3}}});
+                 .brush_strength = -0.3,
+                 .keep_volume = 0.3,
+                 .hold = flow::Hold::hand}}});
   return made;
 }
 

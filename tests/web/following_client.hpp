@@ -70,8 +70,7 @@ public:
   /// The shape, in the mesh's order and units.
   deform::Points vertices() const {
     std::vector<float> shape = base_;
-    for (const Field& field : pending_)
-      apply(field, shape);
+    apply(pending_, shape);
     if (!pending_vectors_.empty()) apply(pending_vectors_, shape);
     deform::Points points(3, static_cast<Eigen::Index>(order.size()));
     for (std::size_t at = 0; at < order.size(); ++at)
@@ -162,6 +161,8 @@ private:
   };
   struct Field {
     unsigned kernel = 0;
+    float keep_volume = 0;
+    bool halfway = false;
     std::array<float, 12> polynomial{};
     std::vector<Function> functions;
   };
@@ -333,8 +334,20 @@ private:
       pending_ = fields;
       return;
     }
-    for (const Field& field : fields)
-      apply(field, base_);
+    apply(fields, base_);
+  }
+
+  /// One after another. What a field that is halfway makes is only asked by the next.
+  static void apply(const std::vector<Field>& fields, std::vector<float>& shape) {
+    std::vector<float> asked = shape;
+    for (const Field& field : fields) {
+      const std::vector<float> from = asked;
+      apply(field, asked);
+      if (field.halfway) continue;
+      for (std::size_t at = 0; at < shape.size(); ++at)
+        shape[at] += asked[at] - from[at];
+      asked = shape;
+    }
   }
 
   void take_vectors(Bytes& in, bool bakes, std::size_t count) {
@@ -362,6 +375,8 @@ private:
       return;
     }
     const float shared = (flags & 2U) != 0 ? in.take<float>() : 0.0F;
+    field.keep_volume = (flags & 8U) != 0 ? in.take<float>() : 0.0F;
+    field.halfway = (flags & 16U) != 0;
     if ((flags & 1U) != 0)
       for (float& part : field.polynomial)
         part = in.take<float>();
@@ -409,8 +424,17 @@ private:
           squared += (x[axis] - function.centre[axis]) * (x[axis] - function.centre[axis]);
         const float t = std::sqrt(squared) * function.inverse_radius;
         if (t >= 1) continue;
+        std::array<float, 3> u{};
+        float along = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          u[axis] = (x[axis] - function.centre[axis]) * function.inverse_radius;
+          along += u[axis] * function.coefficient[axis];
+        }
+        const float clay = field.keep_volume * std::pow(1 - t, 4.0F);
+        const float identity =
+            (1 - field.keep_volume) * psi(field.kernel, t) + clay * (1 + 4 * t - 20 * t * t);
         for (std::size_t axis = 0; axis < 3; ++axis)
-          sum[axis] += function.coefficient[axis] * psi(field.kernel, t);
+          sum[axis] += identity * function.coefficient[axis] + 15 * clay * along * u[axis];
       }
       for (std::size_t axis = 0; axis < 3; ++axis)
         shape[at + axis] += sum[axis];

@@ -7,6 +7,8 @@
 #include <sched.h>
 #include <sys/prctl.h>
 
+#include <nendo/flow/tips_of_hand.hpp>
+
 namespace nendo::flow {
 
 using deform::Points;
@@ -32,6 +34,7 @@ SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
                       options.settings
                           ? *options.settings
                           : settings_of(options.sculptor, hand.filter, units_per_metre)};
+  if (options.rig) setup.options.hold = Hold::fingertips; // its points hold
   if (!options.rig || setup.options.surface) return setup;
   if (auto surface =
           surface_for(*options.rig, model.mesh, model.layout(), options.sculptor.deformer))
@@ -40,7 +43,8 @@ SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
 }
 
 Eigen::Index points_at_first(const LoopOptions& options, std::size_t hands) {
-  return options.rig ? options.rig->starts().cols() : 5 * static_cast<Eigen::Index>(hands);
+  return options.rig ? options.rig->starts().cols()
+                     : options.sculptor.points_of_hand() * static_cast<Eigen::Index>(hands);
 }
 
 std::vector<std::unique_ptr<ModelVersion>> first_version(const deform::Mesh& model,
@@ -295,6 +299,7 @@ void DeformLoop::set_rig(const Command& command) noexcept {
 
 void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
+  const Eigen::Index points = tips_.cols() / hand_count();
   frame.layers_on = 0;
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     const Hand& hand = hands_[at];
@@ -312,8 +317,8 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
       hand_states_[hand.slot] = {shown.angles, shown.pose, hand.T_stage_wrist};
       continue;
     }
-    tips_.middleCols<5>(column) = units_per_metre_ * shown.pose.fingertip_positions();
-    column += 5;
+    write_tips(shown.pose, units_per_metre_, points, column, tips_);
+    column += points;
   }
   if (rig_) play_rig();
   tell_rig(frame);

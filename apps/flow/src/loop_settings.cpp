@@ -13,9 +13,10 @@ bool LoopSettings::are_usable() const noexcept {
   const bool radii = std::all_of(radius_m.begin(), radius_m.end(), [](double radius) {
     return radius >= least_radius_m && radius <= most_radius_m; // false for NaN
   });
-  return radii && std::abs(brush_strength) <= 1.0 && piece_fraction >= least_piece_fraction &&
-         piece_fraction <= most_piece_fraction && std::isfinite(filter.min_cutoff_hz) &&
-         std::isfinite(filter.beta_hz_per_rad_s) && std::isfinite(filter.derivative_cutoff_hz);
+  return radii && std::abs(brush_strength) <= 1.0 && keep_volume >= 0.0 && keep_volume <= 1.0 &&
+         piece_fraction >= least_piece_fraction && piece_fraction <= most_piece_fraction &&
+         std::isfinite(filter.min_cutoff_hz) && std::isfinite(filter.beta_hz_per_rad_s) &&
+         std::isfinite(filter.derivative_cutoff_hz);
 }
 
 LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOptions& filter,
@@ -28,7 +29,9 @@ LoopSettings settings_of(const SculptorOptions& sculptor, const hand::FilterOpti
           .piece_fraction = sculptor.piece_length / deform::least_radius(deformer.supports),
           .filter = filter,
           .brushes = sculptor.brushes,
-          .brush_strength = sculptor.brush_strength};
+          .brush_strength = sculptor.brush_strength,
+          .keep_volume = deformer.csrbf.keep_volume,
+          .hold = sculptor.hold};
 }
 
 double scale_of_radii(const LoopSettings& settings, const LoopSettings& first) noexcept {
@@ -52,7 +55,9 @@ SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first
   SculptorOptions sculptor = now.options;
   deform::DeformerOptions& deformer = sculptor.deformer;
   sculptor.mode = wanted.mode;
+  sculptor.hold = hands == 0 ? Hold::fingertips : wanted.hold; // a puppet's points hold
   deformer.csrbf.kernel = wanted.kernel;
+  deformer.csrbf.keep_volume = wanted.keep_volume;
   sculptor.brushes = wanted.brushes;
   sculptor.brush_strength = wanted.brush_strength;
   if (wanted.injective != now.settings.injective) {

@@ -10,8 +10,11 @@
 
 #include <nendo/base/relax.hpp>
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/tips_of_hand.hpp>
 
 namespace nendo::flow {
+
+using deform::Points;
 
 namespace {
 
@@ -53,7 +56,10 @@ void DeformLoop::finish_change(Frame& frame) noexcept {
       held_at_ = still_at_; // of the same size
     else if (!holds_on)
       note_hold();
+    Points& other_tips = taken_->ready.tips; // where other points of the hands hold the model
+    if (!rig_ && other_tips.cols() != tips_.cols()) place_tips(other_tips);
     taken_->is_refused = !shaping_.exchange(taken_->ready, tips_, frame, stats_);
+    if (shaping_.sculptor().control_points() != tips_.cols()) std::swap(tips_, other_tips);
   }
   if (taken_->log) begin_anew(*taken_->log, frame);
 }
@@ -79,7 +85,7 @@ void DeformLoop::take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept {
   std::swap(held_at_, rig.held_at);
   std::swap(still_at_, rig.still_at);
   std::swap(tips_, rig.tips);
-  if (!rig_) place_tips();
+  if (!rig_) place_tips(tips_);
 }
 
 /// The angles, and so the fingertips, may jump; the shape does not, since they take hold anew.
@@ -90,16 +96,17 @@ void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
     const auto& calibration = hand.calibration.of(hand.latest.side);
     hand.angles = hand.filter.pass(hand::joint_angles(hand.latest, calibration), hand.time());
   }
-  place_tips();
+  place_tips(tips_);
 }
 
-void DeformLoop::place_tips() noexcept {
+void DeformLoop::place_tips(Points& tips) noexcept {
   if (rig_) return rig_->take_hold(hands_now()); // the points stay where they are
   Eigen::Index column = 0;
+  const Eigen::Index points = tips.cols() / hand_count();
   for (const Hand& hand : hands_) {
     if (!hand.is_lowest) continue;
-    tips_.middleCols<5>(column) = units_per_metre_ * pose_of(hand).fingertip_positions();
-    column += 5;
+    write_tips(pose_of(hand), units_per_metre_, points, column, tips);
+    column += points;
   }
 }
 
@@ -123,7 +130,7 @@ void DeformLoop::begin_anew(LogChange& change, Frame& frame) noexcept {
     state.placement.T_stage_wrist[hand.slot] = hand.T_stage_wrist;
   }
   if (rig_) gestures_->reset(*rig_);
-  place_tips();
+  place_tips(tips_);
   switch_on_ = false;
   last_due_ = {};                      // as in a loop that begins
   if (rig_) state.rig = rig_->state(); // which has room for it
@@ -185,7 +192,7 @@ Eigen::Index DeformLoop::hand_count() const noexcept {
 
 Eigen::Index DeformLoop::control_points(std::uint32_t puppet) const noexcept {
   const puppet::Rig* const rig = puppets_[puppet].get();
-  return rig != nullptr ? rig->starts().cols() : 5 * hand_count();
+  return rig != nullptr ? rig->starts().cols() : asked_.options.points_of_hand() * hand_count();
 }
 
 /// Of a puppet. Changes nothing if its points are too near to each other.
@@ -203,6 +210,7 @@ SculptorSetup DeformLoop::first_with(std::uint32_t puppet) const {
   const auto& rig = puppets_[puppet];
   if (rig == first_rig_) return first_;
   SculptorSetup setup = first_;
+  setup.options.hold = rig ? Hold::fingertips : setup.settings.hold; // a puppet's points hold
   deform::DeformerOptions& deformer = setup.options.deformer;
   if (!rig) {
     deformer.supports = *tip_supports_; // since the loop began without a puppet
@@ -310,6 +318,9 @@ std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
   const bool same =
       settings.kernel == asked_.settings.kernel && settings.radius_m == asked_.settings.radius_m;
   if (!same && !set_surface(setup.options, *asked_model_)) return std::nullopt;
+  // Along a surface, no kernel is known that keeps the volume.
+  if (setup.options.surface && settings.mode == Mode::type1 && settings.keep_volume > 0.0)
+    return std::nullopt;
   return setup;
 }
 

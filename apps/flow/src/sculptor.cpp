@@ -4,6 +4,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <nendo/hand/held_points.hpp>
+
 namespace nendo::flow {
 
 using deform::BlockShape;
@@ -18,6 +20,31 @@ namespace {
 using Deformer = std::variant<Type1Deformer, Type2Deformer, deform::SurfaceDeformer>;
 
 constexpr Eigen::Index fingers = 5;
+
+/// Of the points that hold the model all over the hands, each of which has what its finger has.
+/// Those of one bone move together, and need not be followed exactly where they come close; links
+/// count on it that they are.
+deform::DeformerOptions held_all_over(const SculptorOptions& options) {
+  constexpr double smoothing = 1e-3;
+  deform::DeformerOptions deformer = options.deformer;
+  if (!deformer.injective) deformer.csrbf.smoothing = smoothing;
+  deformer.supports.own.clear();
+  for (const deform::OwnSupport& own : options.deformer.supports.own)
+    for (std::size_t at = 0; at < hand::held_point_count; ++at)
+      if (hand::held_points[at].finger == static_cast<std::size_t>(own.point % fingers))
+        deformer.supports.own.push_back(
+            {own.point / fingers * static_cast<Eigen::Index>(hand::held_point_count) +
+                 static_cast<Eigen::Index>(at),
+             own.support});
+  return deformer;
+}
+
+/// Of type 1, without a puppet.
+deform::DeformerOptions of_type1(const SculptorOptions& options, Eigen::Index control_points) {
+  const bool all_over =
+      options.points_of_hand() != fingers && control_points % options.points_of_hand() == 0;
+  return all_over ? held_all_over(options) : options.deformer;
+}
 
 /// With the brushes of so many fingertips.
 deform::DeformerOptions brushed(const SculptorOptions& options, Eigen::Index control_points) {
@@ -36,7 +63,7 @@ Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorO
     return Type2Deformer(shape, control_points, options.piece_length,
                          brushed(options, control_points));
   if (options.surface) return deform::SurfaceDeformer(shape, options.surface);
-  return Type1Deformer(shape, control_points, options.deformer);
+  return Type1Deformer(shape, control_points, of_type1(options, control_points));
 }
 
 /// Whose shape is its own: points.
@@ -44,7 +71,7 @@ Deformer make(Points rest, Eigen::Index control_points, const SculptorOptions& o
   if (options.mode == Mode::type2)
     return Type2Deformer(std::move(rest), control_points, options.piece_length,
                          brushed(options, control_points));
-  return Type1Deformer(std::move(rest), control_points, options.deformer);
+  return Type1Deformer(std::move(rest), control_points, of_type1(options, control_points));
 }
 
 /// Of type 1 or of type 2, whose functions have other names.
@@ -69,6 +96,16 @@ std::string_view name_of(Mode mode) noexcept {
 std::optional<Mode> mode_named(std::string_view name) noexcept {
   if (name == "type1") return Mode::type1;
   if (name == "type2") return Mode::type2;
+  return std::nullopt;
+}
+
+std::string_view name_of(Hold hold) noexcept {
+  return hold == Hold::hand ? "hand" : "tips";
+}
+
+std::optional<Hold> hold_named(std::string_view name) noexcept {
+  if (name == "tips") return Hold::fingertips;
+  if (name == "hand") return Hold::hand;
   return std::nullopt;
 }
 
@@ -101,12 +138,18 @@ bool SculptorOptions::needs_rings() const noexcept {
                      [](deform::Brush brush) { return brush != deform::Brush::pull; });
 }
 
+Eigen::Index SculptorOptions::points_of_hand() const noexcept {
+  const bool all_over =
+      hold == Hold::hand && mode == Mode::type1 && deformer.csrbf.keep_volume <= 0.0;
+  return all_over ? static_cast<Eigen::Index>(hand::held_point_count) : fingers;
+}
+
 Sculptor::Sculptor(Points rest, Eigen::Index control_points, const SculptorOptions& options)
-    : deformer_(make(std::move(rest), control_points, options)) {}
+    : deformer_(make(std::move(rest), control_points, options)), control_points_(control_points) {}
 
 Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
                    const SculptorOptions& options)
-    : deformer_(make(shape, control_points, options)) {}
+    : deformer_(make(shape, control_points, options)), control_points_(control_points) {}
 
 FieldStatus Sculptor::grab(const Points& tips) noexcept {
   return counted(either(

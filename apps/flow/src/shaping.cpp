@@ -167,7 +167,7 @@ void Shaping::prepare(const SculptorSetup& setup, ModelVersion& model, Eigen::In
   ready.model = &model;
   ready.sculptor = sculptor_on(model, control_points, setup.options);
   ready.settings = setup.settings;
-  ready.still_tips = ready.starts = Points::Zero(3, control_points);
+  ready.still_tips = ready.starts = ready.tips = Points::Zero(3, control_points);
   ready.room.fill(ready.sculptor->fields());
   ready.surface_room.fill(ready.sculptor->room_to_tell());
 }
@@ -210,7 +210,11 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
   awaited_.reset();
   shaped_ = false;
   // Hands that cannot take hold now try it again at each tick.
-  const Points& held_at = holds_on ? ready.starts : is_still_ ? still_tips_ : tips;
+  const bool others = tips.cols() != sculptor_->control_points();
+  const Points& held_at = others      ? ready.tips
+                          : holds_on  ? ready.starts
+                          : is_still_ ? still_tips_
+                                      : tips;
   if (held_) held_ = is_solved(sculptor_->grab_on(held_at));
   is_still_ = false;
   if (frame.model != model_->number) {

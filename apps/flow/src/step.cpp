@@ -5,9 +5,9 @@
 namespace nendo::flow {
 namespace {
 
-constexpr std::array<std::string_view, 11> step_names{"stroke",    "reset",   "mode",   "kernel",
-                                                      "radius",    "folding", "filter", "settings",
-                                                      "subdivide", "brush",   "puppet"};
+constexpr std::array<std::string_view, 13> step_names{
+    "stroke",   "reset",     "mode",  "kernel", "radius", "folding", "filter",
+    "settings", "subdivide", "brush", "puppet", "volume", "hold"};
 
 } // namespace
 
@@ -32,6 +32,12 @@ StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) n
   with.brushes = after.brushes;
   with.brush_strength = after.brush_strength;
   if (with == after) return StepKind::brush;
+  with = before;
+  with.keep_volume = after.keep_volume;
+  if (with == after) return StepKind::volume;
+  with = before;
+  with.hold = after.hold;
+  if (with == after) return StepKind::hold;
   with = before;
   with.filter = after.filter;
   return with == after ? StepKind::filter : StepKind::settings;

@@ -22,6 +22,11 @@ void WantedSettings::other_mode() noexcept {
   now.mode = now.mode == Mode::type1 ? Mode::type2 : Mode::type1;
 }
 
+void WantedSettings::next_volume() noexcept {
+  const double more = std::floor(4.0 * now.keep_volume + 1.0) / 4.0;
+  now.keep_volume = more > 1.0 ? 0.0 : more;
+}
+
 void WantedSettings::next_kernel() noexcept {
   const auto* const at = std::find(kernels.begin(), kernels.end(), now.kernel);
   now.kernel = kernels[static_cast<std::size_t>(at - kernels.begin() + 1) % kernels.size()];

@@ -19,11 +19,12 @@ extern "C" {
 #define NENDO_PUBLISH_MAGIC "NENDOPUB" /* eight bytes, no NUL */
 #define NENDO_PUBLISH_BYTE_ORDER 0x01020304u
 #define NENDO_PUBLISH_MAJOR 1
-#define NENDO_PUBLISH_MINOR 0
+#define NENDO_PUBLISH_MINOR 1
 
 enum { NENDO_PUBLISH_LIVE = 1, NENDO_PUBLISH_ENDED = 2 };           /* header.state */
 enum { NENDO_PUBLISH_PRESENT = 1, NENDO_PUBLISH_SILENT = 2 };       /* hand.flags */
 enum { NENDO_PUBLISH_HELD = 1, NENDO_PUBLISH_FIELDS_LEFT_OUT = 2 }; /* record.flags */
+enum { NENDO_PUBLISH_KEEPS_VOLUME = 0x100, NENDO_PUBLISH_HALFWAY = 0x200 }; /* field.kernel */
 enum { NENDO_PUBLISH_JOINTS = 26 }; /* in OpenXR's order (XR_EXT_hand_tracking) */
 
 struct nendo_publish_header {
@@ -95,9 +96,11 @@ struct nendo_publish_function {
   double coefficient[3];
 };
 
-/* s(x) = sum of coefficient * psi(|x - centre| / radius) + polynomial * (1, x, y, z) */
+/* s(x) = sum of coefficient * psi(|x - centre| / radius) + polynomial * (1, x, y, z). Since 1.1: with
+ * NENDO_PUBLISH_KEEPS_VOLUME the kernel is a matrix, and there is no polynomial: its first number is
+ * the share of clay, 0 to 1. */
 struct nendo_publish_field {
-  uint32_t kernel; /* Wendland 0 C0, 1 C2, 2 C4, 3 C6 */
+  uint32_t kernel; /* Wendland 0 C0, 1 C2, 2 C4, 3 C6; and flags from bit 8 on */
   uint32_t functions;
   double polynomial[12]; /* three rows of four */
   /* struct nendo_publish_function[functions] */

@@ -134,6 +134,8 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   writer.u32_le(loop.subdivisions);
   writer.u8(static_cast<std::uint8_t>(options.pull_is_step));
   put_brushes(writer, options.sculptor.brushes, options.sculptor.brush_strength);
+  put_hold(writer, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold);
+  if (options.settings) put_hold(writer, options.settings->keep_volume, options.settings->hold);
 }
 
 void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength) {
@@ -147,6 +149,18 @@ bool read_brushes(ByteReader& reader, std::array<deform::Brush, 5>& brushes, dou
   for (deform::Brush& brush : brushes)
     brush = checked.one_of(deform::Brush::scale);
   strength = checked.number(-1.0, 1.0);
+  return checked.fine();
+}
+
+void put_hold(ByteWriter& writer, double keep_volume, flow::Hold hold) {
+  writer.f64_le(keep_volume);
+  writer.u8(static_cast<std::uint8_t>(hold));
+}
+
+bool read_hold(ByteReader& reader, double& keep_volume, flow::Hold& hold) {
+  CheckedReader checked(reader);
+  keep_volume = checked.number(0.0, 1.0);
+  hold = checked.one_of(flow::Hold::hand);
   return checked.fine();
 }
 
@@ -353,6 +367,12 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
       options.settings->brushes = options.sculptor.brushes;
       options.settings->brush_strength = options.sculptor.brush_strength;
     }
+  }
+  if (reader.remaining() > 0) { // since 1.6, too
+    checked.require(
+        read_hold(reader, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold));
+    if (options.settings)
+      checked.require(read_hold(reader, options.settings->keep_volume, options.settings->hold));
   }
   if (loop || !checked.fine()) return false;
   loop = std::move(read);

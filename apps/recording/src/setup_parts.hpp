@@ -76,6 +76,11 @@ inline constexpr std::size_t settings_bytes = 76;
 void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength);
 inline constexpr std::size_t brushes_bytes = 5 + 8;
 bool read_brushes(ByteReader& reader, std::array<deform::Brush, 5>& brushes, double& strength);
+
+/// How clayey the model is, and what of the hands holds it; behind the brushes, too.
+void put_hold(ByteWriter& writer, double keep_volume, flow::Hold hold);
+inline constexpr std::size_t hold_bytes = 8 + 1;
+bool read_hold(ByteReader& reader, double& keep_volume, flow::Hold& hold);
 /// Returns nothing if they are not usable.
 std::optional<flow::LoopSettings> read_settings(ByteReader& reader);
 

@@ -45,9 +45,11 @@ struct EntryWriter {
       writer.f64_le(number);
   }
   void operator()(const flow::LoopSettings& settings) const {
-    driver::put_entry_head(writer, EntryKind::settings, settings_bytes + brushes_bytes);
+    driver::put_entry_head(writer, EntryKind::settings,
+                           settings_bytes + brushes_bytes + hold_bytes);
     put_settings(writer, settings);
     put_brushes(writer, settings.brushes, settings.brush_strength);
+    put_hold(writer, settings.keep_volume, settings.hold);
   }
   void operator()(const flow::HoldStill&) const {
     driver::put_entry_head(writer, EntryKind::hold_still, 0);
@@ -286,9 +288,10 @@ std::optional<Entry> TakeReader::entry_of(const driver::LogEntry& record) {
     entry = wrist_of(reader);
   } else if (record.is(EntryKind::settings)) {
     auto settings = read_settings(reader);
-    const bool fine =
-        reader.remaining() == 0 || // before 1.6
-        (settings && read_brushes(reader, settings->brushes, settings->brush_strength));
+    bool fine = reader.remaining() == 0 || // before 1.6
+                (settings && read_brushes(reader, settings->brushes, settings->brush_strength));
+    fine = fine && (reader.remaining() == 0 ||
+                    (settings && read_hold(reader, settings->keep_volume, settings->hold)));
     if (settings && fine) entry = *settings;
   } else if (record.is(EntryKind::hold_still)) {
     entry = flow::HoldStill{};

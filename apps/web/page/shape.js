@@ -198,18 +198,19 @@ class Shape {
   }
 }
 
-// Whole fields, so many texels at once.
+// Whole fields, so many texels at once; one that is halfway stays with the next.
 function inParts(step, most) {
   const parts = []
-  let part = { count: 0, texels: [] }
+  let part = { count: 0, texels: [] }, isHalfway = false
   for (let at = 0, field = 0; field < step.count; ++field) {
     const size = 4 * (1 + (step.texels[at + 2] ? 3 : 0) + 2 * step.texels[at])
-    if (part.count > 0 && part.texels.length + size > 4 * most) {
+    if (!isHalfway && part.count > 0 && part.texels.length + size > 4 * most) {
       parts.push(part)
       part = { count: 0, texels: [] }
     }
     for (let n = at; n < at + size; ++n) part.texels.push(step.texels[n])
     part.count += 1
+    isHalfway = step.texels[at + 3] >= 2
     at += size
   }
   return [...parts, part]

@@ -4,7 +4,7 @@ const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
 const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
 
 // Radii to a micrometre: they have been in other units meanwhile.
-const isSame = (a, b) => ['mode', 'kernel', 'injective', 'filtered', 'strength'].every(part => a[part] === b[part]) &&
+const isSame = (a, b) => ['mode', 'kernel', 'injective', 'filtered', 'strength', 'volume', 'hold'].every(part => a[part] === b[part]) &&
   a.brushes.every((brush, at) => brush === b.brushes[at]) && a.radii.every((radius, at) => Math.abs(radius - b.radii[at]) < 1e-6)
 
 class Shaping {
@@ -36,6 +36,8 @@ class Shaping {
     this.showBrush()
     element('injective').checked = settings.injective
     element('filtered').checked = settings.filtered
+    element('volume').value = settings.volume
+    element('hold').checked = settings.hold === 'hand'
     this.sliders.forEach(({ range, at }) => { range.value = 100 * settings.radii[at] })
     this.show()
   }
@@ -50,8 +52,8 @@ class Shaping {
   }
   send() {
     if (!this.due || !this.live) return
-    const { mode, kernel, injective, filtered, radii, brushes, strength } = this.wanted
-    this.ask(`settings type${mode} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')} ${brushes.join(' ')} ${strength}`)
+    const { mode, kernel, injective, filtered, radii, brushes, strength, volume, hold } = this.wanted
+    this.ask(`settings type${mode} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')} ${brushes.join(' ')} ${strength} ${volume} ${hold}`)
     Object.assign(this, { due: false, askedAt: performance.now() })
   }
   choose(input) {
@@ -65,7 +67,8 @@ class Shaping {
       wanted.brushes.fill(input.value)
       this.useStrokes()
     }
-    if (input.id === 'strength') wanted.strength = Number(input.value)
+    if (input.id === 'strength' || input.id === 'volume') wanted[input.id] = Number(input.value)
+    if (input.id === 'hold') wanted.hold = input.checked ? 'hand' : 'tips'
     if (input.id === 'injective' || input.id === 'filtered') wanted[input.id] = input.checked
     if (slider) wanted.radii[slider.at] = Number(input.value) / 100
     if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
@@ -94,6 +97,11 @@ class Shaping {
     this.wanted.strength = Math.min(1, Math.max(-1, Math.round(10 * (this.wanted.strength + more)) / 10))
     this.showBrush()
     this.change()
+  }
+  nextVolume() {
+    const range = element('volume'), more = Math.floor(4 * range.value + 1) / 4
+    range.value = more > 1 ? 0 : more
+    this.choose(range)
   }
   nextKernel() {
     const select = element('kernel')

@@ -3,6 +3,7 @@ const JOINTS = 26
 const MODEL_HEAD = 88, BONE_BYTES = 28, COAT_BYTES = 24, UPDATE_HEAD = 112, NO_TEXTURE = 0xffffffff
 const BRUSHES = ['pull', 'none', 'push', 'inflate', 'smooth', 'flatten', 'twist', 'scale']
 const KERNELS = ['c0', 'c2', 'c4', 'c6']
+const HOLDS = ['tips', 'hand']
 // Of each joint, whose place hangs on it; the wrist's on none.
 const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
 const TIPS = [5, 10, 15, 20, 25]
@@ -13,7 +14,7 @@ function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
   if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (view.getUint32(8, true) !== 4) throw new Error('this server speaks another version; reload the page')
+  if (view.getUint32(8, true) !== 5) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
   const flags = view.getUint8(82), bones = [null, null]
   let places = MODEL_HEAD
@@ -66,11 +67,12 @@ function readSettings(buffer) {
   return {
     mode: view.getUint8(1), kernel: KERNELS[view.getUint8(2)], injective: (flags & 1) !== 0, filtered: (flags & 2) !== 0,
     brushes: [48, 49, 50, 51, 52].map(at => BRUSHES[view.getUint8(at)]), strength: view.getFloat64(56, true),
+    volume: Math.round(1e6 * view.getFloat32(4, true)) / 1e6, hold: HOLDS[view.getUint8(53)],
     recorded: (flags & 4) !== 0, radii: [8, 16, 24, 32, 40].map(at => view.getFloat64(at, true)),
   }
 }
 
-const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush', 'puppet']
+const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush', 'puppet', 'volume', 'hold']
 function readSteps(buffer) {
   const view = new DataView(buffer), count = view.getUint8(1)
   const steps = Array.from({ length: count }, (_, n) => ({ kind: STEPS[view.getUint32(8 + 8 * n, true)] || 'step', at: view.getFloat32(12 + 8 * n, true) }))
@@ -150,8 +152,12 @@ function taken(field, place) {
   const one = [1, ...place]
   const sum = [0, 1, 2].map(row => one.reduce((all, x, at) => all + x * (field.polynomial[4 * row + at] || 0), place[row]))
   for (const { centre, inverse, coefficient } of field.functions) {
-    const t = size(minus(place, centre)) * inverse
-    if (t < 1) coefficient.forEach((a, axis) => { sum[axis] += a * WENDLAND[field.kernel](t, 1 - t) })
+    const u = minus(place, centre).map(part => part * inverse), t = size(u)
+    if (t >= 1) continue
+    const clay = field.volume * (1 - t) ** 4
+    const along = 15 * clay * coefficient.reduce((all, a, axis) => all + a * u[axis], 0)
+    const w = (1 - field.volume) * WENDLAND[field.kernel](t, 1 - t) + clay * (1 + t * (4 - 20 * t))
+    coefficient.forEach((a, axis) => { sum[axis] += w * a + along * u[axis] })
   }
   return sum
 }
@@ -162,7 +168,8 @@ function readField(view, at, before) {
   let from = at + 4
   const take = () => (from += 4, view.getFloat32(from - 4, true))
   const shared = flags & 2 ? take() : 0
-  const field = { kernel: view.getUint8(at), polynomial: flags & 1 ? Array.from({ length: 12 }, take) : [], functions: [] }
+  const volume = flags & 8 ? take() : 0
+  const field = { kernel: view.getUint8(at), volume, halfway: (flags & 16) !== 0, polynomial: flags & 1 ? Array.from({ length: 12 }, take) : [], functions: [] }
   for (let left = view.getUint16(at + 2, true), number = 0; number < left; ++number) {
     const same = follows && before.functions[number]
     const centre = same ? taken(before, same.centre) : [take(), take(), take()]
@@ -173,8 +180,8 @@ function readField(view, at, before) {
 }
 
 // As the shader takes it, four numbers a texel.
-function texelsOf({ kernel, polynomial, functions }) {
-  const head = [functions.length, kernel, polynomial.length > 0 ? 1 : 0, 0]
+function texelsOf({ kernel, volume, halfway, polynomial, functions }) {
+  const head = [functions.length, kernel, polynomial.length > 0 ? 1 : 0, volume + (halfway ? 2 : 0)]
   return [...head, ...polynomial, ...functions.flatMap(({ centre, inverse, coefficient }) => [...centre, inverse, ...coefficient, 0])]
 }
 

@@ -249,7 +249,7 @@ private:
   void change_filters(const hand::FilterOptions& filter) noexcept;
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
-  void place_tips() noexcept;
+  void place_tips(deform::Points& tips) noexcept;
   void take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept;
   void note_hold() noexcept;
   void tell_rig(Frame& frame) const noexcept;

@@ -12,13 +12,15 @@ namespace nendo::flow {
 struct LoopSettings {
   Mode mode = Mode::type1;
   deform::Wendland kernel = deform::Wendland::c2;
-  bool injective = false;           ///< the surface never folds
+  bool injective = false;           ///< the surface never folds, unless it keeps its volume
   std::array<double, 5> radius_m{}; ///< of each finger, on the stage, thumb to little finger
   double piece_fraction = 0.05;     ///< the length of a piece of type 2, in least radii
   hand::FilterOptions filter{};     ///< of both hands
   /// Of each finger, thumb to little finger, in type 2 (SculptorOptions::brushes).
   std::array<deform::Brush, 5> brushes{};
   double brush_strength = deform::usual_brush_strength; ///< -1 to 1
+  double keep_volume = 0.0; ///< 0, air, to 1, clay (deform::CsrbfOptions)
+  Hold hold = Hold::fingertips;
 
   static constexpr double least_radius_m = 1e-9;
   static constexpr double most_radius_m = 1e9;

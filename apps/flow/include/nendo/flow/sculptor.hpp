@@ -24,8 +24,16 @@ enum class Mode : std::uint8_t { type1, type2 };
 std::string_view name_of(Mode mode) noexcept;
 std::optional<Mode> mode_named(std::string_view name) noexcept;
 
+/// What of a hand holds the model in type 1: its five fingertips, or points all over its bones and
+/// its palm (hand/held_points.hpp). Type 2 and keep_volume are for fingertips.
+enum class Hold : std::uint8_t { fingertips, hand };
+
+std::string_view name_of(Hold hold) noexcept; ///< "tips" or "hand"
+std::optional<Hold> hold_named(std::string_view name) noexcept;
+
 struct SculptorOptions {
   Mode mode = Mode::type1;
+  Hold hold = Hold::fingertips;
   double piece_length = 0.05;       ///< of a cut of type 2, in model units
   deform::DeformerOptions deformer; ///< but for its brushes
   /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
@@ -39,6 +47,8 @@ struct SculptorOptions {
 
   /// Tells whether a brush does something that needs the triangles about each vertex.
   bool needs_rings() const noexcept;
+  /// Returns how many points of a hand hold the model; not of a puppet.
+  Eigen::Index points_of_hand() const noexcept;
 };
 
 /// Reads the name of a brush, or five with commas between. Returns nothing if it is neither.
@@ -56,6 +66,8 @@ public:
   Mode mode() const noexcept {
     return std::holds_alternative<deform::Type2Deformer>(deformer_) ? Mode::type2 : Mode::type1;
   }
+
+  Eigen::Index control_points() const noexcept { return control_points_; }
 
   /// Tells whether fields() tells all that the last update did: not where distances are along the
   /// surface, nor where a brush has changed something.
@@ -130,6 +142,7 @@ private:
   }
 
   std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer> deformer_;
+  Eigen::Index control_points_;
   std::uint64_t holds_ = 0;
 };
 

@@ -37,6 +37,9 @@ struct ReadySculptor {
   bool holds_on = false;
   deform::Points starts{};     ///< 3 by #control points
   deform::Points still_tips{}; ///< room for so many of them
+  /// Where they are at the exchange, if there are others than before (Hold): the caller of
+  /// exchange() writes them.
+  deform::Points tips{};
   /// Room for its fields in the three frames of a FrameExchange, which may have had too little.
   std::array<deform::FieldSequence, 3> room;
   std::array<deform::SurfaceMove, 3> surface_room; ///< likewise, for what a puppet tells
@@ -102,12 +105,13 @@ public:
   bool holds_on(const ReadySculptor& ready) const noexcept;
   /// Lets that sculptor go on where the present one ends, which `ready` then has: after shape()
   /// with `completes`, in the same tick. A stroke ends, and the fingertips take hold anew at
-  /// `tips`. Stroke and change are steps of their own; less than a second after the exchange before
-  /// they belong to the steps before and behind. If an undo or a redo has waited for these settings
-  /// (Frame::awaited), this is it. The shape does not change, but for what the hands have shaped
-  /// since the last step, which an undo drops. Another version of the model is always a step, and
-  /// the frame then shows it. Returns false, and goes on as it was, if another version is not new,
-  /// and no undo or redo waits for it any more. Wait-free, without allocation.
+  /// `tips`, or at `ready.tips` if it has other control points. Stroke and change are steps of
+  /// their own; less than a second after the exchange before they belong to the steps before and
+  /// behind. If an undo or a redo has waited for these settings (Frame::awaited), this is it. The
+  /// shape does not change, but for what the hands have shaped since the last step, which an undo
+  /// drops. Another version of the model is always a step, and the frame then shows it. Returns
+  /// false, and goes on as it was, if another version is not new, and no undo or redo waits for it
+  /// any more. Wait-free, without allocation.
   bool exchange(ReadySculptor& ready, const deform::Points& tips, Frame& frame,
                 LoopStats& stats) noexcept;
   /// Ends the stroke, lets undo go back to here and no farther (`fences`), or as far as memory

@@ -15,7 +15,7 @@ struct LoopSettings;
 enum class StepKind : std::uint8_t {
   stroke, ///< of the hands, up to a commit, to letting go, or to a change
   reset,  ///< back to the model as it was loaded
-  mode,   ///< these five, and brush: a change of this setting alone
+  mode,   ///< these five, brush, volume and hold: a change of this setting alone
   kernel,
   radius,  ///< of one finger or more
   folding, ///< LoopSettings::injective
@@ -24,13 +24,16 @@ enum class StepKind : std::uint8_t {
   subdivide, ///< the model became finer
   brush,     ///< of one finger or more, or their strength
   puppet,    ///< the puppet was edited
+  volume,    ///< LoopSettings::keep_volume
+  hold,      ///< LoopSettings::hold
 };
 
 std::string_view name_of(StepKind kind) noexcept;
 /// Returns the kind of a step that leads from one of these to the other.
 StepKind kind_of_change(const LoopSettings& before, const LoopSettings& after) noexcept;
 constexpr bool is_setting(StepKind kind) noexcept {
-  return (kind >= StepKind::mode && kind <= StepKind::settings) || kind == StepKind::brush;
+  return (kind >= StepKind::mode && kind <= StepKind::settings) || kind == StepKind::brush ||
+         kind == StepKind::volume || kind == StepKind::hold;
 }
 /// Tells whether such a step needs another sculptor, and so another thread, to be undone.
 constexpr bool is_change(StepKind kind) noexcept {

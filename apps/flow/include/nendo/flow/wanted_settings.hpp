@@ -32,6 +32,9 @@ public:
   void next_kernel() noexcept;
   /// Gives all fingers the next brush, none left out; brushes are of type 2.
   void next_brush() noexcept;
+  /// A quarter more of clay; from 1 to 0.
+  void next_volume() noexcept;
+  void toggle_hold() noexcept { now.hold = now.hold == Hold::hand ? Hold::fingertips : Hold::hand; }
   void toggle_folding() noexcept { now.injective = !now.injective; }
   /// Make all radii larger, or smaller, by a tenth, within the range.
   void enlarge_radii() noexcept { scale_radii(1.1); }
