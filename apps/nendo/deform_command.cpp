@@ -81,7 +81,7 @@ Result<FieldStatus> deform_at_once(Points& vertices, const ControlVectors& vecto
   return status;
 }
 
-/// Of ways of 64 radii; longer ones take longer steps.
+/// Of ways of 12 radii; longer ones take longer steps.
 constexpr int most_volume_steps = 256;
 
 Result<FieldStatus> deform_keeping_volume(Points& vertices, const ControlVectors& vectors,

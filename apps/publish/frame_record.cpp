@@ -78,8 +78,9 @@ std::size_t FrameRecord::put_field(const deform::CsrbfField& field, std::size_t 
   if (end > words_.size()) return 0;
   nendo_publish_field head{};
   const bool keeps_volume = field.keep_volume > 0.0;
-  head.kernel = kernel_number(field.kernel) | (keeps_volume ? NENDO_PUBLISH_KEEPS_VOLUME : 0U) |
-                (field.is_halfway ? NENDO_PUBLISH_HALFWAY : 0U);
+  head.kernel = kernel_number(field.kernel);
+  if (keeps_volume) head.kernel |= std::uint32_t{NENDO_PUBLISH_KEEPS_VOLUME};
+  if (field.is_halfway) head.kernel |= std::uint32_t{NENDO_PUBLISH_HALFWAY};
   head.functions = static_cast<std::uint32_t>(functions);
   const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = field.polynomial;
   std::memcpy(head.polynomial, rows.data(), sizeof head.polynomial);

@@ -10,6 +10,14 @@
 
 namespace nendo::deform {
 
+namespace {
+
+/// Of the least radius. What is lost of the volume goes with its square: with a twelfth, five
+/// fingertips side by side change that of the Moai by 0.05 %, with a quarter by 0.4.
+constexpr double step_length = 1.0 / 20.0;
+
+} // namespace
+
 MidpointChain::MidpointChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf,
                              int most_steps)
     : supports_(std::move(supports)), most_length_(step_length * least_radius(supports_)),

@@ -2,6 +2,7 @@
 // Allocates ahead what a tick must not allocate.
 
 #include <nendo/deform/csrbf.hpp>
+#include <nendo/deform/deformer_options.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 
 namespace nendo::deform {

@@ -6,6 +6,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
+#include "reference/icosphere.hpp"
 #include "support/program.hpp"
 
 namespace deform_command_test {
@@ -329,6 +330,50 @@ TEST_SUITE("deform") {
         {"deform", in, "--vectors", vectors, "--radius", "20", "--injective", "--out", out});
     CHECK(far.exit_code == 5);
     CHECK(is_one_line_about(far.err, "vectors.csv"));
+  }
+
+  TEST_CASE("with --keep-volume what is pressed in comes out nearby") {
+    const TemporaryFolder folder;
+    const Mesh ball = reference::icosphere(5, 1.0);
+    const auto in = (folder.path() / "ball.ply").string();
+    const auto out = (folder.path() / "out.ply").string();
+    const auto vectors = (folder.path() / "vectors.csv").string();
+    REQUIRE(deform::write_mesh(in, ball));
+    nendo::test::write_file(vectors, "x,y,z,dx,dy,dz\n0,0,1,0,0,-0.6\n");
+    const auto volume = [](const Mesh& mesh) {
+      double six = 0.0;
+      for (std::size_t at = 0; at < mesh.face_corners.size(); at += 3) {
+        const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
+          return mesh.vertices.col(mesh.face_corners[at + k]);
+        };
+        six += corner(0).dot(corner(1).cross(corner(2)));
+      }
+      return six / 6.0;
+    };
+    const auto run = [&](std::vector<std::string> more) {
+      std::vector<std::string> all{"deform",   in,    "--vectors", vectors,
+                                   "--radius", "0.6", "--out",     out};
+      all.insert(all.end(), more.begin(), more.end());
+      return nendo::test::nendo(all);
+    };
+    const auto change = [&](const std::string& keep) {
+      REQUIRE(run({"--keep-volume", keep}).exit_code == 0);
+      return std::abs(volume(*deform::read_mesh(out)) / volume(ball) - 1.0);
+    };
+    const double air = change("0");
+    const double half = change("0.5");
+    CHECK(air > 5e-3);
+    CHECK(half > 2e-3);
+    CHECK(half < air);
+    CHECK(change("1") < 3e-4);
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--keep-volume", "1.5"},
+                                                  {"--keep-volume", "nan"},
+                                                  {"--keep-volume", "1", "--polynomial", "linear"},
+                                                  {"--keep-volume", "0.5", "--injective"}}) {
+      const auto done = run(wrong);
+      CHECK(done.exit_code == 2);
+      CHECK(is_one_line_about(done.err, "--keep-volume"));
+    }
   }
 
   TEST_CASE("what is hardly meant is done, and told in a line") {

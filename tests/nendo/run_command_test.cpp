@@ -131,6 +131,40 @@ TEST_SUITE("run") {
     CHECK(both.exit_code == 2);
   }
 
+  TEST_CASE("the whole hand holds, or the volume stays, and what does not go together is refused") {
+    const TemporaryFolder folder;
+    const auto run = [&](std::vector<std::string> more) {
+      std::vector<std::string> arguments{
+          "run",        "--right", "sim:wave", "--out", (folder.path() / "shape.ply").string(),
+          "--duration", "300ms",   "--json"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return nendo::test::nendo(arguments);
+    };
+    const auto summary = [&](std::vector<std::string> more) {
+      const auto done = run(std::move(more));
+      REQUIRE(done.exit_code == 0);
+      return last_object(done);
+    };
+    const json hand = summary({"--hold", "hand"});
+    CHECK(hand["hold"] == "hand");
+    CHECK(hand["failed"] == 0);
+    const json clay = summary({"--keep-volume", "0.75"});
+    CHECK(clay["keep_volume"] == 0.75);
+    CHECK(clay["failed"] == 0);
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--hold", "fist"},
+                                                  {"--hold", "hand", "--mode", "type2"},
+                                                  {"--hold", "hand", "--keep-volume", "1"},
+                                                  {"--hold", "hand", "--puppet", "face"},
+                                                  {"--keep-volume", "2"},
+                                                  {"--keep-volume", "1", "--injective"},
+                                                  {"--keep-volume", "1", "--puppet", "face"}}) {
+      CAPTURE(wrong.back());
+      const auto done = run(wrong);
+      CHECK(done.exit_code == 2);
+      CHECK(std::count(done.err.begin(), done.err.end(), '\n') == 1);
+    }
+  }
+
   TEST_CASE("how a shape was kept from folding is told to those who ask, or where it mattered") {
     const TemporaryFolder folder;
     const auto run = [&](std::vector<std::string> more) {

@@ -75,6 +75,24 @@ TEST_SUITE("client_commands") {
     }
   }
 
+  TEST_CASE("settings may tell how much of the volume stays, and what of a hand holds") {
+    const std::string settings =
+        "settings type1 c2 free off 1 1 1 1 1 pull pull pull pull pull 0.5";
+    const auto plain = parsed_as<flow::ChangeSettings>(settings);
+    REQUIRE(plain);
+    CHECK(plain->settings.keep_volume == 0.0);
+    CHECK(plain->settings.hold == flow::Hold::fingertips);
+    const auto clay = parsed_as<flow::ChangeSettings>(settings + " 0.25 hand");
+    REQUIRE(clay);
+    CHECK(clay->settings.keep_volume == 0.25);
+    CHECK(clay->settings.hold == flow::Hold::hand);
+    for (const auto* wrong : {" 0.25", " 1.5 tips", " -0.1 tips", " nan hand", " 1 fist", " hand 1",
+                              " 1 hand ", " 1 hand 1"}) {
+      CAPTURE(wrong);
+      CHECK_FALSE(parse_command(settings + wrong));
+    }
+  }
+
   TEST_CASE("a wrist's place and turn are taken as they are, but for the quaternion's length") {
     const auto move = parsed_as<flow::WristMove>("wrist left 0.25 -1.5 100 0 0.6 0 0.8");
     REQUIRE(move);

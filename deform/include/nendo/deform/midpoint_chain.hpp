@@ -15,12 +15,8 @@ namespace nendo::deform {
 /// constructor nothing allocates, locks or calls the system, up to CsrbfSolver::lean_size points.
 class MidpointChain {
 public:
-  /// Of the least radius. A quarter leaves 0.01 % of the volume of a stroke of one radius. Steps
-  /// end at whole multiples of it, and the last is what remains: the shape is continuous in the
-  /// way.
-  static constexpr double step_length = 0.25;
-
-  /// A way longer than `most_steps` such steps is cut into so many longer ones.
+  /// Steps are a twentieth of the least radius, and the last is what remains, so that the shape is
+  /// continuous in the way. A way longer than `most_steps` of them is cut into so many longer ones.
   MidpointChain(Eigen::Index points, Supports supports, CsrbfOptions csrbf, int most_steps);
   ~MidpointChain();
   MidpointChain(MidpointChain&&) noexcept;
