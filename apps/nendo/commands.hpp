@@ -23,6 +23,9 @@ namespace calibration_exchange {
 /// Adds the commands import and export to `nendo calibration`.
 void add(cli::Command& calibration);
 } // namespace calibration_exchange
+namespace cut_command {
+void add(cli::Command& program);
+}
 namespace deform_command {
 void add(cli::Command& program);
 }

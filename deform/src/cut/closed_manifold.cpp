@@ -31,6 +31,7 @@ void check_faces(std::span<const std::uint32_t> starts, std::span<const std::uin
       tally.add(ManifoldFault::few_corners, face, vertex, vertex);
       continue;
     }
+    if (own.size() == 3 && own[0] != own[1] && own[1] != own[2] && own[2] != own[0]) continue;
     sorted.assign(own.begin(), own.end());
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
@@ -94,19 +95,24 @@ std::string place_of(const Mesh& mesh, std::uint32_t vertex) {
 
 ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
                                     std::span<const std::uint32_t> face_corners,
-                                    std::size_t vertices) {
+                                    const HalfEdges& edges) {
   FaultTally tally;
   if (face_starts.size() < 2) return {ManifoldFault::no_faces, 1, 0, 0, 0};
   check_faces(face_starts, face_corners, tally);
   if (!tally.check()) return tally.check();
-  const HalfEdges edges = half_edges_of(face_starts, face_corners, vertices);
-  const bool paired =
-      std::find(edges.twin.begin(), edges.twin.end(), no_half_edge) == edges.twin.end();
   // Of two edges alike, only their twin sees both.
-  if (!paired) check_edges(face_starts, face_corners, edges, tally);
+  if (std::find(edges.twin.begin(), edges.twin.end(), no_half_edge) != edges.twin.end())
+    check_edges(face_starts, face_corners, edges, tally);
   if (!tally.check()) return tally.check();
   check_fans(face_starts, edges, tally);
   return tally.check();
+}
+
+ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
+                                    std::span<const std::uint32_t> face_corners,
+                                    std::size_t vertices) {
+  return check_closed_manifold(face_starts, face_corners,
+                               half_edges_of(face_starts, face_corners, vertices));
 }
 
 ManifoldCheck check_closed_manifold(const Mesh& mesh) {

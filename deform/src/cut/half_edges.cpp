@@ -1,6 +1,36 @@
 #include "half_edges.hpp"
 
 namespace nendo::deform {
+namespace {
+
+/// Each edge that goes from a lesser to a greater vertex looks for those that come back.
+void pair_edges(std::span<const std::uint32_t> face_corners, HalfEdges& edges) {
+  constexpr std::uint32_t several = no_half_edge - 1;
+  for (std::uint32_t edge = 0; edge < face_corners.size(); ++edge) {
+    const std::uint32_t from = face_corners[edge];
+    const std::uint32_t to = face_corners[edges.next[edge]];
+    if (from > to) continue;
+    for (std::uint32_t at = edges.out_starts[to]; at < edges.out_starts[to + 1]; ++at) {
+      const std::uint32_t other = edges.out[at];
+      if (face_corners[edges.next[other]] != from) continue;
+      const bool is_only = edges.twin[edge] == no_half_edge && edges.twin[other] == no_half_edge;
+      for (const std::uint32_t one : {edge, other}) {
+        if (is_only) continue;
+        // Neither these nor those that were taken for their twins have only one.
+        if (edges.twin[one] < several) edges.twin[edges.twin[one]] = several;
+        edges.twin[one] = several;
+      }
+      if (is_only) {
+        edges.twin[edge] = other;
+        edges.twin[other] = edge;
+      }
+    }
+  }
+  for (std::uint32_t& twin : edges.twin)
+    if (twin == several) twin = no_half_edge;
+}
+
+} // namespace
 
 HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,
                         std::span<const std::uint32_t> face_corners, std::size_t vertices) {
@@ -25,16 +55,7 @@ HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,
       edges.out[filled[face_corners[edge]]++] = edge;
     }
   }
-  for (std::uint32_t edge = 0; edge < count; ++edge) {
-    const std::uint32_t from = face_corners[edge];
-    const std::uint32_t to = face_corners[edges.next[edge]];
-    std::uint32_t found = 0;
-    for (std::uint32_t at = edges.out_starts[to]; at < edges.out_starts[to + 1]; ++at) {
-      const std::uint32_t other = edges.out[at];
-      if (face_corners[edges.next[other]] != from) continue;
-      edges.twin[edge] = ++found == 1 ? other : no_half_edge;
-    }
-  }
+  pair_edges(face_corners, edges);
   return edges;
 }
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include <nendo/deform/closed_manifold.hpp>
+
 namespace nendo::deform {
 
 inline constexpr std::uint32_t no_half_edge = std::numeric_limits<std::uint32_t>::max();
@@ -24,5 +26,10 @@ struct HalfEdges {
 /// Each corner must be below `vertices`. Allocates.
 HalfEdges half_edges_of(std::span<const std::uint32_t> face_starts,
                         std::span<const std::uint32_t> face_corners, std::size_t vertices);
+
+/// As the public function, if the edges are at hand.
+ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
+                                    std::span<const std::uint32_t> face_corners,
+                                    const HalfEdges& edges);
 
 } // namespace nendo::deform
