@@ -13,6 +13,9 @@ void add(cli::Command& bench);
 namespace clay_bench {
 void add(cli::Command& bench);
 }
+namespace cut_bench {
+void add(cli::Command& bench);
+}
 namespace deform_bench {
 void add(cli::Command& bench);
 }
