@@ -156,11 +156,24 @@ Result<void> write_parts(const std::string& file, const CutModel& cut, const Opt
   return {};
 }
 
+std::string box_text(const Mesh& mesh) {
+  const Box box = finite_box_of(mesh.vertices);
+  char text[160];
+  std::snprintf(text, sizeof text, "(%g, %g, %g) to (%g, %g, %g)", box.lowest.x(), box.lowest.y(),
+                box.lowest.z(), box.highest.x(), box.highest.y(), box.highest.z());
+  return text;
+}
+
 Result<void> cut_file(const std::string& file, const AnyBlade& blade, const Options& options) {
   const auto mesh = closed_model(file, options.repair);
   if (!mesh) return mesh.error();
   const auto cut = cut_by(*mesh, blade, options);
-  if (!cut) return Error{cut.error().code, file + ": " + cut.error().message};
+  if (!cut) {
+    // A blade that misses is mostly in other units, or at another place.
+    const std::string where =
+        cut.error().code == Errc::failed ? "; it fills " + box_text(*mesh) : "";
+    return Error{cut.error().code, file + ": " + cut.error().message + where};
+  }
   if (cut->left_whole > 0)
     cli::note(file + ": stays whole at " + std::to_string(cut->left_whole) +
               (cut->left_whole == 1 ? " place" : " places") +

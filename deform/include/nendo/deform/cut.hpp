@@ -34,7 +34,7 @@ CutWire knife_cut(std::span<const Eigen::Vector3d> tips, const Eigen::Vector3d& 
 struct CutOptions {
   double edge = 0.0; ///< length of the cut faces' edges; 0: the mean where the blade crosses
   std::string material = "cut";                      ///< its name
-  Eigen::Vector4f colour{0.80F, 0.28F, 0.18F, 1.0F}; ///< linear
+  Eigen::Vector4f colour{0.45F, 0.06F, 0.05F, 1.0F}; ///< linear
 };
 
 /// A vertex that the cut made: a part of the way from one vertex to another, both of which come
