@@ -50,6 +50,9 @@ void add(cli::Command& program);
 namespace info_command {
 void add(cli::Command& program);
 }
+namespace join_command {
+void add(cli::Command& program);
+}
 namespace manual_command {
 void add(cli::Command& program);
 }

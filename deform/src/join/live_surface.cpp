@@ -20,6 +20,12 @@ constexpr double fair_enough = 0.25;
 /// A flip that gains less may be taken back by the next one.
 constexpr double least_gain = 1.02;
 
+/// The least height of a triangle.
+double height_of(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
+  const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
+  return longest > 0.0 ? length(area_vector(a, b, c)) / longest : 0.0;
+}
+
 double cosine(const SpacePoint& a, const SpacePoint& b) noexcept {
   const double lengths = length(a) * length(b);
   return lengths > 0.0 ? dot(a, b) / lengths : -1.0;
@@ -148,7 +154,7 @@ bool LiveSurface::keeps_borders(std::uint32_t edge) const {
   return borders == 0 || (borders == 2 && is_border(edge));
 }
 
-bool LiveSurface::keeps_shape(std::uint32_t edge, double longest) const {
+bool LiveSurface::keeps_shape(std::uint32_t edge, double longest, double thin) const {
   const SpacePoint& target = point(from(edge));
   const std::uint32_t b = to(edge);
   SpacePoint around{};
@@ -162,22 +168,22 @@ bool LiveSurface::keeps_shape(std::uint32_t edge, double longest) const {
     if (at == next(edge) || at == twins_[edge]) return; // these two faces go
     const SpacePoint& p = point(to(at));
     const SpacePoint& q = point(from(last(at)));
+    keeps = keeps && distance(target, p) <= longest_before;
+    if (!keeps || height_of(target, p, q) < thin) return;
     const double before = fairness(point(b), p, q);
-    const SpacePoint area = area_vector(target, p, q);
-    const SpacePoint old_area = before > needle ? area_of(at / 3) : around;
-    keeps = keeps && cosine(area, old_area) >= least_normal_cosine &&
-            fairness(target, p, q) >= std::min(before, fair_enough) &&
-            distance(target, p) <= longest_before;
+    const SpacePoint old_area = height_of(point(b), p, q) < thin ? around : area_of(at / 3);
+    keeps = cosine(area_vector(target, p, q), old_area) >= least_normal_cosine &&
+            fairness(target, p, q) >= std::min(before, fair_enough);
   });
   return keeps;
 }
 
-bool LiveSurface::may_collapse(std::uint32_t edge, double longest) const {
-  return keeps_links(edge) && keeps_borders(edge) && keeps_shape(edge, longest);
+bool LiveSurface::may_collapse(std::uint32_t edge, double longest, double thin) const {
+  return keeps_links(edge) && keeps_borders(edge) && keeps_shape(edge, longest, thin);
 }
 
-bool LiveSurface::collapse(std::uint32_t edge, double longest) {
-  if (!may_collapse(edge, longest)) return false;
+bool LiveSurface::collapse(std::uint32_t edge, double longest, double thin) {
+  if (!may_collapse(edge, longest, thin)) return false;
   const std::uint32_t back = twins_[edge];
   const std::uint32_t a = from(edge);
   const std::uint32_t b = to(edge);

@@ -58,8 +58,10 @@ public:
   /// Puts a new point into the middle of an edge, and returns its number: point_count() before.
   std::uint32_t split(std::uint32_t edge);
   /// Lets the edge's end go into its beginning, which stays in its place. No edge becomes longer
-  /// than `longest`, unless one around the end was. Returns false if it is refused.
-  bool collapse(std::uint32_t edge, double longest);
+  /// than `longest`, unless one around the end was, and no face's normal turns by more than 60
+  /// degrees; that of faces which are lower than `thin` says nothing. Returns false if it is
+  /// refused.
+  bool collapse(std::uint32_t edge, double longest, double thin);
   /// Turns the edge in its two faces if that makes the worse of them fairer. Returns false if it is
   /// refused.
   bool flip(std::uint32_t edge);
@@ -83,10 +85,10 @@ private:
   std::uint32_t middle_texture(std::uint32_t edge);
   std::uint32_t add_face(std::uint32_t like);
   SpacePoint area_of(std::uint32_t face) const noexcept;
-  bool may_collapse(std::uint32_t edge, double longest) const;
+  bool may_collapse(std::uint32_t edge, double longest, double thin) const;
   bool keeps_links(std::uint32_t edge) const;
   bool keeps_borders(std::uint32_t edge) const;
-  bool keeps_shape(std::uint32_t edge, double longest) const;
+  bool keeps_shape(std::uint32_t edge, double longest, double thin) const;
 
   TriangleSurface surface_;
   std::vector<std::uint32_t> twins_;

@@ -79,7 +79,7 @@ private:
       const std::uint32_t edge = surface_.edge_between(stays, goes);
       if (edge == no_entry) return false;
       const double longest = limits_.longest * coarseness_between(stays, goes);
-      if (surface_.collapse(edge, longest)) return true;
+      if (surface_.collapse(edge, longest, limits_.thin)) return true;
     }
     return false;
   }

@@ -18,9 +18,10 @@
 namespace nendo::deform {
 
 struct RefineLimits {
-  double longest = 0.0;              ///< an edge that is longer is split; > 0
-  double shortest = 0.0;             ///< one that is shorter is collapsed; at most longest / 2
-  std::size_t budget = 500;          ///< splits and collapses in one call
+  double longest = 0.0;     ///< an edge that is longer is split; > 0
+  double shortest = 0.0;    ///< one that is shorter is collapsed; at most longest / 2
+  double thin = 0.0;        ///< faces that are lower may fold: they say little of the shape
+  std::size_t budget = 500; ///< splits and collapses in one call
   std::size_t most_points = 4000000; ///< no splits beyond it
 };
 
