@@ -33,7 +33,7 @@ double cosine(const SpacePoint& a, const SpacePoint& b) noexcept {
 
 } // namespace
 
-double fairness(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
+double triangle_fairness(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
   const SpacePoint ab = b - a;
   const SpacePoint bc = c - b;
   const SpacePoint ca = a - c;
@@ -150,7 +150,7 @@ bool LiveSurface::keeps_links(std::uint32_t edge) const {
 
 bool LiveSurface::keeps_borders(std::uint32_t edge) const {
   std::size_t borders = 0;
-  visit_edges(to(edge), [&](std::uint32_t at) { borders += is_border(at) ? 1 : 0; });
+  visit_edges(to(edge), [&](std::uint32_t at) { borders += is_border(at) ? 1u : 0u; });
   return borders == 0 || (borders == 2 && is_border(edge));
 }
 
@@ -170,10 +170,10 @@ bool LiveSurface::keeps_shape(std::uint32_t edge, double longest, double thin) c
     const SpacePoint& q = point(from(last(at)));
     keeps = keeps && distance(target, p) <= longest_before;
     if (!keeps || height_of(target, p, q) < thin) return;
-    const double before = fairness(point(b), p, q);
+    const double before = triangle_fairness(point(b), p, q);
     const SpacePoint old_area = height_of(point(b), p, q) < thin ? around : area_of(at / 3);
     keeps = cosine(area_vector(target, p, q), old_area) >= least_normal_cosine &&
-            fairness(target, p, q) >= std::min(before, fair_enough);
+            triangle_fairness(target, p, q) >= std::min(before, fair_enough);
   });
   return keeps;
 }
@@ -220,10 +220,10 @@ bool LiveSurface::flip(std::uint32_t edge) {
   const std::uint32_t c = from(last(edge));
   const std::uint32_t d = from(last(back));
   if (c == d) return false;
-  const double one = fairness(point(a), point(b), point(c));
-  const double other = fairness(point(b), point(a), point(d));
-  const double then =
-      std::min(fairness(point(d), point(c), point(a)), fairness(point(c), point(d), point(b)));
+  const double one = triangle_fairness(point(a), point(b), point(c));
+  const double other = triangle_fairness(point(b), point(a), point(d));
+  const double then = std::min(triangle_fairness(point(d), point(c), point(a)),
+                               triangle_fairness(point(c), point(d), point(b)));
   if (then <= least_gain * std::min(one, other)) return false;
   const SpacePoint both = area_of(edge / 3) + area_of(back / 3);
   if (std::min(one, other) > needle &&

@@ -97,6 +97,6 @@ private:
 };
 
 /// From 0 for a triangle without area to 1 for an equilateral one.
-double fairness(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept;
+double triangle_fairness(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept;
 
 } // namespace nendo::deform

@@ -91,7 +91,7 @@ private:
         ++counts_.left;
         continue;
       }
-      counts_.collapses += collapse(wanted) ? 1 : 0;
+      counts_.collapses += collapse(wanted) ? 1u : 0u;
     }
   }
   void flip_all() {

@@ -1,6 +1,7 @@
 #include "join/seam.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <queue>
 #include <utility>
 
