@@ -25,6 +25,9 @@ void add(cli::Command& bench);
 namespace hand_bench {
 void add(cli::Command& bench);
 }
+namespace join_bench {
+void add(cli::Command& bench);
+}
 namespace models_bench {
 void add(cli::Command& bench);
 }

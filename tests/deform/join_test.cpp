@@ -8,12 +8,15 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "join/mesh_surface.hpp"
 #include "join/overlay.hpp"
 #include "join/self_intersections.hpp"
-#include "support/closed_shapes.hpp"
+#include "support/nasty_meshes.hpp"
+#include "support/placed_meshes.hpp"
+#include "support/test_meshes.hpp"
 
 namespace join_test {
 
@@ -22,7 +25,6 @@ using namespace nendo::deform;
 using nendo::test::moved;
 using nendo::test::normalised;
 using nendo::test::turned;
-using nendo::test::volume_of;
 
 Mesh model(const char* name) {
   auto mesh = read_mesh(std::filesystem::path(NENDO_MODELS) / name);
@@ -33,7 +35,7 @@ Mesh model(const char* name) {
 std::vector<std::pair<std::string, Mesh>> shapes() {
   std::vector<std::pair<std::string, Mesh>> all{{"ball", nendo::test::sphere(24, 40, 1.0)},
                                                 {"torus", nendo::test::torus(40, 20)},
-                                                {"cube", nendo::test::cube(6)},
+                                                {"cube", nendo::test::cube_of_cells(6)},
                                                 {"comb", nendo::test::comb(9)},
                                                 {"moai", model("moai.obj")}};
   for (auto& [name, mesh] : all)
@@ -124,7 +126,7 @@ TEST_SUITE("join") {
   }
 
   TEST_CASE("nested, apart and touching boxes") {
-    const Mesh box = nendo::test::cube(1);
+    const Mesh box = nendo::test::cube_of_cells(1);
     Mesh small = box;
     small.vertices = (0.25 * small.vertices).colwise() + Eigen::Vector3d(0.3, 0.3, 0.3);
     check_overlay(box, small);
@@ -210,8 +212,8 @@ TEST_SUITE("join") {
   }
 
   TEST_CASE("materials, names, colours and texture go along") {
-    Mesh a = nendo::test::cube(2);
-    Mesh b = moved(nendo::test::cube(2), {1.3, 0.4, 0.3});
+    Mesh a = nendo::test::cube_of_cells(2);
+    Mesh b = moved(nendo::test::cube_of_cells(2), {1.3, 0.4, 0.3});
     a.look.materials = {{"clay", Eigen::Vector4f(1, 0, 0, 1)}};
     b.look.materials = {{"unused", Eigen::Vector4f(0, 0, 0, 1)},
                         {"clay", Eigen::Vector4f(0, 1, 0, 1)}};
@@ -249,7 +251,7 @@ TEST_SUITE("join") {
   }
 
   TEST_CASE("what cannot be joined is refused with a reason") {
-    const Mesh box = nendo::test::cube(2);
+    const Mesh box = nendo::test::cube_of_cells(2);
     const auto message = [&](const Mesh& bad, Errc code) {
       const auto joined = join_two(box, bad);
       REQUIRE_FALSE(joined);
@@ -281,7 +283,7 @@ TEST_SUITE("join") {
   }
 
   TEST_CASE("three parts in a row, far from the origin and of very different sizes") {
-    const Mesh box = nendo::test::cube(2);
+    const Mesh box = nendo::test::cube_of_cells(2);
     Mesh bead = nendo::test::sphere(10, 16, 0.01);
     const Eigen::Vector3d far(1e5, -1e5, 1e5);
     const Mesh a = moved(box, far);

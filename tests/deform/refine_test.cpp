@@ -7,14 +7,16 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
 
 #include "join/mesh_surface.hpp"
-#include "support/closed_shapes.hpp"
+#include "support/nasty_meshes.hpp"
+#include "support/placed_meshes.hpp"
+#include "support/test_meshes.hpp"
 
 namespace refine_test {
 
 using namespace nendo::deform;
-using nendo::test::volume_of;
 
 SharedSurfaces shared_of(const Mesh& mesh) {
   const Mesh* const one = &mesh;
@@ -44,7 +46,7 @@ RefineZone everywhere(const LiveSurface& surface, char hold) {
 
 TEST_SUITE("refine") {
   TEST_CASE("edges come within limits, and a flat-sided body keeps its shape") {
-    Mesh box = nendo::test::cube(1);
+    Mesh box = nendo::test::cube_of_cells(1);
     const SharedSurfaces shared = shared_of(box);
     LiveSurface surface(shared.surfaces[0]);
     RefineZone zone = everywhere(surface, 2);
@@ -77,12 +79,12 @@ TEST_SUITE("refine") {
   }
 
   TEST_CASE("the budget bounds what is done, and says what is left") {
-    LiveSurface surface(shared_of(nendo::test::cube(1)).surfaces[0]);
+    LiveSurface surface(shared_of(nendo::test::cube_of_cells(1)).surfaces[0]);
     RefineZone zone = everywhere(surface, 2);
     const RefineCounts done = refine(surface, zone, {.longest = 0.5, .shortest = 0.1, .budget = 5});
     CHECK(done.splits == 5);
     CHECK(done.left == 13); // of the cube's 12 edges and 6 diagonals
-    LiveSurface bounded(shared_of(nendo::test::cube(1)).surfaces[0]);
+    LiveSurface bounded(shared_of(nendo::test::cube_of_cells(1)).surfaces[0]);
     zone = everywhere(bounded, 2);
     refine(bounded, zone, {.longest = 0.5, .shortest = 0.1, .budget = 50, .most_points = 10});
     CHECK(bounded.point_count() == 10);

@@ -6,9 +6,12 @@
 
 #include <nendo/deform/mesh_file.hpp>
 
+#include "cut/triangle_meeting.hpp"
 #include "join/mesh_surface.hpp"
-#include "support/closed_shapes.hpp"
+#include "support/nasty_meshes.hpp"
+#include "support/placed_meshes.hpp"
 #include "support/self_intersections.hpp"
+#include "support/test_meshes.hpp"
 
 namespace self_intersections_test {
 

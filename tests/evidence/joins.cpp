@@ -16,13 +16,16 @@
 #include <vector>
 
 #include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/join.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
 #include "evidence/intersection_count.hpp"
 #include "join/mesh_surface.hpp"
 #include "join/overlay.hpp"
-#include "support/closed_shapes.hpp"
+#include "support/nasty_meshes.hpp"
+#include "support/placed_meshes.hpp"
+#include "support/test_meshes.hpp"
 
 namespace {
 
@@ -46,10 +49,10 @@ double volume_error(const Mesh& a, const Mesh& b) {
   if (!laid) return 1.0;
   double sum = 0.0;
   for (const auto choice : {deform::Choice::union_of_both, deform::Choice::intersection})
-    sum += test::volume_of(deform::mesh_of(
+    sum += deform::volume_of(deform::mesh_of(
         deform::choose(shared.surfaces[0], shared.surfaces[1], *laid, choice).surface,
         shared.look));
-  const double expected = test::volume_of(a) + test::volume_of(b);
+  const double expected = deform::volume_of(a) + deform::volume_of(b);
   return std::abs(sum - expected) / expected;
 }
 
@@ -111,7 +114,7 @@ int main(int argc, char** argv) {
   std::mt19937 random(static_cast<unsigned>(std::atoi(argv[2])));
   std::vector<std::pair<std::string, Mesh>> shapes{{"ball", test::sphere(40, 64, 1.0)},
                                                    {"torus", test::torus(60, 30)},
-                                                   {"cube", test::cube(8)},
+                                                   {"cube", test::cube_of_cells(8)},
                                                    {"comb", test::comb(13)}};
   for (int at = 3; at < argc; ++at) {
     auto mesh = deform::read_mesh(argv[at]);
@@ -129,7 +132,7 @@ int main(int argc, char** argv) {
   const int pairs = static_cast<int>(shapes.size() * (shapes.size() + 1));
   const int each = std::max(1, (count + pairs - 1) / pairs);
   std::uniform_real_distribution<double> way(-0.8, 0.8);
-  std::uniform_real_distribution<double> width(0.01, 0.15);
+  std::uniform_real_distribution<double> width(0.03, 0.15);
   for (const auto& [first, a] : shapes) {
     for (const auto& [second, b] : shapes) {
       Tally tally;

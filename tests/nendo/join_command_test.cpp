@@ -3,10 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/mesh_file.hpp>
 
-#include "support/closed_shapes.hpp"
+#include "support/nasty_meshes.hpp"
+#include "support/placed_meshes.hpp"
 #include "support/program.hpp"
+#include "support/test_meshes.hpp"
 
 namespace join_command_test {
 
@@ -40,9 +43,9 @@ TEST_SUITE("nendo join") {
       const auto mesh = read_mesh(out);
       REQUIRE(mesh);
       CHECK(check_closed_manifold(*mesh));
-      const double one = nendo::test::volume_of(ball);
-      CHECK(nendo::test::volume_of(*mesh) > 1.8 * one);
-      CHECK(nendo::test::volume_of(*mesh) < 3.0 * one);
+      const double one = volume_of(ball);
+      CHECK(volume_of(*mesh) > 1.8 * one);
+      CHECK(volume_of(*mesh) < 3.0 * one);
     }
   }
 

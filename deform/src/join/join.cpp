@@ -19,7 +19,7 @@ namespace {
 constexpr double largest_coordinate = 1e60;
 constexpr double least_size = 1e-40;
 /// A seam that cuts itself is tried again at half the width, so often.
-constexpr int most_narrowings = 4;
+constexpr int most_narrowings = 3;
 
 Result<void> check_part(const JoinPart& part) {
   const auto bad = [&](const std::string& what) {

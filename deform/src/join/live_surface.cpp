@@ -23,11 +23,11 @@ constexpr double least_gain = 1.02;
 /// The least height of a triangle.
 double height_of(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
   const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
-  return longest > 0.0 ? length(area_vector(a, b, c)) / longest : 0.0;
+  return longest > 0.0 ? length_of(area_vector(a, b, c)) / longest : 0.0;
 }
 
 double cosine(const SpacePoint& a, const SpacePoint& b) noexcept {
-  const double lengths = length(a) * length(b);
+  const double lengths = length_of(a) * length_of(b);
   return lengths > 0.0 ? dot(a, b) / lengths : -1.0;
 }
 
@@ -38,7 +38,7 @@ double triangle_fairness(const SpacePoint& a, const SpacePoint& b, const SpacePo
   const SpacePoint bc = c - b;
   const SpacePoint ca = a - c;
   const double squares = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
-  return squares > 0.0 ? 2.0 * std::numbers::sqrt3 * length(cross(ab, ca)) / squares : 0.0;
+  return squares > 0.0 ? 2.0 * std::numbers::sqrt3 * length_of(cross(ab, ca)) / squares : 0.0;
 }
 
 LiveSurface::LiveSurface(TriangleSurface surface)

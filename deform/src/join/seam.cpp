@@ -1,6 +1,7 @@
 #include "join/seam.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <queue>
 #include <utility>
@@ -20,7 +21,11 @@ constexpr double zone_widths = 4.0; ///< so far away is the surface refined
 constexpr double coarser = 2.0;     ///< beyond the width: so much longer edges a width further
 constexpr double farthest_motion = 1.0; ///< of the width
 constexpr int most_rounds = 12;
-constexpr std::size_t most_operations = 400000;
+constexpr std::size_t most_operations = 100000;
+/// A long and narrow seam gets longer edges instead of more triangles. Its band of twice the width,
+/// and what becomes coarser beyond it, has 14 triangles for each square of the longest edge.
+constexpr double most_triangles = 1e5;
+constexpr double triangles_in_square = 14.0;
 constexpr double infinitely_far = 1e300;
 
 /// How far points are from the seam, along edges; infinitely_far beyond the width.
@@ -93,14 +98,24 @@ std::vector<std::uint32_t> split_seam(LiveSurface& surface, std::span<const Seam
   return on_seam;
 }
 
+/// The longest edge near the seam.
+double longest_edge(const LiveSurface& surface, std::span<const SeamEdge> edges, double mean,
+                    double width) {
+  double seam = 0.0;
+  for (const auto& [from, to] : edges)
+    seam += distance(surface.point(from), surface.point(to));
+  const double bounded = std::sqrt(triangles_in_square * seam * width / most_triangles);
+  return std::min(long_edge * mean, std::max(width / edges_in_width, bounded));
+}
+
 /// Makes the triangles near the seam even, and returns the points that are on the seam then. What
 /// is far enough away to keep its detail also keeps its points.
 std::vector<std::uint32_t> even_out(LiveSurface& surface, std::span<const SeamEdge> edges,
                                     double width, RefineZone& zone) {
   std::vector<std::uint32_t> on_seam = split_seam(surface, edges, infinitely_far);
   RefineLimits limits;
-  limits.longest = std::min(long_edge * mean_edge(surface, distances_from(surface, on_seam, width)),
-                            width / edges_in_width);
+  limits.longest = longest_edge(surface, edges,
+                                mean_edge(surface, distances_from(surface, on_seam, width)), width);
   limits.shortest = short_edge * limits.longest;
   limits.thin = thin_face * limits.longest;
   limits.budget = most_operations;
@@ -132,7 +147,7 @@ double area_at(const LiveSurface& surface, const std::vector<char>& moves) {
     const std::uint32_t b = surface.from(3 * face + 1);
     const std::uint32_t c = surface.from(3 * face + 2);
     if (moves[a] || moves[b] || moves[c])
-      twice += length(area_vector(surface.point(a), surface.point(b), surface.point(c)));
+      twice += length_of(area_vector(surface.point(a), surface.point(b), surface.point(c)));
   }
   return 0.5 * twice;
 }
@@ -154,8 +169,8 @@ void move_points(LiveSurface& surface, std::span<const std::uint32_t> on_seam, d
   for (std::size_t at = 0; at < free.size(); ++at) {
     const double full = smoothed(2.0 * (1.0 - distances[free[at]] / width));
     SpacePoint way = full * (smooth[at] - surface.point(free[at]));
-    if (length(way) > farthest) way = (farthest / length(way)) * way;
-    seam.moved = std::max(seam.moved, length(way));
+    if (length_of(way) > farthest) way = (farthest / length_of(way)) * way;
+    seam.moved = std::max(seam.moved, length_of(way));
     surface.move(free[at], surface.point(free[at]) + way);
   }
   seam.volume_bound = std::max(before, area_at(surface, moves)) * seam.moved;

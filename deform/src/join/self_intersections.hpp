@@ -13,17 +13,12 @@ namespace nendo::deform {
 
 using TrianglePair = std::pair<std::uint32_t, std::uint32_t>; ///< the lesser number first
 
-/// Returns true if two triangles have a point in common that is not of a vertex or an edge that
-/// they share by its number. Touching counts. Triangles without area count as meeting everything
-/// that touches their line.
-bool triangles_meet(std::span<const SpacePoint> places, const Corners& one, const Corners& other);
-
 /// Returns true if the three places are in line, exactly.
 bool is_degenerate(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept;
 
-/// Returns the pairs of triangles that meet, sorted, and a triangle without area as a pair with
-/// itself. It stops when it has found `most`. Places must be finite; for their size see
-/// exact_predicates.hpp. Allocates.
+/// Returns the pairs of triangles that meet (triangle_meeting.hpp), sorted, and a triangle without
+/// area as a pair with itself. It stops when it has found `most`. Places must be finite; for their
+/// size see exact_predicates.hpp. Allocates.
 std::vector<TrianglePair> self_intersections(std::span<const SpacePoint> places,
                                              std::span<const Corners> triangles,
                                              std::size_t most = SIZE_MAX);

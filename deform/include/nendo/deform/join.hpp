@@ -27,7 +27,7 @@ struct JoinStep {
   std::size_t crossings = 0; ///< points at which an edge of one goes through a face of the other
   bool swallowed = false; ///< one of both lies wholly inside of the other, so nothing of it is left
   /// The width that the seam has: less than was asked for if it would cut itself otherwise, and 0
-  /// if it would at an eighth of it.
+  /// if it would at a quarter of it.
   double seam_width = 0.0;
   double sharp_volume = 0.0; ///< of the union before the seam was smeared
   double volume = 0.0;
