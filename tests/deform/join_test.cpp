@@ -33,10 +33,10 @@ Mesh model(const char* name) {
 }
 
 std::vector<std::pair<std::string, Mesh>> shapes() {
-  std::vector<std::pair<std::string, Mesh>> all{{"ball", nendo::test::sphere(24, 40, 1.0)},
-                                                {"torus", nendo::test::torus(40, 20)},
-                                                {"cube", nendo::test::cube_of_cells(6)},
-                                                {"comb", nendo::test::comb(9)},
+  std::vector<std::pair<std::string, Mesh>> all{{"ball", nendo::test::sphere(16, 24, 1.0)},
+                                                {"torus", nendo::test::torus(30, 15)},
+                                                {"cube", nendo::test::cube_of_cells(5)},
+                                                {"comb", nendo::test::comb(7)},
                                                 {"moai", model("moai.obj")}};
   for (auto& [name, mesh] : all)
     mesh = normalised(mesh);
@@ -105,7 +105,7 @@ TEST_SUITE("join") {
         const Mesh other = moved(turned(b, random), {x, y, way(random)});
         check_overlay(a, other);
         check_join(a, other, 0.0);
-        check_join(a, other, 0.08);
+        if (first == second || first == "moai") check_join(a, other, 0.08);
       }
   }
 
@@ -114,7 +114,7 @@ TEST_SUITE("join") {
       CAPTURE(name);
       const std::uint32_t* corner = a.face_corners.data();
       const double edge = (a.vertices.col(corner[0]) - a.vertices.col(corner[1])).norm();
-      for (int step = 0; step < 5; ++step) {
+      for (int step = 0; step < 4; ++step) {
         Eigen::Vector3d way = Eigen::Vector3d::Zero();
         way[step % 3] = edge * step;
         if (step % 2 == 1) way[(step + 1) % 3] = 0.5 * edge;
@@ -280,6 +280,51 @@ TEST_SUITE("join") {
     CHECK_FALSE(join(alone, {}));
     CHECK_FALSE(join_two(box, moved(box, {1, 0.1, 0.2}), -1.0));
     CHECK_FALSE(join_two(box, moved(box, {1, 0.1, 0.2}), std::nan("")));
+  }
+
+  TEST_CASE("joined and then cut apart, there are as many parts as before") {
+    const Mesh ball = nendo::test::sphere(16, 24, 1.0);
+    const Mesh second = moved(ball, {1.5, 0.1, 0.05});
+    const Mesh third = moved(ball, {3.0, -0.1, 0.1});
+    const JoinPart balls[] = {{&ball, "a"}, {&second, "b"}, {&third, "c"}};
+    for (const double seam : {0.0, 0.15}) {
+      const auto joined = join(balls, {.seam_width = seam});
+      REQUIRE(joined);
+      std::vector<Mesh> parts{joined->mesh};
+      for (const double x : {0.75, 2.25}) {
+        const auto cut = cut_model(parts.back(), CutPlane{{x, 0, 0}, {-1, 0.02, 0.01}});
+        REQUIRE(cut);
+        REQUIRE(cut->parts == 2);
+        const std::vector<Mesh> pieces = separate(*cut);
+        const bool first_is_left = pieces[0].vertices.row(0).minCoeff() < x - 0.5;
+        parts.back() = pieces[first_is_left ? 0 : 1];
+        parts.push_back(pieces[first_is_left ? 1 : 0]);
+      }
+      CHECK(parts.size() == 3);
+      double sum = 0.0;
+      for (const Mesh& part : parts)
+        sum += volume_of(part);
+      CHECK(sum == doctest::Approx(volume_of(joined->mesh)).epsilon(1e-11));
+    }
+  }
+
+  TEST_CASE("a model that was cut in two and is pressed together again is whole") {
+    const Mesh whole = normalised(model("moai.obj"));
+    const auto cut = cut_model(whole, CutPlane{{0, 0.4, 0}, {0.1, 1, 0.2}});
+    REQUIRE(cut);
+    std::vector<Mesh> parts = separate(*cut);
+    REQUIRE(parts.size() == 2);
+    const bool first_is_upper = volume_of(parts[0]) < volume_of(parts[1]);
+    Mesh& upper = parts[first_is_upper ? 0 : 1];
+    upper = moved(upper, {0, -0.01, 0});
+    for (const double seam : {0.0, 0.02}) {
+      const auto joined = join_two(parts[first_is_upper ? 1 : 0], upper, seam);
+      REQUIRE(joined);
+      CHECK(check_closed_manifold(joined->mesh));
+      CHECK_FALSE(cuts_itself(joined->mesh));
+      CHECK(volume_of(joined->mesh) < volume_of(whole));
+      CHECK(volume_of(joined->mesh) > 0.97 * volume_of(whole));
+    }
   }
 
   TEST_CASE("three parts in a row, far from the origin and of very different sizes") {
