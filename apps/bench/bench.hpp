@@ -13,6 +13,9 @@ void add(cli::Command& bench);
 namespace clay_bench {
 void add(cli::Command& bench);
 }
+namespace cut_bench {
+void add(cli::Command& bench);
+}
 namespace deform_bench {
 void add(cli::Command& bench);
 }
@@ -20,6 +23,9 @@ namespace faults_bench {
 void add(cli::Command& bench);
 }
 namespace hand_bench {
+void add(cli::Command& bench);
+}
+namespace join_bench {
 void add(cli::Command& bench);
 }
 namespace models_bench {

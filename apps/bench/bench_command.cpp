@@ -23,14 +23,17 @@ void add_describe(cli::Command& bench) {
 void add_bench(cli::Command& program) {
   cli::Command bench = program.add_command(
       "bench", "Measures this program on this machine: latency, faults, load, loop, rings, hands, "
-               "calibration, fields, deformation, clay");
+               "calibration, fields, deformation, clay, cuts");
+               "calibration, fields, deformation, clay, joins");
   bench.require_command();
   calibration_bench::add(bench);
   clay_bench::add(bench);
+  cut_bench::add(bench);
   deform_bench::add(bench);
   latency_bench::add(bench);
   faults_bench::add(bench);
   hand_bench::add(bench);
+  join_bench::add(bench);
   models_bench::add(bench);
   rt_bench::add(bench);
   scale_bench::add(bench);

@@ -23,6 +23,9 @@ namespace calibration_exchange {
 /// Adds the commands import and export to `nendo calibration`.
 void add(cli::Command& calibration);
 } // namespace calibration_exchange
+namespace cut_command {
+void add(cli::Command& program);
+}
 namespace deform_command {
 void add(cli::Command& program);
 }
@@ -45,6 +48,9 @@ namespace export_command {
 void add(cli::Command& program);
 }
 namespace info_command {
+void add(cli::Command& program);
+}
+namespace join_command {
 void add(cli::Command& program);
 }
 namespace manual_command {

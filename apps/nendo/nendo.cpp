@@ -42,6 +42,8 @@ int run(int argc, char** argv) {
         calibration_command::add(program);
         puppet_command::add(program);
         deform_command::add(program);
+        cut_command::add(program);
+        join_command::add(program);
         picture_command::add(program);
         emulate_command::add(program);
         record_command::add(program);

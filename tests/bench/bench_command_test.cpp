@@ -172,6 +172,17 @@ TEST_SUITE("bench") {
     CHECK(is_one_line_about(unknown.err, "abacus"));
   }
 
+  TEST_CASE("bench join tells how long joins take") {
+    const auto done = nendo::test::nendo({"bench", "join", "--short", "--json"});
+    REQUIRE(done.exit_code == 0);
+    const auto row = nlohmann::json::parse(done.out);
+    CHECK(row.at("triangles") == 6400);
+    CHECK(row.at("crossings") > 100);
+    CHECK(row.at("sharp_ms") > 0.0);
+    CHECK(row.at("smeared_ms") > 0.0);
+    CHECK(row.at("volume_error") < 0.01); // the balls are coarse
+  }
+
   TEST_CASE("bench clay tells what pressing takes, beside the plain program") {
     const auto done = nendo::test::nendo({"bench", "clay", "--short", "--json"});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);

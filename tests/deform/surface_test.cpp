@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <nendo/deform/deformer_options.hpp>

@@ -1,0 +1,59 @@
+// nendo bench join: how long it takes to join two models.
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/join_trial.hpp"
+#include "cli/cli.hpp"
+
+namespace nendo::bench::join_bench {
+namespace {
+
+struct Options {
+  bool short_form = false;
+  bool json = false;
+};
+
+void print_json(const JoinTrial& trial) {
+  const nlohmann::ordered_json object{{"triangles", trial.triangles},
+                                      {"crossings", trial.crossings},
+                                      {"sharp_ms", trial.sharp_ms},
+                                      {"smeared_ms", trial.smeared_ms},
+                                      {"volume_error", trial.volume_error}};
+  std::cout << object.dump() << std::endl;
+}
+
+int bench_join(const Options& options) {
+  if (!options.json)
+    std::printf("two balls with texture coordinates, colours and materials, half a diameter apart; "
+                "ms, the best of five\n%12s %10s %10s %10s %12s\n",
+                "triangles", "crossings", "sharp", "smeared", "volume off");
+  for (const std::size_t rings : {40U, 87U, 160U, 400U}) {
+    if (options.short_form && rings > 40) break;
+    const JoinTrial trial = measure_join(rings, options.short_form ? 1 : 5);
+    if (!trial.fine) return cli::report(Error{Errc::failed, "the balls were not joined"});
+    if (options.json)
+      print_json(trial);
+    else
+      std::printf("2 x %8zu %10zu %10.1f %10.1f %12.1e\n", trial.triangles, trial.crossings,
+                  trial.sharp_ms, trial.smeared_ms, trial.volume_error);
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+} // namespace
+
+void add(cli::Command& bench) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = bench.add_command("join", "Joining two models, sharp and smeared");
+  command.add_flag("--short", options->short_form, "Small models only, once");
+  command.add_flag("--json", options->json, "One JSON object a line");
+  command.on_chosen([options] { return bench_join(*options); });
+}
+
+} // namespace nendo::bench::join_bench

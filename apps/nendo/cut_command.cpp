@@ -1,0 +1,227 @@
+// nendo cut: models cut apart, without gloves or clock.
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
+#include <nendo/deform/closed_manifold.hpp>
+#include <nendo/deform/cut.hpp>
+#include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/repair.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::cut_command {
+namespace {
+
+using namespace nendo::deform;
+
+struct Options {
+  std::vector<std::string> models;
+  std::string plane;
+  std::string wire;
+  std::string out;
+  std::optional<double> edge;
+  bool repair = false;
+};
+
+using AnyBlade = std::variant<CutPlane, CutWire>;
+
+/// Reads six finite numbers with commas or blanks between them.
+std::optional<std::array<double, 6>> six_numbers(std::string_view text) {
+  std::string blanks(text);
+  for (char& letter : blanks)
+    if (letter == ',') letter = ' ';
+  const auto fields = fields_of(blanks, 7);
+  std::array<double, 6> numbers{};
+  if (fields.size() != numbers.size()) return std::nullopt;
+  for (std::size_t at = 0; at < numbers.size(); ++at) {
+    const auto number = to_finite_number(fields[at]);
+    if (!number) return std::nullopt;
+    numbers[at] = *number;
+  }
+  return numbers;
+}
+
+Result<AnyBlade> plane_of(const std::string& text) {
+  const auto numbers = six_numbers(text);
+  if (!numbers || ((*numbers)[3] == 0.0 && (*numbers)[4] == 0.0 && (*numbers)[5] == 0.0))
+    return Error{Errc::usage,
+                 "--plane " + text + ": use X,Y,Z,NX,NY,NZ, a point and a normal that is not zero"};
+  return AnyBlade(CutPlane{Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]),
+                           Eigen::Vector3d((*numbers)[3], (*numbers)[4], (*numbers)[5])});
+}
+
+constexpr std::size_t largest_wire_file = std::size_t{16} << 20;
+
+Result<AnyBlade> wire_of(const std::string& file) {
+  const auto text = read_file(file, largest_wire_file, "wire");
+  if (!text) return text.error();
+  CutWire wire;
+  LineReader lines(*text);
+  while (const auto line = lines.next()) {
+    if (line->starts_with('#')) continue;
+    const auto numbers = six_numbers(*line);
+    if (!numbers)
+      return bad_line(file, lines.line(), "use six numbers, the wire's two ends: X,Y,Z,X,Y,Z");
+    wire.places.push_back({Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]),
+                           Eigen::Vector3d((*numbers)[3], (*numbers)[4], (*numbers)[5])});
+  }
+  if (wire.places.size() < 2)
+    return Error{Errc::bad_input, file + ": has fewer than two places of the wire"};
+  return AnyBlade(std::move(wire));
+}
+
+/// The name of a part: %d becomes its number, from 1, and %s the model's name without its ending.
+std::string part_name(const std::string& pattern, const std::string& model, std::size_t number) {
+  std::string name;
+  for (std::size_t at = 0; at < pattern.size(); ++at) {
+    const char kind = pattern[at] == '%' && at + 1 < pattern.size() ? pattern[at + 1] : '\0';
+    if (kind != 'd' && kind != 's') {
+      name += pattern[at];
+      continue;
+    }
+    name += kind == 'd' ? std::to_string(number) : std::filesystem::path(model).stem().string();
+    ++at;
+  }
+  return name;
+}
+
+Result<void> check(const Options& options) {
+  const auto has = [&](std::string_view what) {
+    return options.out.find(what) != std::string::npos;
+  };
+  if (options.plane.empty() == options.wire.empty())
+    return Error{Errc::usage, "--plane and --wire: give one of them"};
+  if (!has("%d"))
+    return Error{Errc::usage,
+                 "--out " + options.out + ": use a name with %d, which becomes the part's number"};
+  if (options.models.size() > 1 && !has("%s"))
+    return Error{Errc::usage, "--out " + options.out +
+                                  ": of several models, use a name with %s, too, which becomes the "
+                                  "model's name"};
+  if (options.edge && !(*options.edge > 0.0))
+    return Error{Errc::usage, "--edge: use a length greater than 0, in the models' units"};
+  return cli::check_place("--out", part_name(options.out, options.models.front(), 1),
+                          {".obj", ".ply"});
+}
+
+Result<Mesh> closed_model(const std::string& file, bool repair) {
+  auto mesh = read_mesh(file);
+  if (!mesh) return mesh;
+  const ManifoldCheck closed = check_closed_manifold(*mesh);
+  if (closed) return mesh;
+  if (!repair)
+    return Error{Errc::bad_input,
+                 file + ": " + describe(closed, *mesh) + "; --repair may close it"};
+  auto repaired = deform::repair(*mesh);
+  if (!repaired) return Error{repaired.error().code, file + ": " + repaired.error().message};
+  cli::note(file + ": " + describe(*repaired));
+  return std::move(repaired->mesh);
+}
+
+Result<CutModel> cut_by(const Mesh& mesh, const AnyBlade& blade, const Options& options) {
+  CutOptions cut;
+  cut.edge = options.edge.value_or(0.0);
+  if (const auto* plane = std::get_if<CutPlane>(&blade)) return cut_model(mesh, *plane, cut);
+  return cut_model(mesh, std::get<CutWire>(blade), cut);
+}
+
+Result<void> write_parts(const std::string& file, const CutModel& cut, const Options& options) {
+  const std::vector<Mesh> parts = separate(cut);
+  for (std::size_t at = 0; at < parts.size(); ++at)
+    for (const std::string& model : options.models)
+      if (const auto fine =
+              cli::check_spares(model, "--out", part_name(options.out, file, at + 1), false);
+          !fine)
+        return fine;
+  for (std::size_t at = 0; at < parts.size(); ++at) {
+    const std::string name = part_name(options.out, file, at + 1);
+    if (auto done = write_mesh(name, parts[at]); !done) return done;
+    char sizes[96];
+    std::snprintf(sizes, sizeof sizes, ": %td vertices, %zu faces, volume %.9g\n",
+                  parts[at].vertices.cols(), parts[at].face_count(), volume_of(parts[at]));
+    std::cout << printable(name) << sizes;
+  }
+  return {};
+}
+
+std::string box_text(const Mesh& mesh) {
+  const Box box = finite_box_of(mesh.vertices);
+  char text[160];
+  std::snprintf(text, sizeof text, "(%g, %g, %g) to (%g, %g, %g)", box.lowest.x(), box.lowest.y(),
+                box.lowest.z(), box.highest.x(), box.highest.y(), box.highest.z());
+  return text;
+}
+
+Result<void> cut_file(const std::string& file, const AnyBlade& blade, const Options& options) {
+  const auto mesh = closed_model(file, options.repair);
+  if (!mesh) return mesh.error();
+  const auto cut = cut_by(*mesh, blade, options);
+  if (!cut) {
+    // A blade that misses is mostly in other units, or at another place.
+    const std::string where =
+        cut.error().code == Errc::failed ? "; it fills " + box_text(*mesh) : "";
+    return Error{cut.error().code, file + ": " + cut.error().message + where};
+  }
+  if (cut->left_whole > 0)
+    cli::note(file + ": stays whole at " + std::to_string(cut->left_whole) +
+              (cut->left_whole == 1 ? " place" : " places") +
+              " where the wire does not go through, or parts nothing");
+  return write_parts(file, *cut, options);
+}
+
+/// Cuts one model after another. One that cannot be cut does not keep the others from it.
+int cut_files(const Options& options) {
+  if (const auto fine = check(options); !fine) return cli::report(fine.error());
+  const auto blade = options.wire.empty() ? plane_of(options.plane) : wire_of(options.wire);
+  if (!blade) return cli::report(blade.error());
+  int code = 0;
+  for (const std::string& file : options.models) {
+    const auto done = cut_file(file, *blade, options);
+    if (done) continue;
+    const int failed = cli::report(done.error());
+    if (code == 0) code = failed;
+  }
+  return code;
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command(
+      "cut",
+      "Cuts closed models apart, by a plane or by what a wire sweeps; both sides are closed");
+  command.add_option("MODEL", options->models, "OBJ, PLY or glTF files").required();
+  command.add_option("--plane", options->plane,
+                     "X,Y,Z,NX,NY,NZ: a point of the plane and its normal, in the model's units");
+  command.add_option("--wire", options->wire,
+                     "Text file with the places of a wire, one a line, in order: X,Y,Z,X,Y,Z of "
+                     "its two ends, in the model's units; lines that begin with # are skipped");
+  command
+      .add_option("--out", options->out,
+                  "Where to write the parts, .obj or .ply: %d becomes the part's number, from 1, "
+                  "and %s the model's name")
+      .required();
+  command.add_option("--edge", options->edge,
+                     "Length of the cut faces' edges; without it, about that of the faces which "
+                     "the blade crosses");
+  command.add_flag(
+      "--repair", options->repair,
+      "Close a model that is not closed: join edges that lie in one place, turn faces, "
+      "fill holes");
+  command.on_chosen([options] { return cut_files(*options); });
+}
+
+} // namespace nendo::app::cut_command

@@ -1,0 +1,100 @@
+// nendo join: parts that overlap become one.
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nendo/deform/join.hpp>
+#include <nendo/deform/mesh_file.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+#include "nendo/commands.hpp"
+
+namespace nendo::app::join_command {
+namespace {
+
+using namespace nendo::deform;
+
+struct Options {
+  std::vector<std::string> parts;
+  double seam = 0.0;
+  std::string out;
+  bool force = false;
+};
+
+Result<void> check(const Options& options) {
+  if (options.parts.size() < 2)
+    return Error{Errc::usage, "PART: name two files at least, because one part alone is whole"};
+  if (!(options.seam >= 0.0) || !std::isfinite(options.seam))
+    return Error{Errc::usage, "--seam: use a width in the models' units, 0 or more"};
+  if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine) return fine;
+  for (const std::string& part : options.parts)
+    if (auto fine = cli::check_spares(part, "--out", options.out, options.force); !fine)
+      return fine;
+  return {};
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// Tells what was done, and what is hardly meant.
+void note_step(const Options& options, std::size_t at, const JoinStep& step) {
+  const std::string& name = options.parts[at + 1];
+  if (step.swallowed) {
+    cli::note(name + ": it and what was joined before do not cross, one lies inside of the other; "
+                     "what is inside is gone");
+    return;
+  }
+  std::string text = name + ": " + std::to_string(step.crossings) + " crossings, volume " +
+                     short_number(step.volume);
+  if (step.seam_width > 0.0) text += " (" + short_number(step.sharp_volume) + " with a sharp seam)";
+  cli::note(text);
+  if (step.seam_width < options.seam)
+    cli::note("--seam " + short_number(options.seam) + ": the surface would cut itself there, so " +
+              (step.seam_width > 0.0 ? "the seam is " + short_number(step.seam_width) + " wide"
+                                     : std::string("the seam is sharp")));
+}
+
+Result<void> join_files(const Options& options) {
+  if (const auto fine = check(options); !fine) return fine.error();
+  std::vector<Mesh> meshes;
+  std::vector<JoinPart> parts;
+  meshes.reserve(options.parts.size());
+  for (const std::string& file : options.parts) {
+    auto mesh = read_mesh(file);
+    if (!mesh) return mesh.error();
+    meshes.push_back(std::move(*mesh));
+    parts.push_back({&meshes.back(), file});
+  }
+  const auto joined = join(parts, {.seam_width = options.seam});
+  if (!joined) return joined.error();
+  for (std::size_t at = 0; at < joined->steps.size(); ++at)
+    note_step(options, at, joined->steps[at]);
+  return write_mesh(options.out, joined->mesh);
+}
+
+} // namespace
+
+void add(cli::Command& program) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = program.add_command("join", "Joins models that overlap into one, exactly");
+  command.add_option("PART", options->parts, "OBJ, PLY or glTF files, two or more, closed models")
+      .required();
+  command.add_option("--seam", options->seam,
+                     "How far the seam is smeared to each side, in the models' units; 0 leaves it "
+                     "sharp");
+  command.add_option("--out", options->out, "Where to write the result, .obj or .ply").required();
+  command.add_flag("--force", options->force, cli::force_summary);
+  command.on_chosen([options] {
+    const auto done = join_files(*options);
+    return done ? 0 : cli::report(done.error());
+  });
+}
+
+} // namespace nendo::app::join_command

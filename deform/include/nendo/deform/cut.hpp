@@ -1,0 +1,79 @@
+#pragma once
+// Cuts a closed model apart: by a plane, by the surface that a wire sweeps, or by a knife that is
+// drawn through. Both sides are closed by cut faces. CUTTING.md says how, and what is guaranteed.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+#include <nendo/deform/mesh.hpp>
+
+namespace nendo::deform {
+
+/// A plane without end. The normal may have any length but zero.
+struct CutPlane {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;
+};
+
+/// The ends of a straight wire at one moment.
+struct WirePlace {
+  Eigen::Vector3d from, to;
+};
+
+/// What a wire sweeps from its first place to its last, between its ends.
+struct CutWire {
+  std::vector<WirePlace> places;
+};
+
+/// Returns the wire that a knife's edge is: it begins at the tip, and `edge` leads along it.
+CutWire knife_cut(std::span<const Eigen::Vector3d> tips, const Eigen::Vector3d& edge);
+
+struct CutOptions {
+  double edge = 0.0; ///< length of the cut faces' edges; 0: the mean where the blade crosses
+  std::string material = "cut";                      ///< its name
+  Eigen::Vector4f colour{0.45F, 0.06F, 0.05F, 1.0F}; ///< linear
+};
+
+/// A vertex that the cut made: a part of the way from one vertex to another, both of which come
+/// before it. Inside cut faces there is no such way, and both are no_index.
+struct CutVertex {
+  std::uint32_t from, to;
+  double part;
+};
+
+/// A model in parts, still as one mesh. Its first vertices are those of the model, with their
+/// numbers and bits. Faces that the blade does not cross are the same as before.
+struct CutModel {
+  Mesh mesh;
+  std::vector<CutVertex> added;              ///< the vertices behind the model's
+  std::vector<std::uint32_t> part_of_vertex; ///< from 0; no_index for those without faces
+  std::uint32_t parts = 0;                   ///< those that the model had before included
+  std::size_t first_cut_face = 0;            ///< from here on, faces close the cut
+  std::uint32_t loops = 0;                   ///< rims that were cut and closed on both sides
+  std::uint32_t left_whole = 0;              ///< rims at which the blade does not go through
+  std::uint32_t attempts = 1;
+  double give = 0.0; ///< so far the blade gave way, in model units, at most 1e-6 of the diagonal in
+                     ///< the first attempt and three times as much in each further one
+};
+
+/// Cuts a model that is closed and two-manifold. Every part is so, too, and no cut face meets
+/// another face but at shared edges and corners. New corners get texture coordinates and colours
+/// from the edges that they lie on; cut faces get a material of their own, and planar texture
+/// coordinates if the model has any. The same call gives the same bits. Allocates. Errors, which go
+/// behind the model's name: bad_input (not closed, numbers too large), usage (a blade without
+/// extent), failed (the blade does not go through, or the surface passes through itself there).
+Result<CutModel> cut_model(const Mesh& mesh, const CutPlane& plane, const CutOptions& options = {});
+Result<CutModel> cut_model(const Mesh& mesh, const CutWire& wire, const CutOptions& options = {});
+
+/// Returns the parts as meshes of their own, in the order of their first vertices. Vertices and
+/// faces keep their order. Allocates.
+std::vector<Mesh> separate(const CutModel& model);
+
+/// Returns the volume that a closed surface encloses, in cubic model units; negative if its faces
+/// face inwards.
+double volume_of(const Mesh& mesh) noexcept;
+
+} // namespace nendo::deform

@@ -1,0 +1,160 @@
+#include <nendo/deform/closed_manifold.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "cut/half_edges.hpp"
+
+namespace nendo::deform {
+namespace {
+
+/// Remembers the first fault, and counts those that are like it.
+class FaultTally {
+public:
+  void add(ManifoldFault fault, std::uint32_t face, std::uint32_t from, std::uint32_t to) noexcept {
+    if (check_.fault == ManifoldFault::none) check_ = {fault, 0, face, from, to};
+    if (check_.fault == fault) ++check_.count;
+  }
+  const ManifoldCheck& check() const noexcept { return check_; }
+
+private:
+  ManifoldCheck check_;
+};
+
+void check_faces(std::span<const std::uint32_t> starts, std::span<const std::uint32_t> corners,
+                 FaultTally& tally) {
+  std::vector<std::uint32_t> sorted;
+  for (std::uint32_t face = 0; face + 1 < starts.size(); ++face) {
+    const auto own = corners.subspan(starts[face], starts[face + 1] - starts[face]);
+    const std::uint32_t vertex = own.empty() ? 0 : own[0];
+    if (own.size() < 3) {
+      tally.add(ManifoldFault::few_corners, face, vertex, vertex);
+      continue;
+    }
+    if (own.size() == 3 && own[0] != own[1] && own[1] != own[2] && own[2] != own[0]) continue;
+    sorted.assign(own.begin(), own.end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) tally.add(ManifoldFault::repeated_corner, face, *twice, *twice);
+  }
+}
+
+/// An edge's fault is counted once, at the least of the faces that it concerns.
+void check_edges(std::span<const std::uint32_t> starts, std::span<const std::uint32_t> corners,
+                 const HalfEdges& edges, FaultTally& tally) {
+  for (std::uint32_t face = 0; face + 1 < starts.size(); ++face)
+    for (std::uint32_t edge = starts[face]; edge < starts[face + 1]; ++edge) {
+      const std::uint32_t from = corners[edge];
+      const std::uint32_t to = corners[edges.next[edge]];
+      const auto count = [&](std::uint32_t begin, std::uint32_t end, bool& is_first) {
+        std::uint32_t found = 0;
+        for (std::uint32_t at = edges.out_starts[begin]; at < edges.out_starts[begin + 1]; ++at)
+          if (corners[edges.next[edges.out[at]]] == end) {
+            ++found;
+            is_first = is_first && edges.out[at] >= edge;
+          }
+        return found;
+      };
+      bool is_first = true;
+      const std::uint32_t same = count(from, to, is_first);
+      const std::uint32_t opposite = count(to, from, is_first);
+      if (!is_first || (same == 1 && opposite == 1)) continue;
+      const ManifoldFault fault = same + opposite == 1  ? ManifoldFault::open_edge
+                                  : same + opposite > 2 ? ManifoldFault::crowded_edge
+                                                        : ManifoldFault::turned_faces;
+      tally.add(fault, face, from, to);
+    }
+}
+
+void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, FaultTally& tally) {
+  for (std::uint32_t vertex = 0; vertex + 1 < edges.out_starts.size(); ++vertex) {
+    const std::uint32_t count = edges.out_starts[vertex + 1] - edges.out_starts[vertex];
+    if (count == 0) continue;
+    const std::uint32_t first = edges.out[edges.out_starts[vertex]];
+    std::uint32_t edge = first;
+    std::uint32_t turned = 0;
+    do {
+      edge = edges.twin[edges.last[edge]];
+      ++turned;
+    } while (edge != first && turned <= count);
+    if (turned == count) continue;
+    const auto face = std::upper_bound(starts.begin(), starts.end(), first) - starts.begin() - 1;
+    tally.add(ManifoldFault::pinched_vertex, static_cast<std::uint32_t>(face), vertex, vertex);
+  }
+}
+
+std::string place_of(const Mesh& mesh, std::uint32_t vertex) {
+  const auto at = static_cast<Eigen::Index>(vertex);
+  char text[96];
+  std::snprintf(text, sizeof text, "(%g, %g, %g)", mesh.vertices(0, at), mesh.vertices(1, at),
+                mesh.vertices(2, at));
+  return text;
+}
+
+} // namespace
+
+ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
+                                    std::span<const std::uint32_t> face_corners,
+                                    const HalfEdges& edges) {
+  FaultTally tally;
+  if (face_starts.size() < 2) return {ManifoldFault::no_faces, 1, 0, 0, 0};
+  check_faces(face_starts, face_corners, tally);
+  if (!tally.check()) return tally.check();
+  // Of two edges alike, only their twin sees both.
+  if (std::find(edges.twin.begin(), edges.twin.end(), no_half_edge) != edges.twin.end())
+    check_edges(face_starts, face_corners, edges, tally);
+  if (!tally.check()) return tally.check();
+  check_fans(face_starts, edges, tally);
+  return tally.check();
+}
+
+ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
+                                    std::span<const std::uint32_t> face_corners,
+                                    std::size_t vertices) {
+  return check_closed_manifold(face_starts, face_corners,
+                               half_edges_of(face_starts, face_corners, vertices));
+}
+
+ManifoldCheck check_closed_manifold(const Mesh& mesh) {
+  return check_closed_manifold(mesh.face_starts, mesh.face_corners,
+                               static_cast<std::size_t>(mesh.vertices.cols()));
+}
+
+std::string describe(const ManifoldCheck& check, const Mesh& mesh) {
+  const auto vertex = [&] { return place_of(mesh, check.from); };
+  const auto edge = [&] {
+    return "the edge between " + place_of(mesh, check.from) + " and " + place_of(mesh, check.to);
+  };
+  const auto face = [&] { return "face " + std::to_string(check.face + 1); };
+  std::string words;
+  switch (check.fault) {
+  case ManifoldFault::none:
+    return {};
+  case ManifoldFault::no_faces:
+    return "has no faces";
+  case ManifoldFault::few_corners:
+    words = "has fewer than three corners in " + face();
+    break;
+  case ManifoldFault::repeated_corner:
+    words = "has a corner twice in " + face() + " at " + vertex();
+    break;
+  case ManifoldFault::open_edge:
+    words = "is open at " + edge();
+    break;
+  case ManifoldFault::crowded_edge:
+    words = "has more than two faces at " + edge();
+    break;
+  case ManifoldFault::turned_faces:
+    words = "has faces that face opposite ways at " + edge();
+    break;
+  case ManifoldFault::pinched_vertex:
+    words = "has faces that touch only at the vertex " + vertex();
+    break;
+  }
+  if (check.count > 1)
+    words +=
+        ", and at " + std::to_string(check.count - 1) + (check.count > 2 ? " others" : " other");
+  return words;
+}
+
+} // namespace nendo::deform

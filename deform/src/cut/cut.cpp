@@ -1,0 +1,302 @@
+#include <nendo/deform/cut.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <nendo/deform/closed_manifold.hpp>
+
+#include "cut/cut_assembly.hpp"
+#include "cut/cut_check.hpp"
+
+namespace nendo::deform {
+namespace {
+
+/// The exact predicates need that no product of coordinates overflows or loses digits.
+constexpr double largest_size = 1e60;
+constexpr double smallest_size = 1e-60;
+constexpr std::uint32_t most_attempts = 8;
+
+SpacePoint space_point(const Eigen::Vector3d& vector) noexcept {
+  return {vector[0], vector[1], vector[2]};
+}
+
+bool is_fit(const Eigen::Vector3d& vector) noexcept {
+  return (vector.array().abs() <= largest_size).all();
+}
+
+/// Returns places for the blade to give way to, the widest gap between vertices first. `sides` has
+/// the vertices' heights.
+std::vector<double> gaps_within(const std::vector<double>& sides, double band) {
+  std::vector<double> near{-band, band};
+  for (const double side : sides)
+    if (std::abs(side) < band) near.push_back(side);
+  std::sort(near.begin(), near.end());
+  std::vector<std::pair<double, double>> gaps; // minus the width, the place
+  for (std::size_t at = 1; at < near.size(); ++at)
+    gaps.push_back({near[at - 1] - near[at], near[at - 1] / 2.0 + near[at] / 2.0});
+  // Gaps of nearly one width are taken in order, so that rounding does not choose.
+  std::stable_sort(gaps.begin(), gaps.end(), [&](const auto& a, const auto& b) {
+    return std::round(a.first / band * 1e6) < std::round(b.first / band * 1e6);
+  });
+  std::vector<double> places;
+  for (const auto& [width, place] : gaps)
+    if (width < -1e-4 * band || places.empty()) places.push_back(place);
+  return places;
+}
+
+/// Where the blade stands in an attempt, from 0 on. The band grows threefold each time. The first
+/// attempts take the widest gap; those after every second one take another gap or another place.
+double give_of(const std::vector<double>& sides, double diagonal, std::uint32_t attempt) {
+  const double band = 1e-6 * diagonal * std::pow(3.0, attempt);
+  const std::vector<double> places = gaps_within(sides, band);
+  if (attempt == 0) return places.front();
+  if (places.size() > 1) return places[attempt % places.size()];
+  // One gap only: there is no vertex near, so any place in it will do.
+  return band * (attempt % 2 == 1 ? 0.37 : -0.61);
+}
+
+/// Mean length of the edges that a blade crosses, or of all if it crosses none.
+double edge_length_at(const Mesh& mesh, const HalfEdges& edges, const std::vector<double>& sides,
+                      double give) {
+  const auto point = [&](std::uint32_t corner) {
+    const double* at = mesh.vertices.data() + 3 * std::size_t{mesh.face_corners[corner]};
+    return SpacePoint{at[0], at[1], at[2]};
+  };
+  const auto is_up = [&](std::uint32_t corner) { return sides[mesh.face_corners[corner]] > give; };
+  const auto mean = [&](const auto& counts) {
+    double total = 0.0;
+    std::size_t count = 0;
+    for (std::uint32_t at = 0; at < mesh.face_corners.size(); ++at) {
+      if (!counts(at)) continue;
+      total += length_of(point(edges.next[at]) - point(at));
+      ++count;
+    }
+    return count > 0 ? total / static_cast<double>(count) : 0.0;
+  };
+  const double crossed = mean([&](std::uint32_t at) { return is_up(at) != is_up(edges.next[at]); });
+  return crossed > 0.0 ? crossed : mean([](std::uint32_t) { return true; });
+}
+
+enum class Outcome { cut, again, refused };
+
+/// Tries gap after gap.
+class Cutter {
+public:
+  Cutter(const Mesh& mesh, const Blade& blade, const CutOptions& options)
+      : mesh_(mesh), blade_(blade), options_(options) {}
+  Result<CutModel> run();
+
+private:
+  Result<void> check();
+  Outcome attempt();
+  bool choose_loops(const CutSurface& surface);
+  Outcome make_cap_of(const CutSurface& surface);
+  bool drop_wrong_sides(const Cap& cap, const std::vector<std::uint32_t>& loops);
+  bool drop_rings(const CutSurface& surface, const CutAssembly& assembly);
+  Outcome refuse(std::string why) {
+    error_ = Error{Errc::failed, std::move(why)};
+    return Outcome::refused;
+  }
+
+  const Mesh& mesh_;
+  const Blade& blade_;
+  const CutOptions& options_;
+  HalfEdges edges_;
+  std::vector<double> sides_;
+  double diagonal_ = 0.0;
+  double edge_ = 0.0;
+  bool faces_inwards_ = false;
+  double give_ = 0.0;
+  std::vector<std::uint8_t> keeps_;
+  Cap cap_;
+  CutModel result_;
+  Error error_;
+};
+
+Result<void> Cutter::check() {
+  diagonal_ = diagonal_of(mesh_.vertices);
+  if (!(mesh_.vertices.array().abs() <= largest_size).all() || !(diagonal_ >= smallest_size))
+    return Error{Errc::bad_input, "has coordinates that are too large, or no size"};
+  const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+  edges_ = half_edges_of(mesh_.face_starts, mesh_.face_corners, vertices);
+  const ManifoldCheck closed = check_closed_manifold(mesh_.face_starts, mesh_.face_corners, edges_);
+  if (!closed) return Error{Errc::bad_input, describe(closed, mesh_)};
+  return {};
+}
+
+Result<CutModel> Cutter::run() {
+  if (const auto fine = check(); !fine) return fine.error();
+  const auto vertices = static_cast<std::size_t>(mesh_.vertices.cols());
+  sides_.resize(vertices);
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+    const double* at = mesh_.vertices.data() + 3 * vertex;
+    sides_[vertex] = blade_.side({at[0], at[1], at[2]});
+  }
+  faces_inwards_ = volume_of(mesh_) < 0.0;
+  edge_ = options_.edge > 0.0
+              ? options_.edge
+              : edge_length_at(mesh_, edges_, sides_, give_of(sides_, diagonal_, 0));
+  // A bend needs edges that can follow it; and no cut needs more than some 100,000 faces.
+  if (blade_.bends()) edge_ = std::min(edge_, diagonal_ / 40.0);
+  edge_ = std::max(edge_, diagonal_ / 400.0);
+  for (std::uint32_t number = 0; number < most_attempts; ++number) {
+    give_ = give_of(sides_, diagonal_, number);
+    result_ = {};
+    result_.attempts = number + 1;
+    result_.give = give_;
+    const Outcome outcome = attempt();
+    if (outcome == Outcome::cut) return std::move(result_);
+    if (outcome == Outcome::refused) return error_;
+  }
+  return Error{Errc::failed,
+               "cannot be cut here: its surface, or the blade, passes through itself"};
+}
+
+Outcome Cutter::attempt() {
+  CutSurface surface(mesh_, edges_, blade_, give_, sides_);
+  if (!surface.refine(0.02 * edge_))
+    return refuse("cannot be cut here: the blade bends too often for its size");
+  surface.cross();
+  if (!choose_loops(surface))
+    return refuse(surface.loops().empty() ? "is not touched by the blade"
+                                          : "is not cut: the blade does not go through");
+  // Loops that turn out not to part anything are left, and then everything is made anew.
+  for (std::size_t round = 0; round <= surface.loops().size(); ++round) {
+    if (const Outcome outcome = make_cap_of(surface); outcome != Outcome::cut) return outcome;
+    const ChosenCut chosen{mesh_,  blade_,          give_,          diagonal_,
+                           keeps_, std::move(cap_), faces_inwards_, options_};
+    CutAssembly assembly = assemble(chosen, surface);
+    result_.parts = number_parts(assembly.mesh, result_.part_of_vertex);
+    if (drop_rings(surface, assembly)) {
+      if (std::count(keeps_.begin(), keeps_.end(), 1) == 0)
+        return refuse("is not cut: the blade opens a ring of it, but no part comes off");
+      continue;
+    }
+    if (!is_sound(assembly, surface, blade_.bends() ? 0.5 * edge_ : 0.0)) return Outcome::again;
+    if (!check_closed_manifold(assembly.mesh)) return Outcome::again;
+    result_.mesh = std::move(assembly.mesh);
+    result_.added = std::move(assembly.added);
+    result_.first_cut_face = assembly.first_cut_face;
+    result_.loops = static_cast<std::uint32_t>(std::count(keeps_.begin(), keeps_.end(), 1));
+    result_.left_whole = static_cast<std::uint32_t>(keeps_.size()) - result_.loops;
+    return Outcome::cut;
+  }
+  return Outcome::again;
+}
+
+/// Takes the loops that lie within the blade. Returns false if there is none.
+bool Cutter::choose_loops(const CutSurface& surface) {
+  keeps_.clear();
+  for (const auto& loop : surface.loops())
+    keeps_.push_back(std::all_of(loop.begin(), loop.end(),
+                                 [&](std::uint32_t crossing) {
+                                   return blade_.covers(surface.crossing_points()[crossing]);
+                                 })
+                         ? 1
+                         : 0);
+  return std::count(keeps_.begin(), keeps_.end(), 1) > 0;
+}
+
+Outcome Cutter::make_cap_of(const CutSurface& surface) {
+  for (;;) {
+    std::vector<CapLoop> loops;
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t number = 0; number < keeps_.size(); ++number) {
+      if (keeps_[number] == 0) continue;
+      numbers.push_back(number);
+      CapLoop& loop = loops.emplace_back();
+      loop.crossings = surface.loops()[number];
+      for (const std::uint32_t crossing : loop.crossings)
+        loop.places.push_back(blade_.chart(surface.crossing_points()[crossing]));
+    }
+    if (loops.empty()) return refuse("is not cut: the blade does not go through");
+    cap_ = make_cap(loops, static_cast<std::uint32_t>(surface.crossings().size()),
+                    {edge_, blade_.bends()});
+    if (cap_.fault != PlaneFault::none) return Outcome::again;
+    if (!drop_wrong_sides(cap_, numbers)) return Outcome::cut;
+    if (!blade_.bends()) return refuse("has parts that face inwards, or lies inside itself");
+  }
+}
+
+/// Of a hollow whose outer rim is not cut the inside would be filled. Such loops are left whole.
+bool Cutter::drop_wrong_sides(const Cap& cap, const std::vector<std::uint32_t>& loops) {
+  bool dropped = false;
+  for (std::size_t at = 0; at < loops.size(); ++at)
+    if ((cap.on_left[at] != 0) == faces_inwards_) {
+      keeps_[loops[at]] = 0;
+      dropped = true;
+    }
+  return dropped;
+}
+
+/// Where both sides of a cut belong to one part, nothing comes off, and two faces would lie in one
+/// place. Such loops are left whole.
+bool Cutter::drop_rings(const CutSurface& surface, const CutAssembly& assembly) {
+  bool dropped = false;
+  for (std::size_t number = 0; number < keeps_.size(); ++number) {
+    if (keeps_[number] == 0) continue;
+    const std::uint32_t up = assembly.crossing_vertices[surface.loops()[number].front()];
+    if (result_.part_of_vertex[up] != result_.part_of_vertex[up + 1]) continue;
+    keeps_[number] = 0;
+    dropped = true;
+  }
+  return dropped;
+}
+
+} // namespace
+
+CutWire knife_cut(std::span<const Eigen::Vector3d> tips, const Eigen::Vector3d& edge) {
+  CutWire wire;
+  for (const Eigen::Vector3d& tip : tips)
+    wire.places.push_back({tip, tip + edge});
+  return wire;
+}
+
+Result<CutModel> cut_model(const Mesh& mesh, const CutPlane& plane, const CutOptions& options) {
+  const double length = plane.normal.stableNorm();
+  if (!is_fit(plane.point) || !is_fit(plane.normal) || !(length > 0.0))
+    return Error{Errc::usage,
+                 "cannot be cut by this plane: its normal is zero, or a number too large"};
+  const PlaneBlade blade(space_point(plane.point), space_point(plane.normal / length));
+  return Cutter(mesh, blade, options).run();
+}
+
+Result<CutModel> cut_model(const Mesh& mesh, const CutWire& wire, const CutOptions& options) {
+  const double least = 1e-6 * diagonal_of(mesh.vertices);
+  std::vector<WireEnds> places;
+  for (const WirePlace& place : wire.places) {
+    if (!is_fit(place.from) || !is_fit(place.to) || !((place.to - place.from).norm() > least))
+      return Error{
+          Errc::usage,
+          "cannot be cut by this wire: at one place it has no length, or a number too large"};
+    const WireEnds ends{space_point(place.from), space_point(place.to)};
+    const auto middle = [](const WireEnds& of) { return between(of.from, of.to, 0.5); };
+    // A wire that rests sweeps nothing.
+    if (!places.empty() && !(length_of(middle(ends) - middle(places.back())) > least)) continue;
+    places.push_back(ends);
+  }
+  if (places.size() < 2) return Error{Errc::usage, "cannot be cut by this wire: it does not move"};
+  const WireBlade blade(places);
+  return Cutter(mesh, blade, options).run();
+}
+
+double volume_of(const Mesh& mesh) noexcept {
+  if (mesh.vertices.cols() == 0) return 0.0;
+  // About a point in the model, so that few digits cancel.
+  const Box box = finite_box_of(mesh.vertices);
+  const SpacePoint origin = space_point(box.lowest / 2.0 + box.highest / 2.0);
+  const auto from_origin = [&](std::uint32_t at) {
+    const double* of = mesh.vertices.data() + 3 * std::size_t{mesh.face_corners[at]};
+    return SpacePoint{of[0], of[1], of[2]} - origin;
+  };
+  double sum = 0.0;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face];
+    for (std::uint32_t at = begin + 2; at < mesh.face_starts[face + 1]; ++at)
+      sum += dot(from_origin(begin), cross(from_origin(at - 1), from_origin(at)));
+  }
+  return sum / 6.0;
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,151 @@
+#include "cut_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "cut/triangle_meeting.hpp"
+
+namespace nendo::deform {
+namespace {
+
+/// The triangles of one side of the cut.
+struct CutSide {
+  std::vector<SpaceTriangle> triangles; ///< pieces of crossed faces, and then cut faces
+  std::size_t pieces = 0;
+  std::vector<SpaceTriangle> near; ///< faces that may meet cut faces
+};
+
+SpaceTriangle corners_of_face(const Mesh& mesh, std::size_t face) noexcept {
+  const std::uint32_t begin = mesh.face_starts[face];
+  return {mesh.face_corners[begin], mesh.face_corners[begin + 1], mesh.face_corners[begin + 2]};
+}
+
+class CutCheck {
+public:
+  CutCheck(const CutAssembly& assembly, const CutSurface& surface, double reach)
+      : assembly_(assembly), mesh_(assembly.mesh), surface_(surface), reach_(reach),
+        first_added_(static_cast<std::uint32_t>(static_cast<std::size_t>(mesh_.vertices.cols()) -
+                                                assembly.added.size())) {
+    points_.resize(static_cast<std::size_t>(mesh_.vertices.cols()));
+    const double* at = mesh_.vertices.data();
+    for (SpacePoint& point : points_) {
+      point = {at[0], at[1], at[2]};
+      at += 3;
+    }
+  }
+  bool is_sound(bool up) const;
+
+private:
+  CutSide side_of(bool up) const;
+  bool is_up(std::uint32_t face) const noexcept;
+  void add_near(bool up, std::vector<SpaceTriangle>& triangles) const;
+  bool is_flat(const SpaceTriangle& triangle) const noexcept;
+  bool is_inner(const SpaceTriangle& triangle) const noexcept;
+
+  const CutAssembly& assembly_;
+  const Mesh& mesh_;
+  const CutSurface& surface_;
+  double reach_; ///< no face whose corners are all farther from the blade can meet cut faces
+  std::uint32_t first_added_;
+  std::vector<SpacePoint> points_;
+};
+
+/// A piece has at least one corner that was there before.
+bool CutCheck::is_up(std::uint32_t face) const noexcept {
+  for (const std::uint32_t corner : corners_of_face(mesh_, face))
+    if (corner < surface_.vertex_count()) return surface_.is_up(corner);
+  return false;
+}
+
+void CutCheck::add_near(bool up, std::vector<SpaceTriangle>& triangles) const {
+  const std::uint32_t old = surface_.vertex_count();
+  for (std::size_t face = 0; face < assembly_.first_cut_face; ++face) {
+    const std::uint32_t begin = mesh_.face_starts[face];
+    const std::uint32_t end = mesh_.face_starts[face + 1];
+    double nearest = std::numeric_limits<double>::infinity();
+    double longest = 0.0;
+    bool belongs = true;
+    for (std::uint32_t at = begin; at < end && belongs; ++at) {
+      const std::uint32_t corner = mesh_.face_corners[at];
+      belongs = corner < old && surface_.is_up(corner) == up;
+      if (!belongs) break;
+      nearest = std::min(nearest, std::abs(surface_.above(corner)));
+      const SpacePoint edge = points_[corner] - points_[mesh_.face_corners[begin]];
+      longest = std::max(longest, dot(edge, edge));
+    }
+    if (!belongs || nearest > reach_ + 1.5 * std::sqrt(longest)) continue;
+    for (std::uint32_t at = begin + 2; at < end; ++at)
+      triangles.push_back(
+          {mesh_.face_corners[begin], mesh_.face_corners[at - 1], mesh_.face_corners[at]});
+  }
+}
+
+CutSide CutCheck::side_of(bool up) const {
+  CutSide side;
+  for (const std::uint32_t face : assembly_.cut_pieces)
+    if (is_up(face) == up) side.triangles.push_back(corners_of_face(mesh_, face));
+  side.pieces = side.triangles.size();
+  const std::size_t half = (mesh_.face_count() - assembly_.first_cut_face) / 2;
+  const std::size_t first = assembly_.first_cut_face + (up ? 0 : half);
+  for (std::size_t face = first; face < first + half; ++face)
+    side.triangles.push_back(corners_of_face(mesh_, face));
+  // A plane has all faces that it does not cross on one side, far beyond rounding.
+  if (reach_ > 0.0) add_near(up, side.near);
+  return side;
+}
+
+bool CutCheck::is_flat(const SpaceTriangle& triangle) const noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto flat = [&](std::size_t k) {
+      const SpacePoint& point = points_[triangle[k]];
+      return PlanePoint{point[axis], point[(axis + 1) % 3]};
+    };
+    if (orient_2d(flat(0), flat(1), flat(2)) != 0) return false;
+  }
+  return true;
+}
+
+/// Cut faces of a plane that do not touch its rim lie amid other cut faces of the same plane.
+bool CutCheck::is_inner(const SpaceTriangle& triangle) const noexcept {
+  return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
+    return assembly_.added[corner - first_added_].from == no_index;
+  });
+}
+
+/// The cut faces of both sides lie in the same places, so they are compared among themselves only
+/// on the upper side.
+bool CutCheck::is_sound(bool up) const {
+  const CutSide side = side_of(up);
+  const std::vector<SpaceTriangle>& triangles = side.triangles;
+  const TriangleTree tree(points_, triangles);
+  const auto meets = [&](const SpaceTriangle& triangle, const auto& is_asked) {
+    return tree.any(triangle, [&](std::uint32_t other) {
+      return is_asked(other) && triangles_meet(points_, triangle, triangles[other]);
+    });
+  };
+  for (std::uint32_t piece = 0; piece < side.pieces; ++piece)
+    if (meets(triangles[piece], [&](std::uint32_t other) { return other > piece; })) return false;
+  for (const SpaceTriangle& triangle : side.near)
+    if (meets(triangle, [&](std::uint32_t other) { return other >= side.pieces; })) return false;
+  if (!up) return true;
+  for (auto face = static_cast<std::uint32_t>(side.pieces); face < triangles.size(); ++face) {
+    if (is_flat(triangles[face])) return false;
+    if (reach_ == 0.0 && is_inner(triangles[face])) continue;
+    const bool bad = meets(triangles[face], [&](std::uint32_t other) {
+      return other >= side.pieces && other != face;
+    });
+    if (bad) return false;
+  }
+  return true;
+}
+
+} // namespace
+
+bool is_sound(const CutAssembly& assembly, const CutSurface& surface, double reach) {
+  const CutCheck check(assembly, surface, reach);
+  return check.is_sound(true) && check.is_sound(false);
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,114 @@
+#pragma once
+// The faces of a model that a blade crosses, as triangles: made finer where the blade bends, then
+// crossed. All other faces stay as they are.
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include <nendo/deform/mesh.hpp>
+
+#include "cut/blade.hpp"
+#include "cut/half_edges.hpp"
+
+namespace nendo::deform {
+
+/// A triangle that is part of a face.
+struct Piece {
+  std::array<std::uint32_t, 3> vertices;
+  std::array<std::uint32_t, 3> texcoords; ///< unused if the model has none
+  std::uint32_t face;
+};
+
+/// A point a part of the way between two vertices.
+struct EdgePoint {
+  std::uint32_t from, to;
+  double part;
+};
+
+/// A piece that the blade crosses. Its lone corner lies on one side, the two others on the other.
+struct CrossedPiece {
+  std::uint32_t piece;
+  std::uint32_t lone;          ///< 0 to 2
+  std::uint32_t after, before; ///< crossings of the edges that begin and end at the lone corner
+};
+
+/// What a blade that gives way by `give` does to a model.
+class CutSurface {
+public:
+  /// `sides` has Blade::side() of all vertices. No vertex may be just `give` above the blade. All
+  /// arguments must outlive this.
+  CutSurface(const Mesh& mesh, const HalfEdges& edges, const Blade& blade, double give,
+             const std::vector<double>& sides);
+
+  /// Halves edges until a blade that bends is nowhere farther than `sag` from the chord in which it
+  /// crosses a triangle. Returns false if that takes too many vertices.
+  bool refine(double sag);
+  /// Finds the crossings, and the closed loops that they form.
+  void cross();
+
+  bool bends() const noexcept { return blade_.bends(); }
+  bool is_active(std::size_t face) const noexcept { return active_[face] != 0; }
+  bool is_up(std::uint32_t vertex) const noexcept { return sides_[vertex] > give_; }
+  double above(std::uint32_t vertex) const noexcept { return sides_[vertex] - give_; }
+  SpacePoint point(std::uint32_t vertex) const noexcept;
+  std::uint32_t vertex_count() const noexcept { return static_cast<std::uint32_t>(sides_.size()); }
+  const std::vector<Piece>& pieces() const noexcept { return pieces_; }
+  /// The vertices that refine() added, behind those of the mesh.
+  const std::vector<EdgePoint>& added() const noexcept { return added_; }
+  const std::vector<CrossedPiece>& crossed() const noexcept { return crossed_; }
+  const std::vector<EdgePoint>& crossings() const noexcept { return crossings_; }
+  const std::vector<SpacePoint>& crossing_points() const noexcept { return crossing_points_; }
+  /// Of each crossing the next one, with the upper side's surface on the left.
+  const std::vector<std::uint32_t>& next() const noexcept { return next_; }
+  /// Loops of crossings, and of each crossing its loop.
+  const std::vector<std::vector<std::uint32_t>>& loops() const noexcept { return loops_; }
+  const std::vector<std::uint32_t>& loop_of() const noexcept { return loop_of_; }
+  /// Texture coordinates: the mesh's, and those of new corners behind them.
+  const std::vector<std::array<double, 2>>& new_texcoords() const noexcept {
+    return new_texcoords_;
+  }
+  /// Returns the index of a texture coordinate between two others; what was made for this point
+  /// before is taken again.
+  std::uint32_t texcoord_between(std::uint64_t point, std::uint32_t from, std::uint32_t to,
+                                 double part);
+
+private:
+  bool is_crossed(const Piece& piece) const noexcept;
+  void activate(std::uint32_t face);
+  void activate_near_bends();
+  void index(std::uint32_t piece);
+  double sag_of(const Piece& piece) const noexcept;
+  std::uint32_t piece_at(std::uint32_t from, std::uint32_t to);
+  void halve(std::uint32_t from, std::uint32_t to, std::vector<std::uint32_t>& changed);
+  void split(std::uint32_t from, std::uint32_t to, std::uint32_t middle, double part,
+             std::vector<std::uint32_t>& changed);
+  std::uint32_t crossing(std::uint32_t from, std::uint32_t to);
+  double crossing_part(std::uint32_t from, std::uint32_t to) const noexcept;
+  void link_loops();
+  std::array<double, 2> texcoord(std::uint32_t index) const noexcept;
+
+  const Mesh& mesh_;
+  const HalfEdges& edges_;
+  const Blade& blade_;
+  double give_;
+  std::vector<double> sides_;
+  std::vector<SpacePoint> added_points_;
+  std::vector<EdgePoint> added_;
+  std::vector<std::uint8_t> active_;
+  std::vector<Piece> pieces_;
+  std::unordered_map<std::uint64_t, std::uint32_t> piece_of_edge_;
+  std::unordered_map<std::uint64_t, std::uint32_t> crossing_of_edge_;
+  std::vector<CrossedPiece> crossed_;
+  std::vector<EdgePoint> crossings_;
+  std::vector<SpacePoint> crossing_points_;
+  std::vector<std::uint32_t> next_, loop_of_;
+  std::vector<std::vector<std::uint32_t>> loops_;
+  struct PointTexcoord {
+    std::uint32_t from, to, index;
+  };
+  std::unordered_map<std::uint64_t, std::vector<PointTexcoord>> texcoords_of_point_;
+  std::vector<std::array<double, 2>> new_texcoords_;
+};
+
+} // namespace nendo::deform

@@ -1,0 +1,107 @@
+#include <numeric>
+
+#include <nendo/deform/cut.hpp>
+
+namespace nendo::deform {
+namespace {
+
+/// Numbers what is used in the order of first use by `old`, and keeps the list of it.
+class Renumbered {
+public:
+  explicit Renumbered(std::size_t count) : new_(count, no_index) {}
+  std::uint32_t operator()(std::uint32_t old) {
+    if (new_[old] == no_index) {
+      new_[old] = static_cast<std::uint32_t>(used_.size());
+      used_.push_back(old);
+    }
+    return new_[old];
+  }
+  const std::vector<std::uint32_t>& used() const noexcept { return used_; }
+  /// Forgets what was used, for the next part.
+  void clear() noexcept {
+    for (const std::uint32_t old : used_)
+      new_[old] = no_index;
+    used_.clear();
+  }
+
+private:
+  std::vector<std::uint32_t> new_, used_;
+};
+
+template <class Columns>
+void take_columns(const Columns& from, const std::vector<std::uint32_t>& which, Columns& to) {
+  to.resize(from.rows(), static_cast<Eigen::Index>(which.size()));
+  Eigen::Index column = 0;
+  for (const std::uint32_t old : which)
+    to.col(column++) = from.col(static_cast<Eigen::Index>(old));
+}
+
+/// Vertices and faces of all parts, each part's behind the one before.
+struct ByPart {
+  std::vector<std::uint32_t> starts, members;
+};
+
+template <class PartOf>
+ByPart by_part(std::size_t count, std::uint32_t parts, const PartOf& part_of) {
+  ByPart sorted;
+  sorted.starts.assign(parts + 1, 0);
+  for (std::uint32_t at = 0; at < count; ++at)
+    if (part_of(at) != no_index) ++sorted.starts[part_of(at) + 1];
+  std::partial_sum(sorted.starts.begin(), sorted.starts.end(), sorted.starts.begin());
+  sorted.members.resize(sorted.starts.back());
+  std::vector<std::uint32_t> filled(sorted.starts.begin(), sorted.starts.end() - 1);
+  for (std::uint32_t at = 0; at < count; ++at)
+    if (part_of(at) != no_index) sorted.members[filled[part_of(at)]++] = at;
+  return sorted;
+}
+
+void copy_face(const Mesh& from, std::uint32_t face, Renumbered& vertices, Renumbered& texcoords,
+               Mesh& to) {
+  for (std::uint32_t at = from.face_starts[face]; at < from.face_starts[face + 1]; ++at) {
+    to.face_corners.push_back(vertices(from.face_corners[at]));
+    if (!from.corner_texcoords.empty())
+      to.corner_texcoords.push_back(texcoords(from.corner_texcoords[at]));
+  }
+  to.face_starts.push_back(static_cast<std::uint32_t>(to.face_corners.size()));
+  const auto take = [&](const std::vector<std::uint32_t>& values, std::vector<std::uint32_t>& of) {
+    if (!values.empty()) of.push_back(values[face]);
+  };
+  take(from.look.face_materials, to.look.face_materials);
+  take(from.look.groups.of_face, to.look.groups.of_face);
+  take(from.look.objects.of_face, to.look.objects.of_face);
+}
+
+} // namespace
+
+std::vector<Mesh> separate(const CutModel& model) {
+  const Mesh& mesh = model.mesh;
+  const auto part_of = [&](std::uint32_t vertex) { return model.part_of_vertex[vertex]; };
+  const ByPart vertices =
+      by_part(static_cast<std::size_t>(mesh.vertices.cols()), model.parts, part_of);
+  const ByPart faces = by_part(mesh.face_count(), model.parts, [&](std::uint32_t face) {
+    return part_of(mesh.face_corners[mesh.face_starts[face]]);
+  });
+  Renumbered vertex(static_cast<std::size_t>(mesh.vertices.cols()));
+  Renumbered texcoord(static_cast<std::size_t>(mesh.texcoords.cols()));
+  std::vector<Mesh> parts(model.parts);
+  for (std::uint32_t part = 0; part < model.parts; ++part) {
+    Mesh& own = parts[part];
+    vertex.clear();
+    texcoord.clear();
+    for (std::uint32_t at = vertices.starts[part]; at < vertices.starts[part + 1]; ++at)
+      vertex(vertices.members[at]);
+    for (std::uint32_t at = faces.starts[part]; at < faces.starts[part + 1]; ++at)
+      copy_face(mesh, faces.members[at], vertex, texcoord, own);
+    take_columns(mesh.vertices, vertex.used(), own.vertices);
+    take_columns(mesh.texcoords, texcoord.used(), own.texcoords);
+    if (mesh.look.vertex_colours.cols() > 0)
+      take_columns(mesh.look.vertex_colours, vertex.used(), own.look.vertex_colours);
+    own.look.materials = mesh.look.materials;
+    own.look.textures = mesh.look.textures;
+    own.look.groups.names = mesh.look.groups.names;
+    own.look.objects.names = mesh.look.objects.names;
+  }
+  return parts;
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,84 @@
+#pragma once
+// A tree of boxes around triangles: which of them may meet.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "join/space.hpp"
+
+namespace nendo::deform {
+
+struct SpaceBox {
+  SpacePoint low, high;
+};
+
+inline bool meet(const SpaceBox& a, const SpaceBox& b) noexcept {
+  return a.low[0] <= b.high[0] && b.low[0] <= a.high[0] && a.low[1] <= b.high[1] &&
+         b.low[1] <= a.high[1] && a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
+}
+
+SpaceBox box_of(std::span<const SpacePoint> places, const Corners& triangle) noexcept;
+
+/// The tree keeps no reference to what it was built of.
+class BoxTree {
+public:
+  /// Of the triangles whose numbers are in `chosen`; of all triangles without it. Allocates.
+  BoxTree(std::span<const SpacePoint> places, std::span<const Corners> triangles);
+  BoxTree(std::span<const SpacePoint> places, std::span<const Corners> triangles,
+          std::vector<std::uint32_t> chosen);
+
+  bool empty() const noexcept { return order_.empty(); }
+  /// The box around all triangles. The tree must not be empty.
+  const SpaceBox& box() const noexcept { return nodes_.front().box; }
+
+  /// Calls visit(triangle) for each triangle whose box meets `box`. `enters(node's box)` may refuse
+  /// a subtree besides.
+  template <class Enters, class Visit>
+  void visit(const Enters& enters, const Visit& visit) const {
+    if (empty()) return;
+    std::uint32_t stack[64];
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      if (!enters(node.box)) continue;
+      if (node.count == 0) {
+        stack[depth++] = node.first;
+        stack[depth++] = node.first + 1;
+        continue;
+      }
+      for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
+        if (enters(boxes_[at])) visit(order_[at]);
+    }
+  }
+
+  /// Calls visit(own triangle, other's triangle) for each two whose boxes meet.
+  template <class Visit>
+  void visit_pairs(const BoxTree& other, const Visit& visit) const {
+    if (empty() || other.empty()) return;
+    for (std::size_t leaf = 0; leaf < nodes_.size(); ++leaf) {
+      const Node& node = nodes_[leaf];
+      if (node.count == 0 || !meet(node.box, other.box())) continue;
+      for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
+        other.visit([&](const SpaceBox& box) { return meet(box, boxes_[at]); },
+                    [&](std::uint32_t theirs) { visit(order_[at], theirs); });
+    }
+  }
+
+private:
+  struct Node {
+    SpaceBox box;
+    std::uint32_t first; ///< a leaf's first triangle in order_, or the first of two children
+    std::uint32_t count; ///< 0: no leaf
+  };
+  void build(std::span<const SpacePoint> places, std::span<const Corners> triangles);
+  void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end,
+             std::vector<SpacePoint>& middles);
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> order_; ///< triangles, leaf by leaf
+  std::vector<SpaceBox> boxes_;      ///< in this order
+};
+
+} // namespace nendo::deform

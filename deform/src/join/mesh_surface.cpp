@@ -1,0 +1,231 @@
+#include "join/mesh_surface.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace nendo::deform {
+namespace {
+
+static_assert(no_entry == no_index);
+
+bool same_texture(const Texture& a, const Texture& b) {
+  if (a.file != b.file) return false;
+  return a.contents == b.contents || (a.contents && b.contents && *a.contents == *b.contents);
+}
+
+/// Puts the lists of several appearances into one.
+class LookCollector {
+public:
+  explicit LookCollector(Appearance& look) : look_(look) {}
+
+  /// Starts with another mesh's lists; the numbers of its entries are then known.
+  void take(const Appearance& from) {
+    textures_.clear();
+    materials_.clear();
+    for (const Texture& texture : from.textures)
+      textures_.push_back(number_of(texture));
+    for (const Material& material : from.materials)
+      materials_.push_back(number_of(material));
+    groups_ = numbers_of(from.groups, look_.groups);
+    objects_ = numbers_of(from.objects, look_.objects);
+  }
+  FaceLook look_of(const Appearance& from, std::size_t face) const {
+    const auto entry = [&](const std::vector<std::uint32_t>& of_face,
+                           const std::vector<std::uint32_t>& numbers) {
+      return of_face.empty() || of_face[face] == no_index ? no_index : numbers[of_face[face]];
+    };
+    return {entry(from.face_materials, materials_), entry(from.groups.of_face, groups_),
+            entry(from.objects.of_face, objects_)};
+  }
+
+private:
+  std::uint32_t number_of(const Texture& texture) {
+    const auto found =
+        std::find_if(look_.textures.begin(), look_.textures.end(),
+                     [&](const Texture& other) { return same_texture(texture, other); });
+    const auto number = static_cast<std::uint32_t>(found - look_.textures.begin());
+    if (found == look_.textures.end()) look_.textures.push_back(texture);
+    return number;
+  }
+  std::uint32_t number_of(Material material) {
+    if (material.texture != no_index) material.texture = textures_[material.texture];
+    const std::string name = material.name;
+    for (int copy = 2;; ++copy) {
+      const auto found =
+          std::find_if(look_.materials.begin(), look_.materials.end(),
+                       [&](const Material& other) { return other.name == material.name; });
+      const auto number = static_cast<std::uint32_t>(found - look_.materials.begin());
+      if (found == look_.materials.end()) {
+        look_.materials.push_back(std::move(material));
+        return number;
+      }
+      if (found->colour == material.colour && found->texture == material.texture &&
+          found->drawn == material.drawn)
+        return number;
+      material.name = name + "-" + std::to_string(copy);
+    }
+  }
+  static std::vector<std::uint32_t> numbers_of(const FaceNames& from, FaceNames& to) {
+    std::vector<std::uint32_t> numbers;
+    for (const std::string& name : from.names) {
+      const auto found = std::find(to.names.begin(), to.names.end(), name);
+      numbers.push_back(static_cast<std::uint32_t>(found - to.names.begin()));
+      if (found == to.names.end()) to.names.push_back(name);
+    }
+    return numbers;
+  }
+
+  Appearance& look_;
+  std::vector<std::uint32_t> textures_, materials_, groups_, objects_;
+};
+
+void add_faces(const Mesh& mesh, const LookCollector& looks, TriangleSurface& surface) {
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::uint32_t begin = mesh.face_starts[face];
+    for (std::uint32_t at = begin + 2; at < mesh.face_starts[face + 1]; ++at) {
+      const Corners corners{begin, at - 1, at};
+      const auto through = [&](const std::vector<std::uint32_t>& list) {
+        return Corners{list[corners[0]], list[corners[1]], list[corners[2]]};
+      };
+      surface.faces.push_back(through(mesh.face_corners));
+      surface.looks.push_back(looks.look_of(mesh.look, face));
+      if (!mesh.corner_texcoords.empty())
+        surface.face_texture.push_back(through(mesh.corner_texcoords));
+    }
+  }
+}
+
+TriangleSurface surface_of(const Mesh& mesh, const LookCollector& looks, bool has_colours,
+                           bool has_texture) {
+  TriangleSurface surface;
+  surface.points.reserve(static_cast<std::size_t>(mesh.vertices.cols()));
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i)
+    surface.points.push_back({mesh.vertices(0, i), mesh.vertices(1, i), mesh.vertices(2, i)});
+  for (Eigen::Index i = 0; i < mesh.look.vertex_colours.cols(); ++i) {
+    const Eigen::Vector4f colour = mesh.look.vertex_colours.col(i);
+    surface.colours.push_back({colour[0], colour[1], colour[2], colour[3]});
+  }
+  for (Eigen::Index i = 0; i < mesh.texcoords.cols(); ++i)
+    surface.texture_points.push_back({mesh.texcoords(0, i), mesh.texcoords(1, i)});
+  add_faces(mesh, looks, surface);
+  if (has_colours && surface.colours.empty())
+    surface.colours.assign(surface.points.size(), {1.0f, 1.0f, 1.0f, 1.0f});
+  if (has_texture && surface.face_texture.empty()) {
+    surface.texture_points.assign(1, {0.0, 0.0});
+    surface.face_texture.assign(surface.faces.size(), {0, 0, 0});
+  }
+  return surface;
+}
+
+/// Numbers what is used anew, in the old order.
+class UsedEntries {
+public:
+  explicit UsedEntries(std::size_t count) : numbers_(count, no_index) {}
+  void use(std::uint32_t entry) {
+    if (entry != no_index) numbers_[entry] = 0;
+  }
+  /// Calls keep(entry) for each that is used.
+  template <class Keep>
+  void number(const Keep& keep) {
+    std::uint32_t next = 0;
+    for (std::uint32_t entry = 0; entry < numbers_.size(); ++entry) {
+      if (numbers_[entry] == no_index) continue;
+      numbers_[entry] = next++;
+      keep(entry);
+    }
+  }
+  std::uint32_t operator[](std::uint32_t entry) const {
+    return entry == no_index ? no_index : numbers_[entry];
+  }
+
+private:
+  std::vector<std::uint32_t> numbers_;
+};
+
+void set_materials(const TriangleSurface& surface, const Appearance& look, Appearance& to) {
+  UsedEntries materials(look.materials.size());
+  UsedEntries textures(look.textures.size());
+  for (const FaceLook& face : surface.looks)
+    materials.use(face.material);
+  materials.number([&](std::uint32_t entry) {
+    to.materials.push_back(look.materials[entry]);
+    textures.use(look.materials[entry].texture);
+  });
+  textures.number([&](std::uint32_t entry) { to.textures.push_back(look.textures[entry]); });
+  for (Material& material : to.materials)
+    material.texture = textures[material.texture];
+  if (to.materials.empty()) return;
+  for (const FaceLook& face : surface.looks)
+    to.face_materials.push_back(materials[face.material]);
+}
+
+void set_names(const TriangleSurface& surface, const FaceNames& from,
+               std::uint32_t FaceLook::* entry, FaceNames& to) {
+  UsedEntries used(from.names.size());
+  for (const FaceLook& face : surface.looks)
+    used.use(face.*entry);
+  used.number([&](std::uint32_t at) { to.names.push_back(from.names[at]); });
+  if (to.names.empty()) return;
+  for (const FaceLook& face : surface.looks)
+    to.of_face.push_back(used[face.*entry]);
+}
+
+void set_texture(const TriangleSurface& surface, Mesh& mesh) {
+  UsedEntries used(surface.texture_points.size());
+  for (const Corners& corners : surface.face_texture)
+    for (const std::uint32_t at : corners)
+      used.use(at);
+  std::vector<TexturePoint> kept;
+  used.number([&](std::uint32_t at) { kept.push_back(surface.texture_points[at]); });
+  mesh.texcoords.resize(2, static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t at = 0; at < kept.size(); ++at)
+    mesh.texcoords.col(static_cast<Eigen::Index>(at)) << kept[at][0], kept[at][1];
+  for (const Corners& corners : surface.face_texture)
+    for (const std::uint32_t at : corners)
+      mesh.corner_texcoords.push_back(used[at]);
+}
+
+} // namespace
+
+SharedSurfaces surfaces_of(std::span<const Mesh* const> meshes) {
+  SharedSurfaces shared;
+  LookCollector looks(shared.look);
+  const auto any = [&](auto has) {
+    return std::any_of(meshes.begin(), meshes.end(), [&](const Mesh* mesh) { return has(*mesh); });
+  };
+  const bool has_colours =
+      any([](const Mesh& mesh) { return mesh.look.vertex_colours.cols() > 0; });
+  const bool has_texture = any([](const Mesh& mesh) { return !mesh.corner_texcoords.empty(); });
+  for (const Mesh* mesh : meshes) {
+    looks.take(mesh->look);
+    shared.surfaces.push_back(surface_of(*mesh, looks, has_colours, has_texture));
+  }
+  return shared;
+}
+
+Mesh mesh_of(const TriangleSurface& surface, const Appearance& look) {
+  Mesh mesh;
+  mesh.vertices.resize(3, static_cast<Eigen::Index>(surface.points.size()));
+  for (std::size_t i = 0; i < surface.points.size(); ++i)
+    mesh.vertices.col(static_cast<Eigen::Index>(i)) << surface.points[i][0], surface.points[i][1],
+        surface.points[i][2];
+  mesh.face_corners.reserve(3 * surface.faces.size());
+  mesh.face_starts.reserve(surface.faces.size() + 1);
+  for (const Corners& corners : surface.faces) {
+    mesh.face_corners.insert(mesh.face_corners.end(), corners.begin(), corners.end());
+    mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+  }
+  set_materials(surface, look, mesh.look);
+  set_names(surface, look.groups, &FaceLook::group, mesh.look.groups);
+  set_names(surface, look.objects, &FaceLook::object, mesh.look.objects);
+  if (!surface.face_texture.empty()) set_texture(surface, mesh);
+  mesh.look.vertex_colours.resize(4, static_cast<Eigen::Index>(surface.colours.size()));
+  for (std::size_t i = 0; i < surface.colours.size(); ++i)
+    mesh.look.vertex_colours.col(static_cast<Eigen::Index>(i)) << surface.colours[i][0],
+        surface.colours[i][1], surface.colours[i][2], surface.colours[i][3];
+  return mesh;
+}
+
+} // namespace nendo::deform

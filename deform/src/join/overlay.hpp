@@ -1,0 +1,53 @@
+#pragma once
+// Two closed surfaces laid over each other: each is cut along the other, and of each piece it is
+// known whether it is inside of the other one. Union and intersection are then choices of pieces.
+//
+// Points of crossings are named by edge and face, and all signs are exact, so what is chosen is
+// closed whatever rounding does. No general position is waited for: the second surface gives way by
+// 1e-7 of its size from the first attempt on.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+
+#include "join/crossed_faces.hpp"
+#include "join/triangle_surface.hpp"
+
+namespace nendo::deform {
+
+struct Overlay {
+  std::vector<SpacePoint> second_points; ///< of the second surface, after it has given way
+  Crossings crossings;
+  std::array<PartPieces, 2> pieces;
+  std::array<std::vector<char>, 2> inside; ///< of each piece: in the other surface
+  int attempts = 0;
+};
+
+/// Which pieces are chosen.
+enum class Choice { union_of_both, intersection };
+
+/// What was chosen, as a surface. Its points keep their order: the first surface's, the second
+/// one's, then crossings.
+struct Chosen {
+  TriangleSurface surface;
+  /// Where each point is from: its number in the first surface, or that in the second plus the
+  /// first one's points, or that of the crossing plus both.
+  std::vector<std::uint32_t> origins;
+  std::vector<std::uint32_t> face_parts; ///< of each face: 0 or 1
+  std::vector<std::uint32_t> made;       ///< faces that are pieces of crossed ones
+};
+
+/// Surfaces must be closed, face outwards and be free of self-intersections; otherwise the result
+/// need not be what one expects. `first_attempt` > 0 leaves out as many ways to give. Error: failed
+/// (no way to give way led to general position). Allocates, blocks.
+Result<Overlay> overlay(const TriangleSurface& first, const TriangleSurface& second,
+                        int first_attempt = 0);
+inline constexpr int most_overlay_attempts = 8;
+
+/// Allocates.
+Chosen choose(const TriangleSurface& first, const TriangleSurface& second, const Overlay& overlay,
+              Choice choice);
+
+} // namespace nendo::deform

@@ -1,0 +1,124 @@
+#include "join/refine.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace nendo::deform {
+namespace {
+
+/// An edge by its ends, since its number changes, the lesser first.
+struct RefineEdge {
+  double order; ///< the least is taken first
+  std::uint32_t from, to;
+};
+
+class RefineRound {
+public:
+  RefineRound(LiveSurface& surface, RefineZone& zone, const RefineLimits& limits)
+      : surface_(surface), zone_(zone), limits_(limits) {}
+
+  RefineCounts run() {
+    collect();
+    split_long();
+    collapse_short();
+    flip_all();
+    return counts_;
+  }
+
+private:
+  static void sort(std::vector<RefineEdge>& edges) {
+    std::sort(edges.begin(), edges.end(), [](const RefineEdge& a, const RefineEdge& b) {
+      return std::tie(a.order, a.from, a.to) < std::tie(b.order, b.from, b.to);
+    });
+  }
+  bool is_near(std::uint32_t point) const { return zone_.coarseness[point] > 0.0f; }
+  double coarseness_between(std::uint32_t a, std::uint32_t b) const {
+    const auto [least, most] = std::minmax(zone_.coarseness[a], zone_.coarseness[b]);
+    return static_cast<double>(least > 0.0f ? least : most);
+  }
+  bool has_budget() const { return counts_.splits + counts_.collapses < limits_.budget; }
+
+  void collect() {
+    for (std::uint32_t point = 0; point < surface_.point_count(); ++point) {
+      if (!is_near(point) || !surface_.has_point(point)) continue;
+      surface_.visit_edges(point, [&](std::uint32_t edge) {
+        const std::uint32_t other = surface_.to(edge);
+        if (is_near(other) && other < point) return; // seen from there
+        const double length = surface_.edge_length(edge) / coarseness_between(point, other);
+        const auto [from, to] = std::minmax(point, other);
+        if (length > limits_.longest) long_.push_back({-length, from, to});
+        if (length < limits_.shortest) short_.push_back({length, from, to});
+      });
+    }
+    sort(long_);
+    sort(short_);
+  }
+  void split_long() {
+    for (const RefineEdge& wanted : long_) {
+      if (!has_budget() || surface_.point_count() >= limits_.most_points) {
+        ++counts_.left;
+        continue;
+      }
+      surface_.split(surface_.edge_between(wanted.from, wanted.to));
+      const float a = zone_.coarseness[wanted.from];
+      const float b = zone_.coarseness[wanted.to];
+      zone_.coarseness.push_back(a > 0.0f && b > 0.0f ? 0.5f * (a + b) : 0.0f);
+      zone_.hold.push_back(0);
+      ++counts_.splits;
+    }
+  }
+  bool may_go(std::uint32_t point, std::uint32_t into) const {
+    return zone_.hold[point] < 2 && zone_.hold[point] <= zone_.hold[into];
+  }
+  /// Of two that hold alike, the greater number goes first.
+  bool collapse(const RefineEdge& wanted) {
+    std::uint32_t stays = wanted.from;
+    std::uint32_t goes = wanted.to;
+    for (int way = 0; way < 2; ++way, std::swap(stays, goes)) {
+      if (!may_go(goes, stays)) continue;
+      const std::uint32_t edge = surface_.edge_between(stays, goes);
+      if (edge == no_entry) return false;
+      const double longest = limits_.longest * coarseness_between(stays, goes);
+      if (surface_.collapse(edge, longest, limits_.thin)) return true;
+    }
+    return false;
+  }
+  void collapse_short() {
+    for (const RefineEdge& wanted : short_) {
+      if (!surface_.has_point(wanted.from) || !surface_.has_point(wanted.to)) continue;
+      if (zone_.hold[wanted.from] == 2 && zone_.hold[wanted.to] == 2) continue;
+      if (!has_budget()) {
+        ++counts_.left;
+        continue;
+      }
+      counts_.collapses += collapse(wanted) ? 1u : 0u;
+    }
+  }
+  void flip_all() {
+    for (std::uint32_t point = 0; point < surface_.point_count(); ++point) {
+      if (!is_near(point) || !surface_.has_point(point)) continue;
+      around_.clear();
+      surface_.visit_edges(point,
+                           [&](std::uint32_t edge) { around_.push_back(surface_.to(edge)); });
+      for (const std::uint32_t other : around_) {
+        const std::uint32_t edge = surface_.edge_between(point, other);
+        if (edge != no_entry && surface_.flip(edge)) ++counts_.flips;
+      }
+    }
+  }
+
+  LiveSurface& surface_;
+  RefineZone& zone_;
+  const RefineLimits& limits_;
+  RefineCounts counts_;
+  std::vector<RefineEdge> long_, short_;
+  std::vector<std::uint32_t> around_;
+};
+
+} // namespace
+
+RefineCounts refine(LiveSurface& surface, RefineZone& zone, const RefineLimits& limits) {
+  return RefineRound(surface, zone, limits).run();
+}
+
+} // namespace nendo::deform

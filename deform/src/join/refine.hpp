@@ -1,0 +1,50 @@
+#pragma once
+// Keeps the triangles of a surface fair while it changes: long edges are split, short ones are
+// collapsed, and edges are flipped where that makes triangles fairer. Quasi-uniform sampling in the
+// manner of Stanculescu, Chaine and Cani, "Freestyle: Sculpting meshes with self-adaptive
+// topology", 2011.
+//
+// Points that no operation takes away keep their places bit for bit: a split adds a point in the
+// middle of an edge, and a collapse lets one end go into the other. The same calls give the same
+// bits.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "join/live_surface.hpp"
+
+namespace nendo::deform {
+
+struct RefineLimits {
+  double longest = 0.0;     ///< an edge that is longer is split; > 0
+  double shortest = 0.0;    ///< one that is shorter is collapsed; at most longest / 2
+  double thin = 0.0;        ///< faces that are lower may fold: they say little of the shape
+  std::size_t budget = 500; ///< splits and collapses in one call
+  std::size_t most_points = 4000000; ///< no splits beyond it
+};
+
+struct RefineCounts {
+  std::size_t splits = 0, collapses = 0, flips = 0;
+  std::size_t left = 0; ///< edges out of limits for which there was no budget
+};
+
+/// Which points may be worked at. Both lists have one entry for each point of the surface, and grow
+/// with it.
+struct RefineZone {
+  /// How coarse the surface may be at a point: edges there are looked at, and the limits of their
+  /// lengths are multiplied by this; 0: they are not looked at. Of an edge's ends the lesser counts
+  /// that is not 0. A new point has the mean of both, or 0 if one has.
+  std::vector<float> coarseness;
+  /// How firmly a point holds its place: 2 always, and of two at a short edge the one that holds
+  /// less goes into the other. New points have 0.
+  std::vector<char> hold;
+};
+
+/// Goes once over the edges in the zone: splits, the longest first, then collapses, the shortest
+/// first, then flips. Edges of the same length are taken in the order of their points. Call it
+/// again until nothing was done, for edges that are several times too long. Allocates.
+RefineCounts refine(LiveSurface& surface, RefineZone& zone, const RefineLimits& limits);
+
+} // namespace nendo::deform

@@ -1,0 +1,205 @@
+#include "join/seam.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
+
+#include "join/refine.hpp"
+#include "join/thin_plate.hpp"
+
+namespace nendo::deform {
+namespace {
+
+/// So many edges lie side by side in the seam's width, at least; more where the surface is finer.
+constexpr double edges_in_width = 4.0;
+constexpr double long_edge = 1.4;   ///< of the mean edge: what is longer is split
+constexpr double short_edge = 0.4;  ///< of the longest: what is shorter is collapsed
+constexpr double thin_face = 1e-3;  ///< of the longest: steps where a part only gave way are lower
+constexpr double zone_widths = 4.0; ///< so far away is the surface refined
+constexpr double coarser = 2.0;     ///< beyond the width: so much longer edges a width further
+constexpr double farthest_motion = 1.0; ///< of the width
+constexpr int most_rounds = 12;
+constexpr std::size_t most_operations = 100000;
+/// A long and narrow seam gets longer edges instead of more triangles. Its band of twice the width,
+/// and what becomes coarser beyond it, has 14 triangles for each square of the longest edge.
+constexpr double most_triangles = 1e5;
+constexpr double triangles_in_square = 14.0;
+constexpr double infinitely_far = 1e300;
+
+/// How far points are from the seam, along edges; infinitely_far beyond the width.
+std::vector<double> distances_from(const LiveSurface& surface,
+                                   std::span<const std::uint32_t> on_seam, double width) {
+  using Entry = std::pair<double, std::uint32_t>;
+  std::vector<double> distances(surface.point_count(), infinitely_far);
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
+  for (const std::uint32_t point : on_seam) {
+    if (!surface.has_point(point)) continue;
+    distances[point] = 0.0;
+    next.emplace(0.0, point);
+  }
+  while (!next.empty()) {
+    const auto [reached, point] = next.top();
+    next.pop();
+    if (reached > distances[point]) continue;
+    const double so_far = reached;
+    surface.visit_edges(point, [&](std::uint32_t edge) {
+      const double there = so_far + surface.edge_length(edge);
+      if (there >= width || there >= distances[surface.to(edge)]) return;
+      distances[surface.to(edge)] = there;
+      next.emplace(there, surface.to(edge));
+    });
+  }
+  return distances;
+}
+
+/// The mean edge near the seam, of edges that no crossing made; of all edges there, if there are
+/// none.
+double mean_edge(const LiveSurface& surface, const std::vector<double>& distances) {
+  double sums[2] = {0.0, 0.0};
+  double counts[2] = {0.0, 0.0};
+  for (std::uint32_t point = 0; point < distances.size(); ++point) {
+    if (distances[point] >= infinitely_far || !surface.has_point(point)) continue;
+    surface.visit_edges(point, [&](std::uint32_t edge) {
+      const bool is_old = distances[point] > 0.0 && distances[surface.to(edge)] > 0.0;
+      sums[is_old ? 0 : 1] += surface.edge_length(edge);
+      counts[is_old ? 0 : 1] += 1.0;
+    });
+  }
+  const std::size_t which = counts[0] > 0.0 ? 0 : 1;
+  return sums[which] / std::max(counts[which], 1.0);
+}
+
+double smoothed(double part) noexcept {
+  const double t = std::clamp(part, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// Splits the seam's own edges, and returns all points on it.
+std::vector<std::uint32_t> split_seam(LiveSurface& surface, std::span<const SeamEdge> edges,
+                                      double longest) {
+  std::vector<std::uint32_t> on_seam;
+  std::vector<SeamEdge> left(edges.begin(), edges.end());
+  for (const SeamEdge& edge : edges) {
+    on_seam.push_back(edge.first);
+    on_seam.push_back(edge.second);
+  }
+  for (std::size_t at = 0; at < left.size() && left.size() < most_operations; ++at) {
+    const auto [from, to] = left[at];
+    if (distance(surface.point(from), surface.point(to)) <= longest) continue;
+    const std::uint32_t middle = surface.split(surface.edge_between(from, to));
+    on_seam.push_back(middle);
+    left.emplace_back(from, middle);
+    left.emplace_back(middle, to);
+  }
+  std::sort(on_seam.begin(), on_seam.end());
+  on_seam.erase(std::unique(on_seam.begin(), on_seam.end()), on_seam.end());
+  return on_seam;
+}
+
+/// The longest edge near the seam.
+double longest_edge(const LiveSurface& surface, std::span<const SeamEdge> edges, double mean,
+                    double width) {
+  double seam = 0.0;
+  for (const auto& [from, to] : edges)
+    seam += distance(surface.point(from), surface.point(to));
+  const double bounded = std::sqrt(triangles_in_square * seam * width / most_triangles);
+  return std::min(long_edge * mean, std::max(width / edges_in_width, bounded));
+}
+
+/// Makes the triangles near the seam even, and returns the points that are on the seam then. What
+/// is far enough away to keep its detail also keeps its points.
+std::vector<std::uint32_t> even_out(LiveSurface& surface, std::span<const SeamEdge> edges,
+                                    double width, RefineZone& zone) {
+  std::vector<std::uint32_t> on_seam = split_seam(surface, edges, infinitely_far);
+  RefineLimits limits;
+  limits.longest = longest_edge(surface, edges,
+                                mean_edge(surface, distances_from(surface, on_seam, width)), width);
+  limits.shortest = short_edge * limits.longest;
+  limits.thin = thin_face * limits.longest;
+  limits.budget = most_operations;
+  on_seam = split_seam(surface, edges, limits.longest);
+  zone.hold.assign(surface.point_count(), 2);
+  zone.coarseness.assign(surface.point_count(), 0.0f);
+  for (int round = 0; round < most_rounds; ++round) {
+    const std::vector<double> distances = distances_from(surface, on_seam, zone_widths * width);
+    for (std::uint32_t point = 0; point < distances.size(); ++point) {
+      const double beyond = std::max(distances[point] / width - 1.0, 0.0);
+      const bool is_far = distances[point] >= infinitely_far;
+      zone.coarseness[point] = is_far ? 0.0f : static_cast<float>(1.0 + coarser * beyond);
+      if (distances[point] < 0.5 * width) zone.hold[point] = 0;
+    }
+    for (const std::uint32_t point : on_seam)
+      zone.hold[point] = 1;
+    const RefineCounts done = refine(surface, zone, limits);
+    limits.budget -= done.splits + done.collapses;
+    if (done.splits + done.collapses + done.flips == 0) break;
+  }
+  return on_seam;
+}
+
+double area_at(const LiveSurface& surface, const std::vector<char>& moves) {
+  double twice = 0.0;
+  for (std::uint32_t face = 0; face < surface.face_count(); ++face) {
+    if (!surface.has_face(face)) continue;
+    const std::uint32_t a = surface.from(3 * face);
+    const std::uint32_t b = surface.from(3 * face + 1);
+    const std::uint32_t c = surface.from(3 * face + 2);
+    if (moves[a] || moves[b] || moves[c])
+      twice += length_of(area_vector(surface.point(a), surface.point(b), surface.point(c)));
+  }
+  return 0.5 * twice;
+}
+
+/// Moves the points within the width towards the thin plate: wholly near the seam, less and less
+/// towards the rim.
+void move_points(LiveSurface& surface, std::span<const std::uint32_t> on_seam, double width,
+                 std::vector<char>& moves, Seam& seam) {
+  const std::vector<double> distances = distances_from(surface, on_seam, width);
+  std::vector<std::uint32_t> free;
+  for (std::uint32_t point = 0; point < distances.size(); ++point)
+    if (distances[point] < infinitely_far) {
+      free.push_back(point);
+      moves[point] = 1;
+    }
+  const std::vector<SpacePoint> smooth = thin_plate(surface, free);
+  const double before = area_at(surface, moves);
+  const double farthest = farthest_motion * width;
+  for (std::size_t at = 0; at < free.size(); ++at) {
+    const double full = smoothed(2.0 * (1.0 - distances[free[at]] / width));
+    SpacePoint way = full * (smooth[at] - surface.point(free[at]));
+    if (length_of(way) > farthest) way = (farthest / length_of(way)) * way;
+    seam.moved = std::max(seam.moved, length_of(way));
+    surface.move(free[at], surface.point(free[at]) + way);
+  }
+  seam.volume_bound = std::max(before, area_at(surface, moves)) * seam.moved;
+}
+
+} // namespace
+
+Seam smear_seam(TriangleSurface surface, std::span<const SeamEdge> seam_edges, double width) {
+  Seam seam;
+  const std::size_t old_points = surface.points.size();
+  LiveSurface live(std::move(surface));
+  RefineZone zone;
+  const std::vector<std::uint32_t> on_seam = even_out(live, seam_edges, width, zone);
+  std::vector<char> moves(live.point_count(), 0);
+  move_points(live, on_seam, width, moves, seam);
+  std::vector<std::uint32_t> numbers;
+  seam.surface = live.take(&numbers);
+  // Where points were near, edges may have been flipped.
+  std::vector<char> is_changed(seam.surface.points.size(), 0);
+  for (std::size_t point = 0; point < numbers.size(); ++point)
+    if (numbers[point] != no_entry)
+      is_changed[numbers[point]] =
+          point >= old_points || moves[point] || zone.coarseness[point] > 0.0f;
+  for (std::uint32_t face = 0; face < seam.surface.faces.size(); ++face) {
+    const Corners& corner = seam.surface.faces[face];
+    if (is_changed[corner[0]] || is_changed[corner[1]] || is_changed[corner[2]])
+      seam.changed.push_back(face);
+  }
+  return seam;
+}
+
+} // namespace nendo::deform

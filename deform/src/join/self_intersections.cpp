@@ -1,0 +1,91 @@
+#include "join/self_intersections.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "cut/exact_predicates.hpp"
+#include "cut/triangle_meeting.hpp"
+#include "join/box_tree.hpp"
+
+namespace nendo::deform {
+namespace {
+
+/// How the three turn, seen along an axis.
+int turn_along(std::size_t axis, const SpacePoint& a, const SpacePoint& b,
+               const SpacePoint& c) noexcept {
+  const std::size_t x = (axis + 1) % 3;
+  const std::size_t y = (axis + 2) % 3;
+  return orient_2d({a[x], a[y]}, {b[x], b[y]}, {c[x], c[y]});
+}
+
+/// Collects pairs, sorted at the end.
+std::vector<TrianglePair> sorted_pairs(std::vector<TrianglePair> pairs, std::size_t most) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  if (pairs.size() > most) pairs.resize(most);
+  return pairs;
+}
+
+} // namespace
+
+bool is_degenerate(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
+  return turn_along(0, a, b, c) == 0 && turn_along(1, a, b, c) == 0 && turn_along(2, a, b, c) == 0;
+}
+
+std::vector<TrianglePair> intersections_between(std::span<const SpacePoint> places,
+                                                std::span<const Corners> triangles,
+                                                std::span<const std::uint32_t> some,
+                                                std::span<const std::uint32_t> others,
+                                                std::size_t most) {
+  std::vector<TrianglePair> found;
+  if (some.empty() || others.empty()) return found;
+  const BoxTree tree(places, triangles, {some.begin(), some.end()});
+  std::vector<std::uint32_t> near;
+  for (const std::uint32_t triangle : others)
+    if (meet(tree.box(), box_of(places, triangles[triangle]))) near.push_back(triangle);
+  const BoxTree near_tree(places, triangles, std::move(near));
+  tree.visit_pairs(near_tree, [&](std::uint32_t mine, std::uint32_t other) {
+    if (mine != other && found.size() < most &&
+        triangles_meet(places, triangles[mine], triangles[other]))
+      found.push_back(std::minmax(mine, other));
+  });
+  return sorted_pairs(std::move(found), most);
+}
+
+std::vector<TrianglePair> self_intersections_of(std::span<const SpacePoint> places,
+                                                std::span<const Corners> triangles,
+                                                std::span<const std::uint32_t> changed,
+                                                std::size_t most) {
+  std::vector<char> is_changed(triangles.size(), 0);
+  std::vector<TrianglePair> found;
+  for (const std::uint32_t triangle : changed) {
+    is_changed[triangle] = 1;
+    const Corners& corner = triangles[triangle];
+    if (is_degenerate(places[corner[0]], places[corner[1]], places[corner[2]]))
+      found.emplace_back(triangle, triangle);
+  }
+  std::vector<std::uint32_t> others;
+  for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle)
+    if (!is_changed[triangle]) others.push_back(triangle);
+  const auto append = [&](const std::vector<TrianglePair>& more) {
+    found.insert(found.end(), more.begin(), more.end());
+  };
+  append(intersections_between(places, triangles, changed, others, most));
+  const BoxTree tree(places, triangles, {changed.begin(), changed.end()});
+  tree.visit_pairs(tree, [&](std::uint32_t one, std::uint32_t other) {
+    if (one < other && found.size() < most &&
+        triangles_meet(places, triangles[one], triangles[other]))
+      found.emplace_back(one, other);
+  });
+  return sorted_pairs(std::move(found), most);
+}
+
+std::vector<TrianglePair> self_intersections(std::span<const SpacePoint> places,
+                                             std::span<const Corners> triangles, std::size_t most) {
+  std::vector<std::uint32_t> all(triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return self_intersections_of(places, triangles, all, most);
+}
+
+} // namespace nendo::deform

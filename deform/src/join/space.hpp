@@ -1,0 +1,23 @@
+#pragma once
+// Triangles in space, as plain numbers: what joining computes with.
+
+#include <array>
+#include <cstdint>
+
+#include "cut/space.hpp"
+
+namespace nendo::deform {
+
+using Corners = std::array<std::uint32_t, 3>; ///< vertices, counter-clockwise seen from outside
+
+inline double distance(const SpacePoint& a, const SpacePoint& b) noexcept {
+  return length_of(b - a);
+}
+
+/// Twice the triangle's area vector.
+inline SpacePoint area_vector(const SpacePoint& a, const SpacePoint& b,
+                              const SpacePoint& c) noexcept {
+  return cross(b - a, c - a);
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,17 @@
+#include "join/triangle_surface.hpp"
+
+namespace nendo::deform {
+
+double volume_of(std::span<const SpacePoint> points, std::span<const Corners> faces) {
+  if (points.empty()) return 0.0;
+  SpacePoint middle{};
+  for (const SpacePoint& point : points)
+    middle = middle + (1.0 / static_cast<double>(points.size())) * point;
+  double six_times = 0.0;
+  for (const Corners& corner : faces)
+    six_times += dot(points[corner[0]] - middle,
+                     cross(points[corner[1]] - middle, points[corner[2]] - middle));
+  return six_times / 6.0;
+}
+
+} // namespace nendo::deform

@@ -1,0 +1,41 @@
+#pragma once
+// A mesh as joining and refining work on it: triangles, plain numbers, and all that the mesh's file
+// says of points, corners and faces.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "join/space.hpp"
+
+namespace nendo::deform {
+
+/// Stands for no material, group or object; material.hpp calls it no_index.
+inline constexpr std::uint32_t no_entry = std::numeric_limits<std::uint32_t>::max();
+
+/// Indices into the lists of an Appearance, or no_entry.
+struct FaceLook {
+  std::uint32_t material = no_entry;
+  std::uint32_t group = no_entry;
+  std::uint32_t object = no_entry;
+  bool operator==(const FaceLook&) const = default;
+};
+
+using Colour = std::array<float, 4>;
+using TexturePoint = std::array<double, 2>;
+
+struct TriangleSurface {
+  std::vector<SpacePoint> points;
+  std::vector<Corners> faces;
+  std::vector<FaceLook> looks;              ///< one for each face
+  std::vector<Colour> colours;              ///< one for each point, or none at all
+  std::vector<TexturePoint> texture_points; ///< none, if there are no texture coordinates
+  std::vector<Corners> face_texture;        ///< of each face's corners, or none at all
+};
+
+/// Returns the volume that closed surfaces enclose: positive if they face outwards.
+double volume_of(std::span<const SpacePoint> points, std::span<const Corners> faces);
+
+} // namespace nendo::deform
