@@ -3,7 +3,9 @@
 // intersect then. Prints a table in Markdown, and fails if there is any.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -48,15 +50,25 @@ Parts whole_hand() {
     bent = {0.3, 0.0, 0.3, 0.2};
   Eigen::Isometry3d wrist = Eigen::Isometry3d::Identity();
   wrist.linear() << 0, 0, -1, -1, 0, 0, 0, 1, 0;
-  wrist.translation() << -0.07, 0.0, 0.12;
+  wrist.translation() << -0.07, 0.0, 0.082;
   Parts parts(hand::HandBody::part_count);
   flow::contact_parts(body, skeleton.pose(angles, wrist), mm_a_m, parts);
   return parts;
 }
 
+double volume_of(const deform::Mesh& mesh) {
+  double sum = 0.0;
+  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+    sum += mesh.vertices.col(corners[0])
+               .dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
+  });
+  return sum / 6.0;
+}
+
 struct Outcome {
   std::size_t pairs = 0;
-  double penetration_mm = 0.0, volume = 0.0;
+  double penetration_mm = 0.0;
+  double volume = 0.0, last_volume = 0.0; ///< relative; the worst, and at the end
 };
 
 /// At up to 1.5 m/s, 90 Hz: to the ball from any side, into it, on to any side, and away.
@@ -75,9 +87,12 @@ Outcome stroke(std::mt19937& random, Parts parts, int level) {
   const Vector3d out = 60.0 * from;
   clay.begin(parts);
   Outcome outcome;
+  const double whole = volume_of(ball);
   const auto note = [&](const deform::ClayReport& report) {
     outcome.penetration_mm = std::max(outcome.penetration_mm, report.penetration_mm);
-    outcome.volume = std::max(outcome.volume, std::abs(report.volume_change));
+    shape.layout().unpack(clay.shape(), ball.vertices);
+    outcome.last_volume = std::abs(volume_of(ball) / whole - 1.0);
+    outcome.volume = std::max(outcome.volume, outcome.last_volume);
   };
   for (const Vector3d& way : {in, aside, out}) {
     const int calls = std::max(1, static_cast<int>(way.norm() / speed));
@@ -88,7 +103,6 @@ Outcome stroke(std::mt19937& random, Parts parts, int level) {
   }
   for (int wait = 0; wait < 20; ++wait)
     note(clay.press_to(parts));
-  shape.layout().unpack(clay.shape(), ball.vertices);
   outcome.pairs = evidence::self_intersections(ball).size();
   return outcome;
 }
@@ -102,8 +116,9 @@ int main(int argc, char** argv) {
     std::fputs("usage: clay_strokes STROKES LEVEL (3 to 7)\n", stderr);
     return 2;
   }
-  std::puts("| body | strokes | with pairs | pairs | left, mm: worst | volume, %: worst |\n"
-            "|---|---|---|---|---|---|");
+  std::puts(
+      "| body | strokes | with pairs | pairs | left, mm: worst | volume, %: worst | at the end |\n"
+      "|---|---|---|---|---|---|---|");
   bool is_any = false;
   const std::vector<std::pair<const char*, Parts>> bodies{
       {"finger", finger()}, {"rod", rod()}, {"hand", whole_hand()}};
@@ -117,9 +132,10 @@ int main(int argc, char** argv) {
       all.pairs += one.pairs;
       all.penetration_mm = std::max(all.penetration_mm, one.penetration_mm);
       all.volume = std::max(all.volume, one.volume);
+      all.last_volume = std::max(all.last_volume, one.last_volume);
     }
-    std::printf("| %s | %d | %d | %zu | %.3f | %.3f |\n", body.first, strokes, folded, all.pairs,
-                all.penetration_mm, 100.0 * all.volume);
+    std::printf("| %s | %d | %d | %zu | %.3f | %.4f | %.4f |\n", body.first, strokes, folded,
+                all.pairs, all.penetration_mm, 100.0 * all.volume, 100.0 * all.last_volume);
     std::fflush(stdout);
     is_any = is_any || folded > 0;
   }
