@@ -2,12 +2,16 @@
 
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include <nendo/deform/mesh_file.hpp>
+
 #include "bench/bench.hpp"
+#include "bench/clay_kneading.hpp"
 #include "bench/clay_trial.hpp"
 #include "bench/simd_choice.hpp"
 #include "cli/cli.hpp"
@@ -16,6 +20,8 @@ namespace nendo::bench::clay_bench {
 namespace {
 
 struct Options {
+  std::string thing;
+  std::string save;
   std::string simd;
   bool short_form = false;
   bool json = false;
@@ -82,8 +88,28 @@ std::vector<Row> rows_of(bool short_form) {
           {"655 thousand vertices", {.level = 8}}};
 }
 
+/// Makes one thing, and writes it.
+int make_thing(const Options& options) {
+  const std::map<std::string, KneadedThing> things{
+      {"cake", KneadedThing::cake}, {"bowl", KneadedThing::bowl}, {"nose", KneadedThing::nose}};
+  const auto thing = things.find(options.thing);
+  if (thing == things.end())
+    return cli::report({Errc::usage, "--make " + options.thing +
+                                         ": there is no such thing; use cake, bowl or nose"});
+  const KneadedClay made = knead(thing->second, options.short_form ? 4 : 6);
+  std::printf("%s: %zu vertices; %.2f ms a tick, p99 %.2f; left p99 %.4f mm; volume %% worst %.4f, "
+              "at the end %.4f; places held %zu\n",
+              options.thing.c_str(), static_cast<std::size_t>(made.shape.vertices.cols()),
+              made.mean_us / 1e3, made.p99_us / 1e3, made.penetration_p99_mm,
+              100.0 * made.worst_volume, 100.0 * made.last_volume, made.most_held);
+  if (options.save.empty()) return 0;
+  const auto written = deform::write_mesh(options.save, made.shape);
+  return written ? 0 : cli::report(written.error());
+}
+
 int bench_clay(const Options& options) {
   if (const auto chosen = choose_simd(options.simd); !chosen) return cli::report(chosen.error());
+  if (!options.thing.empty()) return make_thing(options);
   if (!options.json)
     std::printf("two hands press a ball of 120 mm by 25 mm each, scrape it, and leave, at 90 Hz\n"
                 "constraints: mean and most of a pass; distances in thousands; times in ms a tick; "
@@ -105,6 +131,9 @@ void add(cli::Command& bench) {
   auto options = std::make_shared<Options>();
   cli::Command command =
       bench.add_command("clay", "Pressing clay with whole hands, beside a plain program");
+  command.add_option("--make", options->thing,
+                     "Knead a ball into a thing instead: cake, bowl or nose");
+  command.add_option("--save", options->save, "Where to write what --make made: .obj or .ply");
   command.add_option("--simd", options->simd,
                      "Vector instructions to use instead of the best: AVX3, AVX2, SSE4, ...");
   command.add_flag("--short", options->short_form, "A small ball only");

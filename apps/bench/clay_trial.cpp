@@ -18,15 +18,6 @@ namespace {
 using deform::Mesh;
 using deform::Points;
 
-double clay_volume(const Mesh& mesh) {
-  double sum = 0.0;
-  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
-    sum += mesh.vertices.col(corners[0])
-               .dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
-  });
-  return sum / 6.0;
-}
-
 double mean_edge_of(const Mesh& mesh) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -51,12 +42,6 @@ double deepest_inside(const Mesh& mesh, std::span<const deform::ContactPart> par
   return deepest;
 }
 
-double percentile_99(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[(values.size() - 1) * 99 / 100];
-}
-
 /// Runs the scene through press(parts), which returns a deform::ClayReport, and shape(points).
 template <class Press, class Shape>
 ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene,
@@ -72,6 +57,7 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
     const deform::ClayReport report = press(parts);
     const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
     trial.worst_behind_mm = std::max(trial.worst_behind_mm, report.behind_mm);
+    trial.most_held = std::max(trial.most_held, report.held);
     if (report.passes == 0) continue;
     ++trial.ticks;
     times_us.push_back(took.count());
@@ -103,6 +89,21 @@ ClayTrial run_scene(const ClayTrialOptions& options, Mesh mesh, ClayScene& scene
 
 } // namespace
 
+double clay_volume(const Mesh& mesh) {
+  double sum = 0.0;
+  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+    sum += mesh.vertices.col(corners[0])
+               .dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
+  });
+  return sum / 6.0;
+}
+
+double percentile_99(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[(values.size() - 1) * 99 / 100];
+}
+
 ClayTrial measure_clay(const ClayTrialOptions& options) {
   const Mesh mesh = reference::icosphere(options.level, ClayScene::ball_radius_mm);
   ClayScene scene(options.hands, options.speed_m_s);
@@ -111,7 +112,8 @@ ClayTrial measure_clay(const ClayTrialOptions& options) {
                             hand::HandBody::part_count,
                             {.radius_mm = options.radius_mm,
                              .friction = options.friction,
-                             .keeps_volume = options.keeps_volume});
+                             .keeps_volume = options.keeps_volume,
+                             .grips = options.grips});
   clay.begin(scene.at(0));
   return run_scene(
       options, mesh, scene, [&](auto parts) { return clay.press_to(parts); },

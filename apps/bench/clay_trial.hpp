@@ -24,6 +24,7 @@ struct ClayTrial {
   double worst_volume = 0.0;       ///< relative, of all ticks
   double last_volume = 0.0;
   double worst_behind_mm = 0.0;
+  std::size_t most_held = 0;
   deform::Mesh shape; ///< at the end
 };
 
@@ -34,8 +35,13 @@ struct ClayTrialOptions {
   double radius_mm = 30.0;
   double friction = 0.5; ///< the plain program has none
   bool keeps_volume = true;
+  bool grips = true;
   bool judges_inside = false; ///< takes long
 };
+
+double clay_volume(const deform::Mesh& mesh);
+/// Returns the value below which 99 % lie; 0 if there are none.
+double percentile_99(std::vector<double> values);
 
 ClayTrial measure_clay(const ClayTrialOptions& options);
 /// Computes the same by plain loops in double, one vertex and one part after the other.

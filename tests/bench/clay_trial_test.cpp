@@ -1,9 +1,11 @@
 #include "bench/clay_trial.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "bench/clay_kneading.hpp"
 #include "support/self_intersections.hpp"
 
 namespace clay_trial_test {
@@ -18,7 +20,9 @@ TEST_SUITE("clay_trial") {
     CHECK(trial.penetration_p99_mm < 0.05 * trial.mean_edge_mm);
     CHECK(trial.inside_p99_mm < 0.1 * trial.mean_edge_mm);
     CHECK(trial.worst_behind_mm == 0.0);
-    CHECK(std::abs(trial.last_volume) < 5e-4);
+    CHECK(trial.worst_volume < 1.5e-3);
+    CHECK(std::abs(trial.last_volume) < 1e-4);
+    CHECK(trial.most_held == 0); // flat hands hold nothing
     CHECK(trial.shape.vertices.allFinite());
     CHECK(nendo::test::count_self_intersections(trial.shape) == 0);
   }
@@ -27,6 +31,42 @@ TEST_SUITE("clay_trial") {
     const ClayTrial trial = measure_clay({.level = 4, .speed_m_s = 0.075});
     CHECK(trial.worst_volume < 1.5e-3);
     CHECK(nendo::test::count_self_intersections(trial.shape) == 0);
+  }
+
+  TEST_CASE("clay that would be too soft for hands is made stiffer, and does not fold") {
+    const ClayTrial trial = measure_clay({.level = 5, .radius_mm = 10.0});
+    CHECK(trial.penetration_p99_mm < 0.05 * trial.mean_edge_mm);
+    CHECK(trial.worst_volume < 1.5e-3);
+    CHECK(nendo::test::count_self_intersections(trial.shape) == 0);
+  }
+
+  TEST_CASE("hands make a flat cake, a bowl and a nose of a ball") {
+    const auto size_of = [](const KneadedClay& clay) -> Eigen::Vector3d {
+      return clay.shape.vertices.rowwise().maxCoeff() - clay.shape.vertices.rowwise().minCoeff();
+    };
+    for (const KneadedThing thing : {KneadedThing::cake, KneadedThing::bowl, KneadedThing::nose}) {
+      const double before = 2.0 * ClayKneading(thing).ball_radius_mm();
+      const KneadedClay clay = knead(thing, 4);
+      CHECK(clay.shape.vertices.allFinite());
+      CHECK(nendo::test::count_self_intersections(clay.shape) == 0);
+      CHECK(clay.worst_volume < 1.5e-3);
+      CHECK(std::abs(clay.last_volume) < 1e-4);
+      CHECK(clay.penetration_p99_mm < 0.05);
+      const Eigen::Vector3d size = size_of(clay);
+      if (thing == KneadedThing::cake) {
+        CHECK(size.z() < 0.5 * before);
+        CHECK(size.x() > 1.4 * before);
+      } else if (thing == KneadedThing::bowl) {
+        // A wall all round, and nothing above the bottom in its middle.
+        double highest = -1e9;
+        for (const auto vertex : clay.shape.vertices.colwise())
+          if (vertex.head<2>().norm() < 0.2 * before) highest = std::max(highest, vertex.z());
+        CHECK(highest < clay.shape.vertices.row(2).maxCoeff() - 0.4 * before);
+      } else {
+        CHECK(clay.most_held > 4);
+        CHECK(size.x() > before + 15.0);
+      }
+    }
   }
 
   TEST_CASE("the plain program finds nearly the same pressed shape where no volume is kept") {

@@ -47,12 +47,23 @@ double mean_edge(const Mesh& mesh) {
                    static_cast<double>(mesh.face_count()));
 }
 
+/// Two fingers of one hand, above each other, with that much room between them.
+Parts pinch(double gap, const Vector3d& middle) {
+  const double up = 0.5 * gap + 8.0;
+  return moved({cone({0, 0, up}, {40, 0, up}, 8.0, 9.0), cone({0, 0, -up}, {40, 0, -up}, 8.0, 9.0)},
+               middle);
+}
+
+Vector3d middle_of(const Mesh& mesh) {
+  return mesh.vertices.rowwise().mean();
+}
+
 /// A ball of clay with a radius of 30 mm.
 struct Ball {
   explicit Ball(ClayOptions options = {}, std::size_t bodies = 1, int level = 4,
-                DeformerOptions history = {})
+                DeformerOptions history = {}, std::size_t parts_a_body = 1)
       : mesh(nendo::reference::icosphere(level, 30.0)), shape(mesh.vertices, history),
-        clay(shape, corners_of_triangles(mesh), bodies, 1, options) {}
+        clay(shape, corners_of_triangles(mesh), bodies, parts_a_body, options) {}
 
   /// Moves the body from where it is along a straight way, in that many calls.
   ClayReport go(Parts& parts, const Vector3d& by, int calls) {
@@ -67,6 +78,9 @@ struct Ball {
       worst.distances = std::max(worst.distances, report.distances);
       worst.behind_mm = std::max(worst.behind_mm, report.behind_mm);
       worst.volume_change = std::max(worst.volume_change, std::abs(report.volume_change));
+      worst.held = std::max(worst.held, report.held);
+      worst.carried_mm += report.carried_mm;
+      worst.turned_rad += report.turned_rad;
     }
     return worst;
   }
@@ -226,6 +240,107 @@ TEST_SUITE("clay") {
     CHECK(dragged(1.0) > 1.5);
     CHECK(std::abs(dragged(0.0)) < 0.5);
     CHECK(dragged(0.2) < dragged(1.0));
+  }
+
+  TEST_CASE("clay on a table is dented, and clay on nothing goes away as it is") {
+    for (const bool lies_on_table : {true, false}) {
+      Ball ball({.keeps_volume = false, .lies_on_table = lies_on_table});
+      Parts parts = moved(finger(), Vector3d(0, 0, 31));
+      ball.clay.begin(parts);
+      const ClayReport gone = ball.go(parts, {0, 0, -11}, 22);
+      CHECK(ball.depth(parts) < 1e-3);
+      const Mesh now = ball.now();
+      const Vector3d middle = middle_of(now);
+      const double dent = 30.0 - (now.vertices.colwise() - middle).colwise().norm().minCoeff();
+      if (lies_on_table) {
+        CHECK(gone.carried_mm == 0.0);
+        CHECK(dent > 8.0);
+      } else {
+        CHECK(gone.carried_mm > 9.0);
+        CHECK(middle.z() < -9.0);
+        CHECK(dent < 1.0);
+      }
+    }
+  }
+
+  TEST_CASE("two fingers take clay along that lies on nothing") {
+    Ball ball({.lies_on_table = false}, 1, 4, {}, 2);
+    double gap = 62.0;
+    const auto close_to = [&](double to, int calls) {
+      const double from = gap;
+      for (int call = 1; call <= calls; ++call) {
+        gap = from + (to - from) * call / calls;
+        ball.clay.press_to(pinch(gap, {-20, 0, 0}));
+      }
+    };
+    ball.clay.begin(pinch(gap, {-20, 0, 0}));
+    close_to(54.0, 20);
+    const Vector3d before = middle_of(ball.now());
+    CHECK(before.norm() < 1.0); // both sides give way alike
+    Parts parts = pinch(gap, {-20, 0, 0});
+    ball.go(parts, {0, 25, 10}, 40);
+    const Vector3d by = middle_of(ball.now()) - before;
+    CHECK((by - Vector3d(0, 25, 10)).norm() < 3.0);
+    // They turn it, too.
+    const Eigen::Index east = [&] {
+      Eigen::Index at = 0;
+      ball.now().vertices.row(0).maxCoeff(&at);
+      return at;
+    }();
+    const Vector3d east_before = ball.now().vertices.col(east) - middle_of(ball.now());
+    for (int call = 1; call <= 30; ++call)
+      ball.clay.press_to(moved(parts, Eigen::Translation3d(0, 25, 10) *
+                                          Eigen::AngleAxisd(0.02 * call, Vector3d::UnitZ()) *
+                                          Eigen::Translation3d(0, -25, -10)));
+    const Vector3d east_after = ball.now().vertices.col(east) - middle_of(ball.now());
+    const double turned =
+        std::atan2(east_after.y(), east_after.x()) - std::atan2(east_before.y(), east_before.x());
+    CHECK(turned == doctest::Approx(0.6).epsilon(0.2));
+    CHECK(nendo::test::count_self_intersections(ball.now()) == 0);
+  }
+
+  TEST_CASE("two fingers that close take hold, pull, and let go when they open") {
+    Ball ball({.radius_mm = 18.0}, 1, 5, {}, 2);
+    double gap = 60.0;
+    const auto move_to = [&](double to, int calls) {
+      std::size_t held = 0;
+      const double from = gap;
+      for (int call = 1; call <= calls; ++call) {
+        gap = from + (to - from) * call / calls;
+        const ClayReport& report = ball.clay.press_to(pinch(gap, {22, 0, 0}));
+        CHECK(std::abs(report.volume_change) < 1.5e-3);
+        held = report.held;
+      }
+      return held;
+    };
+    ball.clay.begin(pinch(gap, {22, 0, 0}));
+    CHECK(move_to(16.0, 60) > 4);
+    // Tremor does not let go.
+    std::mt19937 random(43);
+    std::uniform_real_distribution<double> tremor(-0.2, 0.2);
+    for (int tick = 0; tick < 100; ++tick) {
+      const Vector3d by(tremor(random), tremor(random), tremor(random));
+      CHECK(ball.clay.press_to(pinch(gap + tremor(random), Vector3d(22, 0, 0) + by)).held > 4);
+    }
+    const double before = ball.now().vertices.row(0).maxCoeff();
+    Parts parts = pinch(gap, {22, 0, 0});
+    const ClayReport pulled = ball.go(parts, {15, 0, 0}, 60);
+    CHECK(pulled.held > 4);
+    CHECK(pulled.volume_change < 1.5e-3);
+    CHECK(ball.now().vertices.row(0).maxCoeff() > before + 10.0);
+    CHECK(ball.now().vertices.row(0).minCoeff() < -28.0); // the rest stays
+    CHECK(nendo::test::count_self_intersections(ball.now()) == 0);
+    const ClayReport* last = nullptr;
+    for (int call = 1; call <= 30; ++call)
+      last = &ball.clay.press_to(pinch(gap + call, {37, 0, 0}));
+    CHECK(last->held == 0);
+    for (int wait = 0; wait < 90; ++wait)
+      ball.clay.press_to(pinch(gap + 30.0, {37, 0, 0}));
+    const Mesh still = ball.now();
+    parts = pinch(gap + 30.0, {37, 0, 0});
+    ball.go(parts, {30, 0, 0}, 20);
+    CHECK((ball.now().vertices - still.vertices).colwise().norm().maxCoeff() < 0.05);
+    CHECK(nendo::test::count_self_intersections(ball.now()) == 0);
   }
 
   TEST_CASE("a trembling finger at rest does not drill") {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include <nendo/deform/triangles.hpp>
+
+#include "rows_by_key.hpp"
 
 namespace nendo::deform {
 
@@ -11,22 +14,15 @@ VertexRings::VertexRings(const Mesh& mesh, const BlockLayout& layout) {
   find_rings(mesh, layout);
   const std::size_t rings = ring_.empty() ? 0 : 1 + *std::max_element(ring_.begin(), ring_.end());
   const std::vector<std::uint32_t> places = layout.places();
-  // Counted first, so that each ring's triangles stand one behind another.
-  triangle_starts_.assign(rings + 1, 0);
-  const auto each_corner = [&](const auto& visit) {
+  auto rows = rows_by_key<std::array<std::uint32_t, 2>>(rings, [&](const auto& visit) {
     for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& vertices) {
       for (std::size_t at = 0; at < 3; ++at)
         visit(ring_[places[vertices[at]]],
               std::array{places[vertices[(at + 1) % 3]], places[vertices[(at + 2) % 3]]});
     });
-  };
-  each_corner([&](std::uint32_t ring, const auto&) { ++triangle_starts_[ring + 1]; });
-  std::partial_sum(triangle_starts_.begin(), triangle_starts_.end(), triangle_starts_.begin());
-  corners_.resize(triangle_starts_.back());
-  std::vector<std::size_t> next(triangle_starts_.begin(), triangle_starts_.end() - 1);
-  each_corner([&](std::uint32_t ring, const std::array<std::uint32_t, 2>& others) {
-    corners_[next[ring]++] = others;
   });
+  triangle_starts_ = std::move(rows.starts);
+  corners_ = std::move(rows.items);
   find_neighbours();
 }
 
@@ -74,7 +70,7 @@ void VertexRings::find_neighbours() {
     };
     take(true);
     if (neighbours_.size() == neighbour_starts_.back()) take(false);
-    neighbour_starts_.push_back(neighbours_.size());
+    neighbour_starts_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
   }
 }
 

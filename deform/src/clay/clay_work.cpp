@@ -16,19 +16,24 @@ namespace {
 // In millimetres, for hands.
 constexpr double margin_mm = 1.0;    // around a body, where surfaces are kept from being pulled in
 constexpr double skin_mm = 0.02;     // a surface this deep is outside
-constexpr double load_mm = 0.5;      // clay springs back by that
+constexpr double between_mm = 0.3;   // and this deep it may wait for the next sub-step
 constexpr double give_mm = 0.3;      // by which skin gives way sideways before it drags
 constexpr double loaded_mm = 0.01;   // less does not stick
 constexpr double most_step_mm = 2.0; // of a body in a sub-step
 constexpr double most_straight_mm = 0.2; // a last push, which may fold
-constexpr double most_swell_mm = 3.0;    // of a call
+// What is pressed out appears from a body's surface on more and more, and all of it this far away.
+// Nearer, it would close over a hand, and fold when that leaves.
+constexpr double free_mm = 30.0;
+constexpr double most_swell = 1.0 / 3.0; // of that, in a call: then slopes are at most a half
+constexpr double swell_reach = 3.0;      // of that, from the contacts
 
+// The least radius of functions, in radii of the thickest part. Clay that is softer is pressed into
+// layers thinner than any triangle before it gets round a part, and these cross.
+constexpr double least_softness = 1.2;
 constexpr double cells_a_radius = 3.0;
 constexpr double apart_in_cells = 0.6;
-constexpr double most_bound = 0.9; // of a field that does not fold
 constexpr int most_sub_step_passes = 40;
 constexpr double most_sub_steps = 1e6;  // of a call; so a way of kilometres has larger ones
-constexpr double swell_reach = 3.0;     // of radii
 constexpr double volume_is_kept = 1e-5; // relative
 
 /// A part of the way from one pose of a body's part to another.
@@ -54,6 +59,10 @@ Vector3d normal_at(const Vector3d& place, const NearestLanes& nearest, std::size
   return length > 0.0 ? Vector3d(way / length) : Vector3d::UnitZ();
 }
 
+int most_centres(std::size_t bodies, const ClayOptions& options) noexcept {
+  return std::max(options.most_constraints, static_cast<int>(bodies * Grip::most_held));
+}
+
 CsrbfField room_for(int most, double radius, const BlockLayout& layout) {
   CsrbfField field;
   field.centres = Points::Zero(3, most);
@@ -74,11 +83,16 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
       loads_(bodies, ContactLoad(layout_.block_count(), load_mm * mm_)),
       problem_(static_cast<std::size_t>(options.most_constraints)),
       frictions_(static_cast<std::size_t>(options.most_constraints)),
-      field_(room_for(options.most_constraints, options.radius_mm * options.units_a_mm, layout_)),
-      evaluator_(layout_, options.most_constraints, options.evaluation),
+      pull_(bodies * Grip::most_held),
+      field_(
+          room_for(most_centres(bodies, options), options.radius_mm * options.units_a_mm, layout_)),
+      evaluator_(layout_, most_centres(bodies, options), options.evaluation),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
       around_(BoxGate::shut()) {
   assert(options.units_a_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
+  for (std::size_t body = 0; body < bodies; ++body)
+    grips_.emplace_back(body * parts_a_body, parts_a_body, mm_);
+  carriers_.reserve(static_cast<std::size_t>(options.most_constraints) + bodies * Grip::most_held);
 }
 
 bool ClayDeformer::Work::accepts(std::span<const ContactPart> parts) const noexcept {
@@ -111,9 +125,17 @@ void ClayDeformer::Work::pack(std::span<const ContactPart> parts,
 void ClayDeformer::Work::take_hold(const BoundedShape& shape,
                                    std::span<const ContactPart> parts) noexcept {
   pack(parts, from_);
+  double thickest = 0.0;
+  for (const ContactPart& part : from_)
+    for (std::size_t corner = 0; corner < part.corner_count; ++corner)
+      thickest = std::max(thickest, part.radii[corner]);
+  radius_ = std::max(options_.radius_mm * mm_, least_softness * thickest);
   skins_ = from_;
   for (ContactLoad& load : loads_)
     load.clear();
+  for (Grip& grip : grips_)
+    grip.let_go();
+  leave_out_held(true);
   if (volume_.is_closed()) whole_volume_ = volume_.volume(shape);
   is_settling_ = swells_all_ = false;
   around_ = BoxGate::shut();
@@ -145,6 +167,8 @@ void ClayDeformer::Work::place_at(double share) noexcept {
     is_[at] = between(from_[at], target_[at], share);
     drag(at);
   }
+  for (Grip& grip : grips_)
+    grip.follow(skins_);
   search_.set_parts(is_);
 }
 
@@ -192,12 +216,14 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
       gone = static_cast<double>(step) / steps;
       place_at(gone);
       const int before = report.passes;
-      left = std::max(left, sub_step(shape, report));
+      left = sub_step(shape, (step == steps ? skin_mm : between_mm) * mm_, report);
       used += std::max(1, report.passes - before);
       ++report.sub_steps;
     }
+    if (gone < 1.0) left = press_out(shape, skin_mm * mm_, report);
     report.penetration_mm = left / mm_;
     push_straight(shape);
+    if (options_.grips) look_for_grips(report);
   }
   report.behind_mm = (1.0 - gone) * way / mm_;
   from_ = gone < 1.0 ? is_ : target_;
@@ -206,15 +232,37 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
   report.status = status_;
 }
 
-/// Returns how deep the surface still is.
-double ClayDeformer::Work::sub_step(BoundedShape& shape, ClayReport& report) noexcept {
-  for (int pass = 0;; ++pass) {
-    const Found found = find(shape, pass == 0);
-    const bool slides = pass == 0 && found.is_loaded && is_dragging_;
-    if ((found.deepest <= skin_mm * mm_ && !slides) || pass == most_sub_step_passes)
-      return found.deepest;
-    if (!push(shape, slides, report)) return found.deepest;
+/// Returns how deep the surface still is, which may be `enough`.
+double ClayDeformer::Work::sub_step(BoundedShape& shape, double enough,
+                                    ClayReport& report) noexcept {
+  rigid_.setIdentity();
+  Found found = find(shape, true);
+  const bool is_touched = found.deepest > 0.0 || found.is_loaded;
+  if (!options_.lies_on_table && (is_touched || holds_any())) {
+    carry(shape, report);
+    found.deepest = find(shape, false).deepest;
   }
+  if (holds_any()) {
+    pull(shape, report);
+    found.deepest = find(shape, false).deepest;
+  }
+  const bool slides = found.is_loaded && is_dragging_;
+  if (found.deepest <= enough && !slides) return found.deepest;
+  return push(shape, slides, report) ? press_out(shape, enough, report) : found.deepest;
+}
+
+/// Pushes until nothing is deeper than `enough`. Returns how deep the surface still is.
+double ClayDeformer::Work::press_out(BoundedShape& shape, double enough,
+                                     ClayReport& report) noexcept {
+  for (int pass = 1;; ++pass) {
+    const double deepest = find(shape, false).deepest;
+    if (deepest <= enough || pass == most_sub_step_passes || !push(shape, false, report))
+      return deepest;
+  }
+}
+
+std::span<const ContactPoint> ClayDeformer::Work::choose() noexcept {
+  return chosen_.choose(apart_in_cells * radius_ / cells_a_radius);
 }
 
 ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bool loads) noexcept {
@@ -235,21 +283,29 @@ ClayDeformer::Work::Found ClayDeformer::Work::find(const BoundedShape& shape, bo
 void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std::size_t block,
                                const NearestLanes& nearest, double& deepest) noexcept {
   const auto margin = static_cast<float>(margin_mm * mm_);
+  float least = nearest.distance[0];
+  for (const float distance : nearest.distance)
+    least = distance < least ? distance : least;
+  if (!(least < margin)) return;
+  deepest = std::max(deepest, -static_cast<double>(least));
+  chosen_.find_cells(shape.shape[block]);
   for (std::size_t lane = 0; lane < block_size; ++lane) {
     if (!(nearest.distance[lane] < margin)) continue;
-    const std::size_t place = block * block_size + lane;
+    const auto part = static_cast<std::uint32_t>(nearest.part[lane]);
     const double depth = -static_cast<double>(nearest.distance[lane]);
+    ContactPoint* const point = chosen_.offer(lane, part, depth);
+    if (point == nullptr) continue;
+    const std::size_t place = block * block_size + lane;
     const Vector3d at = vertex_at(shape.shape, place).cast<double>();
-    deepest = std::max(deepest, depth);
-    chosen_.offer({static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(body),
-                   static_cast<std::uint32_t>(nearest.part[lane]), depth, at,
-                   normal_at(at, nearest, lane)});
+    const Eigen::Vector3f centre(nearest.x[lane], nearest.y[lane], nearest.z[lane]);
+    *point = {static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(body), part, depth, at,
+              at - centre.cast<double>()};
   }
 }
 
 /// One field. Returns false if nothing has to move any more, or nothing can.
 bool ClayDeformer::Work::push(BoundedShape& shape, bool slides, ClayReport& report) noexcept {
-  const auto points = chosen_.choose(apart_in_cells * radius_ / cells_a_radius);
+  const auto points = choose();
   problem_.assign(points, radius_);
   problem_.solve_pressure(0.5 * skin_mm * mm_);
   if (slides) slide(points);
@@ -265,8 +321,8 @@ bool ClayDeformer::Work::push(BoundedShape& shape, bool slides, ClayReport& repo
   return true;
 }
 
-/// What the skin of a place's part has done in this sub-step is the way that friction would take
-/// it. Where there is no load, the limit is 0.
+/// What the skin of a place's part has done in this sub-step, less what the model did as a whole,
+/// is the way that friction would take it. Where there is no load, the limit is 0.
 void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
   for (std::size_t at = 0; at < points.size(); ++at) {
     const ContactPoint& point = points[at];
@@ -274,7 +330,8 @@ void ClayDeformer::Work::slide(std::span<const ContactPoint> points) noexcept {
     const double held = load.at(point.place, -point.depth);
     const bool is_loaded = problem_.pressure(at) + held > loaded_mm * mm_;
     const Vector3d before = ways_[point.part].inverse(Eigen::Isometry) * point.at;
-    frictions_[at] = {is_loaded ? Vector3d(point.at - before) : Vector3d::Zero(),
+    const Vector3d was = rigid_.inverse(Eigen::Isometry) * point.at;
+    frictions_[at] = {is_loaded ? Vector3d(was - before) : Vector3d::Zero(),
                       is_loaded ? held : -problem_.pressure(at), &load.slips(point.place)};
   }
   problem_.solve_friction({frictions_.data(), points.size()}, options_.friction);
@@ -291,6 +348,12 @@ bool ClayDeformer::Work::apply(BoundedShape& shape, std::span<const ContactPoint
     field_.centres.col(i) = layout_.origin() + layout_.unit() * points[at].at;
     field_.coefficients.col(i) = part * problem_.coefficient(at);
   }
+  field_.radii.head(count).setConstant(layout_.rounded_radius(radius_ * layout_.unit()));
+  return displace(shape, count);
+}
+
+/// By the first columns of the field.
+bool ClayDeformer::Work::displace(BoundedShape& shape, Eigen::Index count) noexcept {
   for (Eigen::Index i = count; i < used_; ++i)
     field_.coefficients.col(i).setZero();
   used_ = count;
@@ -318,7 +381,7 @@ void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
         content.z[lane] = static_cast<float>(out.z());
       }
       shape.shape.set_stamp(block, stamp);
-      shape.bounds[block] = bounds_of(content);
+      shape.bounds[block] = fast_bounds_of(content);
     });
   shape.extent += 2.0 * most;
 }
@@ -330,8 +393,9 @@ void ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
   double change = volume_.volume(shape) - whole_volume_;
   const double kept = volume_is_kept * std::abs(whole_volume_);
   if (is_pressed || std::abs(change) > kept) {
-    const GiveBack how{radius_, most_swell_mm * mm_, swells_all_ ? nullptr : &around_,
-                       swell_reach * radius_};
+    const double near = std::max(radius_, free_mm * mm_);
+    const GiveBack how{near, most_swell * near, swells_all_ ? nullptr : &around_,
+                       swell_reach * near};
     const double given = volume_.give_back(shape, search_, -change, how);
     swells_all_ = std::abs(given) < 0.999 * std::abs(change);
     change += given;

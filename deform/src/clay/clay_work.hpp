@@ -10,7 +10,10 @@
 #include "clay/contact_load.hpp"
 #include "clay/contact_points.hpp"
 #include "clay/contact_search.hpp"
+#include "clay/grip.hpp"
+#include "clay/held_field.hpp"
 #include "clay/press_problem.hpp"
+#include "clay/rigid_fit.hpp"
 #include "clay/volume_keeper.hpp"
 
 namespace nendo::deform {
@@ -31,6 +34,9 @@ public:
   void press(BoundedShape& shape, std::span<const ContactPart> parts, ClayReport& report) noexcept;
 
 private:
+  static constexpr double load_mm = 0.5;    ///< clay springs back by that
+  static constexpr double most_bound = 0.9; ///< of a field that does not fold
+
   struct Found {
     double deepest = 0.0;
     bool is_loaded = false;
@@ -41,13 +47,22 @@ private:
   bool is_way_free(const BoundedShape& shape) noexcept;
   void place_at(double share) noexcept;
   void drag(std::size_t part) noexcept;
-  double sub_step(BoundedShape& shape, ClayReport& report) noexcept;
+  double sub_step(BoundedShape& shape, double enough, ClayReport& report) noexcept;
+  double press_out(BoundedShape& shape, double enough, ClayReport& report) noexcept;
+  void carry(BoundedShape& shape, ClayReport& report) noexcept;
+  void pull(BoundedShape& shape, ClayReport& report) noexcept;
+  bool pull_once(BoundedShape& shape) noexcept;
+  void look_for_grips(ClayReport& report) noexcept;
+  void leave_out_held(bool is_out) noexcept;
+  bool holds_any() const noexcept;
   Found find(const BoundedShape& shape, bool loads) noexcept;
   void offer(const BoundedShape& shape, std::size_t body, std::size_t block,
              const NearestLanes& nearest, double& deepest) noexcept;
   bool push(BoundedShape& shape, bool slides, ClayReport& report) noexcept;
+  std::span<const ContactPoint> choose() noexcept;
   void slide(std::span<const ContactPoint> points) noexcept;
   bool apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept;
+  bool displace(BoundedShape& shape, Eigen::Index count) noexcept;
   void push_straight(BoundedShape& shape) noexcept;
   void give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
 
@@ -68,6 +83,10 @@ private:
   std::vector<ContactLoad> loads_;
   PressProblem problem_;
   std::vector<Friction> frictions_;
+  std::vector<Grip> grips_; ///< one a body
+  std::vector<Carrier> carriers_;
+  HeldField pull_;
+  Eigen::Isometry3d rigid_ = Eigen::Isometry3d::Identity(); ///< of the model in a sub-step
   CsrbfField field_;
   Eigen::Index used_ = 0; ///< columns of the field
   BlockEvaluator evaluator_;

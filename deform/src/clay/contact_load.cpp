@@ -10,14 +10,15 @@ ContactLoad::ContactLoad(std::size_t blocks, double most)
 
 void ContactLoad::press(std::size_t block, const NearestLanes& nearest) noexcept {
   float* const pressed = pressed_.data() + block * block_size;
-  bool is_any = false;
-  for (std::size_t lane = 0; lane < block_size; ++lane) {
+  float largest = 0.0F;
+  for (std::size_t lane = 0; lane < block_size; ++lane) { // vectorised: no branches
     const float distance = nearest.distance[lane];
-    const float more = std::min(most_, pressed[lane] + std::max(0.0F, -distance));
+    float more = pressed[lane] + (distance < 0.0F ? -distance : 0.0F);
+    more = more < most_ ? more : most_;
     pressed[lane] = distance > most_ ? 0.0F : more;
-    is_any = is_any || pressed[lane] > 0.0F;
+    largest = pressed[lane] > largest ? pressed[lane] : largest;
   }
-  if (!is_any) return;
+  if (!(largest > 0.0F)) return;
   rounds_[block] = round_;
   is_any_ = true;
 }

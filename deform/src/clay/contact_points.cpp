@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <limits>
 
 namespace nendo::deform {
 
@@ -11,15 +11,8 @@ namespace {
 constexpr std::size_t slots_a_point = 16;
 constexpr std::size_t cells_a_point = 8;
 
-/// Of a cell and a part. Cells that are 2^18 apart share their keys, but no body is that large.
-std::uint64_t key_of(const ContactPoint& point, double per_cell) noexcept {
-  std::uint64_t key = point.part;
-  for (const double coordinate : point.at) {
-    const double cell = std::clamp(std::floor(coordinate * per_cell), -1e15, 1e15);
-    key = key << 18 | (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell)) & 0x3ffff);
-  }
-  return key;
-}
+// Cells that are 2^18 apart share their keys, but no body is that large.
+constexpr int cells_a_side = 1 << 18;
 
 std::size_t hash_of(std::uint64_t key) noexcept { // the finaliser of MurmurHash3
   key ^= key >> 33;
@@ -39,44 +32,93 @@ bool is_deeper(const ContactPoint& a, const ContactPoint& b) noexcept {
 ContactPoints::ContactPoints(std::size_t most)
     : slots_(std::bit_ceil(slots_a_point * most)), most_(most) {
   points_.reserve(cells_a_point * most);
+  for (auto* numbers : {&chosen_.x, &chosen_.y, &chosen_.z, &chosen_.normal_x, &chosen_.normal_y,
+                        &chosen_.normal_z})
+    numbers->resize(most);
 }
 
 void ContactPoints::clear(double cell) noexcept {
-  per_cell_ = 1.0 / cell;
+  per_cell_ = static_cast<float>(1.0 / cell);
   points_.clear();
+  is_last_known_ = false;
   if (++round_ != 0) return;
   std::fill(slots_.begin(), slots_.end(), Slot{});
   round_ = 1;
 }
 
-void ContactPoints::offer(const ContactPoint& point) noexcept {
-  const std::uint64_t key = key_of(point, per_cell_);
-  std::size_t at = hash_of(key) % slots_.size();
-  for (; slots_[at].round == round_; at = (at + 1) % slots_.size()) {
-    if (slots_[at].key != key) continue;
-    ContactPoint& kept = points_[slots_[at].point];
-    if (point.depth > kept.depth) kept = point;
-    return;
-  }
-  if (points_.size() == points_.capacity()) return;
-  slots_[at] = {key, round_, static_cast<std::uint32_t>(points_.size())};
-  points_.push_back(point);
+void ContactPoints::find_cells(const VertexBlock& block) noexcept {
+  constexpr auto half = static_cast<float>(cells_a_side / 2);
+  const std::array<const float*, 3> coordinates{block.x.data(), block.y.data(), block.z.data()};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t lane = 0; lane < block_size; ++lane) {
+      float cell = coordinates[axis][lane] * per_cell_ + half;
+      cell = cell < 0.0F ? 0.0F : cell;
+      cell = cell > 2.0F * half - 1.0F ? 2.0F * half - 1.0F : cell;
+      cells_[axis][lane] = static_cast<std::int32_t>(cell);
+    }
 }
 
+ContactPoint* ContactPoints::offer(std::size_t lane, std::uint32_t part, double depth) noexcept {
+  std::uint64_t key = part;
+  for (const auto& cells : cells_)
+    key = key << 18 | static_cast<std::uint64_t>(cells[lane]);
+  if (!is_last_known_ || key != last_key_) {
+    const std::size_t mask = slots_.size() - 1; // a power of two
+    std::size_t at = hash_of(key) & mask;
+    while (slots_[at].round == round_ && slots_[at].key != key)
+      at = (at + 1) & mask;
+    if (slots_[at].round != round_) {
+      if (points_.size() == points_.capacity()) return nullptr;
+      slots_[at] = {key, round_, static_cast<std::uint32_t>(points_.size())};
+      points_.emplace_back().depth = -std::numeric_limits<double>::infinity();
+    }
+    last_key_ = key;
+    last_slot_ = at;
+    is_last_known_ = true;
+  }
+  ContactPoint& kept = points_[slots_[last_slot_].point];
+  return depth > kept.depth ? &kept : nullptr;
+}
+
+/// All are looked at, because vectors do that faster than a search that ends early.
 bool ContactPoints::is_crowded(const ContactPoint& point, std::size_t chosen,
-                               double apart) const noexcept {
-  for (std::size_t other = 0; other < chosen; ++other)
-    if ((points_[other].at - point.at).squaredNorm() < apart * apart &&
-        points_[other].normal.dot(point.normal) > 0.5)
-      return true;
-  return false;
+                               float squared) const noexcept {
+  const Eigen::Vector3f at = point.at.cast<float>();
+  const Eigen::Vector3f normal = point.normal.cast<float>();
+  std::uint32_t crowding = 0;
+  for (std::size_t other = 0; other < chosen; ++other) {
+    const float x = chosen_.x[other] - at.x();
+    const float y = chosen_.y[other] - at.y();
+    const float z = chosen_.z[other] - at.z();
+    const float along = chosen_.normal_x[other] * normal.x() +
+                        chosen_.normal_y[other] * normal.y() + chosen_.normal_z[other] * normal.z();
+    crowding |= static_cast<std::uint32_t>(x * x + y * y + z * z < squared) &
+                static_cast<std::uint32_t>(along > 0.5F);
+  }
+  return crowding != 0;
+}
+
+void ContactPoints::note_chosen(const ContactPoint& point, std::size_t at) noexcept {
+  chosen_.x[at] = static_cast<float>(point.at.x());
+  chosen_.y[at] = static_cast<float>(point.at.y());
+  chosen_.z[at] = static_cast<float>(point.at.z());
+  chosen_.normal_x[at] = static_cast<float>(point.normal.x());
+  chosen_.normal_y[at] = static_cast<float>(point.normal.y());
+  chosen_.normal_z[at] = static_cast<float>(point.normal.z());
 }
 
 std::span<const ContactPoint> ContactPoints::choose(double apart) noexcept {
   std::sort(points_.begin(), points_.end(), is_deeper);
+  for (ContactPoint& point : points_) {
+    const double length = point.normal.norm();
+    point.normal = length > 0.0 ? Eigen::Vector3d(point.normal / length) : Eigen::Vector3d::UnitZ();
+  }
   std::size_t chosen = 0;
   for (std::size_t at = 0; at < points_.size() && chosen < most_; ++at)
-    if (!is_crowded(points_[at], chosen, apart)) points_[chosen++] = points_[at];
+    if (!is_crowded(points_[at], chosen, static_cast<float>(apart * apart))) {
+      note_chosen(points_[at], chosen);
+      points_[chosen++] = points_[at];
+    }
   return {points_.data(), chosen};
 }
 

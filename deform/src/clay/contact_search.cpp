@@ -43,8 +43,8 @@ void BoxGate::extend(const BoxGate& other) noexcept {
 
 ContactSearch::ContactSearch(std::size_t bodies, std::size_t parts_a_body)
     : bodies_(bodies), parts_a_body_(parts_a_body), parts_(bodies * parts_a_body),
-      part_boxes_(parts_.size(), BoxGate::shut()), body_boxes_(bodies, BoxGate::shut()),
-      list_(parts_a_body) {
+      is_out_(parts_.size(), 0), body_boxes_(bodies, BoxGate::shut()), list_(parts_a_body),
+      from_parts_(parts_a_body * block_size) {
   cones_.reserve(3 * parts_.size());
   planes_.reserve(parts_.size());
 }
@@ -63,8 +63,7 @@ void ContactSearch::set_parts(std::span<const ContactPart> parts) noexcept {
       parts_[at].cone_count = 3;
       add_plane(part, parts_[at]);
     }
-    part_boxes_[at] = BoxGate::of(part);
-    body_boxes_[at / parts_a_body_].extend(part_boxes_[at]);
+    body_boxes_[at / parts_a_body_].extend(BoxGate::of(part));
   }
 }
 
@@ -123,11 +122,56 @@ bool ContactSearch::is_any_near(const BoundedShape& shape, std::span<const BoxGa
   return false;
 }
 
-std::size_t ContactSearch::list_parts(const BlockBounds& bounds, std::size_t body,
-                                      float margin) noexcept {
+void ContactSearch::add_box(const BlockBounds& bounds, std::uint32_t block) noexcept {
+  const std::size_t at = boxes_.count++;
+  const auto& sides = bounds.sides;
+  VertexBlock& middles = boxes_.lanes.middles;
+  VertexBlock& halves = boxes_.lanes.halves;
+  boxes_.blocks[at] = block;
+  middles.x[at] = 0.5F * (sides[0] - sides[4]);
+  middles.y[at] = 0.5F * (sides[1] - sides[5]);
+  middles.z[at] = 0.5F * (sides[2] - sides[6]);
+  halves.x[at] = -0.5F * (sides[0] + sides[4]);
+  halves.y[at] = -0.5F * (sides[1] + sides[5]);
+  halves.z[at] = -0.5F * (sides[2] + sides[6]);
+  boxes_.radii[at] = std::sqrt(halves.x[at] * halves.x[at] + halves.y[at] * halves.y[at] +
+                               halves.z[at] * halves.z[at]);
+}
+
+/// If one part is at d from a box' middle, it is at most d + r from what is in the box. Parts that
+/// are farther than that from all of the box are nowhere in it the nearest.
+void ContactSearch::measure_boxes(std::size_t body, float margin) noexcept {
+  for (std::size_t at = boxes_.count; at < block_size; ++at)
+    boxes_.lanes.middles.x[at] = boxes_.lanes.middles.y[at] = boxes_.lanes.middles.z[at] = 0.0F;
+  boxes_.reaches.fill(std::numeric_limits<float>::infinity());
+  boxes_.nearest = boxes_.reaches;
+  std::array<float, block_size> distances{};
+  for (std::size_t part = 0; part < parts_a_body_; ++part) {
+    const auto number = static_cast<std::uint32_t>(body * parts_a_body_ + part);
+    float* const least = from_parts_.data() + part * block_size;
+    if (is_out_[number] != 0) {
+      std::fill_n(least, block_size, std::numeric_limits<float>::infinity());
+      continue;
+    }
+    part_from_boxes(boxes_.lanes, arrays(), number, distances.data(), least);
+    for (std::size_t at = 0; at < block_size; ++at) {
+      boxes_.reaches[at] = distances[at] < boxes_.reaches[at] ? distances[at] : boxes_.reaches[at];
+      boxes_.nearest[at] = least[at] < boxes_.nearest[at] ? least[at] : boxes_.nearest[at];
+    }
+  }
+  distances_ += parts_a_body_ * boxes_.count;
+  constexpr float rounding = 1e-5F; // of these distances
+  for (std::size_t at = 0; at < boxes_.count; ++at) {
+    const float reach = std::min(boxes_.reaches[at] + boxes_.radii[at], margin);
+    boxes_.reaches[at] = reach + rounding * (1.0F + std::abs(reach) + boxes_.radii[at]);
+  }
+}
+
+std::size_t ContactSearch::list_parts(std::size_t body, std::size_t box) noexcept {
   std::size_t count = 0;
-  for (std::size_t part = body * parts_a_body_; part < (body + 1) * parts_a_body_; ++part)
-    if (part_boxes_[part].meets(bounds, margin)) list_[count++] = static_cast<std::uint32_t>(part);
+  for (std::size_t part = 0; part < parts_a_body_; ++part)
+    if (from_parts_[part * block_size + box] <= boxes_.reaches[box])
+      list_[count++] = static_cast<std::uint32_t>(body * parts_a_body_ + part);
   return count;
 }
 

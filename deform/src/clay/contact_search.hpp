@@ -1,7 +1,8 @@
 #pragma once
 // Finds the vertices near a body. The cost is what is near: a block is looked at if its bounds meet
-// the body's box, and then only against the parts whose boxes it meets.
+// the body's box, and then only against the parts that may be the nearest to one of its vertices.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -39,6 +40,8 @@ public:
   /// Sets the parts of all bodies, in a layout's coordinates. Does not allocate.
   void set_parts(std::span<const ContactPart> parts) noexcept;
   std::size_t bodies() const noexcept { return bodies_; }
+  /// Leaves a part out of each_near(), or no longer.
+  void leave_out(std::size_t part, bool is_out) noexcept { is_out_[part] = is_out ? 1 : 0; }
   /// Tells whether a block is within `margin` of a box of one of the bodies.
   bool is_any_near(const BoundedShape& shape, std::span<const BoxGate> boxes,
                    double margin) const noexcept;
@@ -52,34 +55,66 @@ public:
   std::size_t& distances() noexcept { return distances_; }
 
 private:
+  /// The boxes of up to 64 blocks.
+  struct Boxes {
+    std::size_t count = 0;
+    std::array<std::uint32_t, block_size> blocks{};
+    BoxLanes lanes;
+    std::array<float, block_size> radii{};
+    std::array<float, block_size> reaches{}; ///< a part that is farther is not the nearest
+    std::array<float, block_size> nearest{}; ///< what no part falls short of
+  };
+
   void add_cone(const ContactPart& part, std::size_t first, std::size_t second) noexcept;
   void add_plane(const ContactPart& part, PartEntry& entry) noexcept;
-  std::size_t list_parts(const BlockBounds& bounds, std::size_t body, float margin) noexcept;
+  PartArrays arrays() const noexcept { return {cones_.data(), planes_.data(), parts_.data()}; }
+  void add_box(const BlockBounds& bounds, std::uint32_t block) noexcept;
+  void measure_boxes(std::size_t body, float margin) noexcept;
+  std::size_t list_parts(std::size_t body, std::size_t box) noexcept;
+  template <class Visit>
+  void visit_boxes(const BoundedShape& shape, std::size_t body, float margin, const Visit& visit);
 
   std::size_t bodies_;
   std::size_t parts_a_body_;
   std::vector<ConeEntry> cones_;
   std::vector<PlaneEntry> planes_;
   std::vector<PartEntry> parts_;
-  std::vector<BoxGate> part_boxes_, body_boxes_;
+  std::vector<std::uint8_t> is_out_; ///< a part
+  std::vector<BoxGate> body_boxes_;
   std::vector<std::uint32_t> list_;
   std::size_t distances_ = 0;
   NearestLanes nearest_{};
+  Boxes boxes_;
+  std::vector<float> from_parts_; ///< for each part of a body, what 64 boxes do not fall short of
 };
 
 template <class Visit>
 void ContactSearch::each_near(const BoundedShape& shape, std::size_t body, double margin,
                               const Visit& visit) {
   const auto wide = static_cast<float>(margin);
-  const PartArrays arrays{cones_.data(), planes_.data(), parts_.data()};
+  boxes_.count = 0;
   for (std::size_t block = 0; block < shape.bounds.size(); ++block) {
     if (!body_boxes_[body].meets(shape.bounds[block], wide)) continue;
-    const std::size_t count = list_parts(shape.bounds[block], body, wide);
+    add_box(shape.bounds[block], static_cast<std::uint32_t>(block));
+    if (boxes_.count == block_size) visit_boxes(shape, body, wide, visit);
+  }
+  if (boxes_.count > 0) visit_boxes(shape, body, wide, visit);
+}
+
+template <class Visit>
+void ContactSearch::visit_boxes(const BoundedShape& shape, std::size_t body, float margin,
+                                const Visit& visit) {
+  measure_boxes(body, margin);
+  for (std::size_t box = 0; box < boxes_.count; ++box) {
+    if (boxes_.nearest[box] > boxes_.reaches[box]) continue;
+    const std::size_t count = list_parts(body, box);
     if (count == 0) continue;
-    nearest_in_block(shape.shape[block], arrays, list_.data(), count, nearest_);
+    const std::size_t block = boxes_.blocks[box];
+    nearest_in_block(shape.shape[block], arrays(), list_.data(), count, nearest_);
     distances_ += count * block_size;
     visit(block, nearest_);
   }
+  boxes_.count = 0;
 }
 
 } // namespace nendo::deform

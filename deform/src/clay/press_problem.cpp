@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
-#include <nendo/deform/wendland.hpp>
+#include "clay/field_bound.hpp"
 
 namespace nendo::deform {
 
@@ -17,71 +15,81 @@ namespace {
 constexpr double ridge = 1e-9;
 // A tangent's, because places of one part move together and need no exact fit.
 constexpr double tangent_ridge = 1e-3;
-// Of the largest depth or way: below this, nothing moves any more.
-constexpr double enough = 1e-6;
+// Of the largest depth: below this, nothing moves any more.
+constexpr double enough = 1e-5;
+constexpr double enough_way = 1e-3; // of the largest way
 constexpr double sticks_again = 0.8;
+// Beyond all radii. Padding stands there; its square is finite.
+constexpr double far_away = 1e60;
+
+std::size_t padded(std::size_t count) noexcept {
+  return (count + press_lanes - 1) / press_lanes * press_lanes;
+}
 
 } // namespace
 
-PressProblem::PressProblem(std::size_t most)
-    : psi_(static_cast<Eigen::Index>(most), static_cast<Eigen::Index>(most)), a_(psi_),
-      normals_(3, psi_.rows()), p_(psi_.rows()), l_(psi_.rows()), w_(psi_.rows()),
-      t_(psi_.rows(), 3), left_(psi_.rows(), 3) {}
+PressProblem::PressProblem(std::size_t most) : most_(padded(most)) {
+  for (auto* matrix : {&psi_, &a_})
+    *matrix = hwy::AllocateAligned<double>(most_ * most_);
+  for (auto* numbers : {&p_, &l_, &w_})
+    *numbers = hwy::AllocateAligned<double>(most_);
+  for (auto* three : {&places_, &normals_, &t_, &left_})
+    for (auto& numbers : *three)
+      numbers = hwy::AllocateAligned<double>(most_);
+}
+
+PressArrays PressProblem::arrays() const noexcept {
+  return {count_,           stride_,
+          places_[0].get(), places_[1].get(),
+          places_[2].get(), {normals_[0].get(), normals_[1].get(), normals_[2].get()},
+          psi_.get(),       a_.get()};
+}
 
 void PressProblem::assign(std::span<const ContactPoint> points, double radius) noexcept {
   radius_ = radius;
-  count_ = static_cast<Eigen::Index>(points.size());
-  for (Eigen::Index i = 0; i < count_; ++i) {
-    const ContactPoint& one = points[static_cast<std::size_t>(i)];
-    normals_.col(i) = one.normal;
-    p_[i] = one.depth;
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      const ContactPoint& other = points[static_cast<std::size_t>(j)];
-      const double psi = wendland(Wendland::c2, (one.at - other.at).norm() / radius);
-      psi_(i, j) = psi_(j, i) = psi;
-      a_(i, j) = a_(j, i) = psi * one.normal.dot(other.normal);
+  count_ = points.size();
+  stride_ = padded(count_);
+  for (std::size_t i = 0; i < stride_; ++i) {
+    const bool is_padding = i >= count_;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<Eigen::Index>(axis);
+      places_[axis][i] = is_padding ? far_away : points[i].at[at];
+      normals_[axis][i] = is_padding ? 0.0 : points[i].normal[at];
+      t_[axis][i] = left_[axis][i] = 0.0;
     }
-    a_(i, i) += ridge;
+    p_[i] = is_padding ? 0.0 : points[i].depth;
+    l_[i] = 0.0;
   }
-  l_.head(count_).setZero();
-  t_.topRows(count_).setZero();
+  fill_press_matrices(arrays(), radius, ridge);
 }
 
 double PressProblem::solve_pressure(double extra) noexcept {
-  w_.head(count_) = -p_.head(count_).array() - extra;
-  const double least = enough * std::max(0.0, -w_.head(count_).minCoeff());
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    double largest = 0.0;
-    for (Eigen::Index i = 0; i < count_; ++i) {
-      const double after = std::max(0.0, l_[i] - w_[i] / a_(i, i));
-      const double change = after - l_[i];
-      if (change == 0.0) continue;
-      l_[i] = after;
-      w_.head(count_) += change * a_.col(i).head(count_);
-      largest = std::max(largest, std::abs(change));
-    }
-    if (largest <= least) break;
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < stride_; ++i) {
+    w_[i] = i < count_ ? -p_[i] - extra : 0.0;
+    deepest = std::max(deepest, -w_[i]);
   }
-  return count_ > 0 ? std::max(0.0, -w_.head(count_).minCoeff()) : 0.0;
-}
-
-void PressProblem::add_tangent(Eigen::Index i, const Vector3d& change) noexcept {
-  t_.row(i) += change.transpose();
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    left_.col(axis).head(count_) -= change[axis] * psi_.col(i).head(count_);
+  sweep_pressure(arrays(), l_.get(), w_.get(), enough * deepest, most_sweeps);
+  double left = 0.0;
+  for (std::size_t i = 0; i < count_; ++i)
+    left = std::max(left, -w_[i]);
+  return left;
 }
 
 /// Returns whether anything moved.
-bool PressProblem::sweep_friction(std::span<const Friction> frictions,
-                                  double coefficient) noexcept {
+bool PressProblem::sweep_friction(std::span<const Friction> frictions, double coefficient,
+                                  double least) noexcept {
   bool is_moved = false;
-  for (Eigen::Index i = 0; i < count_; ++i) {
-    const Friction& friction = frictions[static_cast<std::size_t>(i)];
+  const auto at = [](const Three& three, std::size_t i) -> Vector3d {
+    return {three[0][i], three[1][i], three[2][i]};
+  };
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Friction& friction = frictions[i];
     const double limit = coefficient * (l_[i] + friction.load);
     if (limit <= 0.0) continue;
-    const Vector3d normal = normals_.col(i);
-    const Vector3d before = t_.row(i);
-    const Vector3d left = left_.row(i).transpose() - tangent_ridge * before;
+    const Vector3d normal = at(normals_, i);
+    const Vector3d before = at(t_, i);
+    const Vector3d left = at(left_, i) - tangent_ridge * before;
     Vector3d after = before + (left - left.dot(normal) * normal) / (1.0 + tangent_ridge);
     const double force = after.norm();
     std::uint8_t& slips = *friction.slips;
@@ -89,8 +97,11 @@ bool PressProblem::sweep_friction(std::span<const Friction> frictions,
     const double most = limit * (slips != 0 ? sticks_again : 1.0);
     if (force > most) after *= most / force;
     const Vector3d change = after - before;
-    if (change.norm() <= enough * limit) continue;
-    add_tangent(i, change);
+    if (change.squaredNorm() <= least * least) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      t_[axis][i] = after[static_cast<Eigen::Index>(axis)];
+    add_row(arrays(), psi_row(i), {-change.x(), -change.y(), -change.z()},
+            {left_[0].get(), left_[1].get(), left_[2].get()});
     is_moved = true;
   }
   return is_moved;
@@ -98,37 +109,38 @@ bool PressProblem::sweep_friction(std::span<const Friction> frictions,
 
 void PressProblem::solve_friction(std::span<const Friction> frictions,
                                   double coefficient) noexcept {
-  for (Eigen::Index i = 0; i < count_; ++i)
-    left_.row(i) = frictions[static_cast<std::size_t>(i)].way.transpose();
-  for (Eigen::Index i = 0; i < count_; ++i) // what the pressing field does already
+  for (std::size_t i = 0; i < count_; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      left_[axis][i] = frictions[i].way[static_cast<Eigen::Index>(axis)];
+  for (std::size_t i = 0; i < count_; ++i) // what the pressing field does already
     if (l_[i] > 0.0)
-      for (Eigen::Index axis = 0; axis < 3; ++axis)
-        left_.col(axis).head(count_) -= l_[i] * normals_(axis, i) * psi_.col(i).head(count_);
+      add_row(arrays(), psi_row(i),
+              {-l_[i] * normals_[0][i], -l_[i] * normals_[1][i], -l_[i] * normals_[2][i]},
+              {left_[0].get(), left_[1].get(), left_[2].get()});
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < count_; ++i)
+    farthest = std::max(farthest, frictions[i].way.norm());
   for (int sweep = 0; sweep < most_sweeps; ++sweep)
-    if (!sweep_friction(frictions, coefficient)) break;
+    if (!sweep_friction(frictions, coefficient, enough_way * farthest)) break;
 }
 
 Vector3d PressProblem::coefficient(std::size_t i) const noexcept {
-  const auto at = static_cast<Eigen::Index>(i);
-  return l_[at] * normals_.col(at) + t_.row(at).transpose();
+  return {l_[i] * normals_[0][i] + t_[0][i], l_[i] * normals_[1][i] + t_[1][i],
+          l_[i] * normals_[2][i] + t_[2][i]};
 }
 
-double PressProblem::lipschitz_bound() const noexcept {
+/// The sums of psi_ij c_j are made in the room of left_.
+double PressProblem::lipschitz_bound() noexcept {
+  for (auto& numbers : left_)
+    std::fill_n(numbers.get(), stride_, 0.0);
+  for (std::size_t i = 0; i < count_; ++i)
+    if (const Vector3d one = coefficient(i); !one.isZero(0.0))
+      add_row(arrays(), psi_row(i), {one.x(), one.y(), one.z()},
+              {left_[0].get(), left_[1].get(), left_[2].get()});
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-  for (Eigen::Index i = 0; i < count_; ++i) {
-    const Vector3d one = coefficient(static_cast<std::size_t>(i));
-    if (one.isZero(0.0)) continue;
-    Vector3d weighted = 0.5 * one; // the other half by symmetry
-    for (Eigen::Index j = 0; j < i; ++j)
-      if (psi_(i, j) > 0.0) weighted += psi_(i, j) * coefficient(static_cast<std::size_t>(j));
-    const Eigen::Matrix3d product = one * weighted.transpose();
-    gram += product + product.transpose();
-  }
-  constexpr double derivative_norm_squared = 20.0; // of Wendland's C2
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(gram, Eigen::EigenvaluesOnly);
-  const double largest = std::max(0.0, solver.eigenvalues()[2]);
-  return std::sqrt(derivative_norm_squared * largest) / radius_;
+  for (std::size_t i = 0; i < count_; ++i)
+    gram += coefficient(i) * Eigen::RowVector3d(left_[0][i], left_[1][i], left_[2][i]);
+  return bound_of_gram(gram, radius_);
 }
 
 } // namespace nendo::deform

@@ -5,13 +5,16 @@
 // more: w = A l - p >= 0, l >= 0, l.w = 0, with A_ij = n_i.n_j psi_ij. The tangential t_i take the
 // places along, as far as Coulomb's friction permits.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include <Eigen/Core>
 
+#include "block_field.hpp"
 #include "clay/contact_points.hpp"
+#include "simd/press_kernels.hpp"
 
 namespace nendo::deform {
 
@@ -39,27 +42,32 @@ public:
 
   /// Returns l_i n_i + t_i.
   Eigen::Vector3d coefficient(std::size_t i) const noexcept;
-  double pressure(std::size_t i) const noexcept { return l_[static_cast<Eigen::Index>(i)]; }
-  std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
+  double pressure(std::size_t i) const noexcept { return l_[i]; }
+  std::size_t size() const noexcept { return count_; }
   /// Returns an L with |s(x) - s(y)| <= L |x - y|, by the field's norm in the native space of
   /// Wendland's C2 (jacobian.hpp). Where L < 1, nothing folds.
-  double lipschitz_bound() const noexcept;
+  double lipschitz_bound() noexcept;
 
   /// Gauss-Seidel ends after so many sweeps, or when nothing moves any more.
   static constexpr int most_sweeps = 60;
 
 private:
-  void add_tangent(Eigen::Index i, const Eigen::Vector3d& change) noexcept;
-  bool sweep_friction(std::span<const Friction> frictions, double coefficient) noexcept;
+  using Three = std::array<VectorArray<double>, 3>; ///< an array an axis
+
+  PressArrays arrays() const noexcept;
+  const double* psi_row(std::size_t i) const noexcept { return psi_.get() + i * stride_; }
+  bool sweep_friction(std::span<const Friction> frictions, double coefficient,
+                      double least) noexcept;
 
   double radius_ = 1.0;
-  Eigen::Index count_ = 0;
-  Eigen::MatrixXd psi_;       ///< psi_ij
-  Eigen::MatrixXd a_;         ///< A_ij
-  Eigen::Matrix3Xd normals_;  ///< n_i
-  Eigen::VectorXd p_, l_, w_; ///< w = A l - p
-  Eigen::MatrixX3d t_;        ///< one row a place
-  Eigen::MatrixX3d left_;     ///< of the ways, where the field does not lead yet
+  std::size_t most_;
+  std::size_t count_ = 0, stride_ = 0; ///< places; with the padding
+  VectorArray<double> psi_;            ///< psi_ij
+  VectorArray<double> a_;              ///< A_ij
+  Three places_, normals_;
+  VectorArray<double> p_, l_, w_; ///< w = A l - p
+  Three t_;
+  Three left_; ///< of the ways, where the field does not lead yet
 };
 
 } // namespace nendo::deform

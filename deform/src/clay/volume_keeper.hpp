@@ -2,14 +2,19 @@
 // Keeps the volume of a closed surface: what is pressed in comes out where nothing touches. Each
 // block knows its part of the volume, which is computed anew only where vertices have moved.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include <nendo/deform/vertex_blocks.hpp>
 
 #include "block_evaluator.hpp"
 #include "clay/contact_search.hpp"
+#include "rows_by_key.hpp"
 
 namespace nendo::deform {
 
@@ -32,40 +37,44 @@ public:
   /// Returns the volume of that shape. Does not allocate.
   double volume(const BoundedShape& shape) noexcept;
   /// Moves what is free along its normals, so that the volume grows by `missing`, or by what
-  /// GiveBack::most permits. Call volume() first. Returns how much it grew, to first order. Does
+  /// GiveBack::most permits. Call volume() first. Returns how much it grew, to second order. Does
   /// not allocate.
   double give_back(BoundedShape& shape, ContactSearch& search, double missing,
                    const GiveBack& how) noexcept;
 
 private:
-  struct Pair {
-    std::uint32_t second, third; ///< of a triangle that begins at the vertex
-  };
-  void build_rings(const BlockLayout& layout, std::span<const std::uint32_t> corners);
+  void build_fans(const BlockLayout& layout, std::span<const std::uint32_t> corners);
   void build_neighbours(std::size_t blocks);
+  std::size_t end_of(std::size_t block) const noexcept {
+    return std::min(vertices_, (block + 1) * block_size);
+  }
   bool has_changed(const BoundedShape& shape, std::size_t block) const noexcept;
-  void measure(const BoundedShape& shape, std::size_t block) noexcept;
+  void read(const BoundedShape& shape, std::size_t block) noexcept;
+  double measure(std::size_t place) noexcept;
+  void measure_block(std::size_t block) noexcept;
   void weigh(const BoundedShape& shape, ContactSearch& search, const GiveBack& how) noexcept;
-  template <class Visit>
-  void each_free(const Visit& visit) const;
-  double direct() noexcept;
-  void scale_moves(const BoundedShape& shape, float far) noexcept;
-  void apply_moves(BoundedShape& shape) noexcept;
-  Eigen::Vector3f direction_at(std::size_t place) const noexcept;
-  Eigen::Vector3f mean_round(const BoundedShape& shape, std::size_t place) const noexcept;
+  void weigh_around(const BoundedShape& shape, std::size_t block, const GiveBack& how) noexcept;
+  void sum_rates() noexcept;
+  double distance_for(double missing, double most) const noexcept;
+  void move(BoundedShape& shape, float far) noexcept;
 
   std::size_t vertices_;
   bool is_closed_ = false;
-  std::vector<std::uint32_t> starts_; ///< of each place's pairs
-  std::vector<Pair> pairs_;
-  std::vector<std::uint32_t> neighbour_starts_; ///< of each block's neighbours, with itself
-  std::vector<std::uint32_t> neighbours_;
-  std::vector<std::uint64_t> stamps_; ///< of the blocks when they were measured
-  std::vector<double> volumes_;       ///< one a block
-  std::vector<VertexBlock> normals_;  ///< the volume's derivative by each vertex
-  std::vector<VertexBlock> moves_;
-  std::vector<float> weights_;        ///< one a place
-  std::vector<std::uint8_t> is_free_; ///< one a block: some weight is not 0
+  RowsByKey<std::uint32_t> fans_;       ///< of each place: its neighbours in their order
+  RowsByKey<std::uint32_t> neighbours_; ///< of each block, with itself
+  std::vector<std::uint64_t> stamps_;   ///< of the blocks when they were measured
+  std::vector<double> volumes_;         ///< one a block
+  std::vector<std::uint8_t> is_free_;   ///< one a block: some weight is not 0
+  // One a place, with a fourth number, so that one load takes a whole neighbour.
+  std::vector<Eigen::Vector4f> points_;
+  std::vector<Eigen::Vector4f> normals_; ///< the volume's derivative by each vertex
+  std::vector<Eigen::Vector4f> directions_;
+  std::vector<Eigen::Vector4f> fairing_; ///< the way to the neighbours' middle; an inverse edge
+  std::vector<float> rates_;             ///< by which the volume grows with each one's distance
+  std::vector<float> curvatures_;        ///< mean ones
+  std::vector<float> weights_;
+  double rate_ = 0.0; ///< by which the volume grows with the distance
+  double bend_ = 0.0; ///< and with its square
 };
 
 } // namespace nendo::deform

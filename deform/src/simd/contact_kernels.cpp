@@ -67,7 +67,8 @@ HWY_INLINE void visit_cone(ContactTag d, const ConeEntry& cone, const Vectors3<C
   take_if_nearer(hn::Sub(hn::Sqrt(squared_norm(left)), radius), left, place, part, best);
 }
 
-HWY_INLINE void visit_plane(ContactTag d, const PlaneEntry& plane, const Vectors3<ContactV>& place,
+/// Returns whether all places are nearest to the triangle's inside. Its edges are then no nearer.
+HWY_INLINE bool visit_plane(ContactTag d, const PlaneEntry& plane, const Vectors3<ContactV>& place,
                             ContactV part, NearestVectors& best) {
   const ContactV zero = hn::Zero(d);
   const Vectors3<ContactV> from = relative_to(d, plane, place);
@@ -88,6 +89,16 @@ HWY_INLINE void visit_plane(ContactTag d, const PlaneEntry& plane, const Vectors
   const ContactV radius = hn::Add(hn::Set(d, plane.radius), product(d, foot, plane.slope));
   const ContactV distance = hn::Sub(hn::Sqrt(squared_norm(left)), radius);
   take_if_nearer(hn::IfThenElse(inside, distance, hn::Inf(d)), left, place, part, best);
+  return hn::AllTrue(d, inside);
+}
+
+HWY_INLINE void visit_part(ContactTag d, const PartArrays& arrays, const PartEntry& entry,
+                           const Vectors3<ContactV>& place, ContactV part, NearestVectors& best) {
+  if (entry.plane != no_plane &&
+      visit_plane(d, arrays.planes[entry.plane], place, part, best)) // all before its inside
+    return;
+  for (std::uint32_t cone = 0; cone < entry.cone_count; ++cone)
+    visit_cone(d, arrays.cones[entry.first_cone + cone], place, part, best);
 }
 
 void nearest_lanes(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
@@ -99,9 +110,7 @@ void nearest_lanes(const VertexBlock& block, const PartArrays& arrays, const std
     for (std::size_t at = 0; at < count; ++at) {
       const PartEntry& entry = arrays.parts[list[at]];
       const ContactV part = hn::Set(d, static_cast<float>(list[at]));
-      for (std::uint32_t cone = 0; cone < entry.cone_count; ++cone)
-        visit_cone(d, arrays.cones[entry.first_cone + cone], place, part, best);
-      if (entry.plane != no_plane) visit_plane(d, arrays.planes[entry.plane], place, part, best);
+      visit_part(d, arrays, entry, place, part, best);
     }
     hn::Store(best.distance, d, nearest.distance.data() + lane);
     hn::Store(best.part, d, nearest.part.data() + lane);
@@ -111,6 +120,29 @@ void nearest_lanes(const VertexBlock& block, const PartArrays& arrays, const std
   }
 }
 
+void part_lanes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t part,
+                float* distances, float* least) {
+  const ContactTag d;
+  for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    const Vectors3<ContactV> place = load_vectors(d, boxes.middles, lane);
+    NearestVectors best{hn::Inf(d), hn::Zero(d), place};
+    visit_part(d, arrays, arrays.parts[part], place, hn::Zero(d), best);
+    const Vectors3<ContactV> half = load_vectors(d, boxes.halves, lane);
+    const Vectors3<ContactV> way{hn::Sub(place.x, best.centre.x), hn::Sub(place.y, best.centre.y),
+                                 hn::Sub(place.z, best.centre.z)};
+    const ContactV length = hn::Max(hn::Sqrt(squared_norm(way)), hn::Set(d, 1e-30F));
+    const ContactV falls =
+        hn::MulAdd(hn::Abs(way.x), half.x,
+                   hn::MulAdd(hn::Abs(way.y), half.y, hn::Mul(hn::Abs(way.z), half.z)));
+    hn::StoreU(best.distance, d, distances + lane);
+    hn::StoreU(hn::Sub(best.distance, hn::Div(falls, length)), d, least + lane);
+  }
+}
+
+BlockBounds bounds_by_vectors(const VertexBlock& block) {
+  return vector_bounds(ContactTag(), block);
+}
+
 } // namespace nendo::deform::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -118,10 +150,21 @@ HWY_AFTER_NAMESPACE();
 namespace nendo::deform {
 
 HWY_EXPORT(nearest_lanes);
+HWY_EXPORT(part_lanes);
+HWY_EXPORT(bounds_by_vectors);
 
 void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
                       std::size_t count, NearestLanes& nearest) noexcept {
   HWY_DYNAMIC_DISPATCH(nearest_lanes)(block, arrays, list, count, nearest);
+}
+
+void part_from_boxes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t part,
+                     float* distances, float* least) noexcept {
+  HWY_DYNAMIC_DISPATCH(part_lanes)(boxes, arrays, part, distances, least);
+}
+
+BlockBounds fast_bounds_of(const VertexBlock& block) noexcept {
+  return HWY_DYNAMIC_DISPATCH(bounds_by_vectors)(block);
 }
 
 } // namespace nendo::deform

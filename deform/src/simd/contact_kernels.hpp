@@ -55,4 +55,18 @@ struct alignas(64) NearestLanes {
 void nearest_in_block(const VertexBlock& block, const PartArrays& arrays, const std::uint32_t* list,
                       std::size_t count, NearestLanes& nearest) noexcept;
 
+/// Boxes by their middles and half sides.
+struct BoxLanes {
+  VertexBlock middles{}, halves{};
+};
+
+/// For each box and the part: how far the box' middle is from it, and a distance that no place of
+/// the box falls short of. A part is convex, and so is its distance, which is therefore nowhere
+/// less than the tangent at the middle.
+void part_from_boxes(const BoxLanes& boxes, const PartArrays& arrays, std::uint32_t part,
+                     float* distances, float* least) noexcept;
+
+/// As bounds_of(), but faster.
+BlockBounds fast_bounds_of(const VertexBlock& block) noexcept;
+
 } // namespace nendo::deform

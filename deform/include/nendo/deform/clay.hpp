@@ -2,7 +2,8 @@
 // Clay: a third way of deforming, beside Type-1 and Type-2. Bodies, such as hands, push the surface
 // out of themselves. What they touch becomes one-sided conditions on a CSRBF field, of which the
 // one of least energy is taken (a complementarity problem), so that nothing is pulled. Friction
-// takes the surface along, and the volume comes back where nothing touches.
+// takes the surface along, fingers that close hold it, and the volume comes back where nothing
+// touches.
 
 #include <cstdint>
 #include <memory>
@@ -17,10 +18,15 @@ namespace nendo::deform {
 
 /// Lengths in millimetres are those of the bodies.
 struct ClayOptions {
-  double units_a_mm = 1.0;    ///< model units a millimetre, > 0
-  double radius_mm = 25.0;    ///< of the functions, > 0: how soft the clay is. About 2.5 fingers'.
-  double friction = 0.5;      ///< Coulomb's coefficient, >= 0
-  bool keeps_volume = true;   ///< only of closed, oriented surfaces
+  double units_a_mm = 1.0;  ///< model units a millimetre, > 0
+  double radius_mm = 25.0;  ///< of the functions, > 0: how soft the clay is. About 2.5 fingers'.
+  double friction = 0.5;    ///< Coulomb's coefficient, >= 0
+  bool keeps_volume = true; ///< only of closed, oriented surfaces
+  /// Otherwise bodies carry, turn and roll the model by what sticks to them and presses it.
+  bool lies_on_table = true;
+  /// Two parts of a body that press from sides that face each other take hold of what is under
+  /// them, until they have opened.
+  bool grips = true;
   int most_constraints = 256; ///< of one pass
   /// Of one call. When they are used up, the bodies' step is shortened, and the rest of their way
   /// waits for the next call. What has begun is always finished.
@@ -38,11 +44,13 @@ struct ClayReport {
   /// How deep a vertex still was in a body after the passes, before it was pushed straight out.
   double penetration_mm = 0.0;
   double behind_mm = 0.0;     ///< the way that waits for the next call
+  std::size_t held = 0;       ///< places that bodies hold on to
+  double carried_mm = 0.0;    ///< the way of the model's middle as a rigid body
+  double turned_rad = 0.0;    ///< and its turns, added up
   double volume_change = 0.0; ///< relative to that when the bodies took hold; 0 if none is kept
 };
 
-/// The model lies on a table: it is deformed, and never moved as a whole. A deformer belongs to one
-/// thread at a time.
+/// A deformer belongs to one thread at a time.
 class ClayDeformer {
 public:
   /// Allocates. `triangles` are the vertices of all triangles, three each; without any, or where

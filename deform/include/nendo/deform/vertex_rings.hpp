@@ -41,7 +41,7 @@ private:
   void find_neighbours();
 
   std::vector<std::uint32_t> ring_; ///< of each place
-  std::vector<std::size_t> triangle_starts_, neighbour_starts_;
+  std::vector<std::uint32_t> triangle_starts_, neighbour_starts_;
   std::vector<std::array<std::uint32_t, 2>> corners_;
   std::vector<std::uint32_t> neighbours_;
 };

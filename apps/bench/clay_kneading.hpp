@@ -1,0 +1,62 @@
+#pragma once
+// Scripted hands that make things of a ball of clay: a flat cake, a bowl and a nose.
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nendo/deform/clay.hpp>
+#include <nendo/deform/contact_part.hpp>
+#include <nendo/deform/mesh.hpp>
+#include <nendo/hand/hand_body.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::bench {
+
+enum class KneadedThing { cake, bowl, nose };
+
+/// Lengths are in millimetres, and the ball is about the origin.
+class ClayKneading {
+public:
+  static constexpr double rate_hz = 90.0;
+  static constexpr std::size_t bodies = 2;
+
+  explicit ClayKneading(KneadedThing thing);
+
+  double ball_radius_mm() const noexcept;
+  /// How soft the clay is: ClayOptions::radius_mm.
+  double softness_mm() const noexcept;
+  int ticks() const noexcept;
+  /// Returns the parts of both bodies in that tick: of two hands, or of a hand and a table.
+  std::span<const deform::ContactPart> at(int tick);
+
+private:
+  void place_hand(std::size_t body, const hand::JointAngles& angles,
+                  const Eigen::Isometry3d& wrist_mm);
+  void place_table(double top_mm);
+  void put_away(std::size_t body);
+  void pose_cake(double time_s);
+  void pose_bowl(double time_s);
+  void pose_nose(double time_s);
+
+  KneadedThing thing_;
+  hand::HandSkeleton skeleton_;
+  hand::HandBody body_;
+  hand::JointAngles pinch_; ///< the last one, with which the next begins
+  std::vector<deform::ContactPart> parts_;
+};
+
+struct KneadedClay {
+  deform::Mesh shape;
+  double worst_volume = 0.0; ///< relative
+  double last_volume = 0.0;
+  double penetration_p99_mm = 0.0;
+  double mean_us = 0.0, p99_us = 0.0;
+  std::size_t most_held = 0;
+};
+
+/// Makes a thing of a ball of that level (reference/icosphere.hpp).
+KneadedClay knead(KneadedThing thing, int level);
+
+} // namespace nendo::bench

@@ -1,0 +1,168 @@
+#include "clay/grip.hpp"
+
+#include <algorithm>
+
+namespace nendo::deform {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double least_load_mm = 0.1;
+constexpr double most_width_mm = 80.0;
+constexpr double facing = 0.5; // a cosine
+constexpr double beside_mm = 4.0;
+constexpr double opened = 1.15;
+constexpr double opened_mm = 6.0;
+constexpr int calls_to_change = 6; // so that tremor does not flicker
+
+} // namespace
+
+Grip::Grip(std::size_t first_part, std::size_t parts, double mm)
+    : first_part_(first_part), mm_(mm), sides_(parts) {
+  loaded_.reserve(4 * most_held);
+  held_.reserve(most_held);
+}
+
+void Grip::begin_look() noexcept {
+  loaded_.clear();
+  for (Side& side : sides_) {
+    side.load = side.closes = 0.0;
+    side.place = side.across = Vector3d::Zero();
+  }
+}
+
+void Grip::look(const ContactPoint& point, double load) noexcept {
+  if (holds() || load < least_load_mm * mm_ || loaded_.size() == loaded_.capacity()) return;
+  loaded_.push_back({point, load});
+  Side& side = sides_[point.part - first_part_];
+  side.load += load;
+  side.place += load * point.at;
+}
+
+/// The mean normal of what a part pushes along `way`, or zero.
+Vector3d Grip::normal_along(std::size_t part, const Vector3d& way) const noexcept {
+  Vector3d sum = Vector3d::Zero();
+  for (const Loaded& loaded : loaded_)
+    if (loaded.point.part == first_part_ + part && loaded.point.normal.dot(way) > facing)
+      sum += loaded.load * loaded.point.normal;
+  return sum.normalized();
+}
+
+/// How far a part has gone along `way` in this call, at what it presses.
+double Grip::gone(std::span<const ContactPart> parts, std::size_t side,
+                  const Vector3d& way) const noexcept {
+  const Vector3d place = sides_[side].place / sides_[side].load;
+  const Eigen::Isometry3d& frame = parts[first_part_ + side].frame;
+  return (place - sides_[side].frame * (frame.inverse(Eigen::Isometry) * place)).dot(way);
+}
+
+/// Two parts face each other if each pushes something towards the other.
+bool Grip::find_facing(std::span<const ContactPart> parts) noexcept {
+  bool is_any = false;
+  for (std::size_t i = 0; i < sides_.size(); ++i)
+    for (std::size_t j = i + 1; j < sides_.size(); ++j) {
+      Side& one = sides_[i];
+      Side& other = sides_[j];
+      if (!(one.load > 0.0 && other.load > 0.0)) continue;
+      const Vector3d across = other.place / other.load - one.place / one.load;
+      const double width = across.norm();
+      if (!(width > 0.0 && width < most_width_mm * mm_)) continue;
+      const Vector3d way = across / width;
+      if (normal_along(i, way).dot(normal_along(j, -way)) > -facing) continue;
+      one.across += way;
+      other.across -= way;
+      const double closes = gone(parts, i, way) - gone(parts, j, way);
+      one.closes = std::max(one.closes, closes);
+      other.closes = std::max(other.closes, closes);
+    }
+  for (Side& side : sides_) {
+    side.closed = side.across.isZero(0.0) ? 0.0 : side.closed + side.closes;
+    is_any = is_any || side.has_closed(mm_);
+  }
+  return is_any;
+}
+
+/// The way from the middle of what the second side holds to that of the first.
+Vector3d Grip::across(std::span<const ContactPart> parts) const noexcept {
+  Vector3d first = Vector3d::Zero();
+  Vector3d second = Vector3d::Zero();
+  for (std::size_t at = 0; at < held_.size(); ++at) {
+    const Vector3d place = parts[held_[at].part].frame * held_[at].local;
+    (at < held_side_ ? first : second) += place;
+  }
+  const auto firsts = static_cast<double>(held_side_);
+  const auto seconds = static_cast<double>(held_.size() - held_side_);
+  return first / firsts - second / seconds;
+}
+
+void Grip::follow(std::span<const ContactPart> parts) noexcept {
+  if (!holds()) return;
+  const Vector3d way = across(parts);
+  const double width = way.norm();
+  narrowest_ = std::min(narrowest_, width);
+  const Vector3d opening =
+      width > narrowest_ ? Vector3d(0.5 * (width - narrowest_) / width * way) : Vector3d::Zero();
+  for (std::size_t at = 0; at < held_.size(); ++at) {
+    const Vector3d place = parts[held_[at].part].frame * held_[at].local;
+    held_[at].goal = at < held_side_ ? Vector3d(place - opening) : Vector3d(place + opening);
+  }
+}
+
+/// Places beside the vertex are held, too, so that a part also turns what it holds.
+void Grip::hold(const ContactPart& part, const ContactPoint& point, const Vector3d& by) noexcept {
+  const Vector3d place = point.at + by;
+  held_.push_back({point.part, part.frame.inverse(Eigen::Isometry) * place, place, place});
+}
+
+/// The first side is that of the first part and of those that push alike.
+void Grip::take(std::span<const ContactPart> parts) noexcept {
+  Vector3d first_way = Vector3d::Zero();
+  for (const Side& side : sides_)
+    if (first_way.isZero(0.0) && side.has_closed(mm_)) first_way = side.across;
+  for (const bool is_first : {true, false}) {
+    std::size_t left = is_first ? most_held / 2 : most_held - held_.size();
+    for (const Loaded& loaded : loaded_) {
+      const Side& side = sides_[loaded.point.part - first_part_];
+      if (left < 3 || !side.has_closed(mm_)) continue;
+      if ((side.across.dot(first_way) > 0.0) != is_first) continue;
+      if (loaded.point.normal.dot(side.across.normalized()) < facing) continue;
+      const Vector3d beside = beside_mm * mm_ * loaded.point.normal.unitOrthogonal();
+      for (const Vector3d& by :
+           {Vector3d(Vector3d::Zero()), beside, Vector3d(loaded.point.normal.cross(beside))})
+        hold(parts[loaded.point.part], loaded.point, by);
+      left -= 3;
+    }
+    if (is_first) held_side_ = held_.size();
+  }
+  if (held_side_ == 0 || held_side_ == held_.size()) return let_go();
+  for (const HeldPoint& point : held_)
+    sides_[point.part - first_part_].is_held = true;
+  narrowest_ = across(parts).norm();
+}
+
+bool Grip::end_look(std::span<const ContactPart> parts) noexcept {
+  const bool held = holds();
+  const bool is_changing =
+      held ? across(parts).norm() > std::min(opened * narrowest_, narrowest_ + opened_mm * mm_)
+           : find_facing(parts);
+  for (std::size_t side = 0; side < sides_.size(); ++side)
+    sides_[side].frame = parts[first_part_ + side].frame;
+  calls_ = is_changing ? calls_ + 1 : 0;
+  if (calls_ < calls_to_change) return false;
+  held ? let_go() : take(parts);
+  calls_ = 0;
+  return held != holds();
+}
+
+void Grip::let_go() noexcept {
+  held_.clear();
+  held_side_ = 0;
+  calls_ = 0;
+  for (Side& side : sides_) {
+    side.is_held = false;
+    side.closed = 0.0;
+  }
+}
+
+} // namespace nendo::deform

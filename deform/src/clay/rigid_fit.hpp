@@ -1,0 +1,27 @@
+#pragma once
+// The rigid motion of clay that lies on nothing: what sticks to the bodies carries it, and it
+// evades what presses it. All lengths are in a layout's coordinates.
+
+#include <span>
+
+#include <Eigen/Geometry>
+
+namespace nendo::deform {
+
+/// A place where a body touches the clay.
+struct Carrier {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< out of the body; zero: it is held
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();    ///< where what touches it has gone
+  double depth = 0.0;
+  double load = 0.0; ///< which the clay remembers
+};
+
+/// Returns the motion that leaves the least sum of squares: of depths, and of tangential ways as
+/// far as Coulomb's friction carries. Clay yields: no place resists by more than `yields`. Depths
+/// that are left then balance, as forces do. `middle` is the clay's; it turns about this. Finds it
+/// by reweighted least squares. Does not allocate.
+Eigen::Isometry3d fit_rigid_motion(std::span<const Carrier> carriers, const Eigen::Vector3d& middle,
+                                   double friction, double yields) noexcept;
+
+} // namespace nendo::deform
