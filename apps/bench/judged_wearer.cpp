@@ -153,7 +153,8 @@ std::string line_of(const JudgedWearer& wearer) {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot)
     if (wearer.sensors.has(static_cast<Sensor>(slot))) sensors.push_back(sensor_names[slot]);
   for (const JudgedWearer::Pad& pad : wearer.pads)
-    pads.push_back(Json::array({1e3 * pad.depth_m, 1e3 * pad.behind_m}));
+    pads.push_back(Json::array(
+        {std::round(1e5 * pad.depth_m) / 100.0, std::round(1e5 * pad.behind_m) / 100.0}));
   for (const CountRow& row : wearer.free_motion)
     free_motion.push_back(judged_file::counts_json(row, wearer.sensors));
   Json object{{"name", wearer.name},

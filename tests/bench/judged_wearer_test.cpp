@@ -64,7 +64,7 @@ TEST_SUITE("judged_wearer") {
     }
   }
 
-  TEST_CASE("pads that are said to touch do so, and no stranger is refused") {
+  TEST_CASE("strangers pinch, none is refused, and every group of joints is judged") {
     Verdict verdict;
     for (std::uint64_t seed = 9001; seed < 9004; ++seed) {
       const JudgedWearer wearer = make_stranger(seed, sensors_22, {});

@@ -2,6 +2,7 @@
 
 #include <nendo/hand/wearer_shape.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
