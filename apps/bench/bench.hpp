@@ -49,5 +49,8 @@ void add(cli::Command& bench);
 namespace table1_bench {
 void add(cli::Command& bench);
 }
+namespace wearers_bench {
+void add(cli::Command& bench);
+}
 
 } // namespace nendo::bench

@@ -40,6 +40,7 @@ void add_bench(cli::Command& program) {
   soak_bench::add(bench);
   solve_bench::add(bench);
   table1_bench::add(bench);
+  wearers_bench::add(bench);
   add_describe(bench);
 }
 

@@ -15,6 +15,7 @@
 
 #include "bench/bench.hpp"
 #include "bench/calibration_trial.hpp"
+#include "bench/judge_bench.hpp"
 #include "cli/cli.hpp"
 
 namespace nendo::bench::calibration_bench {
@@ -25,6 +26,7 @@ struct Options {
   std::uint64_t seed = 3001;
   bool json = false;
   bool markdown = false;
+  std::string judge;
 };
 
 struct Figures {
@@ -125,6 +127,8 @@ void print_text(const TrialErrors& errors, std::uint64_t refused, const Options&
 }
 
 int bench_calibration(const Options& options) {
+  if (!options.judge.empty())
+    return judge_bench::judge_file(options.judge, {options.json, options.markdown});
   if (options.wearers == 0 || options.wearers > 10'000)
     return cli::report({Errc::usage, "--wearers: from 1 to 10000"});
   cli::install_stop_signals();
@@ -153,6 +157,9 @@ void add(cli::Command& bench) {
   command.add_option("--seed", options->seed, "The first wearer's; 1 to 60 were used for tuning");
   command.add_flag("--json", options->json, "One JSON object");
   command.add_flag("--markdown", options->markdown, "A table in Markdown");
+  command.add_option("--judge", options->judge,
+                     "Judges by the wearers of this file instead, as nendo bench wearers writes "
+                     "them");
   command.on_chosen([options] { return bench_calibration(*options); });
 }
 

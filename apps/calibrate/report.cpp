@@ -53,6 +53,27 @@ void print_readings(std::ostream& out, const hand::CalibrationFit& fit,
   }
 }
 
+void print_set_aside(std::ostream& out, const hand::CalibrationFit& fit,
+                     std::span<const hand::PoseReading> readings) {
+  for (const hand::SetAside& aside : fit.set_aside)
+    out << fmt::format("{}: {} contradicts the other poses and was not used\n",
+                       hand::pose_of(readings[aside.reading].pose).name,
+                       aside.sensor ? name_of(*aside.sensor) : "the touch");
+  if (fit.by_two_poses.bits == 0) return;
+  out << "two poses foretell the others better for:";
+  for_each_sensor(fit.by_two_poses,
+                  [&](Sensor sensor, std::size_t) { out << ' ' << name_of(sensor); });
+  out << '\n';
+}
+
+void print_hand(std::ostream& out, const hand::CalibrationFit& fit) {
+  if (fit.touch_residual_m == 0.0) return;
+  out << fmt::format(
+      "hand: {:.0f} mm long, {:.0f} mm broad; pads that touch are {:.1f} mm apart in "
+      "it (root mean square)\n",
+      1000.0 * fit.size.length_m, 1000.0 * fit.size.breadth_m, 1000.0 * fit.touch_residual_m);
+}
+
 /// Returns a number as people write it: without decimals that are not there, and 0 without a sign.
 std::string number_text(double value, int decimals) {
   const double unit = std::pow(10.0, decimals);
@@ -99,6 +120,8 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
                        kept_text(quality));
   });
   print_readings(out, fit, readings);
+  print_set_aside(out, fit, readings);
+  print_hand(out, fit);
   // Where the poses leave a sensor's gain or offset to the default, a condition says nothing.
   if (fit.undetermined.bits == 0)
     out << fmt::format("condition {:.0f} (above 1000, poses are missing); ", fit.condition);

@@ -50,6 +50,7 @@ struct Session {
     const auto readings = guide.readings();
     hand::FitOptions options = fit;
     options.free_motion = guide.free_motion();
+    options.hold_out = false; // between two poses nobody waits for that
     return hand::fit_calibration(readings, glove.info().side, glove.info().sensors, options);
   }
   void update_undetermined() {

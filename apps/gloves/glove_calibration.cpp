@@ -145,7 +145,7 @@ Result<void> HandLength::check() const {
 hand::HandSize HandLength::size(const hand::HandSize& known) const noexcept {
   if (!length_mm) return known;
   const double length_m = 1e-3 * *length_mm;
-  return {length_m, length_m / known.length_m * known.breadth_m};
+  return {length_m, length_m / known.length_m * known.breadth_m, known.shape};
 }
 
 void add_hand_length(cli::Command& command, HandLength& length) {

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -37,6 +39,7 @@ struct Options {
   double length_mm = 1e3 * hand::HandSize{}.length_m;
   double breadth_mm = 1e3 * hand::HandSize{}.breadth_m;
   bool quick = false;
+  bool touch_up = false;
   bool fresh = false;
 };
 
@@ -44,10 +47,14 @@ struct Options {
 struct Wearer {
   hand::WearerCalibration about; ///< everything but the calibration itself, at first
   SensorMask sensors;
-  fs::path path; ///< of its file
+  fs::path path;                                ///< of its file
+  std::optional<hand::WearerCalibration> known; ///< what is touched up
 };
 
 Result<void> check(const Options& options) {
+  if (options.quick && options.touch_up)
+    return Error{Errc::usage,
+                 "--quick makes a calibration, --touch-up mends one: give one of them"};
   if (options.glove.empty() == options.from.empty())
     return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
   if (options.user.empty())
@@ -65,15 +72,28 @@ hand::HandSize size_of(const Options& options) {
   return {1e-3 * options.length_mm, 1e-3 * options.breadth_mm};
 }
 
-hand::FitOptions fit_options(const Options& options, CountScale counts) {
+/// `known` is what a touch-up begins with.
+hand::FitOptions fit_options(const Options& options, CountScale counts,
+                             const std::optional<hand::WearerCalibration>& known) {
   hand::FitOptions fitting;
+  if (known) {
+    fitting.scale = counts;
+    fitting.mode = hand::FitMode::touch_up;
+    fitting.size = known->size;
+    fitting.start = hand::calibration_for(*known, counts);
+    return fitting;
+  }
   fitting.scale = counts;
   fitting.mode = options.quick ? hand::FitMode::quick : hand::FitMode::full;
   fitting.size = size_of(options);
+  const hand::HandSize average;
+  fitting.size_known =
+      fitting.size.length_m != average.length_m || fitting.size.breadth_m != average.breadth_m;
   return fitting;
 }
 
 std::span<const hand::PoseId> poses_for(const Options& options) {
+  if (options.touch_up) return hand::touch_up_poses();
   return options.quick ? hand::quick_poses() : hand::full_takes();
 }
 
@@ -89,34 +109,60 @@ Wearer describe(const Options& options, Side side, CountScale counts, SensorMask
   return wearer;
 }
 
+/// Returns where the other commands find the calibration.
+fs::path stored_path(const Wearer& wearer, const Options& options) {
+  return hand::calibration_folders().own /
+         hand::calibration_file_name(options.user, wearer.about.glove_serial, wearer.about.side);
+}
+
 void set_path(Wearer& wearer, const Options& options) {
-  wearer.path = options.out.empty()
-                    ? hand::calibration_folders().own /
-                          hand::calibration_file_name(options.user, wearer.about.glove_serial,
-                                                      wearer.about.side)
-                    : fs::path(options.out);
+  wearer.path = options.out.empty() ? stored_path(wearer, options) : fs::path(options.out);
+}
+
+/// For a touch-up, takes over the calibration that there is.
+Result<void> begin_with_known(Wearer& wearer, const Options& options) {
+  if (!options.touch_up) return {};
+  const fs::path stored = stored_path(wearer, options);
+  std::error_code error;
+  if (!fs::exists(stored, error))
+    return Error{Errc::bad_input, printable(stored.string()) +
+                                      ": no calibration to touch up; calibrate without --touch-up"};
+  auto known = hand::read_calibration(stored);
+  if (!known) return known.error();
+  if (known->counts != wearer.about.counts)
+    return Error{Errc::bad_input, printable(stored.string()) +
+                                      ": is of another kind of glove; calibrate this one anew"};
+  const auto made = wearer.about.made;
+  wearer.known = *known;
+  known->made = made;
+  constexpr std::string_view mark = ", touched up";
+  if (!known->method.ends_with(mark)) known->method += mark;
+  wearer.about = *std::move(known);
+  return {};
 }
 
 /// Returns the path of the file, beside the calibration, with the poses of a session that was quit.
 fs::path unfinished_path(const Wearer& wearer) {
-  return wearer.path.string() + ".unfinished";
+  return wearer.path.string() + (wearer.known ? ".touch-up.unfinished" : ".unfinished");
 }
 
 int fit_and_write(const Options& options, Wearer& wearer,
                   const calibrate::CalibrationGuide& guide) {
   const auto readings = guide.readings();
-  hand::FitOptions fitting = fit_options(options, wearer.about.counts);
+  hand::FitOptions fitting = fit_options(options, wearer.about.counts, wearer.known);
   fitting.free_motion = guide.free_motion();
   const auto fit = hand::fit_calibration(readings, wearer.about.side, wearer.sensors, fitting);
   if (!fit) return cli::report(fit.error());
   calibrate::print_report(std::cout, *fit, readings, wearer.sensors);
   wearer.about.calibration = fit->calibration;
+  wearer.about.size = fit->size;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const hand::SensorFit& sensor = fit->sensors[slot];
     if (!wearer.sensors.has(static_cast<Sensor>(slot))) {
       wearer.about.calibration.sensors[slot] = {};
       continue;
     }
+    if (wearer.known) continue; // how well its line is known has not changed
     const bool known = sensor.gain_determined && sensor.offset_determined;
     wearer.about.quality[slot] = hand::SensorQuality{sensor.residual_rad, sensor.low_counts,
                                                      sensor.high_counts, known ? 1.0 : 0.0};
@@ -157,6 +203,7 @@ int calibrate_from_capture(const Options& options) {
               std::string(hand::pose_of(guide.asked()).name) + " was held");
   Wearer wearer = describe(options, capture->side, capture->counts, sensors);
   set_path(wearer, options);
+  if (const auto fine = begin_with_known(wearer, options); !fine) return cli::report(fine.error());
   return fit_and_write(options, wearer, guide);
 }
 
@@ -187,6 +234,7 @@ int calibrate_glove(const Options& options) {
   wearer.about.glove_model = info.model;
   wearer.about.glove_serial = gloves::serial_of(info);
   set_path(wearer, options);
+  if (const auto fine = begin_with_known(wearer, options); !fine) return cli::report(fine.error());
   calibrate::CalibrationGuide guide(poses_for(options), info.counts);
   std::error_code error;
   bool went_on = false;
@@ -200,8 +248,8 @@ int calibrate_glove(const Options& options) {
     if (went_on) guide.restore(before->readings, before->free_motion);
   }
   cli::install_stop_signals();
-  const auto end = calibrate::run_calibration_session(**glove, options.user,
-                                                      fit_options(options, info.counts), guide);
+  const auto end = calibrate::run_calibration_session(
+      **glove, options.user, fit_options(options, info.counts, wearer.known), guide);
   if (!end) return cli::report(end.error());
   if (*end == calibrate::SessionEnd::quit) return keep_for_later(wearer, guide, went_on);
   const int code = fit_and_write(options, wearer, guide);
@@ -222,6 +270,9 @@ void add(cli::Command& program) {
   command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, auto, ...");
   command.add_option("--user", options->user, "Whose hand it is");
   command.add_flag("--quick", options->quick, "Two poses only: the flat hand and the fist");
+  command.add_flag("--touch-up", options->touch_up,
+                   "Mends the calibration that there is after the glove was put on anew: flat "
+                   "hand, fist and pinches");
   command.add_option("--from", options->from,
                      "A capture instead of a glove: what nendo monitor --json has printed while "
                      "the poses were held one after another, three seconds each");

@@ -141,6 +141,11 @@ int show(const std::string& name, bool json) {
   line["counts"] = {{"most", wearer.counts.most}, {"whole_range", wearer.counts.whole_range}};
   line["hand_length_m"] = wearer.size.length_m;
   line["hand_breadth_m"] = wearer.size.breadth_m;
+  if (!wearer.size.shape.is_average()) {
+    auto& shape = line["hand_shape"];
+    for (std::size_t k = 0; k < hand::shape_terms; ++k)
+      shape[std::string(hand::shape_term_names[k])] = wearer.size.shape.terms[k];
+  }
   line["middle_bias"] = wearer.calibration.middle_bias;
   ordered_json mixed_in = ordered_json::array();
   for (std::size_t k = 0; k < hand::couplings.size(); ++k) {

@@ -32,6 +32,13 @@ std::string complaint_about(const HandTrack& track) {
   if (!within(track.size.length_m, least_hand_m, 1.0) ||
       !within(track.size.breadth_m, least_hand_m, 1.0))
     return whose + ": length and breadth must lie within 0.01 and 1 m";
+  for (std::size_t k = 0; k < hand::shape_terms; ++k) {
+    const auto term = static_cast<hand::ShapeTerm>(k);
+    const double most = hand::most_of(term);
+    if (!within(track.size.shape[term], -most, most))
+      return whose + ": shape: " + std::string(hand::name_of(term)) + " must lie within " +
+             std::to_string(-most) + " and " + std::to_string(most);
+  }
   if (track.keys.empty()) return whose + ": has no key; a hand needs one at least";
   if (track.keys.size() > most_keys)
     return whose + ": has more than " + std::to_string(most_keys) + " keys";

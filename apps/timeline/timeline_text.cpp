@@ -178,6 +178,15 @@ std::string head_text(const Timeline& timeline) {
          line("crc32c", std::to_string(timeline.mesh_sum.crc));
 }
 
+/// Empty for an average hand.
+std::string shape_text(const hand::WearerShape& shape) {
+  if (shape.is_average()) return {};
+  std::string list;
+  for (const double term : shape.terms)
+    list += (list.empty() ? "[" : ", ") + decimal_text(term);
+  return line("shape", list + "]");
+}
+
 } // namespace
 
 Result<std::string> timeline_text(const Timeline& timeline) {
@@ -191,7 +200,7 @@ Result<std::string> timeline_text(const Timeline& timeline) {
   for (const HandTrack& hand : timeline.hands) {
     text += "\n[[hands]]\n" + line("side", toml_string(name_of(hand.side))) +
             line("length_m", decimal_text(hand.size.length_m)) +
-            line("breadth_m", decimal_text(hand.size.breadth_m));
+            line("breadth_m", decimal_text(hand.size.breadth_m)) + shape_text(hand.size.shape);
     for (const Key& key : hand.keys) {
       text += key_text(key);
       if (text.size() > most_file_bytes)

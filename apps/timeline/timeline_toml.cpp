@@ -126,11 +126,23 @@ std::optional<Side> side_named(std::string_view name) {
   return std::nullopt;
 }
 
+void read_hand_shape(TomlReader& reader, const toml::table& table, hand::WearerShape& shape) {
+  const toml::array* const terms = reader.array(table, "shape");
+  if (terms == nullptr) return;
+  if (terms->size() != hand::shape_terms)
+    return reader.complain(table, "shape must have " + std::to_string(hand::shape_terms) +
+                                      " numbers; leave it out for an average hand");
+  for (std::size_t k = 0; k < hand::shape_terms; ++k)
+    shape.terms[k] = reader.number(*terms->get(k), "shape");
+}
+
 HandTrack read_hand(TomlReader& reader, const toml::table& table) {
-  reader.allow_only(table, {"side", "length_m", "breadth_m", "keys"});
+  reader.allow_only(table, {"side", "length_m", "breadth_m", "shape", "keys"});
   HandTrack hand;
   hand.side = reader.named(table, "side", side_named);
-  hand.size = {reader.number(table, "length_m"), reader.number(table, "breadth_m")};
+  hand.size.length_m = reader.number(table, "length_m");
+  hand.size.breadth_m = reader.number(table, "breadth_m");
+  if (table.get("shape") != nullptr) read_hand_shape(reader, table, hand.size.shape);
   const toml::array* const keys = reader.array(table, "keys");
   if (keys == nullptr) return hand;
   for (const toml::node& node : *keys) {

@@ -106,6 +106,12 @@ std::string complaint_about(const SensorQuality& quality) {
 std::string complaint_about(const HandSize& size) {
   if (!lies_within(size.length_m, 0.05, 0.35)) return "length_m must lie within 0.05 and 0.35";
   if (!lies_within(size.breadth_m, 0.02, 0.2)) return "breadth_m must lie within 0.02 and 0.2";
+  for (std::size_t k = 0; k < shape_terms; ++k) {
+    const double most = most_of(static_cast<ShapeTerm>(k));
+    if (!lies_within(size.shape.terms[k], -most, most))
+      return std::string(shape_term_names[k]) + " must be a number from " + std::to_string(-most) +
+             " to " + std::to_string(most);
+  }
   return {};
 }
 

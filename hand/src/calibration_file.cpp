@@ -66,6 +66,15 @@ std::string mixed_in_lines(const Calibration& calibration) {
   return text.empty() ? "" : "mixed_in = [\n" + text + "]\n";
 }
 
+/// Empty for an average hand.
+std::string shape_lines(const WearerShape& shape) {
+  if (shape.is_average()) return "";
+  std::string text = "\n[hand_shape]\n";
+  for (std::size_t k = 0; k < shape_terms; ++k)
+    text += std::string(shape_term_names[k]) + " = " + decimal_text(shape.terms[k]) + "\n";
+  return text;
+}
+
 // NAME.20261121T192705Z.toml, or NAME.20261121T192705Z-2.toml: when it went out of use, and which
 // one of that second.
 struct Version {
@@ -191,7 +200,8 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
           "\ncounts_most = " + std::to_string(wearer.counts.most) +
           "\nwhole_range = " + (wearer.counts.whole_range ? "true" : "false") + "\n";
   text += "\n[hand_size]\nlength_m = " + decimal_text(wearer.size.length_m) +
-          "\nbreadth_m = " + decimal_text(wearer.size.breadth_m) + "\n\n[sensors]\n";
+          "\nbreadth_m = " + decimal_text(wearer.size.breadth_m) + "\n" +
+          shape_lines(wearer.size.shape) + "\n[sensors]\n";
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const auto& line = wearer.calibration.sensors[slot];
     if (line.gain_rad_per_count == 0.0) continue;

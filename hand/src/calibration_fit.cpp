@@ -2,29 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <nendo/base/units.hpp>
 
+#include "fit_choice.hpp"
 #include "fit_priors.hpp"
 #include "fit_problem.hpp"
+#include "fit_solver.hpp"
 
 namespace nendo::hand {
 namespace {
 
-// An unknown of which the poses leave more than this part of the default's variance is theirs no
-// more: it is fixed at the default.
-constexpr double most_left_open = 0.8;
-// Deviations stay below 15 degrees; a sensor that is off by twice that on average is dead, or its
-// poses were others than those named.
+// Deviations stay below 15 degrees; a sensor that is off by twice that on average has evidence that
+// contradicts the rest. So does a line that is five times as flat as the default.
 constexpr double contradiction_rad = from_degrees(30);
-// No sensor needs five times the default's counts for its joint.
 constexpr double least_gain_ratio = 0.2;
-
-using Free = std::vector<Eigen::Index>;
+// Touches that leave pads so far apart were other touches.
+constexpr double contradiction_m = 0.02;
+constexpr int most_set_aside = 16;
+// A sensor that turns by less than this part of the default's counts for the angles that were asked
+// does not work.
+constexpr double least_counts_ratio = 0.15;
 
 Error about(std::string what) {
   return {Errc::bad_input, std::move(what)};
@@ -75,145 +79,20 @@ Result<void> check(std::span<const PoseReading> readings, SensorMask sensors,
   return {};
 }
 
-Free first_unknowns(SensorMask sensors, const FitOptions& options) {
+FreeUnknowns first_unknowns(SensorMask sensors, const FitOptions& options) {
   const Calibration start = default_calibration(options.scale);
-  Free free;
+  FreeUnknowns free;
   const auto add = [&](std::size_t unknown) { free.push_back(static_cast<Eigen::Index>(unknown)); };
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const bool real = start.sensors[slot].gain_rad_per_count != 0.0; // slot 7 has no default
     if (!sensors.has(static_cast<Sensor>(slot)) || !real) continue;
-    add(gain_of(slot));
+    if (options.mode != FitMode::touch_up) add(gain_of(slot));
     add(level_of(slot));
   }
   for (std::size_t k = 0; options.mode == FitMode::full && k < couplings.size(); ++k) {
     if (sensors.has(couplings[k].of) && sensors.has(couplings[k].by)) add(mix_of(k));
   }
   return free;
-}
-
-/// How many of these are the calibration's; they come first.
-Eigen::Index lines_in(const Free& free) {
-  return std::count_if(free.begin(), free.end(), [](Eigen::Index unknown) {
-    return unknown < static_cast<Eigen::Index>(line_unknowns);
-  });
-}
-
-template <class Matrix>
-Eigen::MatrixXd columns_of(const Matrix& matrix, const Free& free) {
-  Eigen::MatrixXd chosen(matrix.rows(), static_cast<Eigen::Index>(free.size()));
-  for (std::size_t at = 0; at < free.size(); ++at)
-    chosen.col(static_cast<Eigen::Index>(at)) = matrix.col(free[at]);
-  return chosen;
-}
-
-/// What poses as far apart as these say of the free unknowns, J^T J. How far each is off says
-/// nothing of a gain: all deviations are in counts here.
-Eigen::MatrixXd information_at(const FitProblem& problem, const Free& free, const Unknowns& at) {
-  Eigen::VectorXd residuals;
-  Eigen::MatrixXd jacobian;
-  problem.evaluate(at, residuals, &jacobian);
-  problem.hold_weights(residuals, 1.0, jacobian);
-  const Eigen::MatrixXd slopes = columns_of(jacobian, free);
-  return slopes.transpose() * slopes;
-}
-
-/// Levenberg and Marquardt's method over the free unknowns, with deviations in counts by so great a
-/// part, which follow from turn to turn. The default pulls with its own weight, 1.
-void minimise(const FitProblem& problem, const Free& free, double in_counts, Unknowns& at) {
-  Eigen::VectorXd residuals;
-  Eigen::MatrixXd jacobian;
-  double damping = 1e-3;
-  for (int turn = 0; turn < 60; ++turn) {
-    problem.evaluate(at, residuals, &jacobian);
-    problem.hold_weights(residuals, in_counts, jacobian);
-    const double cost = residuals.squaredNorm() + at.squaredNorm();
-    const Eigen::MatrixXd slopes = columns_of(jacobian, free);
-    const Eigen::MatrixXd information = slopes.transpose() * slopes;
-    Eigen::VectorXd downhill = -(slopes.transpose() * residuals);
-    for (std::size_t n = 0; n < free.size(); ++n)
-      downhill[static_cast<Eigen::Index>(n)] -= at[free[n]];
-    bool better = false;
-    double step_length = 0.0;
-    for (; !better && damping < 1e12; damping *= 10.0) {
-      Eigen::MatrixXd damped = information;
-      damped.diagonal() += damping * information.diagonal();
-      damped.diagonal().array() += 1.0;
-      const Eigen::VectorXd step = damped.llt().solve(downhill);
-      Unknowns next = at;
-      for (std::size_t n = 0; n < free.size(); ++n)
-        next[free[n]] += step[static_cast<Eigen::Index>(n)];
-      problem.evaluate(next, residuals, nullptr);
-      problem.weigh_as(at, next, in_counts, residuals);
-      // false, too, of what is not a number
-      better = residuals.squaredNorm() + next.squaredNorm() <= cost;
-      if (!better) continue;
-      at = next;
-      step_length = step.norm();
-      damping *= 0.01; // and once more times 10 by the loop
-    }
-    damping = std::max(damping, 1e-12);
-    if (!better || step_length < 1e-10) break;
-  }
-}
-
-/// Deviations in counts follow gains that are far off, where poses contradict each other, and lead
-/// astray: they begin with a fit in radians, and stay there if they fit much worse than that does.
-void minimise_safely(const FitProblem& problem, const Free& free, Unknowns& at) {
-  constexpr double much_worse = 2.0;
-  Eigen::VectorXd residuals;
-  const auto cost_at = [&](const Unknowns& x) {
-    problem.evaluate(x, residuals, nullptr);
-    return residuals.squaredNorm() + x.squaredNorm();
-  };
-  minimise(problem, free, 0.0, at);
-  Unknowns in_counts = at;
-  minimise(problem, free, scatter_in_counts, in_counts);
-  if (cost_at(in_counts) <= much_worse * cost_at(at) + 1e-9) at = in_counts;
-}
-
-/// The covariance of the free unknowns, the default's word included.
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
-  Eigen::MatrixXd with_default = information;
-  with_default.diagonal().array() += 1.0;
-  return with_default.llt().solve(
-      Eigen::MatrixXd::Identity(information.rows(), information.cols()));
-}
-
-/// Takes out the unknown that is determined least, if any is not determined; those of which the
-/// poses say nothing at all go together.
-bool drop_undetermined(Free& free, const Eigen::MatrixXd& information, Unknowns& at) {
-  const Eigen::VectorXd open = covariance_of(information).diagonal().head(lines_in(free));
-  Eigen::Index worst = 0;
-  if (open.size() == 0 || open.maxCoeff(&worst) <= most_left_open) return false;
-  Free kept;
-  for (std::size_t n = 0; n < free.size(); ++n) {
-    const auto row = static_cast<Eigen::Index>(n);
-    if (row < open.size() && (row == worst || open[row] > 0.999))
-      at[free[n]] = 0.0;
-    else
-      kept.push_back(free[n]);
-  }
-  free = std::move(kept);
-  return true;
-}
-
-struct Solution {
-  Unknowns at = Unknowns::Zero();
-  Free free;
-  Eigen::MatrixXd information;
-  Eigen::MatrixXd covariance; ///< of those free unknowns that are the calibration's
-};
-
-Solution solve(const FitProblem& problem, Free free) {
-  Solution solution;
-  solution.free = std::move(free);
-  do {
-    minimise_safely(problem, solution.free, solution.at);
-    solution.information = information_at(problem, solution.free, solution.at);
-  } while (drop_undetermined(solution.free, solution.information, solution.at));
-  const Eigen::Index lines = lines_in(solution.free);
-  solution.covariance = covariance_of(solution.information).topLeftCorner(lines, lines);
-  return solution;
 }
 
 /// Of the calibration, whatever the wearer's own unknowns are.
@@ -231,11 +110,12 @@ void describe_sensors(CalibrationFit& fit, std::span<const PoseReading> readings
                       SensorMask sensors, const FitProblem& problem, const Solution& solution) {
   std::array<double, sensor_slots> squares{};
   std::array<std::size_t, sensor_slots> counted{};
-  const Free lines(solution.free.begin(), solution.free.begin() + lines_in(solution.free));
+  const FreeUnknowns lines(solution.free.begin(), solution.free.begin() + lines_in(solution.free));
   for (std::size_t n = 0; n < readings.size(); ++n) {
     FitProblem::AngleJacobian jacobian;
     const SensorAngles angles = problem.angles_rad(solution.at, n, &jacobian);
-    for (const auto& [slot, assumed] : problem.assumptions(n)) {
+    for (const auto& [slot, assumed, is_set_aside] : problem.assumptions(n)) {
+      if (is_set_aside) continue;
       squares[slot] += std::pow(angles[slot] - assumed.angle_rad, 2);
       ++counted[slot];
     }
@@ -274,22 +154,127 @@ void describe_readings(CalibrationFit& fit, std::span<const PoseReading> reading
   }
 }
 
-Result<void> check_fitted(const CalibrationFit& fit, SensorMask sensors, CountScale scale) {
+/// A finger's first two joints are bent by whoever makes a fist. Where their counts do not follow,
+/// the glove is broken, or the poses were others than those named.
+Result<void> check_fingers(std::span<const PoseReading> readings, SensorMask sensors,
+                           CountScale scale) {
   const Calibration start = default_calibration(scale);
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    if (!sensors.has(static_cast<Sensor>(slot))) continue;
-    const SensorFit& sensor = fit.sensors[slot];
-    const double gain = fit.calibration.sensors[slot].gain_rad_per_count;
-    if (!std::isfinite(gain) || !std::isfinite(fit.calibration.sensors[slot].offset_counts))
-      return about(name_of_slot(slot) + ": no line fits its counts; hold the poses again");
-    if (sensor.gain_determined && gain < least_gain_ratio * start.sensors[slot].gain_rad_per_count)
+    const bool mcp_or_pip = slot >= static_cast<std::size_t>(Sensor::index_mcp) &&
+                            slot < static_cast<std::size_t>(Sensor::palm_arch) && slot % 4 < 2;
+    if (!mcp_or_pip || !sensors.has(static_cast<Sensor>(slot))) continue;
+    std::array<double, 2> counts{}, angles{}, number{};
+    for (const PoseReading& reading : readings) {
+      const AssumedAngle& assumed = pose_of(reading.pose).assumed[slot];
+      if (!assumed.known()) continue;
+      const std::size_t bent = assumed.angle_rad > from_degrees(45) ? 1 : 0;
+      counts[bent] += reading.held.mean_counts[slot];
+      angles[bent] += assumed.angle_rad;
+      number[bent] += 1.0;
+    }
+    const double turned = counts[1] / number[1] - counts[0] / number[0];
+    const double asked =
+        (angles[1] / number[1] - angles[0] / number[0]) / start.sensors[slot].gain_rad_per_count;
+    if (turned < -least_counts_ratio * asked)
       return about(name_of_slot(slot) +
                    ": its counts fall where the joint bends; hold the poses again as named");
-    if (sensor.residual_rad > contradiction_rad)
+    if (!(turned > least_counts_ratio * asked))
       return about(name_of_slot(slot) +
                    ": the poses contradict each other; hold them again, or see if it works");
   }
   return {};
+}
+
+/// The assumption that is farthest off, in its deviations, of a sensor whose evidence contradicts
+/// itself.
+std::optional<std::pair<std::size_t, std::size_t>> worst_assumption(const FitProblem& problem,
+                                                                    std::size_t readings,
+                                                                    const Solution& solution,
+                                                                    const Calibration& start) {
+  std::array<double, sensor_slots> squares{}, counted{};
+  std::vector<SensorAngles> angles;
+  for (std::size_t n = 0; n < readings; ++n) {
+    angles.push_back(problem.angles_rad(solution.at, n, nullptr));
+    for (const auto& [slot, assumed, is_set_aside] : problem.assumptions(n)) {
+      if (is_set_aside) continue;
+      squares[slot] += std::pow(angles[n][slot] - assumed.angle_rad, 2);
+      counted[slot] += 1.0;
+    }
+  }
+  const Calibration fitted = problem.calibration(solution.at);
+  std::optional<std::pair<std::size_t, std::size_t>> worst;
+  double farthest = 0.0;
+  for (std::size_t n = 0; n < readings; ++n) {
+    const auto& assumptions = problem.assumptions(n);
+    for (std::size_t k = 0; k < assumptions.size(); ++k) {
+      const auto& [slot, assumed, is_set_aside] = assumptions[k];
+      const bool contradicts =
+          std::sqrt(squares[slot] / std::max(counted[slot], 1.0)) > contradiction_rad ||
+          fitted.sensors[slot].gain_rad_per_count <
+              least_gain_ratio * start.sensors[slot].gain_rad_per_count;
+      const double off = std::abs(angles[n][slot] - assumed.angle_rad) / assumed.deviation_rad;
+      if (is_set_aside || !contradicts || off <= farthest) continue;
+      farthest = off;
+      worst = std::pair(n, k);
+    }
+  }
+  return worst;
+}
+
+/// Solves, and sets evidence aside until the rest agrees.
+Solution solve_without_contradictions(FitProblem& problem, std::size_t readings,
+                                      const FreeUnknowns& free, const Calibration& start,
+                                      std::vector<SetAside>& set_aside) {
+  for (;;) {
+    Solution solution = solve(problem, free, Unknowns::Zero());
+    if (static_cast<int>(set_aside.size()) >= most_set_aside) return solution;
+    bool changed = false;
+    if (const auto worst = worst_assumption(problem, readings, solution, start)) {
+      const auto [reading, number] = *worst;
+      const std::size_t slot = problem.assumptions(reading)[number].slot;
+      set_aside.push_back({reading, static_cast<Sensor>(slot)});
+      problem.set_aside(reading, number);
+      changed = true;
+    }
+    std::size_t widest = readings;
+    double widest_m = contradiction_m;
+    for (std::size_t n = 0; n < readings; ++n) {
+      const double gap_m = problem.touch_is_set_aside(n) ? 0.0 : problem.gap_m(solution.at, n);
+      if (gap_m <= widest_m) continue;
+      widest = n;
+      widest_m = gap_m;
+    }
+    if (widest < readings) {
+      set_aside.push_back({widest, std::nullopt});
+      problem.set_aside_touch(widest);
+      changed = true;
+    }
+    if (!changed) return solution;
+  }
+}
+
+/// No line that is flat to nothing, or not a number, leaves the fit: such a sensor keeps the
+/// default's.
+void mend_lines(CalibrationFit& fit, SensorMask sensors, const Calibration& start) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!sensors.has(sensor)) continue;
+    const auto [gain, offset] = fit.calibration.sensors[slot];
+    const double usual = start.sensors[slot].gain_rad_per_count;
+    if (std::isfinite(gain) && std::isfinite(offset) && gain >= least_gain_ratio * usual) continue;
+    fit.calibration.sensors[slot] = start.sensors[slot];
+    fit.sensors[slot].gain_determined = fit.sensors[slot].offset_determined = false;
+    fit.undetermined.add(sensor);
+  }
+}
+
+double touch_residual_m(const CalibrationFit& fit) {
+  double squares = 0.0, touches = 0.0;
+  for (const ReadingFit& reading : fit.readings) {
+    squares += reading.gap_m * reading.gap_m;
+    touches += reading.gap_m > 0.0 ? 1.0 : 0.0;
+  }
+  return std::sqrt(squares / std::max(touches, 1.0));
 }
 
 } // namespace
@@ -297,30 +282,39 @@ Result<void> check_fitted(const CalibrationFit& fit, SensorMask sensors, CountSc
 Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
                                        SensorMask sensors, const FitOptions& options) {
   if (auto fine = check(readings, sensors, options); !fine) return fine.error();
-  const FitProblem problem(readings, side, sensors, options);
-  Free free = first_unknowns(sensors, options);
+  if (auto fine = check_fingers(readings, sensors, options.scale); !fine) return fine.error();
+  FitProblem problem(readings, side, sensors, options);
+  FreeUnknowns free = first_unknowns(sensors, options);
   for (const Eigen::Index unknown : problem.wearers_unknowns())
     free.push_back(unknown);
-  const Solution solution = solve(problem, std::move(free));
+  const Calibration start = options.start.value_or(default_calibration(options.scale));
   CalibrationFit fit;
+  const Solution solution =
+      solve_without_contradictions(problem, readings.size(), free, start, fit.set_aside);
   fit.calibration = problem.calibration(solution.at);
+  fit.size = problem.size(solution.at);
   fit.condition = condition_of(solution.covariance);
   const auto determined = [&](std::size_t unknown) {
     return std::find(solution.free.begin(), solution.free.end(),
                      static_cast<Eigen::Index>(unknown)) != solution.free.end();
   };
+  const bool gains_are_kept = options.mode == FitMode::touch_up;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    fit.sensors[slot].gain_determined = determined(gain_of(slot));
-    fit.sensors[slot].offset_determined = determined(level_of(slot));
+    fit.sensors[slot].gain_determined = gains_are_kept || determined(gain_of(slot));
+    fit.sensors[slot].offset_determined = gains_are_kept || determined(level_of(slot));
     const auto sensor = static_cast<Sensor>(slot);
-    if (sensors.has(sensor) && !(determined(gain_of(slot)) && determined(level_of(slot))))
+    const SensorFit& of = fit.sensors[slot];
+    if (sensors.has(sensor) && !(of.gain_determined && of.offset_determined))
       fit.undetermined.add(sensor);
   }
   for (std::size_t k = 0; k < couplings.size(); ++k)
     fit.coupling_determined[k] = determined(mix_of(k));
   describe_sensors(fit, readings, sensors, problem, solution);
   describe_readings(fit, readings, problem, solution);
-  if (auto fine = check_fitted(fit, sensors, options.scale); !fine) return fine.error();
+  fit.touch_residual_m = touch_residual_m(fit);
+  if (options.mode == FitMode::full && options.hold_out)
+    choose_by_held_out_poses(fit, readings, side, sensors, options, solution);
+  mend_lines(fit, sensors, start);
   return fit;
 }
 

@@ -169,6 +169,8 @@ constexpr std::array<CalibrationPose, pose_count> poses{{
         .wrist({0, 6}, {-30, 6}),
 }};
 
+constexpr std::array touch_up{PoseId::flat,         PoseId::fist,       PoseId::pinch_index,
+                              PoseId::pinch_middle, PoseId::pinch_ring, PoseId::pinch_little};
 constexpr std::array quick{PoseId::flat, PoseId::fist};
 constexpr auto full = [] {
   std::array<PoseId, pose_count> ids{};
@@ -200,6 +202,10 @@ std::optional<PoseId> pose_named(std::string_view name) noexcept {
 
 std::span<const PoseId> quick_poses() noexcept {
   return quick;
+}
+
+std::span<const PoseId> touch_up_poses() noexcept {
+  return touch_up;
 }
 
 std::span<const PoseId> full_poses() noexcept {

@@ -209,6 +209,21 @@ void read_glove(Reader& reader, const toml::table& root, WearerCalibration& wear
   wearer.counts.whole_range = reader.truth(*glove, "whole_range");
 }
 
+/// A file without a shape is of an average hand.
+void read_shape(Reader& reader, const toml::table& root, WearerShape& shape) {
+  if (root.get("hand_shape") == nullptr) return;
+  const toml::table* table = reader.table(root, "hand_shape");
+  if (table == nullptr) return;
+  for (const auto& [key, node] : *table) {
+    const auto* const known =
+        std::find(shape_term_names.begin(), shape_term_names.end(), key.str());
+    if (known == shape_term_names.end())
+      return reader.complain(node, "hand_shape has no " + in_quotes(key.str()) + "; leave it out");
+    shape.terms[static_cast<std::size_t>(known - shape_term_names.begin())] =
+        reader.number(*table, key.str());
+  }
+}
+
 void read_hand(Reader& reader, const toml::table& root, WearerCalibration& wearer) {
   const std::string hand = reader.text(root, "hand");
   if (hand != "left" && hand != "right")
@@ -218,13 +233,15 @@ void read_hand(Reader& reader, const toml::table& root, WearerCalibration& weare
   const toml::table* size = reader.table(root, "hand_size");
   if (size == nullptr) return;
   reader.allow_only(*size, {"length_m", "breadth_m"});
-  wearer.size = {reader.number(*size, "length_m"), reader.number(*size, "breadth_m")};
+  wearer.size.length_m = reader.number(*size, "length_m");
+  wearer.size.breadth_m = reader.number(*size, "breadth_m");
+  read_shape(reader, root, wearer.size.shape);
   reader.check(*size, "hand_size", complaint_about(wearer.size));
 }
 
 void read_wearer(Reader& reader, const toml::table& root, WearerCalibration& wearer) {
   reader.allow_only(root, {"version", "user", "hand", "made", "method", "middle_bias", "mixed_in",
-                           "glove", "hand_size", "sensors"});
+                           "glove", "hand_size", "hand_shape", "sensors"});
   wearer.user = reader.text(root, "user");
   reader.check(root, "user", complaint_about_text(wearer.user, false));
   wearer.method = reader.text(root, "method");

@@ -35,7 +35,13 @@ Eigen::Vector3d turned_about_x(const Eigen::Vector3d& v, Turn turn) noexcept {
 
 FingerChain::FingerChain(const HandSkeleton& skeleton, std::size_t finger) noexcept
     : is_thumb_(finger == 0), arch_share_(finger == 0 ? 0.0 : arch_share[finger - 1]),
-      base_m_(skeleton.rest_offset(metacarpals[finger])), head_m_(Eigen::Vector3d::Zero()) {
+      base_m_(skeleton.rest_offset(metacarpals[finger])), head_m_(Eigen::Vector3d::Zero()),
+      thumb_axes_(skeleton.axes().thumb), thumb_rest_rad_(skeleton.axes().thumb_rest_rad),
+      thumb_pronation_rad_(skeleton.axes().thumb_pronation_rad), tilt_(0.0, 1.0) {
+  if (!is_thumb_) {
+    const double tilt_rad = skeleton.axes().knuckle_tilts_rad[finger - 1];
+    tilt_ = {std::sin(tilt_rad), std::cos(tilt_rad)};
+  }
   std::size_t joint = index_of(metacarpals[finger]) + 1;
   if (!is_thumb_) head_m_ = skeleton.rest_offset(static_cast<Joint>(joint++));
   for (double& bone_m : bones_m_)
@@ -51,8 +57,10 @@ Fingertip FingerChain::finger_tip(const FourAngles& angles) const noexcept {
   const Reach from_pip = bone(bones_m_[1], t[2]) + distal;
   const Reach from_mcp = bone(bones_m_[0], t[1]) + from_pip;
   const auto in_space = [&](Reach reach) {
-    return Eigen::Vector3d(-reach.ahead_m * abduction.sin, -reach.down_m,
-                           -reach.ahead_m * abduction.cos);
+    const double aside_m = reach.down_m * tilt_[0];
+    return Eigen::Vector3d(abduction.cos * aside_m - abduction.sin * reach.ahead_m,
+                           -reach.down_m * tilt_[1],
+                           -abduction.sin * aside_m - abduction.cos * reach.ahead_m);
   };
   Fingertip tip;
   tip.position_m = in_space(from_mcp);
@@ -64,8 +72,9 @@ Fingertip FingerChain::finger_tip(const FourAngles& angles) const noexcept {
 
 Fingertip FingerChain::thumb_tip(const FourAngles& angles) const noexcept {
   Eigen::Array<double, 6, 1> row;
-  row << angles[0], thumb_rest_abduction_rad + angles[1], thumb_pronation(angles[0], angles[1]),
-      angles[2], angles[2] + angles[3], 0.0;
+  row << angles[0], thumb_rest_rad_ + angles[1],
+      thumb_pronation(thumb_pronation_rad_, angles[0], angles[1]), angles[2], angles[2] + angles[3],
+      0.0;
   const auto t = turns(row);
   const Turn roll = t[0];
   const Turn abduction = t[1];
@@ -90,6 +99,8 @@ Fingertip FingerChain::thumb_tip(const FourAngles& angles) const noexcept {
   tip.by_angle << Eigen::Vector3d(-p.y(), p.x(), 0.0) + pronation_by_roll * by_pronation,
       rolled(p.z(), 0.0, -before_roll_x) + pronation_by_abduction * by_pronation,
       in_space(from_mcp.by_flexion()), in_space(distal.by_flexion());
+  tip.position_m = thumb_axes_ * tip.position_m;
+  tip.by_angle = thumb_axes_ * tip.by_angle;
   return tip;
 }
 

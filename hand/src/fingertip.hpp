@@ -40,6 +40,12 @@ private:
   Eigen::Vector3d base_m_; ///< of the metacarpal
   Eigen::Vector3d head_m_; ///< from there to the MCP joint; fingers only
   std::array<double, 3> bones_m_;
+  // Of the thumb: the axes in which it rolls, and its angles at zero. Of a finger: the tilt of its
+  // knuckle's axis, as sine and cosine.
+  Eigen::Matrix3d thumb_axes_;
+  double thumb_rest_rad_;
+  double thumb_pronation_rad_;
+  Eigen::Vector2d tilt_;
 };
 
 } // namespace nendo::hand

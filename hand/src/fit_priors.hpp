@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <nendo/driver/sample.hpp>
+#include <nendo/hand/wearer_shape.hpp>
 
 namespace nendo::hand {
 
@@ -21,6 +22,30 @@ inline constexpr double gap_mix_deviation = 0.2;
 inline constexpr double pad_depth_deviation_m = 0.002;
 inline constexpr double pad_behind_deviation_m = 0.003;
 inline constexpr double palm_depth_deviation_m = 0.003;
+
+// How hands differ. The sizes are ANSUR II's, women and men together; the breadth is what is left
+// of it when the length is known. Bones vary by 7 to 14 % between people of all sizes (A. Buryanov,
+// V. Kotiuk, Int. J. Morphol. 28, 2010), of which the size takes its part. The carpometacarpal
+// axes of the thumb differ by 5 to 10 degrees between specimens (W. P. Cooney and others, 1981; A.
+// Hollister and others, 1992). All but ANSUR's are quoted from memory.
+inline constexpr double length_deviation = 0.06; ///< of its logarithm
+inline constexpr double breadth_deviation = 0.05;
+constexpr double shape_deviation(ShapeTerm term) noexcept {
+  if (term <= ShapeTerm::little_distal) return 0.06;
+  if (term <= ShapeTerm::thumb_base_z) return 0.004;
+  constexpr double degree = 0.017453292519943295;
+  if (term == ShapeTerm::thumb_pronation) return 10.0 * degree;
+  return 7.0 * degree;
+}
+
+// Even the right terms leave something of a hand: what its form cannot tell, in each coordinate of
+// a touch.
+inline constexpr double form_deviation_m = 0.0035;
+
+// How far sensors slip between wearings before anything is known of a wearing: the vendor's figure
+// of repeatability is 3 degrees. These are the least and the most that a touch-up believes.
+inline constexpr double least_slip_rad = 0.009;
+inline constexpr double most_slip_rad = 0.11;
 
 // Beyond this many deviations a residual counts by its size and no longer by its square. So a pose
 // that was held badly, or another pose than was asked for, does not spoil what the other poses
@@ -41,6 +66,9 @@ inline constexpr double habit_part = 0.6;
 // used in tuning, errors were least this far from radians to counts, by a geometric mean of both
 // deviations.
 inline constexpr double scatter_in_counts = 0.6;
+
+// Residuals that are set aside weigh so little.
+inline constexpr double set_aside_weight = 1e-4;
 
 // A free motion that stays this far behind the poses did not reach the end.
 inline constexpr double short_of_poses_rad = 0.05;

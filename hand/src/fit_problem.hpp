@@ -13,11 +13,13 @@ namespace nendo::hand {
 
 /// The unknowns, in units of their prior's standard deviation and 0 at its mean. The first are the
 /// calibration: for each slot the gain's logarithm and the angle at the mean of its counts, then
-/// the couplings. The others are the wearer's and are not reported: how deep the pads are, how far
-/// behind the tips, how deep the palm's flesh is, and for each slot the habit, by which the joint
-/// differs from every asked angle.
+/// the couplings. The others are the wearer's: how deep the pads are, how far behind the tips, how
+/// deep the palm's flesh is; the hand's length, breadth and shape; and for each slot the habit, by
+/// which the joint differs from every asked angle.
 inline constexpr std::size_t line_unknowns = 2 * sensor_slots + couplings.size();
-inline constexpr std::size_t habit_unknowns = line_unknowns + 3;
+inline constexpr std::size_t hand_unknowns = line_unknowns + 3;
+inline constexpr std::size_t shape_unknowns = hand_unknowns + 2;
+inline constexpr std::size_t habit_unknowns = shape_unknowns + shape_terms;
 inline constexpr std::size_t unknown_count = habit_unknowns + sensor_slots;
 constexpr std::size_t gain_of(std::size_t slot) noexcept {
   return 2 * slot;
@@ -40,6 +42,13 @@ public:
              const FitOptions& options);
 
   Calibration calibration(const Unknowns& at) const;
+  /// The wearer's hand.
+  HandSize size(const Unknowns& at) const;
+
+  /// Lets the assumption count no more; `number` is its place among assumptions(reading).
+  void set_aside(std::size_t reading, std::size_t number);
+  void set_aside_touch(std::size_t reading);
+  bool touch_is_set_aside(std::size_t reading) const { return touch_is_set_aside_[reading]; }
 
   /// Computes all residuals, each divided by its deviation, and unless `jacobian` is null their
   /// derivatives by the unknowns.
@@ -64,6 +73,7 @@ public:
   struct Assumption {
     std::size_t slot;
     AssumedAngle assumed;
+    bool is_set_aside = false;
   };
   const std::vector<Assumption>& assumptions(std::size_t reading) const {
     return assumptions_[reading];
@@ -83,13 +93,28 @@ private:
     double pad_depth, pad_behind, palm_depth;
   };
   static Flesh flesh_m(const Unknowns& at) noexcept;
-  Eigen::Vector3d gap_m(const SensorAngles& angles, const Touch& touch, const Flesh& flesh_m) const;
+  Eigen::Vector3d gap_m(const SensorAngles& angles, const Touch& touch, const Flesh& flesh_m,
+                        const HandSkeleton& skeleton) const;
+  Eigen::Vector3d gap_m(const JointAngles& joints, const Touch& touch, const Flesh& flesh_m,
+                        const HandSkeleton& skeleton) const;
+  bool fits_hand(std::size_t unknown) const noexcept;
+  /// The hand's unknowns, each with a hand in which it alone is a little greater.
+  struct Moved {
+    Eigen::Index unknown;
+    HandSkeleton skeleton;
+  };
+  struct Hands {
+    HandSkeleton now;
+    std::vector<Moved> moved; ///< empty unless derivatives are wanted
+  };
+  Hands hands(const Unknowns& at, bool with_moved) const;
   void add_assumptions(std::size_t reading, const Unknowns& at, const SensorAngles& angles,
                        const AngleJacobian& by_unknowns, Eigen::VectorXd& residuals,
                        Eigen::MatrixXd* jacobian) const;
-  void add_touch(std::size_t reading, const Unknowns& at, SensorAngles angles,
+  void add_touch(std::size_t reading, const Unknowns& at, SensorAngles angles, const Hands& hands,
                  const AngleJacobian& by_unknowns, Eigen::VectorXd& residuals,
                  Eigen::MatrixXd* jacobian) const;
+  void find_slips();
   void add_range_ends(const Unknowns& at, Eigen::VectorXd& residuals,
                       Eigen::MatrixXd* jacobian) const;
   void find_range_ends(const CountRanges& free_motion);
@@ -112,14 +137,18 @@ private:
   };
 
   std::span<const PoseReading> readings_;
-  bool full_;
+  FitMode mode_;
+  bool full_; ///< not quick
   SensorMask sensors_;
-  HandSkeleton skeleton_;
+  Side side_;
+  HandSize start_size_;
+  bool size_known_;
   Calibration start_;
   double most_counts_;
   std::array<Line, sensor_slots> lines_{};
   std::vector<std::vector<Assumption>> assumptions_;
   std::vector<Rows> rows_;
+  std::vector<bool> touch_is_set_aside_;
   std::vector<RangeEnd> range_ends_;
   Eigen::Index height_ = 0;
 };

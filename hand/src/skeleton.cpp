@@ -111,15 +111,15 @@ double finite_or_zero(double angle_rad) noexcept {
 }
 
 /// Signed as turns about +X, +Y, +Z of a right hand.
-Turns<turn_count> turns_of(const JointAngles& angles) noexcept {
+Turns<turn_count> turns_of(const JointAngles& angles, const HandSkeleton::Axes& axes) noexcept {
   Eigen::Array<double, turn_count, 1> row;
   row[yaw_turn] = angles.wrist_yaw_rad;
   row[pitch_turn] = -angles.wrist_pitch_rad;
   const double roll_rad = finite_or_zero(angles.thumb_roll_rad);
   const double abduction_rad = finite_or_zero(angles.thumb_abduction_rad);
   row[roll_turn] = roll_rad;
-  row[thumb_abduction_turn] = thumb_rest_abduction_rad + abduction_rad;
-  row[pronation_turn] = thumb_pronation(roll_rad, abduction_rad);
+  row[thumb_abduction_turn] = axes.thumb_rest_rad + abduction_rad;
+  row[pronation_turn] = thumb_pronation(axes.thumb_pronation_rad, roll_rad, abduction_rad);
   row[thumb_mcp_turn] = -angles.thumb_mcp_flexion_rad;
   row[thumb_ip_turn] = -angles.thumb_ip_flexion_rad;
   row[arch_turns] = -arch_share[first_arched] * angles.palm_arch_rad;
@@ -135,6 +135,21 @@ Turns<turn_count> turns_of(const JointAngles& angles) noexcept {
   return turns(row);
 }
 
+HandSkeleton::Axes axes_of(const WearerShape& shape) {
+  HandSkeleton::Axes axes;
+  const double tilt_x = shape[ShapeTerm::thumb_tilt_x], tilt_y = shape[ShapeTerm::thumb_tilt_y];
+  axes.thumb_is_tilted = tilt_x != 0.0 || tilt_y != 0.0;
+  axes.thumb =
+      axes.thumb_is_tilted
+          ? Matrix3d(AngleAxisd(tilt_x, Vector3d::UnitX()) * AngleAxisd(tilt_y, Vector3d::UnitY()))
+          : Matrix3d(Matrix3d::Identity());
+  axes.thumb_rest_rad = thumb_rest_abduction_rad + shape[ShapeTerm::thumb_rest];
+  axes.thumb_pronation_rad = thumb_pronation_rad + shape[ShapeTerm::thumb_pronation];
+  for (std::size_t f = 0; f < 4; ++f)
+    axes.knuckle_tilts_rad[f] = shape.terms[static_cast<std::size_t>(ShapeTerm::index_tilt) + f];
+  return axes;
+}
+
 } // namespace
 
 Eigen::Matrix<double, 3, 5> HandPose::fingertip_positions() const noexcept {
@@ -145,21 +160,30 @@ Eigen::Matrix<double, 3, 5> HandPose::fingertip_positions() const noexcept {
   return tips;
 }
 
-HandSkeleton::Offsets HandSkeleton::offsets_of(HandSize size) {
+HandSkeleton::Offsets HandSkeleton::offsets_of(const HandSize& size) {
   Offsets offsets_m;
   offsets_m.fill(Vector3d::Zero());
   const double length = size.length_m;
   const double breadth = size.breadth_m;
+  const WearerShape& shape = size.shape;
+  const auto longer = [&](ShapeTerm first, std::size_t bone) {
+    const double term = shape.terms[static_cast<std::size_t>(first) + bone];
+    return term == 0.0 ? 1.0 : std::exp(term);
+  };
   const auto along = [](double metres) { return Vector3d(0.0, 0.0, -metres); };
   const auto set = [&](Joint joint, std::size_t steps, const Vector3d& offset) {
     offsets_m[index_of(joint) + steps] = offset;
   };
   set(Joint::thumb_metacarpal, 0,
-      {thumb_cmc_across * breadth, thumb_cmc_dorsal * length, -thumb_cmc_axial * length});
+      {thumb_cmc_across * breadth + shape[ShapeTerm::thumb_base_x],
+       thumb_cmc_dorsal * length + shape[ShapeTerm::thumb_base_y],
+       -thumb_cmc_axial * length + shape[ShapeTerm::thumb_base_z]});
   for (std::size_t bone = 0; bone < 3; ++bone) {
-    set(Joint::thumb_metacarpal, bone + 1, along(thumb_bones[bone] * length));
+    set(Joint::thumb_metacarpal, bone + 1,
+        along(longer(ShapeTerm::thumb_metacarpal, bone) * thumb_bones[bone] * length));
   }
-  for (const auto& finger : fingers) {
+  for (std::size_t f = 0; f < 4; ++f) {
+    const FingerProportions& finger = fingers[f];
     const Vector3d base(metacarpal_base_across * finger.mcp_across * breadth, 0.0,
                         -metacarpal_base_axial * length);
     const Vector3d head(finger.mcp_across * breadth, finger.mcp_dorsal * length,
@@ -167,28 +191,33 @@ HandSkeleton::Offsets HandSkeleton::offsets_of(HandSize size) {
     set(finger.metacarpal, 0, base);
     set(finger.metacarpal, 1, head - base);
     for (std::size_t bone = 0; bone < 3; ++bone) {
-      set(finger.metacarpal, bone + 2, along(finger.phalanges[bone] * length));
+      set(finger.metacarpal, bone + 2,
+          along(longer(ShapeTerm::index_proximal, 3 * f + bone) * finger.phalanges[bone] * length));
     }
   }
   return offsets_m;
 }
 
-HandSkeleton::HandSkeleton(Side side, HandSize size) : HandSkeleton(side, offsets_of(size)) {}
+HandSkeleton::HandSkeleton(Side side, const HandSize& size)
+    : HandSkeleton(side, offsets_of(size), size.shape) {}
 
-HandSkeleton::HandSkeleton(Side side, const Offsets& offsets_m)
-    : side_(side), offsets_m_(offsets_m) {
+HandSkeleton::HandSkeleton(Side side, const Offsets& offsets_m, const WearerShape& shape)
+    : side_(side), offsets_m_(offsets_m), axes_(axes_of(shape)) {
   offsets_m_[index_of(Joint::palm)] =
       rest_offset(Joint::middle_metacarpal) + 0.5 * rest_offset(Joint::middle_proximal);
   // A left hand is the mirror image of a right one: with M = diag(-1, 1, 1), places become M p and
   // rotations M R M.
   const Vector3d mirror(side == Side::left ? -1.0 : 1.0, 1.0, 1.0);
+  own_thumb_axes_ = mirror.asDiagonal() * axes_.thumb * mirror.asDiagonal();
   palm_m_ = mirror.cwiseProduct(rest_offset(Joint::palm));
   thumb_base_m_ = mirror.cwiseProduct(rest_offset(Joint::thumb_metacarpal));
   for (std::size_t f = 0; f < fingers_.size(); ++f) {
     const Vector3d& head = rest_offset(joint_after(fingers[f].metacarpal, 1));
-    fingers_[f] = {mirror.cwiseProduct(rest_offset(fingers[f].metacarpal)),
-                   mirror.cwiseProduct(head),
-                   mirror.asDiagonal() * pointing(head) * mirror.asDiagonal()};
+    fingers_[f] = {
+        mirror.cwiseProduct(rest_offset(fingers[f].metacarpal)),
+        mirror.cwiseProduct(head),
+        mirror.asDiagonal() * pointing(head) * mirror.asDiagonal(),
+        {mirror.x() * std::sin(axes_.knuckle_tilts_rad[f]), std::cos(axes_.knuckle_tilts_rad[f])}};
   }
 }
 
@@ -214,7 +243,7 @@ Result<HandSkeleton> HandSkeleton::of_bones(Side side, const BoneLengths& bones)
     for (std::size_t bone = 0; bone < 4; ++bone)
       stretch(joint_after(fingers[f].metacarpal, bone + 1), bones.fingers_m[f][bone]);
   }
-  return HandSkeleton(side, offsets_m);
+  return HandSkeleton(side, offsets_m, {});
 }
 
 BoneLengths HandSkeleton::bones() const noexcept {
@@ -254,6 +283,7 @@ struct HandSkeleton::Walk {
 
   void thumb(Frame frame) noexcept {
     frame.move(hand.thumb_base_m_);
+    if (hand.axes_.thumb_is_tilted) frame.turn(hand.own_thumb_axes_);
     frame.turn_z(sideways(turns[roll_turn]));
     frame.turn_y(sideways(turns[thumb_abduction_turn]));
     frame.turn_z(sideways(turns[pronation_turn]));
@@ -277,6 +307,7 @@ struct HandSkeleton::Walk {
     place(metacarpal, along_bone);
     frame.move(root.head_m);
     frame.turn_y(sideways(turns[turn]));
+    if (root.tilt[0] != 0.0) frame.turn_z({root.tilt[0], root.tilt[1]});
     bend(joint_after(metacarpal, 1), turns[turn + 1], frame);
     bend(joint_after(metacarpal, 2), turns[turn + 2], frame);
     bend(joint_after(metacarpal, 3), turns[turn + 3], frame);
@@ -287,7 +318,7 @@ struct HandSkeleton::Walk {
 HandPose HandSkeleton::pose(const JointAngles& angles,
                             const Isometry3d& T_world_wrist) const noexcept {
   HandPose pose;
-  Walk walk{*this, turns_of(angles), pose};
+  Walk walk{*this, turns_of(angles, axes_), pose};
   Frame wrist(T_world_wrist);
   wrist.turn_y(walk.sideways(walk.turns[yaw_turn]));
   wrist.turn_x(walk.turns[pitch_turn]);

@@ -42,6 +42,9 @@ inline hand::WearerCalibration random_calibration(std::mt19937_64& random) {
   wearer.made = std::chrono::sys_seconds(std::chrono::seconds(random() % 253402300800ULL));
   wearer.size = {std::uniform_real_distribution(0.05, 0.35)(random),
                  std::uniform_real_distribution(0.02, 0.2)(random)};
+  for (std::size_t k = 0; random() % 2 == 0 && k < hand::shape_terms; ++k)
+    wearer.size.shape.terms[k] =
+        random_number(random, hand::most_of(static_cast<hand::ShapeTerm>(k)));
   wearer.calibration.middle_bias = random_number(random, 10.0);
   for (double& mixed_in : wearer.calibration.mixed_in)
     mixed_in = random() % 4 == 0 ? -0.0 : random_number(random, 10.0);
@@ -79,8 +82,8 @@ inline bool same_bits(const hand::WearerCalibration& a, const hand::WearerCalibr
   return a.user == b.user && a.glove_model == b.glove_model && a.glove_serial == b.glove_serial &&
          a.counts == b.counts && a.side == b.side && a.made == b.made && a.method == b.method &&
          same_bits(a.size.length_m, b.size.length_m) &&
-         same_bits(a.size.breadth_m, b.size.breadth_m) && a.quality == b.quality &&
-         same_bits(a.calibration, b.calibration);
+         same_bits(a.size.breadth_m, b.size.breadth_m) && a.size.shape == b.size.shape &&
+         a.quality == b.quality && same_bits(a.calibration, b.calibration);
 }
 
 } // namespace nendo::test

@@ -79,6 +79,13 @@ void read_size(CheckedReader& checked, hand::HandSize& size) {
   size.breadth_m = checked.number(least_hand_m, most_hand_m);
 }
 
+void read_shape(CheckedReader& checked, hand::WearerShape& shape) {
+  for (std::size_t k = 0; k < hand::shape_terms; ++k) {
+    const double most = hand::most_of(static_cast<hand::ShapeTerm>(k));
+    shape.terms[k] = checked.number(-most, most);
+  }
+}
+
 void put_layer(ByteWriter& writer, const flow::Layer& layer) {
   writer.u32_le(layer.joints.bits);
   writer.u8(static_cast<std::uint8_t>(layer.on));
@@ -147,6 +154,12 @@ void put_hand(ByteWriter& writer, std::uint8_t number, const flow::HandInput& ha
   if (hand.wearer.learned) put_learned(writer, *hand.wearer.learned);
   writer.u8(static_cast<std::uint8_t>(hand.layer.has_value()));
   if (hand.layer) put_layer(writer, *hand.layer);
+  const bool average = own.size.shape.is_average() && other.size.shape.is_average();
+  writer.u8(static_cast<std::uint8_t>(!average));
+  if (average) return;
+  for (const hand::HandSize* size : {&own.size, &other.size})
+    for (const double term : size->shape.terms)
+      writer.f64_le(term);
 }
 
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
@@ -170,6 +183,10 @@ bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands) {
     read_learned(reader, checked, hand.wearer.learned.emplace());
   if (reader.remaining() > 0 && reader.u8() != 0) // formats before 1.6 end before it
     read_layer(reader, checked, hand.layer.emplace());
+  if (reader.remaining() > 0 && reader.u8() != 0) { // formats before 1.7 end before it
+    read_shape(checked, own.size.shape);
+    read_shape(checked, other.size.shape);
+  }
   if (!checked.fine()) return false;
   hand.wearer.of(hand.first.side) = own;
   hand.wearer.of(opposite(hand.first.side)) = other;

@@ -6,8 +6,13 @@
 // meet by forward kinematics, whatever the angles (closed loops; Griffin, Findley, Turner, Cutkosky
 // 2000), on the ends of a free motion, and, very softly, on the default calibration. What the poses
 // do not determine stays at the default and is reported as undetermined.
+//
+// The hand is unknown, too: its size, its bones, the base and the axes of the thumb, and the tilt
+// of the knuckles are fitted with the sensors, each as far as published hands differ. So a touch
+// teaches mostly the hand where that is uncertain, and angles where it is known.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,14 +35,24 @@ enum class FitMode : std::uint8_t {
   /// hand. Uses no couplings and no touches. That is all that two poses can determine.
   quick,
   full,
+  /// Fits only how far each sensor has slipped since FitOptions::start was made, from a flat hand,
+  /// a fist and touches. How far sensors slip on the whole is found first, so that poses held
+  /// badly do not pass for slips.
+  touch_up,
 };
 
 struct FitOptions {
   CountScale scale{};
   FitMode mode = FitMode::full;
-  /// Is not fitted: in a larger hand touches close at the same angles, apart from the pads'
-  /// thickness.
+  /// The hand before it is fitted. With `size_known`, its length and breadth are measured, and not
+  /// fitted. In a touch-up all of it is kept.
   HandSize size{};
+  bool size_known = false;
+  /// The calibration that is touched up; needed for that alone.
+  std::optional<Calibration> start{};
+  /// Compares the full fit with the quick one by poses that are held out (see
+  /// CalibrationFit::by_two_poses). It takes as long again as the fit.
+  bool hold_out = true;
   /// The ranges of a free motion in which every joint went from end to end; empty without one. A
   /// sensor that reached less there than in the poses is taken not to have been at its end.
   CountRanges free_motion{};
@@ -62,8 +77,21 @@ struct ReadingFit {
   double gap_m = 0.0;  ///< between the pads that should touch; 0 in poses without touch
 };
 
+/// Evidence that contradicts the rest so much that it was not used.
+struct SetAside {
+  std::size_t reading = 0;      ///< its place among those given
+  std::optional<Sensor> sensor; ///< whose assumed angle it was; nullopt: the touch
+};
+
 struct CalibrationFit {
   Calibration calibration;
+  HandSize size; ///< this wearer's hand
+  /// Root mean square distance between the pads that touched, under the fit; 0 without touches.
+  double touch_residual_m = 0.0;
+  std::vector<SetAside> set_aside;
+  /// Sensors whose lines are those of the quick fit, because these foretell poses that were held
+  /// out better than those of the full fit. They go by groups of like joints.
+  SensorMask by_two_poses;
   std::array<SensorFit, sensor_slots> sensors{};
   std::array<bool, couplings.size()> coupling_determined{};
   SensorMask undetermined; ///< sensors that are present, whose gain or offset is the default's
@@ -75,9 +103,10 @@ struct CalibrationFit {
 
 /// Fits the calibration of a glove with these sensors on this side. `readings` must contain flat
 /// and fist, and may contain a pose several times; their order does not matter. The middle bias
-/// stays at its default, because no pose shows it. Takes milliseconds and allocates. Fails with
-/// bad_input on: a reading that is not finite, out of scale, saturated or lacks a sensor; flat or
-/// fist missing; a sensor that moves the wrong way, or whose poses contradict each other.
+/// stays at its default, because no pose shows it. Takes some hundred milliseconds and allocates.
+/// Fails with bad_input on: a reading that is not finite, out of scale, saturated or lacks a
+/// sensor; flat or fist missing; a sensor of a finger's first two joints that moves the wrong way
+/// or not at all. Other contradictions refuse nobody; their evidence is set aside.
 Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
                                        SensorMask sensors, const FitOptions& options = {});
 

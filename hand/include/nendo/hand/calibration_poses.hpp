@@ -85,6 +85,9 @@ std::optional<PoseId> pose_named(std::string_view name) noexcept;
 std::span<const PoseId> quick_poses() noexcept;
 /// Returns all poses, in an order that is easy on the hand.
 std::span<const PoseId> full_poses() noexcept;
+/// Returns the poses that tell how far sensors have slipped, in some twenty seconds: flat, fist and
+/// the four pinches.
+std::span<const PoseId> touch_up_poses() noexcept;
 /// Returns the poses that a full calibration asks for: all of them, then some once more, because
 /// they tell most, or alone, about a joint. No take asks for the same pose as the take before it.
 std::span<const PoseId> full_takes() noexcept;

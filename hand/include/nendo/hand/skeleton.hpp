@@ -15,14 +15,17 @@
 #include <nendo/hand/bone_lengths.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/joints.hpp>
+#include <nendo/hand/wearer_shape.hpp>
 
 namespace nendo::hand {
 
-/// The two external measures from which all bones are scaled. The defaults lie between the means of
-/// women and men in the ANSUR II survey (2012).
+/// The two external measures from which all bones are scaled, and what the hand differs by from an
+/// average hand of these measures. The defaults lie between the means of women and men in the ANSUR
+/// II survey (2012).
 struct HandSize {
   double length_m = 0.187;  ///< wrist crease to the tip of the middle finger
   double breadth_m = 0.083; ///< across the heads of the metacarpals
+  WearerShape shape{};
 };
 
 struct HandPose {
@@ -37,7 +40,7 @@ struct HandPose {
 
 class HandSkeleton {
 public:
-  explicit HandSkeleton(Side side, HandSize size = {});
+  explicit HandSkeleton(Side side, const HandSize& size = {});
 
   /// Makes a skeleton of a wearer's measured bones. The places where the metacarpals begin and
   /// their directions are those of an average hand, scaled as the middle finger's bones are. Error:
@@ -48,6 +51,16 @@ public:
   /// own angles turn the hand about it. An angle that is not finite counts as zero. Wait-free, no
   /// allocation.
   HandPose pose(const JointAngles& angles, const Eigen::Isometry3d& T_world_wrist) const noexcept;
+
+  /// The axes of the thumb and of the knuckles, in the axes of a right hand.
+  struct Axes {
+    Eigen::Matrix3d thumb;      ///< of the axis about which the thumb rolls, in those of the wrist
+    bool thumb_is_tilted;       ///< false: `thumb` is the identity
+    double thumb_rest_rad;      ///< the angle between thumb and index finger at zero angles
+    double thumb_pronation_rad; ///< how the thumb is turned about itself at zero angles
+    std::array<double, 4> knuckle_tilts_rad; ///< turns of the fingers about themselves
+  };
+  const Axes& axes() const noexcept { return axes_; }
 
   Side side() const noexcept { return side_; }
   /// Returns the lengths of the bones in this skeleton, whatever it was made from.
@@ -67,15 +80,18 @@ private:
     /// The axes of the metacarpal. Its -Z points along the bone, whereas the finger's zero is
     /// parallel to the wrist's axis.
     Eigen::Matrix3d metacarpal_axes;
+    Eigen::Vector2d tilt; ///< the sine and cosine of the knuckle's tilt
   };
 
   struct Walk;
 
-  static Offsets offsets_of(HandSize size);
-  HandSkeleton(Side side, const Offsets& offsets_m);
+  static Offsets offsets_of(const HandSize& size);
+  HandSkeleton(Side side, const Offsets& offsets_m, const WearerShape& shape);
 
   Side side_;
   Offsets offsets_m_;
+  Axes axes_;
+  Eigen::Matrix3d own_thumb_axes_; ///< of this side's own hand
   Eigen::Vector3d palm_m_;
   Eigen::Vector3d thumb_base_m_;
   std::array<FingerRoot, 4> fingers_;

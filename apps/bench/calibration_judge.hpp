@@ -1,0 +1,47 @@
+#pragma once
+// Judges calibrations by wearers of whom the truth is known from elsewhere: a file of wearers.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include <nendo/base/result.hpp>
+
+#include "bench/judged_wearer.hpp"
+
+namespace nendo::bench {
+
+enum class Judged : std::uint8_t {
+  full,       ///< the guided takes and the free motion
+  two_pose,   ///< flat and fist
+  lines,      ///< the best line of each sensor, by the true angles of the motion itself: a bound
+  worn_again, ///< the full calibration, after the glove was put on again
+  touched_up, ///< that, touched up
+};
+inline constexpr std::array<std::string_view, 5> judged_names{"full", "two_pose", "best lines",
+                                                              "worn again", "touched up"};
+
+/// The last row are the distances of pads that touch, in millimetres; the others are degrees.
+inline constexpr std::array<std::string_view, 9> judged_groups{
+    "finger MCP",      "finger PIP",    "finger DIP", "abduction", "thumb roll",
+    "thumb abduction", "thumb flexion", "wrist",      "pinch, mm"};
+
+template <class Value>
+using JudgedTable = std::array<std::array<Value, judged_groups.size()>, judged_names.size()>;
+
+struct Verdict {
+  JudgedTable<std::vector<float>> errors;
+  /// By group: how many wearers' 95th percentile is greater than that of the two-pose fit, by more
+  /// than 0.3 degrees.
+  std::array<int, judged_groups.size()> worse{};
+  int wearers = 0;
+  std::vector<std::string> refused; ///< names, and why
+  std::vector<double> fit_ms;
+};
+
+/// Adds a wearer's errors.
+void judge(const JudgedWearer& wearer, Verdict& verdict);
+
+} // namespace nendo::bench

@@ -1,0 +1,191 @@
+// Two commands: the table of a judgement, and the file of strangers to be judged by.
+
+#include "bench/judge_bench.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/bench.hpp"
+#include "bench/calibration_judge.hpp"
+#include "bench/stranger.hpp"
+#include "cli/cli.hpp"
+#include "cli/output_place.hpp"
+
+namespace nendo::bench {
+namespace judge_bench {
+namespace {
+
+/// The goals of the full calibration, median and 95th percentile.
+constexpr std::array<std::array<double, 2>, judged_groups.size()> goals{{{2.0, 5.5},
+                                                                         {1.6, 4.5},
+                                                                         {1.6, 5.0},
+                                                                         {1.2, 4.0},
+                                                                         {3.5, 11.0},
+                                                                         {2.5, 8.0},
+                                                                         {2.2, 7.0},
+                                                                         {2.0, 6.0},
+                                                                         {3.0, 8.0}}};
+
+template <class Number>
+double percentile(std::vector<Number> values, double part) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return static_cast<double>(values[static_cast<std::size_t>(at)]);
+}
+
+void print_judged_json(const Verdict& verdict) {
+  nlohmann::ordered_json groups;
+  for (std::size_t group = 0; group < judged_groups.size(); ++group) {
+    auto& row = groups[std::string(judged_groups[group])];
+    for (std::size_t method = 0; method < judged_names.size(); ++method) {
+      const auto& errors = verdict.errors[method][group];
+      row[std::string(judged_names[method])] = {{"median", percentile(errors, 0.5)},
+                                                {"p95", percentile(errors, 0.95)}};
+    }
+    row["goal"] = {{"median", goals[group][0]}, {"p95", goals[group][1]}};
+    row["worse_than_two_pose"] = verdict.worse[group];
+  }
+  std::cout << nlohmann::ordered_json{{"wearers", verdict.wearers},
+                                      {"refused", verdict.refused},
+                                      {"fit_ms_median", percentile(verdict.fit_ms, 0.5)},
+                                      {"groups", groups}}
+                   .dump()
+            << std::endl;
+}
+
+void print_judged_table(const Verdict& verdict, bool markdown) {
+  const char* bar = markdown ? "| " : "";
+  const char* between = markdown ? " | " : "  ";
+  const char* end = markdown ? " |" : "";
+  std::printf("%s%-16s", bar, "group");
+  for (const std::string_view name : judged_names)
+    std::printf("%s%13s", between, std::string(name).c_str());
+  std::printf("%s%13s%sworse than two_pose%s\n", between, "goal for full", between, end);
+  if (markdown) std::printf("|---|---:|---:|---:|---:|---:|---:|---:|\n");
+  for (std::size_t group = 0; group < judged_groups.size(); ++group) {
+    std::printf("%s%-16s", bar, std::string(judged_groups[group]).c_str());
+    char cell[48];
+    for (std::size_t method = 0; method < judged_names.size(); ++method) {
+      const auto& errors = verdict.errors[method][group];
+      std::snprintf(cell, sizeof cell, "%.2f / %.1f", percentile(errors, 0.5),
+                    percentile(errors, 0.95));
+      std::printf("%s%13s", between, cell);
+    }
+    std::snprintf(cell, sizeof cell, "%.1f / %.1f", goals[group][0], goals[group][1]);
+    std::printf("%s%13s%s%12d of %d%s\n", between, cell, between, verdict.worse[group],
+                verdict.wearers, end);
+  }
+}
+
+} // namespace
+
+int judge_file(const std::string& path, const Output& output) {
+  auto wearers = JudgedWearers::open(path);
+  if (!wearers) return cli::report(wearers.error());
+  cli::install_stop_signals();
+  Verdict verdict;
+  for (;;) {
+    if (cli::stop_requested())
+      return cli::report({Errc::failed, "ended before all wearers were judged"});
+    const auto wearer = wearers->next();
+    if (!wearer) return cli::report(wearer.error());
+    if (!*wearer) break;
+    judge(**wearer, verdict);
+  }
+  if (verdict.wearers == 0) return cli::report({Errc::bad_input, path + ": no wearers"});
+  if (output.json) {
+    print_judged_json(verdict);
+    return 0;
+  }
+  for (const std::string& refused : verdict.refused)
+    cli::note("refused: " + refused);
+  std::printf("%d wearers, %zu refused; errors in degrees, median / 95th percentile; fit %.0f ms "
+              "(median)%s\n",
+              verdict.wearers, verdict.refused.size(), percentile(verdict.fit_ms, 0.5),
+              output.markdown ? "\n" : "");
+  print_judged_table(verdict, output.markdown);
+  return 0;
+}
+
+} // namespace judge_bench
+
+namespace wearers_bench {
+namespace {
+
+struct Options {
+  std::string out;
+  std::uint64_t wearers = 200;
+  std::uint64_t seed = 5001;
+  std::uint32_t sensors = 22;
+  std::string without; ///< an error term
+  std::string only;
+};
+
+/// The error term of a name; nullptr if it is none.
+double* term_of(StrangerErrors& errors, const std::string& name) {
+  if (name == "curvature") return &errors.curvature;
+  if (name == "hysteresis") return &errors.hysteresis;
+  if (name == "creep") return &errors.creep;
+  if (name == "cross-talk") return &errors.cross_talk;
+  if (name == "scatter") return &errors.scatter;
+  if (name == "slip") return &errors.slip;
+  return nullptr;
+}
+
+Result<StrangerErrors> errors_of(const Options& options) {
+  StrangerErrors errors;
+  if (!options.only.empty()) errors = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  for (const auto& [name, part] : {std::pair{options.without, 0.0}, std::pair{options.only, 1.0}}) {
+    if (name.empty() || name == "none") continue;
+    double* const term = term_of(errors, name);
+    if (term == nullptr)
+      return Error{Errc::usage, name + " is no error term: use curvature, hysteresis, creep, "
+                                       "cross-talk, scatter, slip or none"};
+    *term = part;
+  }
+  return errors;
+}
+
+int write_wearers(const Options& options) {
+  if (options.wearers == 0 || options.wearers > 10'000)
+    return cli::report({Errc::usage, "--wearers: from 1 to 10000"});
+  if (options.sensors != 22 && options.sensors != 18)
+    return cli::report({Errc::usage, "--sensors: 18 or 22"});
+  const auto errors = errors_of(options);
+  if (!errors) return cli::report(errors.error());
+  if (options.out.empty())
+    return cli::report({Errc::usage, "--out is missing: the file to write, e.g. wearers.jsonl"});
+  if (const auto fine = cli::check_place("--out", options.out); !fine)
+    return cli::report(fine.error());
+  std::ofstream file(options.out);
+  for (std::uint64_t n = 0; n < options.wearers && file; ++n)
+    file << line_of(
+        make_stranger(options.seed + n, options.sensors == 22 ? sensors_22 : sensors_18, *errors));
+  file.close();
+  return file ? 0 : cli::report({Errc::failed, options.out + ": could not be written"});
+}
+
+} // namespace
+
+void add(cli::Command& bench) {
+  auto options = std::make_shared<Options>();
+  cli::Command command = bench.add_command(
+      "wearers", "Writes synthetic wearers of another make, for nendo bench calibration --judge");
+  command.add_option("--out", options->out, "The file to write, a JSON object a line");
+  command.add_option("--wearers", options->wearers, "How many, 1 to 10000");
+  command.add_option("--seed", options->seed, "The first wearer's; 1 to 100 were used for tuning");
+  command.add_option("--sensors", options->sensors, "22, or 18 for a glove without DIP sensors");
+  command.add_option("--without", options->without, "An error term that these wearers do not have");
+  command.add_option("--only", options->only, "The only error term that they have, or none");
+  command.on_chosen([options] { return write_wearers(*options); });
+}
+
+} // namespace wearers_bench
+} // namespace nendo::bench

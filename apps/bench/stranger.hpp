@@ -1,0 +1,26 @@
+#pragma once
+// A second kind of synthetic wearer, whom no default was made for: a hand of its own, and sensors
+// that bend, lag, creep, slip and read each other. Its poses are off by several degrees. `nendo
+// bench wearers` writes such wearers down.
+
+#include <cstdint>
+
+#include "bench/judged_wearer.hpp"
+
+namespace nendo::bench {
+
+/// Which errors a stranger has; each part is 1 for all of it and 0 for none.
+struct StrangerErrors {
+  double curvature = 1.0;
+  double hysteresis = 1.0;
+  double creep = 1.0;
+  double cross_talk = 1.0; ///< what the product's couplings do not have, too
+  double scatter = 1.0;    ///< of poses
+  double slip = 1.0;       ///< after the calibration
+};
+
+/// Makes one wearer, the same for the same seed: captures, a minute of motion, and the same after
+/// the glove has been put on again.
+JudgedWearer make_stranger(std::uint64_t seed, SensorMask sensors, const StrangerErrors& errors);
+
+} // namespace nendo::bench

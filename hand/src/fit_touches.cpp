@@ -1,0 +1,207 @@
+// The part of the problem that is about touches, and so about the wearer's hand.
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit_priors.hpp"
+#include "fit_problem.hpp"
+
+namespace nendo::hand {
+namespace {
+
+// Of an unknown of the hand, for derivatives by differences.
+constexpr double hand_step = 1e-4;
+
+std::size_t touch_slot(Sensor sensor) {
+  return static_cast<std::size_t>(sensor);
+}
+
+/// The joints that these angles make. What no sensor measures follows the rules, which is had by
+/// passing the angles through lines of gain 1; what is measured is taken without the soft stops,
+/// for a loop that a hand has closed is closed by the joints as they are.
+JointAngles joints_of(const SensorAngles& angles, SensorMask sensors) {
+  Calibration passing;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    passing.sensors[slot] = {1.0, -angles[slot]};
+  GloveSample sample;
+  sample.present = sensors;
+  JointAngles joints = joint_angles(sample, passing);
+  const auto take = [&](double& joint_rad, Sensor sensor) {
+    if (sensors.has(sensor)) joint_rad = angles[touch_slot(sensor)];
+  };
+  take(joints.thumb_roll_rad, Sensor::thumb_roll);
+  take(joints.thumb_mcp_flexion_rad, Sensor::thumb_mcp);
+  take(joints.thumb_ip_flexion_rad, Sensor::thumb_ip);
+  take(joints.thumb_abduction_rad, Sensor::thumb_abduction);
+  take(joints.palm_arch_rad, Sensor::palm_arch);
+  for (std::size_t f = 0; f < joints.fingers.size(); ++f) {
+    const auto sensor = [&](Sensor of_index) {
+      return static_cast<Sensor>(touch_slot(of_index) + 4 * f);
+    };
+    take(joints.fingers[f].mcp_flexion_rad, sensor(Sensor::index_mcp));
+    take(joints.fingers[f].pip_flexion_rad, sensor(Sensor::index_pip));
+    take(joints.fingers[f].dip_flexion_rad, sensor(Sensor::index_dip));
+  }
+  double middle_ring = 0.0, ring_little = 0.0;
+  take(joints[Finger::index].mcp_abduction_rad, Sensor::index_middle_abduction);
+  take(middle_ring, Sensor::middle_ring_abduction);
+  take(ring_little, Sensor::ring_pinky_abduction);
+  joints[Finger::ring].mcp_abduction_rad = -middle_ring;
+  joints[Finger::little].mcp_abduction_rad = -middle_ring - ring_little;
+  return joints;
+}
+
+} // namespace
+
+HandSize FitProblem::size(const Unknowns& at) const {
+  HandSize size = start_size_;
+  const auto unknown = [&](std::size_t k) { return at[static_cast<Eigen::Index>(k)]; };
+  // Far steps of the search must not lead to hands that cannot be.
+  const auto scale = [&](std::size_t k, double deviation) {
+    return std::exp(std::clamp(deviation * unknown(k), -0.4, 0.4));
+  };
+  if (fits_hand(hand_unknowns)) {
+    const double longer = scale(hand_unknowns, length_deviation);
+    size.length_m *= longer;
+    size.breadth_m *= longer * scale(hand_unknowns + 1, breadth_deviation);
+  }
+  for (std::size_t k = 0; k < shape_terms && fits_hand(shape_unknowns + k); ++k) {
+    const auto term = static_cast<ShapeTerm>(k);
+    size.shape.terms[k] =
+        std::clamp(size.shape.terms[k] + shape_deviation(term) * unknown(shape_unknowns + k),
+                   -most_of(term), most_of(term));
+  }
+  return size;
+}
+
+bool FitProblem::fits_hand(std::size_t unknown) const noexcept {
+  return mode_ == FitMode::full && (unknown >= shape_unknowns || !size_known_);
+}
+
+FitProblem::Hands FitProblem::hands(const Unknowns& at, bool with_moved) const {
+  Hands hands{HandSkeleton(side_, size(at)), {}};
+  for (std::size_t k = hand_unknowns; with_moved && k < habit_unknowns; ++k) {
+    if (!fits_hand(k)) continue;
+    Unknowns next = at;
+    next[static_cast<Eigen::Index>(k)] += hand_step;
+    hands.moved.push_back({static_cast<Eigen::Index>(k), HandSkeleton(side_, size(next))});
+  }
+  return hands;
+}
+
+void FitProblem::find_range_ends(const CountRanges& free_motion) {
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    const auto sensor = static_cast<Sensor>(slot);
+    if (!sensors_.has(sensor) || !free_motion.present.has(sensor)) continue;
+    double least = readings_.front().held.mean_counts[slot], most = least;
+    for (const auto& reading : readings_) {
+      least = std::min(least, reading.held.mean_counts[slot]);
+      most = std::max(most, reading.held.mean_counts[slot]);
+    }
+    const auto [low_deg, low_deviation_deg, high_deg, high_deviation_deg] = range_ends_of[slot];
+    const double short_of_poses = short_of_poses_rad / lines_[slot].gain;
+    const double low = free_motion.low_counts[slot], high = free_motion.high_counts[slot];
+    // Written so that a NaN is refused.
+    if (low_deviation_deg > 0.0 && low >= 0.0 && low <= least + short_of_poses)
+      range_ends_.push_back({slot, low, {from_degrees(low_deg), from_degrees(low_deviation_deg)}});
+    if (high_deviation_deg > 0.0 && high <= most_counts_ && high >= most - short_of_poses)
+      range_ends_.push_back(
+          {slot, high, {from_degrees(high_deg), from_degrees(high_deviation_deg)}});
+  }
+  height_ += static_cast<Eigen::Index>(range_ends_.size());
+}
+
+bool FitProblem::usable(const Touch& touch) const noexcept {
+  // What is filled in by rule is no measurement: a loop needs sensors all the way around.
+  const bool whole = sensors_.has(Sensor::thumb_roll) && sensors_.has(Sensor::thumb_abduction) &&
+                     sensors_.has(Sensor::thumb_mcp) && sensors_.has(Sensor::thumb_ip);
+  switch (touch.with) {
+  case Joint::index_tip:
+    return whole && sensors_.has(Sensor::index_mcp) && sensors_.has(Sensor::index_pip);
+  case Joint::middle_tip:
+    return whole && sensors_.has(Sensor::middle_mcp) && sensors_.has(Sensor::middle_pip);
+  case Joint::ring_tip:
+    return whole && sensors_.has(Sensor::ring_mcp) && sensors_.has(Sensor::ring_pip);
+  case Joint::little_tip:
+    return whole && sensors_.has(Sensor::pinky_mcp) && sensors_.has(Sensor::pinky_pip);
+  default:
+    return whole;
+  }
+}
+
+FitProblem::Flesh FitProblem::flesh_m(const Unknowns& at) noexcept {
+  constexpr auto first = static_cast<Eigen::Index>(line_unknowns);
+  return {pad_depth_m + pad_depth_deviation_m * at[first],
+          pad_behind_tip_m + pad_behind_deviation_m * at[first + 1],
+          palm_depth_m + palm_depth_deviation_m * at[first + 2]};
+}
+
+Eigen::Vector3d FitProblem::gap_m(const SensorAngles& angles, const Touch& touch,
+                                  const Flesh& flesh_m, const HandSkeleton& skeleton) const {
+  return gap_m(joints_of(angles, sensors_), touch, flesh_m, skeleton);
+}
+
+Eigen::Vector3d FitProblem::gap_m(const JointAngles& joints, const Touch& touch,
+                                  const Flesh& flesh_m, const HandSkeleton& skeleton) const {
+  const HandPose pose = skeleton.pose(joints, Eigen::Isometry3d::Identity());
+  const Eigen::Vector3d pad(0.0, -flesh_m.pad_depth, flesh_m.pad_behind);
+  const Eigen::Vector3d thumb = pose[Joint::thumb_tip] * pad;
+  const bool finger =
+      std::find(fingertips.begin(), fingertips.end(), touch.with) != fingertips.end();
+  if (finger) return thumb - pose[touch.with] * pad;
+  const auto metacarpal = static_cast<Joint>(index_of(touch.with) - 1);
+  return thumb - pose[touch.with].translation() +
+         flesh_m.palm_depth * pose[metacarpal].linear().col(1);
+}
+
+double FitProblem::gap_m(const Unknowns& at, std::size_t reading) const {
+  const auto [begin, touch, end] = rows_[reading];
+  if (end == touch) return 0.0;
+  return gap_m(angles_rad(at, reading, nullptr), *pose_of(readings_[reading].pose).touch,
+               flesh_m(at), hands(at, false).now)
+      .norm();
+}
+
+void FitProblem::add_touch(std::size_t reading, const Unknowns& at, SensorAngles angles,
+                           const Hands& hands, const AngleJacobian& by_unknowns,
+                           Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) const {
+  const Eigen::Index row = rows_[reading].touch;
+  const Touch& touch = *pose_of(readings_[reading].pose).touch;
+  const Flesh flesh = flesh_m(at);
+  const JointAngles joints = joints_of(angles, sensors_);
+  const Eigen::Vector3d off_m = gap_m(joints, touch, flesh, hands.now);
+  const double weight = (touch_is_set_aside_[reading] ? set_aside_weight : 1.0) /
+                        std::hypot(touch.deviation_m, form_deviation_m);
+  Eigen::Vector3d slopes;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Robust result = robust(weight * off_m[k]);
+    residuals[row + k] = result.residual;
+    slopes[k] = result.slope * weight;
+  }
+  if (jacobian == nullptr) return;
+  constexpr double step_rad = 1e-5;
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
+    if (!sensors_.has(static_cast<Sensor>(slot))) continue;
+    const double angle = angles[slot];
+    angles[slot] = angle + step_rad;
+    const Eigen::Vector3d above = gap_m(angles, touch, flesh, hands.now);
+    angles[slot] = angle - step_rad;
+    const Eigen::Vector3d slope =
+        (above - gap_m(angles, touch, flesh, hands.now)) / (2.0 * step_rad);
+    angles[slot] = angle;
+    jacobian->block<3, line_unknowns>(row, 0) +=
+        slopes.cwiseProduct(slope) * by_unknowns.row(static_cast<Eigen::Index>(slot));
+  }
+  for (std::size_t k = line_unknowns; k < hand_unknowns; ++k) { // linear: any step will do
+    Unknowns next = at;
+    next[static_cast<Eigen::Index>(k)] += 1.0;
+    jacobian->block<3, 1>(row, static_cast<Eigen::Index>(k)) =
+        slopes.cwiseProduct(gap_m(joints, touch, flesh_m(next), hands.now) - off_m);
+  }
+  for (const auto& [unknown, skeleton] : hands.moved) {
+    jacobian->block<3, 1>(row, unknown) =
+        slopes.cwiseProduct(gap_m(joints, touch, flesh, skeleton) - off_m) / hand_step;
+  }
+}
+
+} // namespace nendo::hand
