@@ -24,6 +24,8 @@ enum class StepKind : std::uint8_t {
   subdivide, ///< the model became finer
   brush,     ///< of one finger or more, or their strength
   puppet,    ///< the puppet was edited
+  mask,      ///< what fingertips leave alone was painted, cleared or inverted
+  symmetry,  ///< fingertips shape both sides, or no longer
 };
 
 std::string_view name_of(StepKind kind) noexcept;
