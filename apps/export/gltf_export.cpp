@@ -272,7 +272,11 @@ Result<std::optional<Exported>> by_functions(const SumTake& take) {
 /// The same by the control vectors of a take whose model stays one.
 Result<std::optional<Exported>> by_control_vectors(const SumTake& take) {
   const std::uint32_t version = take.source.frame().model;
-  ControlMorphs morphs(take.source.layout(version));
+  const deform::BlockLayout& layout = take.source.layout(version);
+  Eigen::VectorXd weights;
+  if (const puppet::Rig* const masks = take.source.masks())
+    weights = puppet::mask_weights(masks->puppet(), layout.original());
+  ControlMorphs morphs(layout, std::move(weights));
   const auto played = play(take.frames, take.options.hands,
                            [&](const flow::Frame& frame, float, const deform::Points& vertices) {
                              return morphs.add(frame, vertices);
