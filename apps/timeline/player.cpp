@@ -4,6 +4,8 @@
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/finger_supports.hpp>
 
 namespace nendo::timeline {
 namespace {
@@ -41,8 +43,10 @@ bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
   return false;
 }
 
-/// Makes the puppet's field along the surface, if it needs one and there is none.
+/// Makes the puppet's field along the surface, if it needs one and there is none, and its masks.
 Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
+  const puppet::Rig* const rig = timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0);
+  flow::set_masks(rig, model, deform::BlockLayout(model.vertices), timeline.sculptor);
   if (!timeline.rig) return {};
   if (const auto fits = puppet::check_fits(timeline.rig->puppet(), model); !fits)
     return Error{Errc::bad_input, "its puppet does not fit the model: " + fits.error().message};
@@ -107,7 +111,6 @@ double Player::last_time_s() const noexcept {
 }
 
 void Player::pose_hands(double time_s) {
-  Eigen::Index column = 0;
   for (const Hand& hand : hands_) {
     const Key key = hand.curve.at(time_s);
     flow::HandFrame& shown = frame_.hands[hand.slot];
@@ -116,13 +119,22 @@ void Player::pose_hands(double time_s) {
     shown.pose = hand.skeleton.pose(key.angles, shown.T_stage_wrist);
     shown.present = true;
     shown.samples = made_ + 1;
-    if (puppet_) {
-      puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
-      continue;
-    }
-    tips_.middleCols<5>(column) = timeline_.units_per_metre * shown.pose.fingertip_positions();
+    if (puppet_) puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
+  }
+  if (!puppet_) place_tips(timeline_.masks_numbered(shaping_.puppet()));
+}
+
+/// Of the hands as they are posed, with those masks.
+void Player::place_tips(const puppet::Rig* masks) {
+  Eigen::Index column = 0;
+  for (const Hand& hand : hands_) {
+    tips_.middleCols<5>(column) =
+        timeline_.units_per_metre * frame_.hands[hand.slot].pose.fingertip_positions();
     column += 5;
   }
+  const auto mirror = flow::mirror_of(masks);
+  if (mirror) flow::mirror_half(*mirror, tips_);
+  frame_.symmetric = mirror.has_value();
 }
 
 void Player::play_puppet() {
@@ -144,6 +156,7 @@ void Player::ask(const Event& event) {
   const flow::Command& command = event.command;
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
     settings_due_ = change->settings; // of several in a frame the last counts, as in the loop
+  if (const auto* change = std::get_if<flow::ChangePuppet>(&command)) masks_due_ = change->number;
   if (std::holds_alternative<flow::Subdivide>(command)) subdivides_ = true;
   const auto* request = std::get_if<flow::Request>(&command);
   // A puppet's hands take hold of its functions.
@@ -165,24 +178,48 @@ bool Player::set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersi
   return true;
 }
 
+/// What first_ would be with those masks.
+flow::SculptorSetup Player::first_with(std::uint32_t masks) const {
+  if (masks == 0) return first_;
+  const auto hands = static_cast<Eigen::Index>(hands_.size());
+  return flow::with_control_points(first_,
+                                   flow::of_one_side(first_.options.deformer.supports, 5 * hands),
+                                   timeline_.masks_numbered(masks), hands);
+}
+
 /// As the loop does at the end of a tick. Returns false, and goes on as it was, if nothing can be
 /// done with the settings.
 bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   flow::ModelVersion& model = *versions_[awaited.model];
   const flow::LoopSettings& before = shaping_.settings();
   const int hands = puppet_ ? 0 : static_cast<int>(hands_.size());
-  flow::SculptorSetup wanted =
-      flow::with_settings(now_, first_, awaited.settings, hands, timeline_.units_per_metre);
+  const bool other_masks = awaited.puppet != shaping_.puppet();
+  const flow::SculptorSetup first = first_with(awaited.puppet);
+  flow::SculptorSetup wanted = flow::with_settings(
+      other_masks ? first : now_, first, awaited.settings, hands, timeline_.units_per_metre);
   wanted.options.surface = now_.options.surface; // the first one may be another version's
+  wanted.options.deformer.mask = now_.options.deformer.mask;
   const bool same = &model == &shaping_.model() && awaited.settings.kernel == before.kernel &&
                     awaited.settings.radius_m == before.radius_m;
   if (!same && !set_surface(wanted.options, model)) return false;
+  const puppet::Rig* const rig =
+      puppet_ ? timeline_.rig.get() : timeline_.masks_numbered(awaited.puppet);
+  if (other_masks || &model != &shaping_.model())
+    flow::set_masks(rig, model.mesh, model.layout(), wanted.options);
   now_ = std::move(wanted);
   if (puppet_ && awaited.settings != before) puppet_->take_hold();
   flow::ReadySculptor ready;
-  flow::Shaping::prepare(now_, model, tips_.cols(), ready);
+  const Eigen::Index points = puppet_ ? tips_.cols() : flow::control_points_of(rig, hands);
+  flow::Shaping::prepare(now_, model, points, ready);
+  ready.puppet = awaited.puppet;
+  ready.puppet_step =
+      flow::kind_of_edit(timeline_.masks_numbered(shaping_.puppet()), puppet_ ? nullptr : rig);
   ready.is_new_model = is_new_model;
   if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
+  if (other_masks) {
+    tips_.setZero(3, points);
+    place_tips(rig);
+  }
   shaping_.exchange(ready, tips_, frame_, stats_);
   return true;
 }
@@ -192,10 +229,10 @@ void Player::subdivide() {
   const auto number = static_cast<std::uint32_t>(versions_.size());
   flow::FinerModel finer(shaping_.model());
   versions_.push_back(finer.finish(number, undo_room()));
-  if (change_to({shaping_.settings(), number}, true)) return;
+  if (change_to({shaping_.settings(), number, shaping_.puppet()}, true)) return;
   was_refused_ = true;
   versions_.pop_back();
-  change_to({shaping_.settings(), shaping_.model().number});
+  change_to({shaping_.settings(), shaping_.model().number, shaping_.puppet()});
 }
 
 bool Player::ask_what_is_due(double time_s) {
@@ -223,10 +260,15 @@ bool Player::next() {
   frame_.settings = shaping_.settings();
   // The hands have just taken hold here: without a wish there is nothing to do.
   if (made_ > 0 || asked)
-    frame_.status = shaping_.shape(tips_, frame_, stats_, settings_due_ || subdivides_);
+    frame_.status =
+        shaping_.shape(tips_, frame_, stats_, settings_due_ || masks_due_ || subdivides_);
   if (std::exchange(subdivides_, false)) subdivide();
-  const std::uint32_t model = shaping_.model().number;
-  if (settings_due_ && !change_to({*std::exchange(settings_due_, {}), model})) was_refused_ = true;
+  if (settings_due_ || masks_due_) {
+    const flow::Awaited wanted{std::exchange(settings_due_, {}).value_or(shaping_.settings()),
+                               shaping_.model().number,
+                               std::exchange(masks_due_, {}).value_or(shaping_.puppet())};
+    if (!change_to(wanted)) was_refused_ = true;
+  }
   if (frame_.awaited) change_to(flow::Awaited(*frame_.awaited)); // by an undo or a redo
   describe(made_++);
   return true;
