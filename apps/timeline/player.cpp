@@ -46,7 +46,8 @@ bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
 /// Makes the puppet's field along the surface, if it needs one and there is none, and its masks.
 Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
   const puppet::Rig* const rig = timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0);
-  flow::set_masks(rig, model, deform::BlockLayout(model.vertices), timeline.sculptor);
+  if (rig != nullptr)
+    flow::set_masks(rig, model, deform::BlockLayout(model.vertices), timeline.sculptor);
   if (!timeline.rig) return {};
   if (const auto fits = puppet::check_fits(timeline.rig->puppet(), model); !fits)
     return Error{Errc::bad_input, "its puppet does not fit the model: " + fits.error().message};
