@@ -108,9 +108,11 @@ bool PuppetEditor::is_live() const noexcept {
   return only_masks_ || (!is_on_ && has_masks());
 }
 
-/// What is held does not move, so that a little later is soon enough.
+/// What is held does not move, so that a little later is soon enough; and the veils of a large
+/// model take long.
 void PuppetEditor::follow_shape(const flow::Frame& frame) {
-  constexpr HostClock::duration rest = std::chrono::milliseconds(250);
+  const HostClock::duration rest =
+      std::chrono::milliseconds(250) * (1 + shown_.vertices.cols() / 100'000);
   const HostTime now = HostClock::now();
   if (frame.ticks_run == 0 || now - live_at_ < rest || !stroke_.empty()) return;
   if (!layout_) layout_.emplace(shown_.vertices);
