@@ -1,15 +1,20 @@
-// nendo bench models: what it costs a tick to go on with another version of the model.
+// nendo bench models: what it costs a tick to go on with another version of the model or with other
+// masks, and whether changes of radius make a loop late.
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/realtime.hpp>
 
 #include "bench/bench.hpp"
 #include "bench/plane_room.hpp"
@@ -22,6 +27,7 @@ namespace {
 struct Options {
   unsigned cells = 500;
   unsigned repetitions = 5;
+  unsigned seconds = 30;
   bool json = false;
 };
 
@@ -58,13 +64,14 @@ deform::Mesh plane(unsigned cells) {
 /// A loop over a plane, whose ticks are timed one by one.
 class TimedLoop {
 public:
-  TimedLoop(const deform::Mesh& model, bool held) {
+  TimedLoop(const deform::Mesh& model, bool held, double rate_hz = 90.0) {
     flow::HandInput hand;
     hand.ring = &ring_;
     hand.first = resting_hand(HostClock::now(), 0);
     flow::LoopOptions options;
     options.commands = &commands_;
     options.held = held;
+    options.rate_hz = rate_hz;
     options.sculptor.deformer.supports =
         deform::one_radius(0.2 * deform::diagonal_of(model.vertices));
     options.sculptor.deformer.csrbf.merge_fraction = 0.05;
@@ -91,6 +98,17 @@ public:
     if (const auto& awaited = loop_->frames().front().awaited) loop_->change_to(*awaited);
     return tick_us();
   }
+  /// Of the tick that takes masks: a ball, and in turn all but that.
+  double mask_us() {
+    puppet::Puppet puppet;
+    puppet.masks.push_back({loop_->model(0)->mesh.vertices.col(0), 0.3});
+    puppet.inverted = number_ % 2 == 0;
+    if (!loop_->change_puppet(std::make_shared<const puppet::Rig>(puppet, deform::Points(3, 0))))
+      return 0.0;
+    return tick_us();
+  }
+  /// Of a glove that bends and opens a hand.
+  void bend() { ring_.try_push(resting_hand(HostClock::now(), static_cast<int>(++number_ % 8))); }
   void commit() { commands_.try_push(flow::Request::commit); }
 
 private:
@@ -108,7 +126,7 @@ double median(std::vector<double> values) {
 
 struct Figures {
   std::size_t vertices = 0;
-  std::vector<double> ordinary_us, commit_us, new_us, undo_us, redo_us, make_us, finish_us;
+  std::vector<double> ordinary_us, commit_us, new_us, undo_us, redo_us, make_us, finish_us, mask_us;
 };
 
 Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
@@ -137,6 +155,8 @@ Figures measure(const deform::Mesh& model, bool held, unsigned repetitions) {
     figures.undo_us.push_back(timed.step_us(flow::Request::undo));
     loop.is_changing();
     figures.redo_us.push_back(timed.step_us(flow::Request::redo));
+    loop.is_changing();
+    figures.mask_us.push_back(timed.mask_us());
   }
   return figures;
 }
@@ -154,6 +174,7 @@ void tell(const Options& options, bool held, const Figures& figures) {
                                       {"new_us", of(figures.new_us)},
                                       {"undo_us", of(figures.undo_us)},
                                       {"redo_us", of(figures.redo_us)},
+                                      {"mask_us", of(figures.mask_us)},
                                       {"make_ms", of(figures.make_us) / 1e3},
                                       {"finish_ms", of(figures.finish_us) / 1e3}};
     std::cout << line.dump() << std::endl;
@@ -164,10 +185,61 @@ void tell(const Options& options, bool held, const Figures& figures) {
   std::printf("  an ordinary tick %10.1f\n  a commit         %10.1f\n  a new version    %10.1f\n",
               of(figures.ordinary_us), of(figures.commit_us), of(figures.new_us));
   if (!held)
-    std::printf("  back by an undo  %10.1f\n  forth by a redo  %10.1f\n", of(figures.undo_us),
-                of(figures.redo_us));
+    std::printf("  back by an undo  %10.1f\n  forth by a redo  %10.1f\n  other masks      %10.1f\n",
+                of(figures.undo_us), of(figures.redo_us), of(figures.mask_us));
   std::printf("  beside the loop: %.0f ms to make it, and %.0f ms while the loop holds still\n",
               of(figures.make_us) / 1e3, of(figures.finish_us) / 1e3);
+}
+
+/// A loop at 1 kHz, in whose second half the radius changes 1,000 times a minute.
+void measure_changes(const Options& options) {
+  constexpr double rate_hz = 1000.0;
+  constexpr unsigned changes_a_minute = 1000;
+  TimedLoop timed(plane(70), true, rate_hz);
+  flow::DeformLoop& loop = timed.loop();
+  std::atomic<bool> stop{false};
+  std::atomic<int> half{0};
+  std::array<std::uint64_t, 2> missed{}, overruns{};
+  std::thread thread([&] {
+    flow::make_thread_realtime({});
+    for (std::size_t at = 0; at < missed.size(); ++at, ++half) {
+      loop.run(stop, static_cast<std::uint64_t>(rate_hz) * options.seconds);
+      missed[at] = loop.stats().missed - (at == 0 ? 0 : missed[0]);
+      overruns[at] = loop.stats().overruns - (at == 0 ? 0 : overruns[0]);
+    }
+  });
+  std::uint64_t changes = 0;
+  flow::LoopSettings settings = loop.settings();
+  const double first_m = settings.radius_m[0];
+  for (HostTime next = HostClock::now(); half < 2 && !cli::stop_requested();) {
+    std::this_thread::sleep_until(next += std::chrono::milliseconds(60'000 / changes_a_minute));
+    timed.bend(); // no tick without something to do
+    loop.frames().update();
+    loop.refill_undo();
+    if (half == 0) continue;
+    settings.radius_m.fill(first_m * (1.0 + 0.01 * static_cast<double>(++changes % 30)));
+    loop.change_settings(settings);
+  }
+  stop = cli::stop_requested();
+  thread.join();
+  if (options.json) {
+    const nlohmann::ordered_json line{{"measured", "changes"},
+                                      {"seconds", options.seconds},
+                                      {"changes", changes},
+                                      {"taken", loop.stats().changes},
+                                      {"missed_without", missed[0]},
+                                      {"missed_with", missed[1]},
+                                      {"overruns_without", overruns[0]},
+                                      {"overruns_with", overruns[1]}};
+    std::cout << line.dump() << std::endl;
+    return;
+  }
+  std::printf(
+      "at 1 kHz, %u s without and %u s with %llu changes of radius: %llu and %llu missed "
+      "deadlines, %llu and %llu ticks that took too long\n",
+      options.seconds, options.seconds, static_cast<unsigned long long>(changes),
+      static_cast<unsigned long long>(missed[0]), static_cast<unsigned long long>(missed[1]),
+      static_cast<unsigned long long>(overruns[0]), static_cast<unsigned long long>(overruns[1]));
 }
 
 int run(const Options& options) {
@@ -180,6 +252,7 @@ int run(const Options& options) {
   const deform::Mesh model = plane(options.cells);
   for (const bool held : {false, true})
     tell(options, held, measure(model, held, options.repetitions));
+  if (options.seconds > 0) measure_changes(options);
   return 0;
 }
 
@@ -192,6 +265,9 @@ void add(cli::Command& bench) {
   command.add_option("--cells", options->cells,
                      "The plane has so many cells a side before it is subdivided");
   command.add_option("--repetitions", options->repetitions, "Loops of which the median is told");
+  command.add_option(
+      "--seconds", options->seconds,
+      "How long a loop runs without, and then with changes of radius; 0: not at all");
   command.add_flag("--json", options->json, "A JSON line for each table");
   command.on_chosen([options] { return run(*options); });
 }

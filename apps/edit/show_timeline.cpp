@@ -70,6 +70,8 @@ nlohmann::ordered_json event_json(const Timeline& timeline, const timeline::Even
                     {"input", role->input.name()}};
   else if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&event.command))
     line["symmetric"] = symmetry->on;
+  else if (std::holds_alternative<flow::ChangePuppet>(event.command))
+    line["masks"] = in_words(timeline, event);
   else
     line["request"] = in_words(timeline, event);
   return line;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <nendo/deform/csrbf.hpp>
 
@@ -47,8 +48,8 @@ std::vector<CsrbfField> single_fields(const CsrbfField& field) {
 
 } // namespace
 
-ControlMorphs::ControlMorphs(const deform::BlockLayout& layout)
-    : layout_(layout), rest_(layout.original().cast<float>()) {}
+ControlMorphs::ControlMorphs(const deform::BlockLayout& layout, Eigen::VectorXd weights)
+    : layout_(layout), weights_(std::move(weights)), rest_(layout.original().cast<float>()) {}
 
 bool ControlMorphs::set_basis(const CsrbfField& field) {
   std::vector<CsrbfField> fields;
@@ -63,7 +64,8 @@ bool ControlMorphs::set_basis(const CsrbfField& field) {
   for (Index j = 0; j < influences_.rows(); ++j) {
     const CsrbfField& one = fields[static_cast<std::size_t>(j)];
     for (Index v = 0; v < original.cols(); ++v) {
-      const double influence = one.displacement_at(original.col(v)).x();
+      const double weight = weights_.size() == 0 ? 1.0 : weights_[v];
+      const double influence = weight * one.displacement_at(original.col(v)).x();
       influences_(j, v) =
           std::abs(influence) < least_influence ? 0.0F : static_cast<float>(influence);
     }

@@ -21,7 +21,8 @@ public:
   /// control vectors. Type-1 keeps its own shapes within the same bound.
   static constexpr double most_error = 1e-5;
 
-  explicit ControlMorphs(const deform::BlockLayout& layout);
+  /// weights: how far each vertex follows, which stays linear (deform::VertexMask); empty: all do.
+  explicit ControlMorphs(const deform::BlockLayout& layout, Eigen::VectorXd weights = {});
 
   /// Adds a frame with its vertices, in the mesh's order. Returns false if the take is not linear
   /// (commits, several links, polynomials, Type-2). This object is then of no further use.
@@ -43,6 +44,7 @@ private:
   Eigen::Matrix3Xf vectors_of(const deform::CsrbfField& field) const;
 
   const deform::BlockLayout& layout_;
+  Eigen::VectorXd weights_;
   Eigen::Matrix3Xf rest_;
   deform::Points centres_; ///< of the basis; empty until a frame has a field
   bool cardinal_ = false;  ///< otherwise the functions themselves are the basis

@@ -120,7 +120,11 @@ Result<std::optional<Exported>> by_functions(const SumTake& take) {
 
 Result<std::optional<Exported>> by_control_vectors(const SumTake& take) {
   const std::uint32_t version = take.source.frame().model;
-  ControlMorphs morphs(take.source.layout(version));
+  const deform::BlockLayout& layout = take.source.layout(version);
+  Eigen::VectorXd weights;
+  if (const puppet::Rig* const masks = take.source.masks())
+    weights = puppet::mask_weights(masks->puppet(), layout.original());
+  ControlMorphs morphs(layout, std::move(weights));
   const auto played =
       play_frames(take.frames, take.options.hands,
                   [&](const flow::Frame& frame, float, const deform::Points& vertices) {

@@ -20,6 +20,10 @@ Result<PuppetFile> open_puppet(const std::string& name) {
   }
   auto puppet = puppet::read_puppet(file.path);
   if (!puppet) return puppet.error();
+  if (!puppet->is_played())
+    return Error{Errc::bad_input,
+                 file.path + ": has no points, and so nothing that hands play; add [points] and "
+                             "functions, or open it with --mask"};
   file.puppet = *std::move(puppet);
   file.model = (std::filesystem::path(file.path).parent_path() / file.puppet.model).string();
   return file;

@@ -123,6 +123,24 @@ Result<void> read_puppet(CommandOptions& options) {
   return {};
 }
 
+/// Reads the file of masks, if one is named.
+Result<void> read_masks(session::RunOptions& run) {
+  const char* const option = !run.mask_file.empty() ? "--mask" : "--symmetry";
+  if ((!run.mask_file.empty() || run.symmetric) && !run.puppet_file.empty())
+    return Error{Errc::usage, std::string(option) + ": is of fingertips, and with --puppet hands "
+                                                    "play one; put [[masks]] and mirror into its "
+                                                    "file"};
+  if (run.mask_file.empty()) return {};
+  auto masks = puppet::read_puppet(run.mask_file);
+  if (!masks) return masks.error();
+  if (masks->is_played())
+    return Error{Errc::bad_input, run.mask_file +
+                                      ": has points and functions, so it is a puppet; open it with "
+                                      "--puppet, or leave only its [[masks]]"};
+  run.masks = *std::move(masks);
+  return {};
+}
+
 /// Reads the take to play over, if one is named. Its model and its settings are the run's.
 Result<void> read_take(CommandOptions& options) {
   session::RunOptions& run = options.run;
@@ -213,6 +231,7 @@ Result<void> check(CommandOptions& options) {
                                   " measures its distances along the surface, where no kernel is "
                                   "known that keeps the volume; use --mode type2, or distance = "
                                   "\"air\" in it"};
+  if (auto fine = read_masks(run); !fine) return fine;
   if (auto fine = read_take(options); !fine) return fine;
   if (run.mesh.empty() && !run.over) run.mesh = cli::shipped_model("moai.obj").string();
   if (options.view.window && run.out_puppet.file.empty() && !run.over)
@@ -347,6 +366,11 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
       "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix");
   session::add_brush_options(command, options.brush);
+  command.add_option("--mask", run_options.mask_file,
+                     "A file of places that fingertips leave as they are: [[masks]] with at and "
+                     "radius, as in a puppet's file; the window paints and saves them");
+  command.add_flag("--symmetry", run_options.symmetric,
+                   "Fingertips shape both sides of the model's plane of symmetry, or of x = 0");
   gloves::add_calibration_options(command, run_options.calibration);
   gloves::add_hand_length(command, run_options.length);
   session::add_kernel_options(command, options.kernel);
@@ -400,9 +424,9 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
                      "The window's pictures after which it ends; 0: when it is closed");
   command.on_chosen([options, command] {
     options->decided_by_take = command.first_given(
-        {"--puppet", "--mode", "--radius", "--kernel", "--polynomial", "--keep-volume", "--hold",
-         "--injective", "--no-injective", "--rate", "--policy", "--switch", "--filter",
-         "--filter-min-cutoff", "--filter-beta"});
+        {"--puppet", "--mask", "--symmetry", "--mode", "--radius", "--kernel", "--polynomial",
+         "--keep-volume", "--hold", "--injective", "--no-injective", "--rate", "--policy",
+         "--switch", "--filter", "--filter-min-cutoff", "--filter-beta"});
     return run(*options);
   });
 }

@@ -173,7 +173,7 @@ Result<void> take_over_settings(const deform::Mesh& model, RunOptions& options) 
   if (loop->policy == flow::OverrunPolicy::sample) loop->policy = flow::OverrunPolicy::skip;
   loop->script = options.over->take.script.get();
   options.filter = loop->settings ? loop->settings->filter : take.hands.front().filter;
-  if (loop->rig) options.puppet = loop->rig->puppet();
+  if (flow::is_played(loop->rig.get())) options.puppet = loop->rig->puppet();
   options.loop = *std::move(loop);
   return {};
 }

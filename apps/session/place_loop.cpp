@@ -6,6 +6,7 @@
 
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
+#include <nendo/puppet/puppet_edit.hpp>
 
 namespace nendo::session {
 namespace {
@@ -87,6 +88,25 @@ Result<void> set_rig(const RunOptions& options, const deform::Mesh& model,
   return {};
 }
 
+/// Puts the fingertips' masks, and the mirror, into the options.
+Result<void> set_masks(const RunOptions& options, const deform::Mesh& model, Eigen::Index tips,
+                       flow::LoopOptions& loop) {
+  if (!options.masks && !options.symmetric) return {};
+  const deform::Points no_points(3, 0);
+  puppet::Puppet masks = options.masks.value_or(puppet::Puppet{});
+  if (options.symmetric && !masks.mirrors) {
+    auto mirrored = puppet::with_symmetry(puppet::Rig(masks, no_points), true,
+                                          puppet::plane_of_symmetry(model.vertices));
+    if (!mirrored) return mirrored.error();
+    masks = *std::move(mirrored);
+  }
+  if (masks.mirrors)
+    loop.sculptor.deformer.supports =
+        flow::of_both_sides(std::move(loop.sculptor.deformer.supports), tips);
+  loop.rig = std::make_shared<const puppet::Rig>(std::move(masks), no_points);
+  return {};
+}
+
 Result<PlacedLoop> make_loop(PlacedSetup setup, const deform::Mesh& model,
                              const deform::BlockShape* first) {
   auto loop = std::make_unique<flow::DeformLoop>(model, setup.placement, setup.inputs,
@@ -126,8 +146,13 @@ Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<glove
                     [&](const flow::HandInput& input) { return input.side == hand.side; });
     if (!was_there) setup.placement.T_stage_wrist[slot] = joining.T_stage_wrist[slot];
   }
-  if (!setup.options.rig && flow::count_hands(setup.inputs) > flow::count_hands(take.hands))
-    add_hand(setup.options.sculptor.deformer.supports);
+  const puppet::Rig* const rig = setup.options.rig.get();
+  if (!flow::is_played(rig) && flow::count_hands(setup.inputs) > flow::count_hands(take.hands)) {
+    deform::Supports& supports = setup.options.sculptor.deformer.supports;
+    if (flow::mirror_of(rig)) supports = flow::of_one_side(std::move(supports), 5);
+    add_hand(supports);
+    if (flow::mirror_of(rig)) supports = flow::of_both_sides(std::move(supports), 10);
+  }
   const deform::BlockShape first(take.loop->rest);
   return make_loop(std::move(setup), model, first.block_count() > 0 ? &first : nullptr);
 }
@@ -163,8 +188,11 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   // between them.
   sculptor.deformer.csrbf.merge_fraction = 0.05;
 
-  if (options.puppet)
-    if (const auto fine = set_rig(options, model, loop_options); !fine) return fine.error();
+  const auto fine =
+      options.puppet
+          ? set_rig(options, model, loop_options)
+          : set_masks(options, model, 5 * static_cast<Eigen::Index>(inputs.size()), loop_options);
+  if (!fine) return fine.error();
   const auto placement = placement_for(hands, inputs, model, !options.puppet_file.empty());
   constexpr Eigen::Index points_to_add = 64;
   PlacedSetup setup{inputs, placement, loop_options,
@@ -174,10 +202,14 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
-  const auto points = (rig ? rig->starts().cols()
-                           : static_cast<Eigen::Index>(hand::held_point_count *
-                                                       flow::count_hands(placed.setup.inputs))) +
-                      placed.setup.spare_points;
+  const bool is_played = flow::is_played(rig.get());
+  // The whole hand may hold, or fingertips shape both sides, from some time on.
+  constexpr std::size_t most_of_hand = std::max<std::size_t>(hand::held_point_count, 10);
+  const auto points =
+      (is_played
+           ? rig->starts().cols()
+           : static_cast<Eigen::Index>(most_of_hand * flow::count_hands(placed.setup.inputs))) +
+      placed.setup.spare_points;
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
   const Eigen::Index functions =
@@ -185,7 +217,7 @@ FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const int links = deformer.injective.value_or(deform::InjectiveOptions{}).most_links;
   return {static_cast<std::size_t>(std::max(links, deform::Type2Deformer::most_pieces)),
           static_cast<std::size_t>(functions),
-          static_cast<std::size_t>(rig || placed.setup.spare_points > 0 ? 2 * points : 0)};
+          static_cast<std::size_t>(is_played || placed.setup.spare_points > 0 ? 2 * points : 0)};
 }
 
 } // namespace nendo::session

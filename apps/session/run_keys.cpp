@@ -32,7 +32,9 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; z "
       "more clay, from all to air; j the whole hand holds, or its tips; e "
       "makes the model finer; t records; . marks the moment; o punches a layer in or out; s saves; "
-      "comma and quote let one hand go of a puppet, y plays both its sides by one; " +
+      "comma and quote let one hand go of a puppet; y shapes both sides by one hand; z clears the "
+      "masks, "
+      "Z turns them round; " +
       (keeps_last_minute ? "k keeps the recording of what was just done; " : "") + "q ends");
 }
 
@@ -53,6 +55,8 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == ',') clutch(Side::left, status.frame, commands);
   if (*key == '\'') clutch(Side::right, status.frame, commands);
   if (*key == 'y') commands.try_push(flow::SetSymmetry{!status.frame.symmetric});
+  if (*key == 'z') commands.try_push(flow::SetMask{flow::MaskEdit::clear});
+  if (*key == 'Z') commands.try_push(flow::SetMask{flow::MaskEdit::invert});
   if (*key == 's') commands.try_push(flow::SaveShape{});
   if (*key == 'k') commands.try_push(flow::SaveRecording{});
   if (*key == 'q') commands.try_push(flow::EndRun{});

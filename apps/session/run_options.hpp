@@ -29,6 +29,9 @@ struct RunOptions {
   PuppetPlace out_puppet{};               ///< where a window saves it
   std::string out;                        ///< empty: a name made of date and time
   std::string picture;                    ///< empty: none
+  std::string mask_file;                  ///< as it was given
+  std::optional<puppet::Puppet> masks{};  ///< of fingertips, without points; nothing: none
+  bool symmetric = false;                 ///< fingertips shape both sides
   double duration_s = 0.0;                ///< 0: until a stop signal
   /// The supports of both hands' fingertips in model units (flow::parse_finger_supports). nullopt
   /// means one radius for all, computed from the model's size.

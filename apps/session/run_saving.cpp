@@ -57,7 +57,7 @@ std::string RunSaving::save_recording() {
 /// Only the file that was opened, or that was saved before, is written over.
 std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
   const auto& rig = loop.puppet(loop.newest_puppet());
-  if (!rig || out_puppet_.file.empty()) return "there is no puppet to save";
+  if (!rig || out_puppet_.file.empty()) return "there is no puppet or mask to save";
   std::error_code ignored;
   if (!out_puppet_.may_be_replaced && std::filesystem::exists(out_puppet_.file, ignored)) {
     int number = 1;
@@ -73,7 +73,8 @@ std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
   const auto written = replace_file(out_puppet_.file, puppet.text);
   if (!written) return written.error().message;
   out_puppet_.may_be_replaced = true;
-  return "the puppet is saved as " + out_puppet_.file;
+  return (puppet.is_played() ? "the puppet is saved as " : "the mask is saved as ") +
+         out_puppet_.file;
 }
 
 std::string RunSaving::save_shape(flow::DeformLoop& loop) {

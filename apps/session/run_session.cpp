@@ -13,6 +13,7 @@
 #include "cli/cli.hpp"
 #include "gloves/glove_light.hpp"
 #include "session/loop_thread.hpp"
+#include "session/mask_edits.hpp"
 #include "session/run_keys.hpp"
 #include "session/run_models.hpp"
 #include "session/run_picture.hpp"
@@ -139,6 +140,7 @@ private:
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
       report("settings that nothing can be done with; the run goes on as it was (a puppet whose "
              "distances go along the surface cannot keep the volume in type 1)");
+    if (!awaits) edit_masks();
     if (puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())
       change_puppet();
@@ -178,9 +180,10 @@ private:
   void change_puppet() {
     flow::DeformLoop& loop = *placed_.loop;
     const std::shared_ptr<const puppet::Rig> rig = std::exchange(puppet_, nullptr);
-    const auto functions =
-        static_cast<std::size_t>(rig->supports().functions(rig->starts().cols()));
-    if (!participants_.sinks.empty() && functions > frame_capacity(placed_).functions)
+    const Eigen::Index functions =
+        flow::is_played(rig.get()) ? rig->supports().functions(rig->starts().cols()) : 0;
+    if (!participants_.sinks.empty() &&
+        static_cast<std::size_t>(functions) > frame_capacity(placed_).functions)
       return report("a puppet with so many points more cannot be published; save it, and begin "
                     "again with it");
     recorder_.add_puppet(loop.next_puppet(), *rig);
@@ -203,6 +206,19 @@ private:
     taken_puppets_[number] = loop.next_puppet();
     puppet_ = *std::move(rig);
     change_puppet();
+  }
+  // Makes one puppet of all edits that have come.
+  void edit_masks() {
+    const flow::DeformLoop& loop = *placed_.loop;
+    for (const flow::Command& command : std::exchange(mask_edits_, {})) {
+      if (!puppet_) puppet_ = loop.puppet(loop.newest_puppet());
+      auto edited = edited_masks(command, puppet_, loop.model(0)->mesh.vertices);
+      if (edited)
+        puppet_ = *std::move(edited);
+      else
+        report(edited.error().message);
+    }
+    if (puppet_ == loop.puppet(loop.newest_puppet())) puppet_.reset();
   }
   void tell(const std::optional<std::string>& message) {
     if (message) report(*message);
@@ -230,13 +246,18 @@ private:
     if (std::holds_alternative<flow::Subdivide>(command)) models_.subdivide();
     if (std::holds_alternative<flow::Mark>(command)) mark();
     if (std::holds_alternative<flow::Punch>(command)) punch();
+    if (std::holds_alternative<flow::SetMask>(command)) mask_edits_.push_back(command);
     if (flow::is_for_puppet(command)) play_otherwise(command);
     ends_ = ends_ || std::holds_alternative<flow::EndRun>(command);
     saving_.add(command);
   }
 
   void play_otherwise(const flow::Command& command) noexcept {
-    if (placed_.loop->puppet(placed_.loop->newest_puppet()) == nullptr)
+    const flow::DeformLoop& loop = *placed_.loop;
+    if (!flow::is_played(loop.puppet(loop.newest_puppet()).get()) &&
+        !flow::is_played(puppet_.get()) && std::holds_alternative<flow::SetSymmetry>(command))
+      mask_edits_.push_back(command);
+    else if (!flow::is_played(loop.puppet(loop.newest_puppet()).get()))
       report("there is no puppet here, and fingertips touch the model; g lets go of it");
     else if (!loop_commands_.try_push(command))
       report("the loop does not answer, so it was not told how to play the puppet");
@@ -251,9 +272,9 @@ private:
   // Commands that came just before the end are still obeyed, if the loop ticks at all.
   void wait_until_taken() {
     const auto is_due = [this] {
-      return loop_commands_.size() > 0 || settings_ || puppet_ || taken_puppet_ || record_ ||
-             recorder_.is_changing() || models_.is_due() || models_.is_handing_over() ||
-             placed_.loop->is_changing();
+      return loop_commands_.size() > 0 || settings_ || puppet_ || taken_puppet_ ||
+             !mask_edits_.empty() || record_ || recorder_.is_changing() || models_.is_due() ||
+             models_.is_handing_over() || placed_.loop->is_changing();
     };
     auto& frames = placed_.loop->frames();
     const HostTime begin = HostClock::now();
@@ -358,6 +379,7 @@ private:
   std::shared_ptr<const puppet::Rig> puppet_;            ///< not passed on yet
   std::optional<std::uint32_t> taken_puppet_;            ///< likewise, by the take's number
   std::map<std::uint32_t, std::uint32_t> taken_puppets_; ///< the loop's numbers of the take's
+  std::vector<flow::Command> mask_edits_;                ///< likewise, and symmetry
   std::optional<bool> record_;                           ///< to a file, or not; not done yet
   PlacedLoop placed_; ///< outlives what another thread may be making of its model
   RunRecorder recorder_;

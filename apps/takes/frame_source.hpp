@@ -28,6 +28,9 @@ public:
   /// Returns the puppet of frame(), or of the first frame before next(); nothing if the hands touch
   /// the model.
   virtual std::optional<PlayedPuppet> puppet() const { return std::nullopt; }
+  /// Returns the masks of fingertips (flow::LoopOptions::rig) as the take begins; null: none. A
+  /// change of masks commits (Frame::commits).
+  virtual const puppet::Rig* masks() const { return nullptr; }
   virtual double rate_hz() const = 0;    ///< of the frames, as far as it is even
   virtual double duration_s() const = 0; ///< time_s() of the last frame
   /// Makes the next frame. Returns false if there is none. May block and allocate.

@@ -60,7 +60,7 @@ Result<std::unique_ptr<RecordedFrames>> RecordedFrames::open(const std::filesyst
 std::optional<PlayedPuppet> RecordedFrames::puppet() const {
   flow::DeformLoop& loop = replay_->loop();
   const auto& rig = loop.puppet(loop.frames().front().puppet);
-  if (!rig) return std::nullopt;
+  if (!flow::is_played(rig.get())) return std::nullopt;
   return PlayedPuppet{rig, loop.sculptor_options()};
 }
 

@@ -27,6 +27,9 @@ public:
   }
   bool has_one_model() const override { return has_one_model_; }
   std::optional<PlayedPuppet> puppet() const override;
+  const puppet::Rig* masks() const override {
+    return replay_->loop().rig() == nullptr ? replay_->loop().puppet(0).get() : nullptr;
+  }
   double rate_hz() const override { return rate_hz_; }
   double duration_s() const override { return duration_s_; }
   bool next() override;

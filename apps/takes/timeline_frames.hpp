@@ -44,6 +44,7 @@ public:
     if (!rig) return std::nullopt;
     return PlayedPuppet{rig, player_->sculptor_options()};
   }
+  const puppet::Rig* masks() const override { return player_->timeline().masks_numbered(0); }
   double rate_hz() const override { return player_->timeline().rate_hz; }
   double duration_s() const override { return player_->last_time_s(); }
   bool next() override { return player_->next(); }

@@ -29,6 +29,7 @@ std::uint64_t unchanged_frames(const Timeline& before, std::uint64_t frames_befo
                                std::uint64_t most) {
   if (before.hands.size() != after.hands.size()) return 0;
   if (before.rig != after.rig || before.rig_state != after.rig_state) return 0;
+  if (before.masks != after.masks) return 0;
   most = std::min({most, frames_before, frames_after});
   // In the last frame, all that was asked for and is left is done.
   if (frames_before != frames_after)

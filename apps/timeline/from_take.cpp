@@ -78,12 +78,15 @@ void use_puppet(const puppet::Rig& first, const puppet::Rig& rig, flow::Sculptor
   options.surface.reset(); // a player makes it
 }
 
-/// The puppet before the first tick, or the one that took its place.
+/// The puppet before the first tick, or the one that took its place; or the masks of fingertips.
 void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state,
                  std::shared_ptr<const puppet::Rig> last, Timeline& timeline) {
   const auto& first = loop.puppet(0);
+  if (!flow::is_played(first.get())) {
+    if (first) timeline.masks = {first};
+    return;
+  }
   timeline.rig = last ? std::move(last) : first;
-  if (!timeline.rig) return;
   timeline.rig_state = first_state(*timeline.rig);
   timeline.rig_state.symmetric = state.symmetric;
   timeline.sculptor.surface = loop.sculptor_options().surface;
@@ -157,6 +160,16 @@ public:
     return true;
   }
 
+  /// The fingertips have other masks; `number` is the replay's.
+  void hear(std::uint32_t number, const std::shared_ptr<const puppet::Rig>& masks) {
+    if (std::exchange(masks_, number) == number) return; // recorders repeat it
+    auto& all = timeline_.masks;
+    all.resize(std::max<std::size_t>(all.size(), number + 1));
+    all[number] = masks;
+    masks_due_ = number;
+    answers_step_ = awaited_ && awaited_->puppet == number;
+  }
+
   /// A tick has run.
   void see(const flow::LoggedTick& tick, const flow::Frame& frame, const flow::LoopStats& stats) {
     if (!first_) first_ = tick;
@@ -221,9 +234,13 @@ private:
     // else back that had come by then, they were a change like others, which ends all redo.
     const bool is_step_over = is_done && !steps_.empty() &&
                               (steps_.front() == flow::Request::redo || frame.redo_steps > 0);
-    if (std::exchange(answers_step_, false) && is_step_over) settings_.reset();
+    if (std::exchange(answers_step_, false) && is_step_over) {
+      settings_.reset();
+      masks_due_.reset();
+    }
     // Over an edit of the puppet, which the timeline has not.
-    if (is_step_over && awaited_ && awaited_->puppet != puppet_) steps_.erase(steps_.begin());
+    if (is_step_over && timeline_.rig && awaited_ && awaited_->puppet != puppet_)
+      steps_.erase(steps_.begin());
     for (; steps_.size() > frame.steps_due; steps_.erase(steps_.begin()))
       add(time_s, steps_.front());
   }
@@ -236,6 +253,7 @@ private:
     if (committed && frame.held) add(time_s, flow::Request::commit);
     if (committed && !frame.held) add(time_s, flow::Request::let_go);
     if (settings_) add(time_s, flow::ChangeSettings{*std::exchange(settings_, {})});
+    if (masks_due_) add(time_s, flow::ChangePuppet{*std::exchange(masks_due_, {})});
     for (const flow::Command& mark : marks_)
       add(time_s, mark);
     marks_.clear();
@@ -254,7 +272,9 @@ private:
   std::vector<flow::Request> steps_;           ///< undos, redos and resets since the last tick
   bool takes_hold_ = false;                    ///< it was asked for since the last tick
   std::optional<flow::LoopSettings> settings_; ///< a change since the last tick
-  bool answers_step_ = false;                  ///< an undo or a redo has waited for settings_
+  std::uint32_t masks_ = 0;                    ///< their number
+  std::optional<std::uint32_t> masks_due_;     ///< a change since the last tick
+  bool answers_step_ = false;                  ///< an undo or a redo has waited for these changes
   bool is_still_ = false;                      ///< from the next tick on
   double still_at_s_ = 0.0;                    ///< the end of the last tick that shaped
   std::optional<flow::Awaited> awaited_;       ///< after the last tick, by an undo or a redo
@@ -309,13 +329,13 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
         "its model. Record from the beginning of the run, with --record");
   MadeTimeline made;
   made.timeline = begin_timeline(setup, take);
-  auto scanned = TakeReader::open(take);
-  if (!scanned) return scanned.error();
-  const auto change = last_change_in(*std::move(scanned));
+  std::optional<recording::PuppetChange> change;
   std::shared_ptr<const puppet::Rig> last;
-  if (change && (*replay)->loop().rig() == nullptr)
-    return bad("begins a puppet on the way, and a timeline has one from the beginning on; save the "
-               "puppet, and record a run with it by --puppet FILE");
+  if ((*replay)->loop().rig() != nullptr) {
+    auto scanned = TakeReader::open(take);
+    if (!scanned) return scanned.error();
+    change = last_change_in(*std::move(scanned));
+  }
   if (change && change->puppet) {
     auto rig = recording::rig_of(*change->puppet, model);
     if (!rig) return bad(rig.error().message);
@@ -333,7 +353,16 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     if (settings != nullptr && !follower.hear(*settings, (*replay)->loop().settings()))
       return bad("changes the filter of the hands on the way, which a timeline cannot; cut out the "
                  "part before that with `nendo recording cut`");
-    if (!(*replay)->feed(*entry)) continue;
+    const bool ticked = (*replay)->feed(*entry);
+    if (std::holds_alternative<recording::PuppetChange>(*entry) && !made.timeline.rig) {
+      const flow::DeformLoop& loop = (*replay)->loop();
+      const auto& masks = loop.puppet(loop.newest_puppet());
+      if (flow::is_played(masks.get()))
+        return bad("begins a puppet on the way, and a timeline has one from the beginning on; save "
+                   "the puppet, and record a run with it by --puppet FILE");
+      follower.hear(loop.newest_puppet(), masks);
+    }
+    if (!ticked) continue;
     auto& frames = (*replay)->loop().frames();
     frames.update();
     follower.see(std::get<flow::LoggedTick>(*entry), frames.front(), (*replay)->loop().stats());

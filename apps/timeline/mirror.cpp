@@ -39,6 +39,16 @@ void mirror_roles(Timeline& timeline) {
   }
 }
 
+/// plane_x: model units.
+std::shared_ptr<const puppet::Rig> mirrored_masks(const puppet::Rig& masks, double plane_x) {
+  puppet::Puppet puppet = masks.puppet();
+  if (puppet.mirrors) puppet.mirror_at = 2.0 * plane_x - puppet.mirror_at;
+  for (puppet::Mask& mask : puppet.masks)
+    mask.at.x() = 2.0 * plane_x - mask.at.x();
+  puppet.text = puppet::text_of(puppet);
+  return std::make_shared<const puppet::Rig>(std::move(puppet), masks.starts());
+}
+
 } // namespace
 
 Result<void> mirror(Timeline& timeline, double plane_x_m) {
@@ -48,6 +58,8 @@ Result<void> mirror(Timeline& timeline, double plane_x_m) {
     for (Key& key : hand.keys)
       mirror_key(key, plane_x_m);
   }
+  for (auto& masks : result.masks)
+    if (masks) masks = mirrored_masks(*masks, plane_x_m * timeline.units_per_metre);
   if (result.rig) mirror_roles(result);
   if (std::string wrong = complaint_about(result); !wrong.empty())
     return Error{Errc::usage, std::move(wrong)};

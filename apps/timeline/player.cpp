@@ -4,6 +4,8 @@
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/tips_of_hand.hpp>
 
 namespace nendo::timeline {
@@ -49,8 +51,11 @@ bool are_too_many(const std::vector<Event>& events, const deform::Mesh& model) {
   return false;
 }
 
-/// Makes the puppet's field along the surface, if it needs one and there is none.
+/// Makes the puppet's field along the surface, if it needs one and there is none, and its masks.
 Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
+  const puppet::Rig* const rig = timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0);
+  if (rig != nullptr)
+    flow::set_masks(rig, model, deform::BlockLayout(model.vertices), timeline.sculptor);
   if (!timeline.rig) return {};
   if (const auto fits = puppet::check_fits(timeline.rig->puppet(), model); !fits)
     return Error{Errc::bad_input, "its puppet does not fit the model: " + fits.error().message};
@@ -60,6 +65,13 @@ Result<void> complete(Timeline& timeline, const deform::Mesh& model) {
   if (!surface) return Error{Errc::bad_input, "its puppet: " + surface.error().message};
   timeline.sculptor.surface = *std::move(surface);
   return {};
+}
+
+Eigen::Index points_at_first(const Timeline& timeline) {
+  const puppet::Rig* const rig = timeline.rig ? timeline.rig.get() : timeline.masks_numbered(0);
+  flow::SculptorOptions sculptor = timeline.sculptor;
+  sculptor.are_mirrored = flow::mirror_of(rig).has_value();
+  return flow::control_points_of(rig, sculptor, static_cast<Eigen::Index>(timeline.hands.size()));
 }
 
 } // namespace
@@ -83,8 +95,7 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
 }
 
 Player::Player(Timeline timeline, const deform::Mesh& model)
-    : timeline_(std::move(timeline)),
-      tips_(deform::Points::Zero(3, control_points(timeline_.sculptor))),
+    : timeline_(std::move(timeline)), tips_(deform::Points::Zero(3, points_at_first(timeline_))),
       first_(first_setup(timeline_)), now_(first_), versions_{first_version(model)},
       shaping_(*versions_.front(), tips_.cols(), shaping_options(timeline_, first_)),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
@@ -124,23 +135,23 @@ void Player::pose_hands(double time_s) {
     shown.samples = made_ + 1;
     if (puppet_) puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
   }
-  if (!puppet_) place_tips(tips_);
+  if (puppet_) return;
+  const puppet::Rig* const masks = timeline_.masks_numbered(shaping_.puppet());
+  place_tips(tips_, masks);
+  frame_.symmetric = flow::mirror_of(masks).has_value();
 }
 
-/// Where the hands are in this frame.
-void Player::place_tips(deform::Points& tips) const noexcept {
-  const Eigen::Index points = tips.cols() / static_cast<Eigen::Index>(hands_.size());
+/// Where the hands are in this frame, with those masks.
+void Player::place_tips(deform::Points& tips, const puppet::Rig* masks) const noexcept {
+  const auto mirror = flow::mirror_of(masks);
+  const Eigen::Index points =
+      tips.cols() / ((mirror ? 2 : 1) * static_cast<Eigen::Index>(hands_.size()));
   Eigen::Index column = 0;
   for (const Hand& hand : hands_) {
     flow::write_tips(frame_.hands[hand.slot].pose, timeline_.units_per_metre, points, column, tips);
     column += points;
   }
-}
-
-Eigen::Index Player::control_points(const flow::SculptorOptions& sculptor) const noexcept {
-  return timeline_.rig
-             ? timeline_.point_count()
-             : sculptor.points_of_hand() * static_cast<Eigen::Index>(timeline_.hands.size());
+  if (mirror) flow::mirror_half(*mirror, tips);
 }
 
 void Player::play_puppet() {
@@ -162,6 +173,7 @@ void Player::ask(const Event& event) {
   const flow::Command& command = event.command;
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
     settings_due_ = change->settings; // of several in a frame the last counts, as in the loop
+  if (const auto* change = std::get_if<flow::ChangePuppet>(&command)) masks_due_ = change->number;
   if (std::holds_alternative<flow::Subdivide>(command)) subdivides_ = true;
   const auto* request = std::get_if<flow::Request>(&command);
   // A puppet's hands take hold of its functions.
@@ -183,25 +195,52 @@ bool Player::set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersi
   return true;
 }
 
+/// What first_ would be with those masks.
+flow::SculptorSetup Player::first_with(std::uint32_t masks) const {
+  if (masks == 0) return first_;
+  const auto hands = static_cast<Eigen::Index>(hands_.size());
+  return flow::with_control_points(first_,
+                                   flow::of_one_side(first_.options.deformer.supports, 5 * hands),
+                                   timeline_.masks_numbered(masks), hands);
+}
+
 /// As the loop does at the end of a tick. Returns false, and goes on as it was, if nothing can be
 /// done with the settings.
 bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   flow::ModelVersion& model = *versions_[awaited.model];
   const flow::LoopSettings& before = shaping_.settings();
   const int hands = puppet_ ? 0 : static_cast<int>(hands_.size());
-  flow::SculptorSetup wanted =
-      flow::with_settings(now_, first_, awaited.settings, hands, timeline_.units_per_metre);
+  const bool other_masks = awaited.puppet != shaping_.puppet();
+  const flow::SculptorSetup first = first_with(awaited.puppet);
+  flow::SculptorSetup wanted = flow::with_settings(
+      other_masks ? first : now_, first, awaited.settings, hands, timeline_.units_per_metre);
   wanted.options.surface = now_.options.surface; // the first one may be another version's
+  wanted.options.deformer.mask = now_.options.deformer.mask;
   const bool same = &model == &shaping_.model() && awaited.settings.kernel == before.kernel &&
                     awaited.settings.radius_m == before.radius_m;
   if (!same && !set_surface(wanted.options, model)) return false;
+  const puppet::Rig* const rig =
+      puppet_ ? timeline_.rig.get() : timeline_.masks_numbered(awaited.puppet);
+  if (other_masks || &model != &shaping_.model())
+    flow::set_masks(rig, model.mesh, model.layout(), wanted.options);
   now_ = std::move(wanted);
   if (puppet_ && awaited.settings != before) puppet_->take_hold();
   flow::ReadySculptor ready;
-  flow::Shaping::prepare(now_, model, control_points(now_.options), ready);
+  const Eigen::Index points =
+      puppet_ ? tips_.cols() : flow::control_points_of(rig, now_.options, hands);
+  flow::Shaping::prepare(now_, model, points, ready);
+  ready.puppet = awaited.puppet;
+  ready.puppet_step =
+      flow::kind_of_edit(timeline_.masks_numbered(shaping_.puppet()), puppet_ ? nullptr : rig);
   ready.is_new_model = is_new_model;
   if (&model != &shaping_.model()) ready.shape_room[0] = {model.number, model.shape.shape()};
-  if (ready.tips.cols() != tips_.cols()) place_tips(ready.tips);
+  if (other_masks) {
+    tips_.setZero(3, points);
+    place_tips(tips_, rig);
+    frame_.symmetric = flow::mirror_of(rig).has_value();
+  } else if (ready.tips.cols() != tips_.cols()) {
+    place_tips(ready.tips, rig);
+  }
   shaping_.exchange(ready, tips_, frame_, stats_);
   if (shaping_.sculptor().control_points() != tips_.cols()) std::swap(tips_, ready.tips);
   return true;
@@ -212,10 +251,10 @@ void Player::subdivide() {
   const auto number = static_cast<std::uint32_t>(versions_.size());
   flow::FinerModel finer(shaping_.model());
   versions_.push_back(finer.finish(number, undo_room()));
-  if (change_to({shaping_.settings(), number}, true)) return;
+  if (change_to({shaping_.settings(), number, shaping_.puppet()}, true)) return;
   was_refused_ = true;
   versions_.pop_back();
-  change_to({shaping_.settings(), shaping_.model().number});
+  change_to({shaping_.settings(), shaping_.model().number, shaping_.puppet()});
 }
 
 bool Player::ask_what_is_due(double time_s) {
@@ -243,10 +282,15 @@ bool Player::next() {
   frame_.settings = shaping_.settings();
   // The hands have just taken hold here: without a wish there is nothing to do.
   if (made_ > 0 || asked)
-    frame_.status = shaping_.shape(tips_, frame_, stats_, settings_due_ || subdivides_);
+    frame_.status =
+        shaping_.shape(tips_, frame_, stats_, settings_due_ || masks_due_ || subdivides_);
   if (std::exchange(subdivides_, false)) subdivide();
-  const std::uint32_t model = shaping_.model().number;
-  if (settings_due_ && !change_to({*std::exchange(settings_due_, {}), model})) was_refused_ = true;
+  if (settings_due_ || masks_due_) {
+    const flow::Awaited wanted{std::exchange(settings_due_, {}).value_or(shaping_.settings()),
+                               shaping_.model().number,
+                               std::exchange(masks_due_, {}).value_or(shaping_.puppet())};
+    if (!change_to(wanted)) was_refused_ = true;
+  }
   if (frame_.awaited) change_to(flow::Awaited(*frame_.awaited)); // by an undo or a redo
   describe(made_++);
   return true;

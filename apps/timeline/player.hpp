@@ -57,13 +57,13 @@ private:
   Player(Timeline timeline, const deform::Mesh& model);
   double time_of(std::uint64_t frame) const noexcept;
   void pose_hands(double time_s);
-  void place_tips(deform::Points& tips) const noexcept;
-  Eigen::Index control_points(const flow::SculptorOptions& sculptor) const noexcept;
   void play_puppet();
   bool ask_what_is_due(double time_s);
   void ask(const Event& event);
   bool change_to(const flow::Awaited& awaited, bool is_new_model = false);
   bool set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersion& model) const;
+  flow::SculptorSetup first_with(std::uint32_t masks) const;
+  void place_tips(deform::Points& tips, const puppet::Rig* masks) const noexcept;
   void subdivide();
   void describe(std::uint64_t number);
 
@@ -78,10 +78,11 @@ private:
   flow::LoopStats stats_;
   std::size_t next_event_ = 0;
   std::optional<flow::LoopSettings> settings_due_;
-  bool subdivides_ = false;  ///< in this frame
-  bool was_refused_ = false; ///< a change in this frame
-  std::uint64_t made_ = 0;   ///< frames
-  std::uint64_t frames_ = 0; ///< in all
+  std::optional<std::uint32_t> masks_due_; ///< their number
+  bool subdivides_ = false;                ///< in this frame
+  bool was_refused_ = false;               ///< a change in this frame
+  std::uint64_t made_ = 0;                 ///< frames
+  std::uint64_t frames_ = 0;               ///< in all
 };
 
 } // namespace nendo::timeline

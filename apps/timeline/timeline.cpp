@@ -90,7 +90,7 @@ std::string complaint_about(const flow::Command& command, const puppet::Rig* rig
   return {};
 }
 
-std::string complaint_about(const Event& event, const puppet::Rig* rig) {
+std::string complaint_about(const Event& event, const puppet::Rig* rig, std::size_t masks) {
   const flow::Command& command = event.command;
   if (!within(event.time_s, 0.0, longest_s)) return "its time must lie within 0 and 1000000 s";
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command);
@@ -101,14 +101,17 @@ std::string complaint_about(const Event& event, const puppet::Rig* rig) {
                         std::holds_alternative<flow::ChangeSettings>(command) ||
                         std::holds_alternative<flow::Subdivide>(command) ||
                         std::holds_alternative<flow::Mark>(command) || flow::is_for_puppet(command);
+  if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
+    return change->number < std::max<std::size_t>(masks, 1) ? "" : "there are no such masks";
   return is_known ? complaint_about(command, rig) : "is none that a timeline can have";
 }
 
-std::string complaint_about(const std::vector<Event>& events, const puppet::Rig* rig) {
+std::string complaint_about(const std::vector<Event>& events, const puppet::Rig* rig,
+                            std::size_t masks) {
   if (events.size() > most_events)
     return "has more than " + std::to_string(most_events) + " events";
   for (std::size_t at = 0; at < events.size(); ++at) {
-    std::string wrong = complaint_about(events[at], rig);
+    std::string wrong = complaint_about(events[at], rig, masks);
     if (wrong.empty() && at > 0 && events[at].time_s < events[at - 1].time_s)
       wrong = "its time must not be before that of the event before";
     if (!wrong.empty()) return "event " + std::to_string(at) + ": " + wrong;
@@ -215,6 +218,13 @@ std::string in_words(const Timeline& timeline, const Event& event) {
            role->input.name();
   if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&event.command))
     return symmetry->on ? "one hand plays both sides" : "each hand plays its side";
+  if (const auto* change = std::get_if<flow::ChangePuppet>(&event.command)) {
+    const puppet::Rig* const masks = timeline.masks_numbered(change->number);
+    const std::size_t count = masks == nullptr ? 0 : masks->puppet().masks.size();
+    return std::to_string(count) + (count == 1 ? " mask" : " masks") +
+           (count > 0 && masks->puppet().inverted ? ", inverted" : "") +
+           (flow::mirror_of(masks) ? ", symmetric" : "");
+  }
   return std::holds_alternative<flow::Subdivide>(event.command) ? "subdivide" : "mark";
 }
 
@@ -238,7 +248,8 @@ std::size_t Timeline::key_count() const noexcept {
 }
 
 Eigen::Index Timeline::point_count() const noexcept {
-  return rig ? rig->starts().cols() : 5 * static_cast<Eigen::Index>(hands.size());
+  return flow::supported_points(rig ? rig.get() : masks_numbered(0),
+                                static_cast<Eigen::Index>(hands.size()));
 }
 
 std::string complaint_about(const Key& key) {
@@ -268,7 +279,10 @@ std::string complaint_about(const Timeline& timeline) {
     return wrong;
   if (auto wrong = complaint_about(timeline.rig.get(), timeline.rig_state); !wrong.empty())
     return wrong;
-  return complaint_about(timeline.events, timeline.rig.get());
+  if (timeline.rig && !timeline.masks.empty()) return "a puppet's masks are in its own text";
+  for (const auto& masks : timeline.masks)
+    if (flow::is_played(masks.get())) return "masks must have no points";
+  return complaint_about(timeline.events, timeline.rig.get(), timeline.masks.size());
 }
 
 } // namespace nendo::timeline

@@ -43,7 +43,7 @@ struct Event {
   double time_s = 0.0;
   /// A Request, ChangeSettings (without a filter, because keys are poses that were filtered),
   /// Subdivide, Mark, or, with a puppet, SetClutch, SetRole or SetSymmetry. These three find the
-  /// hands as they were in the frame before.
+  /// hands as they were in the frame before. Without a puppet, ChangePuppet names other `masks`.
   flow::Command command = flow::Request::grab;
 };
 
@@ -65,6 +65,9 @@ struct Timeline {
   /// The puppet that the hands play. Null: they touch the model with their fingertips.
   std::shared_ptr<const puppet::Rig> rig{};
   puppet::RigState rig_state; ///< at 0 s; has all functions
+  /// Without a puppet: the masks of the fingertips, and whether these are mirrored, by their
+  /// numbers. The first is in force at 0 s. Null: there are none; empty: there never are.
+  std::vector<std::shared_ptr<const puppet::Rig>> masks{};
   /// One or two, of different sides. Without a puppet, their order numbers the own supports.
   std::vector<HandTrack> hands;
   std::vector<Event> events; ///< in order of their times, which may be equal
@@ -72,8 +75,13 @@ struct Timeline {
   HandTrack* track(Side side) noexcept;
   const HandTrack* track(Side side) const noexcept;
   std::size_t key_count() const noexcept;
-  /// Returns how many points move the model: fingertips, or those of the puppet.
+  /// Returns how many points have radii of their own at 0 s: fingertips, with their mirror images,
+  /// or those of the puppet.
   Eigen::Index point_count() const noexcept;
+  /// Returns the masks with that number; null: none.
+  const puppet::Rig* masks_numbered(std::size_t number) const noexcept {
+    return number < masks.size() ? masks[number].get() : nullptr;
+  }
 };
 
 /// Returns the state of a puppet that nobody has played yet.

@@ -146,6 +146,10 @@ std::string clutch_text(const flow::SetClutch& clutch) {
          ", holds = " + word(clutch.holds) + " }";
 }
 
+std::string masks_text(const puppet::Rig* masks) {
+  return masks == nullptr ? "\"\"" : toml_lines(masks->puppet().text);
+}
+
 std::string event_text(const Timeline& timeline, const Event& event) {
   const flow::Command& command = event.command;
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
@@ -156,6 +160,8 @@ std::string event_text(const Timeline& timeline, const Event& event) {
     return "role = { function = " +
            toml_string(timeline.rig->puppet().functions[role->function].name) +
            ", input = " + toml_string(role->input.name()) + " }";
+  if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
+    return "masks = " + masks_text(timeline.masks_numbered(change->number));
   if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command))
     return "symmetric = " + word(symmetry->on);
   return "request = " + toml_string(in_words(timeline, event));
@@ -172,8 +178,12 @@ std::string head_text(const Timeline& timeline) {
          line("units_per_metre", decimal_text(timeline.units_per_metre)) +
          line("rate_hz", decimal_text(timeline.rate_hz)) +
          line("duration_s", decimal_text(timeline.duration_s)) + line("held", word(timeline.held)) +
-         (timeline.pull_is_step ? line("pull_is_step", "true") : "") + "events = [\n" + events +
-         "]\n" + "\n[model]\n" + line("file", toml_string(timeline.mesh)) +
+         (timeline.pull_is_step ? line("pull_is_step", "true") : "") +
+         (timeline.masks_numbered(0) != nullptr
+              ? line("masks", masks_text(timeline.masks_numbered(0)))
+              : "") +
+         "events = [\n" + events + "]\n" + "\n[model]\n" +
+         line("file", toml_string(timeline.mesh)) +
          line("vertices", std::to_string(timeline.mesh_sum.vertices)) +
          line("crc32c", std::to_string(timeline.mesh_sum.crc));
 }

@@ -197,6 +197,36 @@ flow::SetRole read_role(TomlReader& reader, const toml::table& event, const pupp
           reader.named(*table, "input", puppet::HandSignal::named)};
 }
 
+/// `message` begins with ":LINE: ", which counts from the line below the key if the text is written
+/// in several lines.
+void complain_in_text(TomlReader& reader, const toml::node& text, const std::string& message) {
+  std::size_t line = 0;
+  const auto [end, error] =
+      std::from_chars(message.data() + 1, message.data() + message.size(), line);
+  const auto& source = text.source();
+  const bool is_below = error == std::errc{} && source.end.line > source.begin.line;
+  const std::string what = message.substr(static_cast<std::size_t>(end - message.data()));
+  reader.complain(source.begin.line + (is_below ? line : 0), "the puppet's text" + what);
+}
+
+/// Returns the number of the masks that the text tells; without a text, there are none.
+std::uint32_t read_masks(TomlReader& reader, const toml::table& table, Timeline& timeline) {
+  const std::string text = reader.text(table, "masks");
+  auto& all = timeline.masks;
+  if (all.empty() && table.contains("time_s")) all.emplace_back(); // none at 0 s
+  for (std::size_t at = 0; at < all.size(); ++at)
+    if ((all[at] ? all[at]->puppet().text : std::string()) == text)
+      return static_cast<std::uint32_t>(at);
+  if (text.empty() || reader.error()) return 0;
+  auto masks = puppet::parse_puppet(text, "");
+  if (!masks) {
+    complain_in_text(reader, *table.get("masks"), masks.error().message);
+    return 0;
+  }
+  all.push_back(std::make_shared<const puppet::Rig>(*std::move(masks), deform::Points(3, 0)));
+  return static_cast<std::uint32_t>(all.size() - 1);
+}
+
 flow::Command read_request(TomlReader& reader, const toml::table& event) {
   const auto name = event["request"].value<std::string_view>();
   if (name == "subdivide") return flow::Subdivide{};
@@ -204,12 +234,14 @@ flow::Command read_request(TomlReader& reader, const toml::table& event) {
   return reader.named(event, "request", flow::request_named);
 }
 
-flow::Command read_command(TomlReader& reader, const toml::table& event, const puppet::Rig* rig) {
+flow::Command read_command(TomlReader& reader, const toml::table& event, Timeline& timeline) {
+  const puppet::Rig* const rig = timeline.rig.get();
   if (event.size() > 2)
     reader.complain(event, "an event has a time and one thing that happens; make two events of it");
   if (event.contains("settings")) return flow::ChangeSettings{read_settings(reader, event)};
   if (event.contains("clutch")) return read_clutch(reader, event);
   if (event.contains("role")) return read_role(reader, event, rig);
+  if (event.contains("masks")) return flow::ChangePuppet{read_masks(reader, event, timeline)};
   if (event.contains("symmetric")) return flow::SetSymmetry{reader.truth(event, "symmetric")};
   return read_request(reader, event);
 }
@@ -220,10 +252,12 @@ void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline
   for (const toml::node& node : *events) {
     const toml::table* const event = reader.as_table(node, "an event");
     if (event == nullptr || reader.error()) return;
-    reader.allow_only(*event, {"time_s", "request", "settings", "clutch", "role", "symmetric"});
-    Event& read = timeline.events.emplace_back();
+    reader.allow_only(*event,
+                      {"time_s", "request", "settings", "clutch", "role", "symmetric", "masks"});
+    Event read;
     read.time_s = reader.number(*event, "time_s");
-    read.command = read_command(reader, *event, timeline.rig.get());
+    read.command = read_command(reader, *event, timeline);
+    timeline.events.push_back(read);
     if (!reader.error() && flow::is_for_puppet(read.command) && timeline.rig == nullptr)
       reader.complain(*event, "is about a puppet, and there is none; add [puppet]");
   }
@@ -267,18 +301,6 @@ void read_rig_state(TomlReader& reader, const toml::table& table, const puppet::
   }
 }
 
-/// `message` begins with ":LINE: ", which counts from the line below the key if the text is written
-/// in several lines.
-void complain_in_text(TomlReader& reader, const toml::node& text, const std::string& message) {
-  std::size_t line = 0;
-  const auto [end, error] =
-      std::from_chars(message.data() + 1, message.data() + message.size(), line);
-  const auto& source = text.source();
-  const bool is_below = error == std::errc{} && source.end.line > source.begin.line;
-  const std::string what = message.substr(static_cast<std::size_t>(end - message.data()));
-  reader.complain(source.begin.line + (is_below ? line : 0), "the puppet's text" + what);
-}
-
 void read_puppet(TomlReader& reader, const toml::table& root, Timeline& timeline) {
   if (!root.contains("puppet")) return;
   const toml::table* const table = reader.table(root, "puppet");
@@ -306,8 +328,9 @@ void read_model(TomlReader& reader, const toml::table& root, Timeline& timeline)
 }
 
 Timeline read_root(TomlReader& reader, const toml::table& root) {
-  reader.allow_only(root, {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
-                           "pull_is_step", "events", "model", "sculptor", "puppet", "hands"});
+  reader.allow_only(root,
+                    {"version", "take", "units_per_metre", "rate_hz", "duration_s", "held",
+                     "pull_is_step", "events", "model", "sculptor", "puppet", "masks", "hands"});
   Timeline timeline;
   timeline.take = reader.text(root, "take");
   timeline.units_per_metre = reader.number(root, "units_per_metre");
@@ -316,6 +339,7 @@ Timeline read_root(TomlReader& reader, const toml::table& root) {
   timeline.held = reader.truth(root, "held");
   timeline.pull_is_step = root.contains("pull_is_step") && reader.truth(root, "pull_is_step");
   read_puppet(reader, root, timeline);
+  if (root.contains("masks")) read_masks(reader, root, timeline);
   read_events(reader, root, timeline);
   read_model(reader, root, timeline);
   read_sculptor(reader, root, timeline.rig != nullptr, timeline.sculptor);

@@ -58,7 +58,7 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   if (frame.ticks_run > 0) panel_->follow_settings(frame.settings);
   window_->leave_left(panel_->covered_px());
   window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there
-  if (editor_->is_on() && !editor_->is_dragging())
+  if ((editor_->is_on() || editor_->has_masks()) && !editor_->is_dragging())
     for (const render::Surface& veil : marks_->veils(*editor_, *builder_))
       window_->add(veil);
   if (!move_hand(frame, commands) && !edit_puppet()) window_->move_camera();
@@ -83,9 +83,9 @@ const flow::LoopSettings& LiveWindow::settings() const noexcept {
 
 // That of the loop, or that of the editor.
 void LiveWindow::show_model(const flow::Frame& frame) {
-  if (editor_->is_on()) {
+  if (const deform::BlockShape* const shape = editor_->is_on() ? editor_->shape() : nullptr) {
     shows_loop_ = false;
-    if (const deform::BlockShape* const shape = editor_->shape()) window_->follow(*shape);
+    window_->follow(*shape);
   } else if (!std::exchange(shows_loop_, true)) {
     window_->follow(frame.shape);
   }

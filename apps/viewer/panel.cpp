@@ -298,9 +298,13 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
       if (ImGui::CollapsingHeader("Puppet", ImGuiTreeNodeFlags_DefaultOpen))
         Panel::puppet(*editor_, commands);
     };
-    const bool edits = editor_->is_on(); // and then needs nothing as much as this
+    const bool edits =
+        editor_->is_on() && !editor_->paints_masks(); // and then needs nothing as much as this
     if (edits) puppet();
-    if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) panel_->settings();
+    if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) {
+      panel_->settings();
+      Panel::masks(*editor_, frame, commands);
+    }
     if (ImGui::CollapsingHeader("History", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->history(frame, commands);
     if (!edits) puppet();

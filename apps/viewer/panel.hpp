@@ -56,6 +56,8 @@ struct LiveWindow::Panel {
   void brushes(flow::LoopSettings& chosen);
   /// Lists the steps of the history. A click goes there.
   void history(const flow::Frame& frame, Commands& commands);
+  /// Symmetry, and what fingertips leave alone.
+  static void masks(PuppetEditor& editor, const flow::Frame& frame, Commands& commands);
   /// Edits the puppet.
   static void puppet(PuppetEditor& editor, Commands& commands);
   static void puppet_keys(PuppetEditor& editor, Commands& commands);

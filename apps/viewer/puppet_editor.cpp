@@ -61,7 +61,9 @@ void PuppetEditor::begin(const deform::Mesh& loaded, const std::string& model_na
 }
 
 void PuppetEditor::set_model(const deform::Mesh& shown) {
-  shown_ = shown;
+  shown_ = live_ = shown;
+  layout_.reset();
+  live_at_ = {};
   shapes_.reset();
   plain_.reset();
   ++version_;
@@ -91,9 +93,34 @@ void PuppetEditor::follow(const RigPointer& in_force, const flow::Frame& frame) 
       set_rig(in_force ? in_force : empty_, nullptr);
     }
   }
-  if (!is_on_) return;
+  if (is_live()) follow_shape(frame);
+  if (!is_on_ || only_masks_) return;
   look_at_hands(frame);
   end_scaling(false);
+}
+
+bool PuppetEditor::has_masks() const noexcept {
+  const Puppet& puppet = rig_->puppet();
+  return !puppet.is_played() && (!puppet.masks.empty() || puppet.inverted);
+}
+
+bool PuppetEditor::is_live() const noexcept {
+  return only_masks_ || (!is_on_ && has_masks());
+}
+
+/// What is held does not move, so that a little later is soon enough; and the veils of a large
+/// model take long.
+void PuppetEditor::follow_shape(const flow::Frame& frame) {
+  const HostClock::duration rest =
+      std::chrono::milliseconds(250) * (1 + shown_.vertices.cols() / 100'000);
+  const HostTime now = HostClock::now();
+  if (frame.ticks_run == 0 || now - live_at_ < rest || !stroke_.empty()) return;
+  if (!layout_) layout_.emplace(shown_.vertices);
+  if (frame.shape.block_count() != layout_->block_count()) return;
+  layout_->unpack(frame.shape, live_.vertices);
+  live_at_ = HostClock::now();
+  ++version_;
+  ++model_version_;
 }
 
 void PuppetEditor::look_at_hands(const flow::Frame& frame) {
@@ -114,7 +141,7 @@ void PuppetEditor::turn(bool on) {
   forget_place();
   end_stroke();
   drag_.reset();
-  brushes_ = false;
+  brushes_ = only_masks_ = false;
   is_on_ = on;
   told_ = on && rig_->puppet().points.empty()
               ? "Click a place of the model that a finger shall move."
@@ -123,6 +150,7 @@ void PuppetEditor::turn(bool on) {
 }
 
 const deform::BlockShape* PuppetEditor::shape() {
+  if (only_masks_) return nullptr;
   if (!shapes_ && !rig_->puppet().points.empty()) {
     auto made = shapes_of(rig_);
     if (made) shapes_ = *std::move(made);
@@ -385,10 +413,7 @@ double PuppetEditor::radius() const noexcept {
 }
 
 void PuppetEditor::toggle_brush() {
-  if (rig_->puppet().points.empty()) {
-    told_ = "A puppet begins with a point that a finger moves; then parts of it can be masked.";
-    return;
-  }
+  if (!rig_->puppet().is_played()) return toggle_masks();
   forget_place();
   brushes_ = !brushes_;
   told_ = brushes_
@@ -398,10 +423,26 @@ void PuppetEditor::toggle_brush() {
   ++version_;
 }
 
+void PuppetEditor::toggle_masks() {
+  const bool begins = !brushes_;
+  turn(begins);
+  brushes_ = only_masks_ = begins;
+  if (begins)
+    told_ = "Drag over what fingertips shall leave as it is; with shift, over what may move again. "
+            "The wheel changes the brush.";
+}
+
+/// Masks are of the model before it was shaped.
 void PuppetEditor::paint(const SurfaceHit& hit, bool erases) {
-  if (!stroke_.empty() && (stroke_.back() - hit.at).norm() < stroke_step * brush_radius_) return;
+  Vector3d at = hit.at;
+  if (only_masks_ && !hit.parts.isZero(0.0)) {
+    at.setZero();
+    for (std::size_t k = 0; k < hit.corners.size(); ++k)
+      at += hit.parts[static_cast<Index>(k)] * shown_.vertices.col(hit.corners[k]);
+  }
+  if (!stroke_.empty() && (stroke_.back() - at).norm() < stroke_step * brush_radius_) return;
   if (stroke_.empty()) erases_ = erases;
-  stroke_.push_back(hit.at);
+  stroke_.push_back(at);
   ++version_;
 }
 

@@ -38,10 +38,13 @@ public:
   bool is_on() const noexcept { return is_on_; }
   void turn(bool on);
   /// The model as it is to be shown: at rest, or with the function at 1 whose point is dragged.
+  /// Null: as the hands have shaped it, while masks are painted for their fingertips.
   const deform::BlockShape* shape();
   /// Without a puppet: one that has no points.
   const puppet::Rig& rig() const noexcept { return *rig_; }
   const deform::Mesh& model() const noexcept { return shown_; }
+  /// The model as it is shown: at rest, or, with masks of fingertips, as it was a moment ago.
+  const deform::Mesh& seen() const noexcept { return is_live() ? live_ : shown_; }
   const std::string& told() const noexcept { return told_; } ///< for the person
 
   // Points. A place that was clicked waits for the finger that shall move it.
@@ -87,6 +90,12 @@ public:
 
   bool brushes() const noexcept { return brushes_; }
   void toggle_brush();
+  /// Begins to paint what fingertips leave alone, or ends that.
+  void toggle_masks();
+  /// Tells whether it is on for that alone.
+  bool paints_masks() const noexcept { return only_masks_; }
+  /// Tells whether fingertips have masks, which are drawn whether they are edited or not.
+  bool has_masks() const noexcept;
   void paint(const SurfaceHit& hit, bool erases);
   void end_stroke();
   const std::vector<Eigen::Vector3d>& stroke() const noexcept { return stroke_; }
@@ -111,6 +120,8 @@ private:
     double radius = 1.0;
     HostTime last{};
   };
+  bool is_live() const noexcept;
+  void follow_shape(const flow::Frame& frame);
   bool apply(Result<puppet::Puppet> edited, const std::string& done);
   void set_rig(RigPointer rig, std::unique_ptr<puppet::RigShapes> shapes);
   Result<std::unique_ptr<puppet::RigShapes>> shapes_of(const RigPointer& rig) const;
@@ -126,6 +137,9 @@ private:
   RigPointer to_loop_;                        ///< not taken yet
   std::unique_ptr<puppet::RigShapes> shapes_; ///< of rig_ on shown_; null: none, or not made yet
   std::optional<deform::BlockShape> plain_;   ///< shown_ itself, where there is no puppet
+  std::optional<deform::BlockLayout> layout_; ///< of shown_, if it was needed
+  deform::Mesh live_;                         ///< shown_, as the hands have shaped it
+  HostTime live_at_{};                        ///< when it was brought up to date
   std::string point_name_, function_name_;    ///< that are chosen
   std::optional<SurfaceHit> pending_;
   puppet::BendWatch bends_;
@@ -134,6 +148,7 @@ private:
   std::vector<Eigen::Vector3d> stroke_;
   double new_radius_ = 1.0, brush_radius_ = 1.0;
   bool is_on_ = false, brushes_ = false, erases_ = false;
+  bool only_masks_ = false; ///< it is on for them alone
   std::uint64_t version_ = 1, model_version_ = 1;
   std::string told_;
 };

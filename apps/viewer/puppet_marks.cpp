@@ -66,7 +66,7 @@ const std::vector<render::Surface>& PuppetMarks::veils(const PuppetEditor& edito
 void PuppetMarks::make(const PuppetEditor& editor, const render::SceneBuilder& builder) {
   if (model_version_ != editor.model_version()) {
     model_version_ = editor.model_version();
-    const deform::Points& vertices = editor.model().vertices;
+    const deform::Points& vertices = editor.seen().vertices;
     corners_ = builder.corners();
     places_.clear();
     for (Index at = 0; at < vertices.cols(); ++at)
@@ -134,18 +134,19 @@ void PuppetMarks::add_reach(const PuppetEditor& editor) {
 void PuppetMarks::add_masks(const PuppetEditor& editor) {
   const auto& masks = editor.rig().puppet().masks;
   const deform::Points& vertices = editor.model().vertices;
-  const auto veil_of = [&](const std::vector<puppet::Mask>& balls, const Vector3f& colour) {
-    if (balls.empty()) return;
+  const auto veil_of = [&](const std::vector<puppet::Mask>& balls, const Vector3f& colour,
+                           bool inverted = false) {
+    if (balls.empty() && !inverted) return;
     std::vector<bool> takes(static_cast<std::size_t>(vertices.cols()));
     for (std::size_t at = 0; at < takes.size(); ++at)
-      takes[at] = is_masked(vertices.col(static_cast<Index>(at)), balls);
+      takes[at] = is_masked(vertices.col(static_cast<Index>(at)), balls) != inverted;
     add_veil(patch(colour, 0.55F), [&](std::uint32_t vertex) { return takes[vertex]; });
   };
   std::vector<puppet::Mask> painted;
   for (const Vector3d& at : editor.stroke())
     painted.push_back({at, editor.brush_radius() / puppet::half_of_mask});
   veil_of(painted, editor.erases() ? erased_colour : mask_colour);
-  veil_of(masks, mask_colour);
+  veil_of(masks, mask_colour, editor.rig().puppet().inverted);
 }
 
 std::size_t point_at(const PuppetEditor& editor, const render::Camera& stage_camera,

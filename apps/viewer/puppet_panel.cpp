@@ -76,13 +76,33 @@ void edit_buttons(PuppetEditor& editor, Commands& commands) {
 
 } // namespace
 
+void LiveWindow::Panel::masks(PuppetEditor& editor, const flow::Frame& frame, Commands& commands) {
+  bool symmetric = frame.symmetric;
+  if (ImGui::Checkbox("symmetry", &symmetric)) commands.emplace_back(flow::SetSymmetry{symmetric});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("One hand shapes both sides (y)");
+  if (editor.rig().puppet().is_played()) return; // whose masks are edited with it
+  ImGui::SameLine();
+  bool brushes = editor.brushes();
+  if (ImGui::Checkbox("paint masks", &brushes)) editor.toggle_masks();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Paint what stays; shift erases (z)");
+  if (ImGui::Button("Clear masks")) commands.emplace_back(flow::SetMask{flow::MaskEdit::clear});
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Everything moves (Delete, while masks are painted)");
+  ImGui::SameLine();
+  if (ImGui::Button("Invert")) commands.emplace_back(flow::SetMask{flow::MaskEdit::invert});
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("What was held moves, and the rest is held (shift z)");
+  if (editor.brushes()) ImGui::TextWrapped("%s", editor.told().c_str());
+}
+
 void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
-  if (ImGui::Button(editor.is_on() ? "Play the puppet" : "Edit the puppet",
+  const bool is_on = editor.is_on() && !editor.paints_masks();
+  if (ImGui::Button(is_on ? "Play the puppet" : "Edit the puppet",
                     ImVec2(ImGui::GetContentRegionAvail().x, 0.0F)))
-    editor.turn(!editor.is_on());
+    editor.turn(!is_on);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("Click, bend a finger, drag: what each finger does (Tab)");
-  if (!editor.is_on()) return;
+  if (!editor.is_on() || editor.paints_masks()) return;
   if (!editor.told().empty()) ImGui::TextWrapped("%s", editor.told().c_str());
   edit_buttons(editor, commands);
   ImGui::Text("%s, radius %.3g", editor.brushes() ? "brush" : "point",
@@ -95,10 +115,23 @@ void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
 void LiveWindow::Panel::puppet_keys(PuppetEditor& editor, Commands& commands) {
   if (!takes_keys() || ImGui::GetIO().KeyCtrl) return;
   if (pressed(GLFW_KEY_TAB)) editor.turn(!editor.is_on());
+  const bool shifts = ImGui::GetIO().KeyShift;
+  if (pressed(GLFW_KEY_Z)) {
+    if (shifts)
+      commands.emplace_back(flow::SetMask{flow::MaskEdit::invert});
+    else
+      editor.is_on() ? editor.toggle_brush() : editor.toggle_masks();
+  }
   if (!editor.is_on()) return;
+  if (editor.brushes() && !editor.rig().puppet().is_played()) {
+    if (pressed(GLFW_KEY_ESCAPE)) editor.toggle_masks();
+    if (pressed(GLFW_KEY_DELETE) || pressed(GLFW_KEY_BACKSPACE))
+      commands.emplace_back(flow::SetMask{flow::MaskEdit::clear});
+    if (pressed(GLFW_KEY_A)) commands.emplace_back(flow::SavePuppet{});
+    return;
+  }
   if (pressed(GLFW_KEY_J)) editor.toggle_mirror();
   if (pressed(GLFW_KEY_O)) editor.toggle_pin();
-  if (pressed(GLFW_KEY_Z)) editor.toggle_brush();
   if (pressed(GLFW_KEY_DELETE) || pressed(GLFW_KEY_BACKSPACE)) editor.remove_point();
   if (pressed(GLFW_KEY_ESCAPE)) editor.forget_place();
   if (pressed(GLFW_KEY_A)) commands.emplace_back(flow::SavePuppet{});

@@ -1,5 +1,6 @@
 #include "viewer/surface_pick.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -53,7 +54,12 @@ std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray) {
     nearest = *distance;
     Vector3d normal = (b - a).cross(c - a).stableNormalized();
     if (normal.dot(ray.along) > 0.0) normal = -normal;
-    hit = SurfaceHit{ray.from + nearest * ray.along, normal};
+    hit = SurfaceHit{ray.from + nearest * ray.along, normal, corners};
+    const Vector3d area = (b - a).cross(c - a);
+    const double whole = std::max(area.squaredNorm(), std::numeric_limits<double>::min());
+    hit->parts.y() = (hit->at - a).cross(c - a).dot(area) / whole;
+    hit->parts.z() = (b - a).cross(hit->at - a).dot(area) / whole;
+    hit->parts.x() = 1.0 - hit->parts.y() - hit->parts.z();
   });
   return hit;
 }

@@ -1,6 +1,8 @@
 #pragma once
 // What of a model is under the pointer.
 
+#include <array>
+#include <cstdint>
 #include <optional>
 
 #include <nendo/deform/mesh.hpp>
@@ -22,6 +24,8 @@ Ray ray_at(const render::Camera& camera, const Eigen::Vector2d& pixel, render::S
 struct SurfaceHit {
   Eigen::Vector3d at;
   Eigen::Vector3d normal;
+  std::array<std::uint32_t, 3> corners{};          ///< of that triangle
+  Eigen::Vector3d parts = Eigen::Vector3d::Zero(); ///< of each corner, of which `at` is the sum
 };
 
 /// Returns the first place of the mesh's faces that the ray meets; nothing if it meets none. It

@@ -122,6 +122,19 @@ std::optional<flow::Command> clutch_in(Words words) noexcept {
   return std::nullopt;
 }
 
+std::optional<flow::Command> mask_in(Words words) noexcept {
+  const auto edit = flow::mask_edit_named(words.next());
+  if (!edit) return std::nullopt;
+  flow::SetMask mask{*edit};
+  if (*edit == flow::MaskEdit::hold || *edit == flow::MaskEdit::free) {
+    std::array<double, 1> radius{};
+    if (!words.take(mask.at) || !words.take(radius)) return std::nullopt;
+    mask.radius = radius[0];
+  }
+  if (!words.are_over() || !mask.is_usable()) return std::nullopt;
+  return mask;
+}
+
 std::optional<flow::Command> role_in(Words words) noexcept {
   std::array<double, 1> function{};
   if (!words.take(function)) return std::nullopt;
@@ -149,6 +162,7 @@ std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   if (first == "wrist") return wrist_in(words);
   if (first == "clutch") return clutch_in(words);
   if (first == "role") return role_in(words);
+  if (first == "mask") return mask_in(words);
   if (first == "symmetry") {
     const auto on = switch_in(words.next());
     if (on && words.are_over()) return flow::SetSymmetry{*on};

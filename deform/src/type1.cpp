@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cardinal_weights.hpp"
+#include "masked_step.hpp"
 #include "sculpted_parts.hpp"
 #include "solver_room.hpp"
 
@@ -44,7 +45,8 @@ Type1Deformer::Type1Deformer(SculptedShape& shape, Eigen::Index control_points,
       weights_(std::make_unique<CardinalWeights>(shape.layout(), control_points, field_,
                                                  keeps_volume(options)
                                                      ? 0 // they would be matrices
-                                                     : options.evaluation.weight_bytes)) {
+                                                     : options.evaluation.weight_bytes)),
+      masked_(std::make_unique<MaskedStep>(options.mask)) {
   if (keeps_volume(options)) {
     steps_.emplace(control_points, supports_, options.csrbf, most_steps);
     evaluator_->make_room_for_halves(shape.layout());
@@ -173,10 +175,12 @@ FieldStatus Type1Deformer::follow_links(Chain& chain) {
   linked_->follow(rest_shape());
   do {
     const CsrbfField& link = chain.field();
+    masked_->begin(linked_->shape);
     if (evaluator_->set_field(link) && evaluator_->displace(*linked_))
       fields_.push(link);
     else
       status = FieldStatus::not_finite;
+    masked_->end(*linked_);
   } while (chain.next());
   return status;
 }
@@ -186,13 +190,15 @@ void Type1Deformer::draw(BlockShape& out) {
     out.follow(linked_->shape);
     return;
   }
-  if (!weights_->is_built()) {
+  const BlockShape& rest = rest_shape().shape;
+  if (weights_->is_built()) {
+    if (out.block_count() != rest.block_count()) out = rest;
+    weights_->apply(displacements_, rest, out, *evaluator_);
+  } else {
     evaluator_->set_field(field_);
     evaluator_->displace(rest_shape(), out);
-    return;
   }
-  if (out.block_count() != rest_shape().shape.block_count()) out = rest_shape().shape;
-  weights_->apply(displacements_, rest_shape().shape, out, *evaluator_);
+  if (is_masked()) masked_->mask()->hold(rest, out);
 }
 
 /// Makes the applied shape the rest shape.
@@ -200,13 +206,17 @@ void Type1Deformer::absorb() {
   BoundedShape& rest = shape_->parts().change();
   if (in_links_) {
     rest.follow(*linked_);
-  } else if (weights_->is_built()) {
+    return;
+  }
+  masked_->begin(rest.shape);
+  if (weights_->is_built()) {
     weights_->apply(displacements_, rest.shape, rest.shape, *evaluator_);
     weights_->update_rest_bounds(displacements_, rest);
   } else {
     evaluator_->set_field(field_);
     evaluator_->displace(rest);
   }
+  masked_->end(rest);
 }
 
 FieldStatus Type1Deformer::commit(const Points& ends) {
@@ -276,6 +286,10 @@ FieldStatus Type1Deformer::redo(const Points& tips) {
   shape_->parts().redo();
   take_hold();
   return status;
+}
+
+bool Type1Deformer::is_masked() const noexcept {
+  return masked_->mask() != nullptr;
 }
 
 std::size_t Type1Deformer::weight_bytes() const noexcept {

@@ -6,6 +6,7 @@
 
 #include "brush/brush_stroke.hpp"
 #include "fingertip_curve.hpp"
+#include "masked_step.hpp"
 #include "sculpted_parts.hpp"
 #include "solver_room.hpp"
 #include "usable.hpp"
@@ -51,7 +52,8 @@ Type2Deformer::Type2Deformer(SculptedShape& shape, Eigen::Index control_points, 
       field_(room_for_field(supports_, pulling_.cols(), options.csrbf.kernel)),
       fields_(most_fields(options), field_),
       evaluator_(std::make_unique<BlockEvaluator>(shape.layout(), field_.centres.cols(),
-                                                  options.evaluation)) {
+                                                  options.evaluation)),
+      masked_(std::make_unique<MaskedStep>(options.mask)) {
   if (options.brushes.rings && !options.brushes.are_all_pull())
     brushes_ = std::make_unique<BrushStroke>(shape.layout(), control_points, options);
   if (pulling_points_.empty()) return;
@@ -190,8 +192,10 @@ FieldStatus Type2Deformer::apply_steps() {
 }
 
 FieldStatus Type2Deformer::apply(const CsrbfField& field) {
-  if (!evaluator_->set_field(field) || !evaluator_->displace(shape_->parts().change()))
-    return FieldStatus::not_finite;
+  BoundedShape& shape = shape_->parts().change();
+  masked_->begin(shape.shape);
+  if (!evaluator_->set_field(field) || !evaluator_->displace(shape)) return FieldStatus::not_finite;
+  masked_->end(shape);
   fields_.push(field);
   return FieldStatus::ok;
 }
@@ -210,6 +214,10 @@ FieldStatus Type2Deformer::apply_links() {
   report_.reached = piece.reached;
   report_.status = std::max(report_.status, std::max(status, piece.status));
   return std::max(status, piece.status);
+}
+
+bool Type2Deformer::is_masked() const noexcept {
+  return masked_->mask() != nullptr;
 }
 
 } // namespace nendo::deform

@@ -107,6 +107,33 @@ TEST_SUITE("gltf_export") {
     CHECK(done->bytes == std::filesystem::file_size(motion.path("take.glb")));
   }
 
+  TEST_CASE(
+      "with masks a take of Type-1 is its control vectors as exactly, and so it is mirrored") {
+    const char* const held = "version = 1\n[[masks]]\nat = [0, 1, 0]\nradius = 1.0\n";
+    const std::string mirrored = std::string("version = 1\nmirror = \"x\"\n") + (held + 12);
+    std::vector<double> ways{way(RecordedMotion(Motion{}))};
+    for (const char* const masks : {held, mirrored.c_str()}) {
+      const RecordedMotion motion(Motion{.puppet = masks});
+      const auto done = export_it(motion);
+      REQUIRE(done);
+      REQUIRE(done->morphs);
+      CHECK(done->morphs->basis == MorphBasis::control_vectors);
+      const double off = farthest_off(motion, read(motion));
+      CHECK(off < 1e-6);
+      CHECK(off <= done->morphs->greatest_error + readers_rounding);
+      ways.push_back(way(motion));
+      CHECK(ways.back() > 0.005);
+      const auto puppet = puppet::parse_puppet(masks, "masks");
+      REQUIRE(puppet);
+      const deform::Points& model = motion.played.test.model.vertices;
+      const Eigen::VectorXd weights = puppet::mask_weights(*puppet, model);
+      for (Eigen::Index v = 0; v < model.cols(); ++v)
+        if (weights[v] == 0.0) CHECK(motion.shapes[30].col(v) == model.col(v));
+    }
+    CHECK(ways[1] != ways[0]);
+    CHECK(ways[2] != ways[1]);
+  }
+
   TEST_CASE("commits and Type-2 become key shapes, as near as is asked for and as is said") {
     for (const Motion& motion : {Motion{.commit_at_tick = 20}, Motion{.mode = flow::Mode::type2},
                                  Motion{.mode = flow::Mode::type2, .injective = true}}) {

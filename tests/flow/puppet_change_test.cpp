@@ -9,8 +9,7 @@
 
 #include "support/any_puppet.hpp"
 #include "support/clocked_loop.hpp"
-#include "support/late_maker.hpp"
-#include "support/restraint.hpp"
+#include "support/restrained_ticks.hpp"
 #include "support/rounds.hpp"
 
 namespace puppet_change_test {
@@ -285,38 +284,14 @@ TEST_SUITE("puppet change") {
       const bool is_large = seed >= 4; // in type 2, whose equations are solved anew in each tick
       if (is_large) fixture.puppet = large.c_str();
       const std::size_t most = is_large ? 66 : 10;
-      test::LoopUnderTest test(is_large ? Mode::type2 : Mode::type1, fixture);
-      std::mt19937 random(seed);
-      test::LateMaker maker(seed, 1000);
-      HostTime now = HostClock::now();
-      for (std::uint64_t tick = 0; tick < ticks; ++tick) {
-        DeformLoop& loop = *test.loop;
-        if (random() % 12 == 0)
-          static_cast<void>(loop.change_puppet(
-              test::any_puppet(loop.puppet(loop.newest_puppet()), test.model, random, most)));
-        if (random() % 30 == 0) {
-          LoopSettings settings = test::any_settings(loop.settings(), random);
-          if (is_large) settings.mode = Mode::type2;
-          loop.change_settings(settings);
-        }
-        maker.turn(loop);
-        if (random() % 200 == 0 && maker.is_idle(loop))
-          loop.change_log(random() % 2 == 0 ? &log : nullptr, loop.frames().front().shape);
-        if (random() % 8 == 0) test.commands.try_push(requests[random() % requests.size()]);
-        test.bend(static_cast<int>(tick % 40), now += 1ms);
-        {
-          const test::Restraint restraint;
-          loop.tick(tick, now, now);
-          sum.allocations += restraint.counts().allocations;
-          sum.frees += restraint.counts().frees;
-          sum.locks += restraint.counts().locks;
-        }
-        if (random() % 2 == 0 && loop.frames().update())
-          if (const auto& awaited = loop.frames().front().awaited) loop.change_to(*awaited);
-        log.drain([](const auto&) noexcept {});
-        loop.take_state();
-        loop.refill_undo();
-      }
+      const Mode mode = is_large ? Mode::type2 : Mode::type1;
+      test::LoopUnderTest test(mode, fixture);
+      test::tick_with_changes(
+          test, log, ticks, seed,
+          [&](const auto& now, auto& random) {
+            return test::any_puppet(now, test.model, random, most);
+          },
+          sum, is_large ? std::optional(mode) : std::nullopt);
       puppets += test.loop->next_puppet();
     }
     CHECK(sum.allocations == 0);

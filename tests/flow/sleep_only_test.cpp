@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
+#include <random>
 #include <thread>
 
 #include <doctest/doctest.h>
@@ -13,6 +15,8 @@
 
 #include <nendo/flow/realtime.hpp>
 
+#include "support/any_puppet.hpp"
+#include "support/late_maker.hpp"
 #include "support/polling_viewer.hpp"
 #include "support/restraint.hpp"
 #include "support/sleep_only.hpp"
@@ -70,6 +74,63 @@ void move_and_tick(LoopUnderTest& test, std::uint64_t first, std::uint64_t ticks
   }
 }
 
+/// Asks for everything that a run can be asked for, at random, on a thread of its own, as who runs
+/// a loop does.
+class Asker {
+public:
+  explicit Asker(LoopUnderTest& test) : test_(test), thread_([this] { ask(); }) {}
+  ~Asker() { end(); }
+  Asker(const Asker&) = delete;
+  Asker& operator=(const Asker&) = delete;
+
+  void end() {
+    over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  int settings() const noexcept { return settings_; } ///< once it has ended, as these
+  int masks() const noexcept { return masks_; }
+  int models() const noexcept { return maker_.made(); }
+
+private:
+  void ask() {
+    DeformLoop& loop = *test_.loop;
+    while (!over_) {
+      std::this_thread::sleep_for(std::chrono::microseconds(300));
+      loop.refill_undo();
+      if (loop.frames().update() && loop.frames().front().awaited)
+        loop.change_to(*loop.frames().front().awaited);
+      maker_.turn(loop);
+      test_.commands.try_push(any_command());
+      if (random_() % 4 == 0)
+        settings_ += loop.change_settings(test::any_settings(loop.settings(), random_)) ? 1 : 0;
+      if (random_() % 4 != 0) continue;
+      const auto masks = test::any_masks(loop.puppet(loop.newest_puppet()), random_);
+      if (masks && loop.change_puppet(masks)) ++masks_;
+    }
+  }
+  Command any_command() {
+    switch (random_() % 5) {
+    case 0:
+      return Mark{};
+    case 1:
+      return SetLayer{0, random_() % 2 == 0};
+    case 2:
+      return test::any_role(random_); // of a puppet that is not there
+    case 3:
+      return WristMove::to(Side::left, test_.placement.T_stage_wrist[0]);
+    default:
+      return requests[random_() % requests.size()];
+    }
+  }
+
+  LoopUnderTest& test_;
+  std::mt19937 random_{7};
+  test::LateMaker maker_{8, 1000};
+  int settings_ = 0, masks_ = 0;
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
 } // namespace
 
 // The sanitizers' own run-time makes calls and allocates.
@@ -123,6 +184,30 @@ TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
       CHECK(taken->ticks > 0);
       CHECK(taken->ticks + taken->samples + taken->lost == 3 * 100'300);
     }
+  }
+
+  TEST_CASE("100,000 ticks with commands of all kinds at random, masks and symmetry among them: no "
+            "call, no allocation, no lock") {
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
+    std::optional<Asker> asker;
+    const Watched seen = watch(
+        [&] {
+          move_and_tick(test, 0, 300);
+          asker.emplace(test);
+        },
+        [&] { move_and_tick(test, 300, 100'000); });
+    asker->end();
+    REQUIRE(seen.filtered);
+    CHECK(seen.calls.count == 0);
+    CHECK(seen.calls.last == -1);
+    CHECK(seen.counts.allocations == 0);
+    CHECK(seen.counts.frees == 0);
+    CHECK(seen.counts.locks == 0);
+    CHECK(test.loop->stats().ticks == 100'300);
+    CHECK(asker->settings() > 100);
+    CHECK(asker->masks() > 100);
+    CHECK(asker->models() > 0);
+    CHECK(test.loop->stats().undos > 10);
   }
 
   TEST_CASE("waiting for the next tick is the sleep and nothing else, whatever the policy") {

@@ -30,7 +30,7 @@ void play(Puppet puppet) {
     values.push_back(values.size() % 2 == 0 ? function.most : function.least);
   rig.place(values, points);
   require(points.allFinite());
-  rig.supports();
+  if (rig.puppet().is_played()) rig.supports();
 }
 
 } // namespace

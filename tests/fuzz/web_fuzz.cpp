@@ -68,6 +68,7 @@ void check_words(std::string_view text) {
     require(move->is_usable() && pose.matrix().allFinite());
     require(std::abs(pose.linear().determinant() - 1.0) < 1e-9);
   }
+  if (const auto* mask = std::get_if<nendo::flow::SetMask>(&*command)) require(mask->is_usable());
   const auto* change = std::get_if<nendo::flow::ChangeSettings>(&*command);
   if (change == nullptr) return;
   for (const double radius_m : change->settings.radius_m)

@@ -11,6 +11,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/hand/joint_filter.hpp>
+#include <nendo/puppet/puppet.hpp>
 
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
@@ -378,6 +379,39 @@ TEST_SUITE("run") {
     }
   }
 
+  TEST_CASE("a mask file's places stay bit for bit, and symmetry shapes both sides by one hand") {
+    const TemporaryFolder folder;
+    const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+    std::ofstream(at("mask.toml")) << "version = 1\n[[masks]]\nat = [0, 1.2, 0.2]\nradius = 0.3\n";
+    const std::string model = NENDO_MODELS "/moai.obj";
+    const auto before = deform::read_mesh(model);
+    const auto masks = puppet::read_puppet(at("mask.toml"));
+    REQUIRE(before);
+    REQUIRE(masks);
+    const auto done = nendo::test::nendo(
+        {"run", model, "--right", "sim:sculpt", "--mask", at("mask.toml"), "--symmetry", "--rate",
+         "90", "--duration", "2", "--record", at("take.nendo"), "--out", at("clay.ply")});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const auto shaped = deform::read_mesh(at("clay.ply"));
+    REQUIRE(shaped);
+    const Eigen::VectorXd weights = puppet::mask_weights(*masks, before->vertices);
+    int held = 0, moved = 0, left = 0, right = 0;
+    for (Eigen::Index v = 0; v < weights.size(); ++v) {
+      const bool same = shaped->vertices.col(v) == before->vertices.col(v);
+      held += weights[v] == 0.0 ? 1 : 0;
+      moved += weights[v] == 0.0 && !same ? 1 : 0;
+      if (!same) ++(before->vertices(0, v) < 0.0 ? left : right);
+    }
+    CHECK(held > 50);
+    CHECK(moved == 0);
+    CHECK(left > 50);
+    CHECK(right > 50);
+    const auto again =
+        nendo::test::nendo({"replay", at("take.nendo"), "--no-clock", "--out", at("again.ply")});
+    REQUIRE_MESSAGE(again.exit_code == 0, again.err);
+    CHECK(nendo::test::contents(at("again.ply")) == nendo::test::contents(at("clay.ply")));
+  }
+
   TEST_CASE("wrong options and files are found before any glove is opened") {
     const TemporaryFolder folder;
     const auto out = (folder.path() / "shape.obj").string();
@@ -408,6 +442,9 @@ TEST_SUITE("run") {
           Case{{"--hand-length", "nan"}, 2, "--hand-length"},
           Case{{"--adapt", "--user", "anna"}, 2, "--adapt"},
           Case{{"--adapt", "--calibration", "none"}, 2, "--adapt"},
+          Case{{"--mask", "/no/such/mask.toml"}, 5, "/no/such/mask.toml"},
+          Case{{"--mask", NENDO_MODELS "/face.puppet.toml"}, 5, "is a puppet"},
+          Case{{"--symmetry", "--puppet", "face"}, 2, "--symmetry"},
           Case{{"--mesh", "/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"},
           Case{{"/no/such/mesh.obj"}, 5, "/no/such/mesh.obj"},
           Case{{"a.obj", "--mesh", "b.obj"}, 2, "--mesh"},

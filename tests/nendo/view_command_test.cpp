@@ -73,6 +73,12 @@ struct Pixel {
   int x = 0, y = 0;
 };
 
+/// Paints a mask in the middle of the model.
+bool paints(const Person& person) {
+  return person.does("key --delay 60 z sleep 0.3 mousemove 340 170 mousedown 1 sleep 0.3 "
+                     "mousemove 344 174 sleep 0.3 mouseup 1 sleep 0.3 key --delay 60 z sleep 0.3");
+}
+
 /// Makes a puppet of the calf, which has none yet, with fingers that never rest.
 struct Maker {
   test::TemporaryFolder folder;
@@ -145,6 +151,8 @@ TEST_SUITE("view_command") {
     person.press("c bracketright bracketright");
     person.press("c n");
     person.press("m");
+    REQUIRE(paints(person));
+    person.press("y");
     person.press("bracketleft c");
     person.press("l");
     const deform::Points shaped = person.press("c"); // nothing is held: it stays as it is
@@ -164,6 +172,9 @@ TEST_SUITE("view_command") {
     CHECK(summary["kernel"] == "wendland-c4");
     CHECK(summary["undos"].get<int>() >= 5); // changes within a second are one step
     CHECK(summary["redos"].get<int>() >= 5);
+    const auto told = test::nendo({"recording", "info", person.at("take.nendo"), "--json"});
+    // The mask, symmetry, and both ways of each by undo and redo.
+    CHECK(nlohmann::json::parse(told.out)["puppet_changes"].get<int>() >= 6);
     const auto replayed =
         test::nendo({"replay", person.at("take.nendo"), "--out", person.at("again.ply")});
     REQUIRE(replayed.exit_code == 0);

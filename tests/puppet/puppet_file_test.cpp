@@ -8,6 +8,8 @@
 #include <nendo/base/units.hpp>
 #include <nendo/puppet/puppet.hpp>
 
+#include "support/test_meshes.hpp"
+
 namespace puppet_file_test {
 
 using namespace nendo;
@@ -173,6 +175,45 @@ TEST_SUITE("puppet file") {
     for (int at = 0; at < 30000; ++at)
       crowded += "p" + std::to_string(at) + " = { vertex = 1, radius = 1 }\n";
     CHECK(refuses(crowded + smile, "1000 points"));
+  }
+
+  TEST_CASE("without points it is a mask file, which is written and read as the same") {
+    const std::string masks = "version = 1\ninverted = true\nmirror = \"x\"\nmirror_at = 0.25\n"
+                              "[[masks]]\nat = [1, 2, 3]\nradius = 0.5\n";
+    const auto parsed = parse_puppet(masks, "p.toml");
+    REQUIRE(parsed);
+    CHECK_FALSE(parsed->is_played());
+    CHECK(parsed->inverted);
+    CHECK(parsed->mirrors);
+    CHECK(parsed->mirror_at == 0.25);
+    REQUIRE(parsed->masks.size() == 1);
+    const auto again = parse_puppet(puppet::text_of(*parsed), "again");
+    REQUIRE(again);
+    CHECK(*again == *parsed);
+    CHECK(parse_puppet(puppet::text_of(puppet::Puppet{}), "nothing"));
+    deform::Points places(3, 3);
+    places << 1, 1, 9, 2, 2, 9, 3, 3.49, 9;
+    const Eigen::VectorXd weights =
+        puppet::mask_weights(*parsed, places); // inverted: the ball moves
+    CHECK(weights[0] == 1.0);
+    CHECK((weights[1] > 0.0 && weights[1] < 0.1));
+    CHECK(weights[2] == 0.0);
+    CHECK(puppet::mask_weights(puppet::Puppet{}, places).size() == 0);
+    CHECK(refuses("version = 1\nclutch = {}\n", "needs [points]"));
+    CHECK(refuses("version = 1\nmirror_at = nan\n", "mirror_at"));
+    CHECK(refuses("version = 1\n[[masks]]\nat = [0, 0, 0]\n", "radius"));
+    CHECK(refuses("mirror_at = 1\n" + whole, "mirror_at"));
+  }
+
+  TEST_CASE("the plane of symmetry is found in the middle of a model that is not at x = 0") {
+    const deform::Points ball = test::sphere(12, 24, 2.0).vertices;
+    CHECK(puppet::plane_of_symmetry(ball) == 0.0);
+    deform::Points aside = ball;
+    aside.row(0).array() += 3.0;
+    CHECK(puppet::plane_of_symmetry(aside) == doctest::Approx(3.0));
+    aside.row(1) += 0.3 * aside.row(0); // sheared, it has no such plane
+    aside.row(2) += 0.2 * aside.row(0).cwiseAbs2();
+    CHECK(puppet::plane_of_symmetry(aside) == 0.0);
   }
 
   TEST_CASE("points and signals that there are not are named") {

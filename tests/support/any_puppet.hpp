@@ -1,6 +1,7 @@
 #pragma once
 // Random edits of a puppet.
 
+#include <array>
 #include <memory>
 
 #include <nendo/puppet/puppet_edit.hpp>
@@ -57,6 +58,37 @@ std::shared_ptr<const puppet::Rig> any_puppet(const std::shared_ptr<const puppet
     }
   }();
   return edited && edited->points.size() <= most ? rig_of(*edited, model) : now;
+}
+
+/// Returns other masks of fingertips, or the same ones mirrored; null is none.
+template <class Random>
+std::shared_ptr<const puppet::Rig> any_masks(const std::shared_ptr<const puppet::Rig>& now,
+                                             Random& random) {
+  const deform::Points no_points(3, 0);
+  const puppet::Rig before(now ? now->puppet() : puppet::Puppet{}, no_points);
+  Eigen::Vector3d place;
+  for (double& coordinate : place)
+    coordinate = static_cast<double>(random() % 2001) / 1000.0 - 1.0;
+  const std::array strokes{Eigen::Vector3d(place.stableNormalized())};
+  const double radius = 0.2 + 0.01 * static_cast<double>(random() % 60);
+  const bool is_on = !before.puppet().mirrors;
+  const auto edited = [&]() -> Result<puppet::Puppet> {
+    switch (random() % 7) {
+    case 0:
+    case 1:
+      return puppet::with_masks(before, strokes, radius);
+    case 2:
+      return puppet::without_masks(before, strokes, radius);
+    case 3:
+      return puppet::without_any_mask(before);
+    case 4:
+      return puppet::with_masks_inverted(before);
+    default:
+      return puppet::with_symmetry(before, is_on, 0.0);
+    }
+  }();
+  if (!edited || *edited == before.puppet()) return now;
+  return std::make_shared<const puppet::Rig>(*edited, no_points);
 }
 
 } // namespace nendo::test

@@ -142,7 +142,8 @@ struct LoopUnderTest {
     options.sculptor.mode = mode;
     options.sculptor.deformer.undo_bytes = std::size_t{4} << 20;
     options.sculptor.deformer.supports = deform::one_radius(0.5);
-    if (options.rig) options.sculptor.deformer.supports = options.rig->supports();
+    if (flow::is_played(options.rig.get()))
+      options.sculptor.deformer.supports = options.rig->supports();
     options.sculptor.piece_length = 0.02;
     options.sculptor.deformer.csrbf.merge_fraction = 0.05;
     loop = std::make_unique<flow::DeformLoop>(model, placement, inputs, options);

@@ -18,12 +18,14 @@ struct Motion {
   std::uint64_t commit_at_tick = ~0U; ///< never
   std::uint64_t subdivide_at_tick = ~0U;
   int hertz = 100;
+  const char* puppet = nullptr; ///< or masks: the text of its file
 };
 
 /// A recording with a tick every 1/hertz s. The first tick is that long after the beginning.
 struct RecordedMotion {
   explicit RecordedMotion(const Motion& motion)
-      : played(motion.mode, hand::FilterKind::off, false, motion.injective) {
+      : played(motion.mode, hand::FilterKind::off, false, motion.injective,
+               flow::SwitchAction::none, motion.puppet) {
     played.setup.loop->options.rate_hz = motion.hertz;
     played.record();
     for (std::uint64_t tick = 0; tick < motion.ticks; ++tick) {

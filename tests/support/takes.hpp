@@ -155,6 +155,9 @@ void play(RecordedLoop& played, std::uint64_t ticks, unsigned seed, bool changes
     if (changes && played.test.options.rig && of_changes() % 15 == 0)
       played.change_puppet(
           any_puppet(loop.puppet(loop.newest_puppet()), played.test.model, of_changes));
+    if (changes && !played.test.options.rig && of_changes() % 15 == 0)
+      if (const auto masks = any_masks(loop.puppet(loop.newest_puppet()), of_changes))
+        played.change_puppet(masks);
     if (changes) maker.turn(loop);
     const flow::Frame& frame = played.test.frame_after_tick(tick);
     see(frame);

@@ -135,6 +135,9 @@ TEST_SUITE("player") {
         settings.brushes.fill(brushes ? deform::Brush::inflate : deform::Brush::pull);
         settings.brush_strength = 0.1;
         if (random() % 15 == 0) loop.change_settings(settings);
+        if (seed % 3 == 1 && tick % 20 == 7) // masks and symmetry, too
+          if (const auto masks = test::any_masks(loop.puppet(loop.newest_puppet()), random))
+            taken.live.change_puppet(masks);
         if (random() % 10 == 0)
           taken.live.test.commands.try_push(flow::requests[random() % flow::requests.size()]);
         const flow::Frame& frame = taken.live.test.frame_after_tick(tick);

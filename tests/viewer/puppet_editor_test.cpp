@@ -177,8 +177,20 @@ TEST_SUITE("puppet editor") {
     Maker maker;
     maker.editor.toggle_mirror();
     CHECK_FALSE(maker.editor.told().empty());
+    maker.editor.toggle_brush(); // without a puppet, it paints masks of fingertips
+    CHECK(maker.editor.brushes());
+    maker.editor.paint(Maker::place({0, -1, 0}), false);
+    maker.editor.end_stroke();
+    REQUIRE(maker.hand_over());
+    CHECK(maker.editor.has_masks());
+    CHECK(maker.editor.shape() == nullptr); // the model is shown as the hands have shaped it
+    maker.editor.paint(Maker::place({0, -1, 0}), true);
+    maker.editor.end_stroke();
+    REQUIRE(maker.hand_over());
+    CHECK_FALSE(maker.editor.has_masks());
     maker.editor.toggle_brush();
-    CHECK_FALSE(maker.editor.brushes());
+    CHECK_FALSE(maker.editor.is_on());
+    maker.editor.turn(true);
     maker.editor.place(Maker::place({0, 1, 0}));
     maker.editor.toggle_pin(); // a puppet begins with a function
     CHECK_FALSE(maker.editor.take());

@@ -39,6 +39,16 @@ TEST_SUITE("client_commands") {
           flow::SetClutch{Side::left, puppet::RigPlayer::all_fingers, false});
     CHECK(parsed_as<flow::SetClutch>("clutch right ring on") ==
           flow::SetClutch{Side::right, 3, true});
+    CHECK(parsed_as<flow::SetMask>("mask clear") == flow::SetMask{});
+    CHECK(parsed_as<flow::SetMask>("mask invert") == flow::SetMask{flow::MaskEdit::invert});
+    CHECK(parsed_as<flow::SetMask>("mask hold 1 -2 0.5 0.25") ==
+          flow::SetMask{flow::MaskEdit::hold, {1.0, -2.0, 0.5}, 0.25});
+    CHECK(parsed_as<flow::SetMask>("mask free 1 2 3 4") ==
+          flow::SetMask{flow::MaskEdit::free, {1.0, 2.0, 3.0}, 4.0});
+    for (const auto* wrong : {"mask", "mask paint", "mask clear all", "mask hold",
+                              "mask hold 1 2 3", "mask hold 1 2 3 0", "mask hold 1 2 3 -1",
+                              "mask hold 1 2 3 4 5", "mask free 1e99 2 3 4", "mask hold nan 2 3 4"})
+      CHECK_FALSE(parse_command(wrong));
     CHECK(parsed_as<flow::SetSymmetry>("symmetry on") == flow::SetSymmetry{true});
     CHECK(parsed_as<flow::SetRole>("role 3 left.index_flexion") ==
           flow::SetRole{3, *puppet::HandSignal::named("left.index_flexion")});

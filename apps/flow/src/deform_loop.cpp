@@ -7,6 +7,7 @@
 #include <sched.h>
 #include <sys/prctl.h>
 
+#include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/tips_of_hand.hpp>
 
 namespace nendo::flow {
@@ -34,17 +35,20 @@ SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
                       options.settings
                           ? *options.settings
                           : settings_of(options.sculptor, hand.filter, units_per_metre)};
-  if (options.rig) setup.options.hold = Hold::fingertips; // its points hold
-  if (!options.rig || setup.options.surface) return setup;
+  if (is_played(options.rig.get())) setup.options.hold = Hold::fingertips; // its points hold
+  set_masks(options.rig.get(), model.mesh, model.layout(), setup.options);
+  if (!is_played(options.rig.get()) || setup.options.surface) return setup;
   if (auto surface =
           surface_for(*options.rig, model.mesh, model.layout(), options.sculptor.deformer))
     setup.options.surface = *std::move(surface);
   return setup;
 }
 
+/// Of all hands. Symmetry adds their images.
 Eigen::Index points_at_first(const LoopOptions& options, std::size_t hands) {
-  return options.rig ? options.rig->starts().cols()
-                     : options.sculptor.points_of_hand() * static_cast<Eigen::Index>(hands);
+  SculptorOptions sculptor = options.sculptor;
+  sculptor.are_mirrored = mirror_of(options.rig.get()).has_value();
+  return control_points_of(options.rig.get(), sculptor, static_cast<Eigen::Index>(hands));
 }
 
 std::vector<std::unique_ptr<ModelVersion>> first_version(const deform::Mesh& model,
@@ -83,10 +87,63 @@ std::size_t count_hands(std::span<const HandInput> inputs) noexcept {
   return inputs.empty() ? 0 : 1 + static_cast<std::size_t>(has_other);
 }
 
+bool is_played(const puppet::Rig* rig) noexcept {
+  return rig != nullptr && rig->puppet().is_played();
+}
+
+Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
+                               Eigen::Index hands) noexcept {
+  if (is_played(rig)) return rig->starts().cols();
+  return (sculptor.are_mirrored ? 2 : 1) * sculptor.points_of_hand() * hands;
+}
+
+Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexcept {
+  if (is_played(rig)) return rig->starts().cols();
+  return (mirror_of(rig) ? 10 : 5) * hands;
+}
+
+std::optional<double> mirror_of(const puppet::Rig* rig) noexcept {
+  if (rig == nullptr || is_played(rig) || !rig->puppet().mirrors) return std::nullopt;
+  return rig->puppet().mirror_at;
+}
+
+StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept {
+  if (is_played(before) || is_played(after)) return StepKind::puppet;
+  return mirror_of(before) == mirror_of(after) ? StepKind::mask : StepKind::symmetry;
+}
+
+void mirror_half(double at, Points& points) noexcept {
+  const Eigen::Index half = points.cols() / 2;
+  for (Eigen::Index point = 0; point < half; ++point) {
+    points.col(half + point) = points.col(point);
+    points(0, half + point) = 2.0 * at - points(0, point);
+  }
+}
+
+void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::BlockLayout& layout,
+               SculptorOptions& sculptor) {
+  sculptor.are_mirrored = mirror_of(rig).has_value();
+  sculptor.deformer.mask.reset();
+  if (rig == nullptr) return;
+  const Eigen::VectorXd weights = puppet::mask_weights(rig->puppet(), model.vertices);
+  if (weights.size() > 0)
+    sculptor.deformer.mask = std::make_shared<const deform::VertexMask>(layout, weights);
+}
+
+SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
+                                  const puppet::Rig* masks, Eigen::Index hands) {
+  first.options.are_mirrored = mirror_of(masks).has_value();
+  if (first.options.are_mirrored) supports = of_both_sides(std::move(supports), 5 * hands);
+  first.options.piece_length = first.settings.piece_fraction * deform::least_radius(supports);
+  first.options.deformer.supports = std::move(supports);
+  first.options.surface.reset();
+  return first;
+}
+
 Result<std::shared_ptr<const deform::SurfaceField>>
 surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
             const deform::DeformerOptions& options) {
-  if (rig.puppet().distance == puppet::Distance::air)
+  if (!rig.puppet().is_played() || rig.puppet().distance == puppet::Distance::air)
     return std::shared_ptr<const deform::SurfaceField>();
   deform::SurfaceSetup setup = puppet::surface_setup(rig.puppet(), model, options.csrbf.kernel);
   for (deform::SurfacePoint& point : setup.points)
@@ -102,12 +159,14 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
                        std::vector<HandInput> hands, const LoopOptions& options,
                        const deform::BlockShape* first)
     : options_(options), units_per_metre_(placement.units_per_metre),
+      mirror_(mirror_of(options.rig.get())),
       tips_(Points::Zero(3, points_at_first(options, count_hands(hands)))),
       versions_(first_version(model, options, first)),
       first_(first_setup(options, hands.front(), *versions_.front(), placement.units_per_metre)),
       first_rig_(options.rig), puppets_{options.rig}, asked_model_(versions_.front().get()),
       shaping_(*asked_model_, tips_.cols(), shaping_options(options, first_)), asked_(first_),
-      frames_(first_frame(shaping_, options.rig ? tips_.cols() : 0, placement.units_per_metre)) {
+      frames_(first_frame(shaping_, is_played(options.rig.get()) ? tips_.cols() : 0,
+                          placement.units_per_metre)) {
   assert(are_usable(hands));
   for (auto& input : hands) {
     const std::size_t slot = Placement::index_of(input.side);
@@ -131,7 +190,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     auto& layer = hand.input.layer;
     if (layer && hand.is_lowest && !layer->below) layer->below = hand.angles;
   }
-  if (options.rig) {
+  if (is_played(options.rig.get())) {
     rig_.emplace(options.rig);
     gestures_.emplace(*options.rig);
     rig_->set_state(options.rig_state);
@@ -139,7 +198,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     held_at_.resize(rig_->values().size());
     still_at_ = held_at_;
   } else {
-    tip_supports_ = first_.options.deformer.supports;
+    tip_supports_ = of_one_side(first_.options.deformer.supports, 5 * hand_count());
   }
   compute_hands(frames_.back());
   grab_status_ = shaping_.begin(tips_);
@@ -321,13 +380,14 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     column += points;
   }
   if (rig_) play_rig();
+  if (mirror_) mirror_half(*mirror_, tips_);
   tell_rig(frame);
 }
 
 void DeformLoop::tell_rig(Frame& frame) const noexcept {
   if (!rig_) {
     frame.let_go = {};
-    frame.symmetric = false;
+    frame.symmetric = mirror_.has_value();
     frame.function_count = 0;
     return;
   }

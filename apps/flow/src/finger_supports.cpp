@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace nendo::flow {
 namespace {
@@ -26,6 +27,20 @@ std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two
   }
   if (of_other != of_one.own) return std::nullopt;
   return of_one;
+}
+
+deform::Supports of_both_sides(deform::Supports supports, Eigen::Index tips) {
+  const std::vector<deform::OwnSupport> own = supports.own;
+  for (deform::OwnSupport image : own) {
+    image.point += tips;
+    supports.own.push_back(image);
+  }
+  return supports;
+}
+
+deform::Supports of_one_side(deform::Supports supports, Eigen::Index tips) {
+  std::erase_if(supports.own, [&](const deform::OwnSupport& own) { return own.point >= tips; });
+  return supports;
 }
 
 deform::Supports supports_on_model(const std::array<double, 5>& radius_m, double units_per_metre) {

@@ -10,6 +10,7 @@
 
 #include <nendo/base/relax.hpp>
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/finger_supports.hpp>
 #include <nendo/flow/tips_of_hand.hpp>
 
 namespace nendo::flow {
@@ -82,6 +83,7 @@ void DeformLoop::take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept {
   }
   std::swap(rig_, rig.player);
   std::swap(gestures_, rig.gestures);
+  std::swap(mirror_, rig.mirror);
   std::swap(held_at_, rig.held_at);
   std::swap(still_at_, rig.still_at);
   std::swap(tips_, rig.tips);
@@ -102,12 +104,13 @@ void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
 void DeformLoop::place_tips(Points& tips) noexcept {
   if (rig_) return rig_->take_hold(hands_now()); // the points stay where they are
   Eigen::Index column = 0;
-  const Eigen::Index points = tips.cols() / hand_count();
+  const Eigen::Index points = tips.cols() / ((mirror_ ? 2 : 1) * hand_count());
   for (const Hand& hand : hands_) {
     if (!hand.is_lowest) continue;
     write_tips(pose_of(hand), units_per_metre_, points, column, tips);
     column += points;
   }
+  if (mirror_) mirror_half(*mirror_, tips);
 }
 
 void DeformLoop::Hand::begin_anew() noexcept {
@@ -181,7 +184,14 @@ bool DeformLoop::change_settings(const LoopSettings& settings) {
 void DeformLoop::make_ready(PreparedChange& change) {
   Shaping::prepare(asked_, *asked_model_, control_points(asked_puppet_), change.ready);
   change.ready.puppet = asked_puppet_;
-  change.ready.holds_on = change.rig && puppets_[asked_puppet_] && puppets_[change.rig->before];
+  if (!change.rig) {
+    change.ready.holds_on = false;
+    return;
+  }
+  const puppet::Rig* const before = puppets_[change.rig->before].get();
+  const puppet::Rig* const after = puppets_[asked_puppet_].get();
+  change.ready.holds_on = is_played(before) && is_played(after);
+  change.ready.puppet_step = kind_of_edit(before, after);
 }
 
 /// Without their layers.
@@ -190,41 +200,42 @@ Eigen::Index DeformLoop::hand_count() const noexcept {
                        [](const Hand& hand) { return hand.is_lowest; });
 }
 
+/// Of which with_settings() makes the supports; 0: they are a puppet's.
+int DeformLoop::hands_of(std::uint32_t puppet) const noexcept {
+  return is_played(puppets_[puppet].get()) ? 0 : static_cast<int>(hand_count());
+}
+
 Eigen::Index DeformLoop::control_points(std::uint32_t puppet) const noexcept {
-  const puppet::Rig* const rig = puppets_[puppet].get();
-  return rig != nullptr ? rig->starts().cols() : asked_.options.points_of_hand() * hand_count();
+  return control_points_of(puppets_[puppet].get(), asked_.options, hand_count());
 }
 
 /// Of a puppet. Changes nothing if its points are too near to each other.
 Result<void> DeformLoop::set_surface(SculptorOptions& sculptor, const ModelVersion& model) const {
   const puppet::Rig* const rig = puppets_[asked_puppet_].get();
-  if (rig == nullptr) return {};
+  if (!is_played(rig)) return {};
   auto surface = surface_for(*rig, model.mesh, model.layout(), sculptor.deformer);
   if (!surface) return surface.error();
   sculptor.surface = *std::move(surface);
   return {};
 }
 
+/// Does so, and puts the masks on that version, too.
+Result<void> DeformLoop::set_model(SculptorOptions& sculptor, const ModelVersion& model) const {
+  set_masks(puppets_[asked_puppet_].get(), model.mesh, model.layout(), sculptor);
+  return set_surface(sculptor, model);
+}
+
 /// What first_ would be with that puppet.
 SculptorSetup DeformLoop::first_with(std::uint32_t puppet) const {
   const auto& rig = puppets_[puppet];
   if (rig == first_rig_) return first_;
-  SculptorSetup setup = first_;
-  setup.options.hold = rig ? Hold::fingertips : setup.settings.hold; // a puppet's points hold
-  deform::DeformerOptions& deformer = setup.options.deformer;
-  if (!rig) {
-    deformer.supports = *tip_supports_; // since the loop began without a puppet
-  } else {
-    deformer.supports = rig->supports();
-    if (first_rig_) // whose radii people may have scaled since
-      deformer.supports =
-          scaled(deformer.supports, deform::least_radius(first_.options.deformer.supports) /
-                                        deform::least_radius(first_rig_->supports()));
-  }
-  setup.options.piece_length =
-      first_.settings.piece_fraction * deform::least_radius(deformer.supports);
-  setup.options.surface.reset();
-  return setup;
+  if (!is_played(rig.get())) // since the loop began without a puppet
+    return with_control_points(first_, *tip_supports_, rig.get(), hand_count());
+  deform::Supports supports = rig->supports();
+  if (is_played(first_rig_.get())) // whose radii people may have scaled since
+    supports = scaled(std::move(supports), deform::least_radius(first_.options.deformer.supports) /
+                                               deform::least_radius(first_rig_->supports()));
+  return with_control_points(first_, std::move(supports), rig.get(), hand_count());
 }
 
 /// What asked_ would be with that puppet.
@@ -232,15 +243,23 @@ Result<SculptorSetup> DeformLoop::setup_with(std::uint32_t puppet) const {
   const SculptorSetup first = first_with(puppet);
   const auto& rig = puppets_[puppet];
   const auto& before = puppets_[asked_puppet_];
-  SculptorSetup setup = with_settings(first, first, asked_.settings,
-                                      rig ? 0 : static_cast<int>(hand_count()), units_per_metre_);
+  SculptorSetup setup =
+      with_settings(first, first, asked_.settings, hands_of(puppet), units_per_metre_);
   setup.options.surface.reset();
-  if (!rig) return setup;
+  const auto of_masks = [](const puppet::Rig* of) {
+    return of == nullptr ? std::pair(std::vector<puppet::Mask>(), false)
+                         : std::pair(of->puppet().masks, of->puppet().inverted);
+  };
+  if (of_masks(rig.get()) == of_masks(before.get()))
+    setup.options.deformer.mask = asked_.options.deformer.mask;
+  else
+    set_masks(rig.get(), asked_model_->mesh, asked_model_->layout(), setup.options);
+  if (!is_played(rig.get())) return setup;
   const auto of_field = [](const puppet::Rig& of) {
     const puppet::Puppet& all = of.puppet();
-    return std::tie(all.distance, all.points, all.parts, all.masks, of.starts());
+    return std::tie(all.distance, all.points, all.parts, all.masks, all.inverted, of.starts());
   };
-  if (before && of_field(*rig) == of_field(*before)) {
+  if (is_played(before.get()) && of_field(*rig) == of_field(*before)) {
     setup.options.surface = asked_.options.surface;
     return setup;
   }
@@ -255,7 +274,8 @@ ReadyRig DeformLoop::ready_rig(std::uint32_t number, std::uint32_t before) const
   ReadyRig ready{number, before};
   ready.tips = deform::Points::Zero(3, control_points(number));
   const auto& rig = puppets_[number];
-  if (!rig) return ready;
+  ready.mirror = mirror_of(rig.get());
+  if (!is_played(rig.get())) return ready;
   const auto earlier = played_.find(number);
   ready.player.emplace(rig);
   ready.gestures.emplace(*rig);
@@ -266,7 +286,7 @@ ReadyRig DeformLoop::ready_rig(std::uint32_t number, std::uint32_t before) const
   }
   ready.held_at.resize(functions);
   ready.still_at.resize(functions);
-  ready.from = puppets_[before]
+  ready.from = is_played(puppets_[before].get())
                    ? puppet::functions_before(puppets_[before]->puppet(), rig->puppet())
                    : std::vector<std::size_t>(functions, puppet::no_function);
   return ready;
@@ -284,6 +304,8 @@ Result<void> DeformLoop::change_puppet(std::uint32_t number) {
   is_changing();
   if (number >= puppets_.size()) return Error{Errc::bad_input, "there is no such puppet"};
   if (number == asked_puppet_) return {};
+  if (!is_played(puppets_[number].get()) && !tip_supports_)
+    return Error{Errc::bad_input, "hands play a puppet here, and it needs points"};
   if (is_still_ || (change_ && (change_->holds_still || change_->model || change_->log)))
     return Error{Errc::failed, "the model or the recording is being changed; try it again"};
   auto setup = setup_with(number);
@@ -295,8 +317,7 @@ Result<void> DeformLoop::change_puppet(std::uint32_t number) {
   if (change.settings) { // which are asked for together with it
     const SculptorSetup first = first_with(number);
     change.before =
-        with_settings(first, first, change.before.settings,
-                      puppets_[number] ? 0 : static_cast<int>(hands_.size()), units_per_metre_);
+        with_settings(first, first, change.before.settings, hands_of(number), units_per_metre_);
   }
   change.rig.reset();
   if (number != before) change.rig = ready_rig(number, before);
@@ -311,10 +332,10 @@ Result<void> DeformLoop::change_puppet(std::uint32_t number) {
 /// Nothing, if nothing can be done with the settings.
 std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
                                                    const LoopSettings& settings) const {
-  const int hands = puppets_[asked_puppet_] ? 0 : static_cast<int>(hand_count());
-  SculptorSetup setup =
-      with_settings(before, first_with(asked_puppet_), settings, hands, units_per_metre_);
+  SculptorSetup setup = with_settings(before, first_with(asked_puppet_), settings,
+                                      hands_of(asked_puppet_), units_per_metre_);
   setup.options.surface = asked_.options.surface; // others may be another version's
+  setup.options.deformer.mask = asked_.options.deformer.mask;
   const bool same =
       settings.kernel == asked_.settings.kernel && settings.radius_m == asked_.settings.radius_m;
   if (!same && !set_surface(setup.options, *asked_model_)) return std::nullopt;
@@ -337,7 +358,7 @@ void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   if (change.model) begins.of_other_model = room_for_shape(*model_before_); // if it is refused
   begins.state.inputs.resize(hands_.size());
   begins.state.puppet = puppets_[asked_puppet_];
-  if (begins.state.puppet)
+  if (is_played(begins.state.puppet.get()))
     begins.state.rig.functions.resize(begins.state.puppet->puppet().functions.size());
   change.log = std::move(begins);
   offer_change();
@@ -375,6 +396,8 @@ bool DeformLoop::is_changing() {
         ++states_.back().subdivisions;
       first_ = asked_; // from here on, as a replay that begins here
       first_rig_ = puppets_[asked_puppet_];
+      if (!is_played(first_rig_.get()))
+        tip_supports_ = of_one_side(first_.options.deformer.supports, 5 * hand_count());
     }
     change_.reset();
   }
@@ -434,7 +457,7 @@ void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
   PreparedChange& change = next_change();
   change.model = {version.number, source};
   // Points that can be solved for on one version can be on its subdivisions.
-  if (&version != asked_model_) static_cast<void>(set_surface(asked_.options, version));
+  if (&version != asked_model_) static_cast<void>(set_model(asked_.options, version));
   Shaping::prepare(asked_, version, control_points(asked_puppet_), change.ready);
   change.ready.puppet = asked_puppet_;
   change.ready.is_new_model = source == ModelSource::subdivided;
@@ -451,7 +474,7 @@ void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
 void DeformLoop::go_back() {
   asked_model_ = model_before_;
   if (change_->settings) asked_ = change_->before;
-  static_cast<void>(set_surface(asked_.options, *asked_model_));
+  static_cast<void>(set_model(asked_.options, *asked_model_));
 }
 
 /// Where a new version has taken the way that a redo would have gone, frees those of that way.

@@ -54,6 +54,7 @@ deform::DeformerOptions brushed(const SculptorOptions& options, Eigen::Index con
   for (Eigen::Index point = 0; point < control_points; ++point)
     brushes.of_points.push_back(options.brushes[static_cast<std::size_t>(point % fingers)]);
   brushes.strength = options.brush_strength;
+  brushes.are_mirrored = options.are_mirrored;
   brushes.rings = options.rings;
   return deformer;
 }
@@ -139,8 +140,8 @@ bool SculptorOptions::needs_rings() const noexcept {
 }
 
 Eigen::Index SculptorOptions::points_of_hand() const noexcept {
-  const bool all_over =
-      hold == Hold::hand && mode == Mode::type1 && deformer.csrbf.keep_volume <= 0.0;
+  const bool all_over = hold == Hold::hand && mode == Mode::type1 &&
+                        deformer.csrbf.keep_volume <= 0.0 && !are_mirrored;
   return all_over ? static_cast<Eigen::Index>(hand::held_point_count) : fingers;
 }
 
@@ -246,9 +247,10 @@ const deform::FieldSequence& Sculptor::fields() const noexcept {
 }
 
 bool Sculptor::is_told_by_fields() const noexcept {
-  const auto* type2 = std::get_if<Type2Deformer>(&deformer_);
-  if (type2 != nullptr) return !type2->is_brushed();
-  return !std::holds_alternative<deform::SurfaceDeformer>(deformer_);
+  if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_))
+    return !type2->is_brushed() && !type2->is_masked();
+  const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
+  return type1 != nullptr && !type1->is_masked();
 }
 
 void Sculptor::tell(deform::SurfaceMove& move) const noexcept {
@@ -273,7 +275,8 @@ deform::SurfaceMove Sculptor::room_to_tell() const {
 bool Sculptor::moves_anything() const noexcept {
   if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
     return surface->is_moved();
-  if (!is_told_by_fields()) return true;
+  if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_); type2 && type2->is_brushed())
+    return true;
   const auto all = fields().fields();
   return std::any_of(all.begin(), all.end(), [](const deform::CsrbfField& field) {
     return !field.coefficients.isZero(0.0) || !field.polynomial.isZero(0.0);

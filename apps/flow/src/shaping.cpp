@@ -91,7 +91,7 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   sculptor_->tell(frame.surface);
   frame.chain = sculptor_->report();
   count_chain(frame.chain, stats);
-  if (!sculptor_->is_told_by_fields()) ++(sculptor_->mode() == Mode::type2 ? jumps_ : leaps_);
+  if (!sculptor_->is_told_by_fields()) ++(frame.surface.field == 0 ? jumps_ : leaps_);
   shaped_ = sculptor_->moves_anything() ||
             (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
   // What cannot be committed now stays held, and is tried again at the next tick.
@@ -202,7 +202,7 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
   } else if (!is_refused) {
     if (ready.is_new_model) note_model(next, before.settings);
     go_on_with(ready);
-    if (other_puppet) note_puppet(before);
+    if (other_puppet) note_puppet(before, ready.puppet_step);
     // What comes behind another model is a step of its own.
     if (settings_ != before.settings) note_settings(before.settings, is_step);
   }

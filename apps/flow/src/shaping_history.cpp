@@ -130,11 +130,9 @@ void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcep
   next.shape.mark(NotedStep{step, {before, model_->number, puppet_}}.note());
 }
 
-void Shaping::note_puppet(const Awaited& before) noexcept {
-  model_->shape.mark(NotedStep{
-      step_now(StepKind::puppet),
-      {before.settings, model_->number,
-       before.puppet}}.note());
+void Shaping::note_puppet(const Awaited& before, StepKind kind) noexcept {
+  model_->shape.mark(
+      NotedStep{step_now(kind), {before.settings, model_->number, before.puppet}}.note());
 }
 
 // What was shaped since the last step is a step of its own. By the old rule, Type-1 drops it

@@ -139,8 +139,8 @@ bool operator==(const PuppetPart& one, const PuppetPart& other) noexcept {
 
 bool operator==(const Puppet& one, const Puppet& other) noexcept {
   const auto all = [](const Puppet& puppet) {
-    return std::tie(puppet.model, puppet.distance, puppet.mirrors, puppet.points, puppet.functions,
-                    puppet.parts, puppet.masks, puppet.clutch);
+    return std::tie(puppet.model, puppet.distance, puppet.mirrors, puppet.mirror_at, puppet.points,
+                    puppet.functions, puppet.parts, puppet.masks, puppet.inverted, puppet.clutch);
   };
   return all(one) == all(other);
 }
@@ -171,7 +171,7 @@ Result<Puppet> read_puppet(const std::filesystem::path& path) {
 }
 
 Result<void> check_fits(const Puppet& puppet, const Mesh& model) {
-  if (model.face_corners.empty())
+  if (puppet.is_played() && model.face_corners.empty())
     return Error{Errc::bad_input, puppet.model + ": has no face, and a puppet needs a surface"};
   const auto vertices = static_cast<std::uint32_t>(model.vertices.cols());
   for (const PuppetPoint& point : puppet.points)
@@ -197,12 +197,19 @@ deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
     setup.points.push_back(
         {places[at], puppet.points[at].radius, puppet.points[at].name, puppet.points[at].mix});
   setup.parts = following_parts(puppet, model, parts, places);
-  if (puppet.masks.empty()) return setup;
-  setup.mask = Eigen::VectorXd::Ones(model.vertices.cols());
-  for (const Mask& mask : puppet.masks)
-    for (Eigen::Index v = 0; v < setup.mask.size(); ++v)
-      setup.mask[v] = std::min(setup.mask[v], passes(mask, model.vertices.col(v)));
+  setup.mask = mask_weights(puppet, model.vertices);
   return setup;
+}
+
+Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertices) {
+  Eigen::VectorXd weights;
+  if (puppet.masks.empty() && !puppet.inverted) return weights;
+  weights.setOnes(vertices.cols());
+  for (const Mask& mask : puppet.masks)
+    for (Eigen::Index v = 0; v < weights.size(); ++v)
+      weights[v] = std::min(weights[v], passes(mask, vertices.col(v)));
+  if (puppet.inverted) weights = 1.0 - weights.array();
+  return weights;
 }
 
 } // namespace nendo::puppet

@@ -171,21 +171,33 @@ std::string clutch_lines(const ClutchOptions& clutch) {
   return text;
 }
 
-} // namespace
-
-std::string text_of(const Puppet& puppet) {
-  std::string text(comments_before(puppet.text));
-  text += "version = 1\nmodel = " + toml_text(puppet.model) + "\n";
-  text += puppet.distance == Distance::air ? "distance = \"air\"\n" : "distance = \"surface\"\n";
-  if (puppet.mirrors) text += "mirror = \"x\"\n";
-  text += clutch_lines(puppet.clutch);
-  text += "\n[points]\n";
+/// What only a puppet has that hands play.
+std::string played_lines(const Puppet& puppet) {
+  std::string text = "\n[points]\n";
   for (const PuppetPoint& point : puppet.points)
     if (!point.is_mirrored) text += point_line(point);
   for (const Function& function : puppet.functions)
     if (!function.is_twin) text += function_lines(puppet, function);
   for (const PuppetPart& part : puppet.parts)
     text += part_lines(puppet, part);
+  return text;
+}
+
+} // namespace
+
+std::string text_of(const Puppet& puppet) {
+  const bool is_played = puppet.is_played();
+  std::string text(comments_before(puppet.text));
+  text += "version = 1\n";
+  if (is_played || !puppet.model.empty()) text += "model = " + toml_text(puppet.model) + "\n";
+  if (is_played)
+    text += puppet.distance == Distance::air ? "distance = \"air\"\n" : "distance = \"surface\"\n";
+  if (puppet.mirrors) text += "mirror = \"x\"\n";
+  if (puppet.mirrors && puppet.mirror_at != 0.0)
+    text += "mirror_at = " + toml_number(puppet.mirror_at) + "\n";
+  if (puppet.inverted) text += "inverted = true\n";
+  text += clutch_lines(puppet.clutch);
+  if (is_played) text += played_lines(puppet);
   for (const Mask& mask : puppet.masks)
     text += "\n[[masks]]\nat = " + toml_vector(mask.at) + "\nradius = " + toml_number(mask.radius) +
             "\n";

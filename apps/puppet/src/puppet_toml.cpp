@@ -32,9 +32,10 @@ public:
   PuppetReader(TomlReader& reader, Puppet& puppet) : reader_(reader), puppet_(puppet) {}
 
   void read(const toml::table& root) {
-    reader_.allow_only(root, {"version", "model", "distance", "mirror", "clutch", "points",
-                              "functions", "parts", "masks"});
-    puppet_.model = reader_.text(root, "model");
+    reader_.allow_only(root, {"version", "model", "distance", "mirror", "mirror_at", "clutch",
+                              "points", "functions", "parts", "masks", "inverted"});
+    const bool is_played = root.contains("points") || root.contains("functions");
+    if (is_played || root.contains("model")) puppet_.model = reader_.text(root, "model");
     const std::string distance = root.get("distance") ? reader_.text(root, "distance") : "surface";
     puppet_.distance = distance == "air" ? Distance::air : Distance::surface;
     if (distance != "air" && distance != "surface")
@@ -42,17 +43,34 @@ public:
     puppet_.mirrors = root.get("mirror") != nullptr;
     if (puppet_.mirrors && reader_.text(root, "mirror") != "x")
       reader_.complain(root, "mirror must be \"x\": the plane x = 0; or leave it out");
+    puppet_.inverted = root.contains("inverted") && reader_.truth(root, "inverted");
     if (root.get("clutch") != nullptr) read_clutch(root);
+    if (is_played)
+      read_played(root);
+    else
+      read_mask_file(root);
+    if (root.get("parts") != nullptr) read_list(root, "parts", [&](const auto& one) { part(one); });
+    if (root.get("masks") != nullptr) read_list(root, "masks", [&](const auto& one) { mask(one); });
+    if (is_played) check(root);
+  }
+
+private:
+  void read_played(const toml::table& root) {
+    if (root.contains("mirror_at"))
+      reader_.complain(root, "mirror_at is for masks without points; a puppet mirrors at x = 0");
     read_points(root);
     if (puppet_.mirrors) mirror_points();
     read_functions(root);
     if (puppet_.mirrors) mirror_functions();
-    if (root.get("parts") != nullptr) read_list(root, "parts", [&](const auto& one) { part(one); });
-    if (root.get("masks") != nullptr) read_list(root, "masks", [&](const auto& one) { mask(one); });
-    check(root);
   }
-
-private:
+  /// Which no hand plays.
+  void read_mask_file(const toml::table& root) {
+    puppet_.mirror_at = number_within(root, "mirror_at", 0.0, -largest, largest);
+    for (const char* key : {"distance", "clutch", "parts"})
+      if (root.contains(key))
+        reader_.complain(root, std::string(key) + " needs [points] and functions; add them, or "
+                                                  "leave it out");
+  }
   template <class Read>
   void read_list(const toml::table& root, std::string_view key, const Read& read) {
     const toml::array* const list = reader_.array(root, key);

@@ -62,7 +62,8 @@ double asked_for(const Function& function, double value) noexcept {
 }
 
 Rig::Rig(Puppet puppet, const deform::Mesh& model) : puppet_(std::move(puppet)) {
-  const auto places = places_on(puppet_, model);
+  std::vector<deform::SurfacePlace> places;
+  if (puppet_.is_played()) places = places_on(puppet_, model);
   starts_.resize(3, static_cast<Index>(places.size()));
   for (std::size_t at = 0; at < places.size(); ++at)
     starts_.col(static_cast<Index>(at)) = places[at].in(model.vertices);

@@ -25,6 +25,7 @@ Result<void> set_rig(const LoopSetup& loop, const deform::Mesh& model, flow::Loo
   auto rig = rig_of(loop.puppet, model);
   if (!rig) return rig.error();
   options.rig = *std::move(rig);
+  if (!flow::is_played(options.rig.get())) return {};
   if (!points_exist(options.sculptor.deformer.supports, options.rig->starts().cols()))
     return Error{Errc::bad_input, std::string(without_loop)};
   auto surface = flow::surface_for(*options.rig, model, deform::BlockLayout(model.vertices),
@@ -56,8 +57,9 @@ Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh
                  "it anew, or cut nothing out of it"};
   flow::LoopOptions options = setup.loop->options;
   if (const auto fine = set_rig(*setup.loop, model, options); !fine) return fine.error();
-  const auto tips = 5 * static_cast<Eigen::Index>(flow::count_hands(setup.hands));
-  if (!options.rig && !points_exist(options.sculptor.deformer.supports, tips))
+  const Eigen::Index points = flow::supported_points(
+      options.rig.get(), static_cast<Eigen::Index>(flow::count_hands(setup.hands)));
+  if (!points_exist(options.sculptor.deformer.supports, points))
     return Error{Errc::bad_input, std::string(without_loop)};
   if (!setup.loop->rest.empty() &&
       setup.loop->rest.size() !=

@@ -18,7 +18,9 @@ const KEYS = [
   ['t', 'a take: record from here on, and end that', panel => panel.record()],
   [',', 'of a puppet: the left hand lets go, takes hold again', panel => panel.clutch(0)],
   ['\'', 'of a puppet: the right hand lets go, takes hold again', panel => panel.clutch(1)],
-  ['y', 'of a puppet: one hand plays both sides, or each its own', panel => panel.toggleSymmetry()],
+  ['y', 'symmetry: one hand shapes both sides, or plays both of a puppet', panel => panel.toggleSymmetry()],
+  ['z', 'clear the masks: everything moves', panel => panel.ask('mask clear')],
+  ['Z', 'invert the masks', panel => panel.ask('mask invert')],
   ['.', 'mark this moment in the recording', panel => panel.ask('mark')],
   ['o', 'overdub: the gloves\' layer comes in, or goes out (--over, --layer)', panel => panel.ask('punch')],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
@@ -63,8 +65,9 @@ class Panel {
     const requests = [...document.querySelectorAll('[data-request]')]
     for (const button of requests) button.addEventListener('click', () => this.ask(button.dataset.request))
     this.steps = requests.filter(button => ['undo', 'redo'].includes(button.dataset.request))
-    this.buttons = [...requests, element('record')]
+    this.buttons = [...requests, element('record'), element('symmetry')]
     element('record').addEventListener('click', () => this.record())
+    element('symmetry').addEventListener('click', () => this.toggleSymmetry())
     for (const part of ['skin', 'bones', 'vectors', 'radii', 'facets'])
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
@@ -121,7 +124,7 @@ class Panel {
   }
   toggleSymmetry() {
     const { update } = this
-    if (update && update.isPuppet) this.ask(`symmetry ${update.symmetric ? 'off' : 'on'}`)
+    if (update) this.ask(`symmetry ${update.symmetric ? 'off' : 'on'}`)
   }
   record() {
     if (this.settings) this.ask(this.settings.recorded ? 'end recording' : 'record')
@@ -206,6 +209,7 @@ class Panel {
     const { update, model, settings } = this
     if (!update || !model || !settings) return
     element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands have let go.'
+    element('symmetry').classList.toggle('on', update.symmetric)
     this.showSteps()
     const lost = update.lost + update.skipped
     element('timing').textContent = `${model.rate} Hz wanted, type ${settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +

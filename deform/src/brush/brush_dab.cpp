@@ -27,29 +27,30 @@ double square_distance(const BlockBounds& bounds, const Eigen::Vector3d& from) n
 
 } // namespace
 
-BrushDabs::BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume)
-    : rings_(std::move(rings)), kernel_(kernel), keep_volume_(keep_volume) {
+BrushDabs::BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume,
+                     std::shared_ptr<const VertexMask> mask)
+    : rings_(std::move(rings)), kernel_(kernel), keep_volume_(keep_volume), mask_(std::move(mask)) {
   reached_.reserve(rings_->vertex_count());
 }
 
-bool BrushDabs::dab(const Dab& dab, BoundedShape& shape) noexcept {
+bool BrushDabs::find(const Dab& dab, const BoundedShape& shape) noexcept {
   // A vertex moves at most a few radii, whatever the brush.
   if (!(shape.extent + 8.0 * dab.radius + std::abs(dab.way) <= most_units)) return false;
   if (!gather(dab, shape)) return false;
   if (dab.brush == Brush::smooth) {
     smooth(dab, shape.shape);
-    return write(shape);
+    return true;
   }
   if (dab.brush == Brush::inflate) {
     move_along_normals(dab.way);
-    return write(shape);
+    return true;
   }
   const double turns = dab.way / dab.radius;
   if (dab.brush == Brush::scale) {
     move_each(shape.shape, [&](const Eigen::Vector3d& x, double weight) -> Eigen::Vector3d {
       return std::expm1(turns * weight) * (x - dab.centre);
     });
-    return write(shape);
+    return true;
   }
   if (!find_plane(shape.shape)) return false;
   const double part = -std::expm1(-2.0 * std::abs(turns));
@@ -59,7 +60,7 @@ bool BrushDabs::dab(const Dab& dab, BoundedShape& shape) noexcept {
     const Eigen::Vector3d from_axis = x - middle_;
     return Eigen::AngleAxisd(turns * weight, normal_) * from_axis - from_axis;
   });
-  return write(shape);
+  return true;
 }
 
 /// Returns false if there is nothing.
@@ -69,14 +70,17 @@ bool BrushDabs::gather(const Dab& dab, const BoundedShape& shape) noexcept {
   const std::size_t vertices = rings_->vertex_count();
   for (std::size_t block = 0; block < shape.shape.block_count(); ++block) {
     if (!(square_distance(shape.bounds[block], dab.centre) < square_radius)) continue;
+    const float* const held = mask_ ? mask_->of_block(block) : nullptr;
     const std::size_t first = block * block_size;
     for (std::size_t place = first; place < std::min(first + block_size, vertices); ++place) {
+      const float free = held == nullptr ? 1.0F : held[place - first];
+      if (free <= 0.0F) continue; // not even by an addition of 0
       const double square =
           (vertex_at(shape.shape, place).cast<double>() - dab.centre).squaredNorm();
       if (!(square < square_radius)) continue;
       Reached& reached = reached_.emplace_back(); // there is room for all
       reached.place = static_cast<std::uint32_t>(place);
-      reached.weight = static_cast<float>(wendland(kernel_, std::sqrt(square) / dab.radius));
+      reached.weight = free * static_cast<float>(wendland(kernel_, std::sqrt(square) / dab.radius));
     }
   }
   for (Reached& one : reached_)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <nendo/deform/brush.hpp>
+#include <nendo/deform/vertex_mask.hpp>
 #include <nendo/deform/wendland.hpp>
 
 #include "block_evaluator.hpp"
@@ -26,17 +27,24 @@ struct Dab {
 class BrushDabs {
 public:
   /// Allocates 32 bytes a vertex.
-  BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume);
+  BrushDabs(std::shared_ptr<const VertexRings> rings, Wendland kernel, double keep_volume,
+            std::shared_ptr<const VertexMask> mask = nullptr);
 
   /// Changes the shape, with its bounds and stamps. Returns false, and changes nothing, if no
   /// vertex is within reach or the result might not be finite.
-  bool dab(const Dab& dab, BoundedShape& shape) noexcept;
+  bool dab(const Dab& dab, BoundedShape& shape) noexcept {
+    return find(dab, shape) && write(shape);
+  }
+  /// The two halves of dab(): finds the moves, and adds them to the shape, which may have changed
+  /// meanwhile. Both return false, and change nothing, as dab() does.
+  bool find(const Dab& dab, const BoundedShape& shape) noexcept;
+  bool write(BoundedShape& shape) const noexcept;
 
 private:
   /// A vertex within the radius.
   struct Reached {
     std::uint32_t place = 0;
-    float weight = 0.0F;                              ///< w
+    float weight = 0.0F;                              ///< w, times the mask's
     Eigen::Vector3f normal = Eigen::Vector3f::Zero(); ///< area_normal()
     Eigen::Vector3f move = Eigen::Vector3f::Zero();
   };
@@ -49,11 +57,11 @@ private:
   Eigen::Vector3d pushed(const Eigen::Vector3d& u, double weight) const noexcept;
   template <class MoveOf>
   void move_each(const BlockShape& shape, const MoveOf& move_of) noexcept;
-  bool write(BoundedShape& shape) const noexcept;
 
   std::shared_ptr<const VertexRings> rings_;
   Wendland kernel_;
   double keep_volume_;                               ///< of Brush::push (CsrbfOptions)
+  std::shared_ptr<const VertexMask> mask_;           ///< null: all are free
   std::vector<Reached> reached_;                     ///< in block order
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero(); ///< of the reached surface
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero(); ///< its mean, of unit length

@@ -2,6 +2,7 @@
 // The brushes of a stroke: which start points have one, and their dabs along a piece of the way.
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <nendo/deform/deformer_options.hpp>
@@ -29,16 +30,22 @@ public:
 private:
   struct OfPoint {
     Eigen::Index point = 0;
+    Eigen::Index image = -1; ///< the point that mirrors it; below 0: none
     Brush brush = Brush::push;
     double radius = 1.0; ///< in the layout's units
   };
-  bool go(const OfPoint& one, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-          BoundedShape& shape) noexcept;
+  /// A way from one place to another, and that of its image.
+  struct Way {
+    Eigen::Vector3d from, to;
+  };
+  Way way_of(Eigen::Index point, const Points& from, const Points& to) const;
+  bool go(const OfPoint& one, const Way& way, const Way* image, BoundedShape& shape) noexcept;
 
   const BlockLayout& layout_;
   std::vector<OfPoint> points_;
   double strength_;
   BrushDabs dabs_;
+  std::optional<BrushDabs> images_; ///< of mirrored points
 };
 
 /// Returns the start points that pull, of so many.

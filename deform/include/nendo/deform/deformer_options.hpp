@@ -2,6 +2,7 @@
 // The options that Type-1 and Type-2 have in common.
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 #include <nendo/deform/brush.hpp>
@@ -10,6 +11,7 @@
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/deform/supports.hpp>
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/deform/vertex_mask.hpp>
 
 namespace nendo::deform {
 
@@ -31,6 +33,8 @@ struct DeformerOptions {
   std::optional<InjectiveOptions> injective{};
   /// What each start point does in type 2. Type 1 only pulls.
   BrushOptions brushes{};
+  /// What holds vertices where they are; null: all are free. It must be of the shape's layout.
+  std::shared_ptr<const VertexMask> mask{};
   /// Bytes of memory for undo(), of which a step takes 832, and 832 for each block of 64 vertices
   /// that it changed. 0 means that nothing can be undone. The memory of one more shape comes on
   /// top.

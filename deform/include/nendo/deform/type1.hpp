@@ -16,6 +16,7 @@ namespace nendo::deform {
 
 class BlockEvaluator;
 class CardinalWeights;
+class MaskedStep;
 struct BoundedShape;
 
 /// Shapes are in blocks, in float, and within 1e-5 of the model's diagonal of what displace() makes
@@ -80,6 +81,8 @@ public:
   /// each link, or two for each midpoint step. The centres are the start points rounded by
   /// BlockLayout::rounded(); those of later links are where the link before leads.
   const FieldSequence& fields() const noexcept { return fields_; }
+  /// Tells whether a mask holds vertices, so that fields() does not tell all.
+  bool is_masked() const noexcept;
   /// Returns what the last apply() took; all is 0 unless the deformer is injective.
   ChainReport report() const noexcept { return chain_ ? chain_->report() : ChainReport{}; }
   /// Returns the bytes of weights in use; 0 if fields are evaluated instead.
@@ -112,7 +115,8 @@ private:
   std::unique_ptr<BlockEvaluator> evaluator_;
   std::unique_ptr<CardinalWeights> weights_;
   std::optional<InjectiveChain> chain_;
-  std::optional<MidpointChain> steps_;   ///< with keep_volume
+  std::optional<MidpointChain> steps_; ///< with keep_volume
+  std::unique_ptr<MaskedStep> masked_;
   std::unique_ptr<BoundedShape> linked_; ///< the shape that a chain of several links makes
   bool in_links_ = false;                ///< the last apply() made it so
   bool grabbed_ = false;

@@ -18,6 +18,7 @@ namespace nendo::deform {
 class BlockEvaluator;
 class BrushStroke;
 class FingertipCurve;
+class MaskedStep;
 
 struct StrokeResult {
   FieldStatus status = FieldStatus::ok;
@@ -90,6 +91,8 @@ public:
   /// Tells whether a brush has changed the shape in the last call, so that fields() does not tell
   /// all.
   bool is_brushed() const noexcept { return is_brushed_; }
+  /// Tells whether a mask holds vertices, which fields() does not tell either.
+  bool is_masked() const noexcept;
   /// Returns what the last call took, the worst of its pieces; all is 0 unless the deformer is
   /// injective.
   const ChainReport& report() const noexcept { return report_; }
@@ -127,6 +130,7 @@ private:
   std::optional<MidpointChain> steps_; ///< with keep_volume
   int most_links_ = 0;
   ChainReport report_;
+  std::unique_ptr<MaskedStep> masked_;
   std::unique_ptr<BrushStroke> brushes_; ///< null: all pull, or do nothing
   bool is_brushed_ = false;
   bool begun_ = false;

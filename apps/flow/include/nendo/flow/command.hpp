@@ -3,7 +3,10 @@
 // browser. A command is a plain value of fixed size, so that it passes through rings without
 // allocation.
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 
@@ -60,10 +63,28 @@ struct SetRole {
   puppet::HandSignal input;
   friend bool operator==(const SetRole&, const SetRole&) = default;
 };
-/// One hand plays both sides of a puppet, or each plays its own.
+/// One hand plays both sides of a puppet, or each plays its own. Without a puppet, fingertips shape
+/// both sides of the model's plane of symmetry, or only where they are.
 struct SetSymmetry {
   bool on = false;
   friend bool operator==(const SetSymmetry&, const SetSymmetry&) = default;
+};
+/// What becomes of the masks, which hold parts of the model where they are.
+enum class MaskEdit : std::uint8_t {
+  hold,   ///< a ball is held
+  free,   ///< balls whose middle is in that ball are no longer held
+  clear,  ///< everything moves
+  invert, ///< what was held moves, and the rest is held
+};
+std::string_view name_of(MaskEdit edit) noexcept;
+std::optional<MaskEdit> mask_edit_named(std::string_view name) noexcept;
+/// Edits the masks of the fingertips, or of the puppet that is played.
+struct SetMask {
+  MaskEdit edit = MaskEdit::clear;
+  std::array<double, 3> at{}; ///< of the model before anybody has shaped it, model units
+  double radius = 0.0;        ///< model units, > 0; what is in the ball is held half at least
+  bool is_usable() const noexcept;
+  friend bool operator==(const SetMask&, const SetMask&) = default;
 };
 /// Lets a layer (Layer) come in, or go out. The inputs of a loop are numbered in their order.
 struct SetLayer {
@@ -110,7 +131,7 @@ struct ChangePuppet {
 using Command =
     std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
                  Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry, SetLayer,
-                 Punch, ChangePuppet, SavePuppet>;
+                 Punch, ChangePuppet, SavePuppet, SetMask>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.

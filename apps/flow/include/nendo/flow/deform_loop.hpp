@@ -95,6 +95,8 @@ struct LoopOptions : PaceOptions {
   std::optional<bool> held{};
   /// A puppet: the hands play its functions, which move its points, in place of touching the model
   /// with their fingertips. The supports are then those of the points. It must be of this model.
+  /// One without points (puppet::Puppet::is_played()) has masks for the fingertips, and perhaps a
+  /// mirror, with which the supports are those of_both_sides().
   /// Where its distances are along the surface, sculptor.surface is surface_for() it, or null: the
   /// loop then makes that itself.
   std::shared_ptr<const puppet::Rig> rig{};
@@ -111,9 +113,31 @@ struct LoopOptions : PaceOptions {
   bool begins_held() const noexcept { return held.value_or(switch_action != SwitchAction::grab); }
 };
 
+/// Tells whether hands play that puppet, which may be null. Otherwise fingertips touch the model.
+bool is_played(const puppet::Rig* rig) noexcept;
+/// Returns how many control points that many hands move by that puppet; null: by none.
+Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
+                               Eigen::Index hands) noexcept;
+/// Returns how many points have radii of their own: the puppet's, or fingertips and their images,
+/// even if other points of the hands hold the model.
+Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexcept;
+/// Returns the x of the plane, in model units, of whose both sides the fingertips shape; nothing:
+/// of none.
+std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
+/// Returns what the step from one of them to the other is: of a puppet, of masks, or of symmetry.
+StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;
+/// Makes the second half of the points the mirror images of the first.
+void mirror_half(double at, deform::Points& points) noexcept;
+/// Puts the puppet's masks on that model, and whether it mirrors, into the options. Allocates.
+void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::BlockLayout& layout,
+               SculptorOptions& sculptor);
+/// Returns what `first` would be with the control points of that puppet, or of so many hands, but
+/// without a field along the surface. supports: of the points, or of the fingertips without images.
+SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
+                                  const puppet::Rig* masks, Eigen::Index hands);
 /// Returns the field of a puppet along that model's surface, with the kernel and the radii of these
-/// options; null if it measures distances through the air. Error: as SurfaceField::make().
-/// Allocates.
+/// options; null if it measures distances through the air, or no hand plays it. Error: as
+/// SurfaceField::make(). Allocates.
 Result<std::shared_ptr<const deform::SurfaceField>>
 surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
             const deform::DeformerOptions& options);
@@ -171,14 +195,19 @@ public:
   const SculptorOptions& sculptor_options() const noexcept { return asked_.options; }
 
   /// Returns the puppet with which the loop began; null if the hands touched the model.
-  const puppet::Rig* rig() const noexcept { return puppets_.front().get(); }
+  const puppet::Rig* rig() const noexcept {
+    return is_played(puppets_.front().get()) ? puppets_.front().get() : nullptr;
+  }
 
-  // Other puppets. Each has a number; 0 is what the loop began with, which may be none.
+  // Other puppets, and other masks of fingertips. Each has a number; 0 is what the loop began with,
+  // which may be none.
 
   /// Lets the hands go on with another puppet of the model with which the loop began. It gets
   /// next_puppet() as its number, and is kept for undo. Functions of the same name keep their
   /// values. In type 1 the shape changes by what the puppets differ in, and by nothing else.
-  /// Errors: bad_input (its points are too near to each other); failed (the loop holds still, or is
+  /// Without points, it is the fingertips' masks and mirror that change: the stroke ends, and they
+  /// take hold of the same shape anew. Errors: bad_input (its points are too near to each other, or
+  /// it has none, and the loop began with hands that play one); failed (the loop holds still, or is
   /// about to begin a log or another model: ask again later). Then nothing changes. Allocates.
   Result<void> change_puppet(std::shared_ptr<const puppet::Rig> rig);
   /// Does the same with one that the loop has had.
@@ -259,6 +288,8 @@ private:
   puppet::RigPlayer::Hands hands_now() noexcept;
   ModelVersion* version_numbered(std::uint32_t number) const noexcept;
   Result<void> set_surface(SculptorOptions& sculptor, const ModelVersion& model) const;
+  Result<void> set_model(SculptorOptions& sculptor, const ModelVersion& model) const;
+  int hands_of(std::uint32_t puppet) const noexcept;
   Eigen::Index control_points(std::uint32_t puppet) const noexcept;
   SculptorSetup first_with(std::uint32_t puppet) const;
   Result<SculptorSetup> setup_with(std::uint32_t puppet) const;
@@ -321,6 +352,7 @@ private:
   std::vector<Hand> hands_;
   std::optional<puppet::RigPlayer> rig_;
   std::optional<puppet::GestureClutch> gestures_; ///< of the rig's hands
+  std::optional<double> mirror_;                  ///< mirror_of() what is in force
   std::array<puppet::HandState, 2> hand_states_;  ///< by side, for the rig
   /// The control points, 3 by 5 a hand, or by as many as a puppet has; model units.
   deform::Points tips_;

@@ -19,6 +19,11 @@ std::optional<deform::Supports> parse_finger_supports(std::string_view text);
 /// there is one hand, and the two hands differ.
 std::optional<deform::Supports> supports_of_hands(const deform::Supports& of_two, int hands);
 
+/// The supports of so many fingertips and of their mirror images, which follow them, of those of
+/// the fingertips alone; and the other way round.
+deform::Supports of_both_sides(deform::Supports supports, Eigen::Index tips);
+deform::Supports of_one_side(deform::Supports supports, Eigen::Index tips);
+
 /// The supports of both hands, whose fingers have these radii on the stage, thumb to little finger.
 deform::Supports supports_on_model(const std::array<double, 5>& radius_m, double units_per_metre);
 

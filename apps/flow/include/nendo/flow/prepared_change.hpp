@@ -50,6 +50,7 @@ struct ReadyRig {
   std::uint32_t before = 0;                  ///< the number of the one that it replaces
   std::optional<puppet::RigPlayer> player{}; ///< none: hands touch the model
   std::optional<puppet::GestureClutch> gestures{};
+  std::optional<double> mirror{};  ///< fingertips shape both sides of this x, model units
   std::vector<std::size_t> from{}; ///< puppet::functions_before()
   /// The values with which the hands took hold of the shape; of new functions 0, or what they were
   /// when this puppet was played before.

@@ -39,6 +39,8 @@ struct SculptorOptions {
   /// Of each finger of each hand, thumb to little finger, in type 2; a puppet's points pull.
   std::array<deform::Brush, 5> brushes{};
   double brush_strength = deform::usual_brush_strength;
+  /// The second half of the control points are the mirror images of the first.
+  bool are_mirrored = false;
   /// Of the model; needed by some brushes (needs_rings()).
   std::shared_ptr<const deform::VertexRings> rings{};
   /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
@@ -70,7 +72,7 @@ public:
   Eigen::Index control_points() const noexcept { return control_points_; }
 
   /// Tells whether fields() tells all that the last update did: not where distances are along the
-  /// surface, nor where a brush has changed something.
+  /// surface, nor where a brush has changed something or a mask holds something.
   bool is_told_by_fields() const noexcept;
 
   /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).

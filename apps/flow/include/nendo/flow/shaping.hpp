@@ -31,7 +31,8 @@ struct ReadySculptor {
   bool is_new_model = false;     ///< and that no step leads to yet
   std::unique_ptr<Sculptor> sculptor;
   LoopSettings settings{};
-  std::uint32_t puppet = 0; ///< that moves its control points
+  std::uint32_t puppet = 0;                ///< that moves its control points
+  StepKind puppet_step = StepKind::puppet; ///< what it is a change of
   /// With another puppet, in type 1: the hands hold the shape at `starts`, as they held it, in
   /// place of beginning anew where they are. So only what the edit asks for changes.
   bool holds_on = false;
@@ -142,7 +143,7 @@ private:
   std::optional<Awaited> other_of(Request step) const noexcept;
   void note_settings(const LoopSettings& before, bool is_step) noexcept;
   void note_model(ModelVersion& next, const LoopSettings& before) noexcept;
-  void note_puppet(const Awaited& before) noexcept;
+  void note_puppet(const Awaited& before, StepKind kind) noexcept;
   Step step_now(StepKind kind) const noexcept;
   const ModelVersion* version_before(const ModelVersion& version) const noexcept;
   std::size_t steps_to_undo() const noexcept;

@@ -26,6 +26,8 @@ enum class StepKind : std::uint8_t {
   puppet,    ///< the puppet was edited
   volume,    ///< LoopSettings::keep_volume
   hold,      ///< LoopSettings::hold
+  mask,      ///< what fingertips leave alone was painted, cleared or inverted
+  symmetry,  ///< fingertips shape both sides, or no longer
 };
 
 std::string_view name_of(StepKind kind) noexcept;

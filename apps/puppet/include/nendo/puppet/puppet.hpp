@@ -1,7 +1,9 @@
 #pragma once
 // A puppet: what each finger does to a model. The paper assigned the displacements of ten
 // fingertips to ten functions on a face (2.2, figure 3); so does a puppet file, a short text beside
-// the model (README.md of this folder tells its keys).
+// the model (README.md of this folder tells its keys). Without points it is a mask file: the
+// fingertips then touch the model, of which masks hold parts, and a mirror lets them shape both
+// sides.
 
 #include <array>
 #include <cstdint>
@@ -119,13 +121,17 @@ struct Puppet {
   std::string model; ///< file name, beside the puppet's file
   Distance distance = Distance::surface;
   bool mirrors = false; ///< `mirror = "x"`: points and functions that are twins stand behind others
+  double mirror_at = 0.0; ///< x of that plane, model units; 0 if there are points
   std::vector<PuppetPoint> points;
   std::vector<Function> functions;
   std::vector<PuppetPart> parts;
   std::vector<Mask> masks;
+  bool inverted = false; ///< the masks tell what moves, and the rest stays
   ClutchOptions clutch;
   std::string text; ///< of the file
 
+  /// Tells whether hands play it. Otherwise it has no points, and their fingertips touch the model.
+  bool is_played() const noexcept { return !points.empty(); }
   /// Returns the number of the function with that name.
   std::optional<std::size_t> function_named(std::string_view name) const noexcept;
   /// Compares all but the text.
@@ -151,6 +157,12 @@ std::string text_of(const Puppet& puppet);
 Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);
 /// Returns where the points are on that model, in their order. It must fit (check_fits()).
 std::vector<deform::SurfacePlace> places_on(const Puppet& puppet, const deform::Mesh& model);
+/// Returns how far each of these vertices follows what moves the model, 0 to 1: by the masks.
+/// Empty: there is no mask, and all follow.
+Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertices);
+/// Returns the x of the plane x = constant in which the model is symmetric: that of the middle of
+/// its bounds, if nearly all vertices that are looked at have a mirror image; otherwise 0.
+double plane_of_symmetry(const deform::Points& vertices);
 /// Returns what the field along that model's surface is made of.
 deform::SurfaceSetup surface_setup(const Puppet& puppet, const deform::Mesh& model,
                                    deform::Wendland kernel);

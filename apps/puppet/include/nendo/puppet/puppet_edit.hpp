@@ -56,12 +56,19 @@ Result<Puppet> with_name(const Rig& rig, std::size_t function, std::string_view 
 Result<Puppet> with_mirror(const Rig& rig, bool mirrors);
 
 /// Adds masks along a stroke of a brush, and, where the puppet mirrors, their mirror images. Places
-/// where masks of that radius are near already are passed over, so that a file stays small. Error:
-/// there are too many.
+/// where masks of that radius are near already are passed over, so that a file stays small. Where
+/// masks are inverted, what they free is taken away. Error: there are too many.
 Result<Puppet> with_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke, double radius);
-/// Removes the masks whose middle is within the radius of a place of the stroke.
+/// Removes the masks whose middle is within the radius of a place of the stroke; where they are
+/// inverted, adds what frees it. Error: there are too many.
 Result<Puppet> without_masks(const Rig& rig, std::span<const Eigen::Vector3d> stroke,
                              double radius);
+/// Removes all masks: everything moves.
+Result<Puppet> without_any_mask(const Rig& rig);
+/// Lets move what stayed, and the other way round.
+Result<Puppet> with_masks_inverted(const Rig& rig);
+/// Lets fingertips shape both sides of the plane x = at, or not. Error: hands play the puppet.
+Result<Puppet> with_symmetry(const Rig& rig, bool on, double at);
 
 /// Two points are at least so much of the smaller radius apart.
 inline constexpr double least_gap_of_points = 0.1;
