@@ -174,7 +174,6 @@ private:
   bool in_step_ = false;              ///< shaped before the last change, and not a step yet
   LoopSettings settings_;             ///< in force
   std::uint32_t puppet_ = 0;          ///< in force
-  bool leap_due_ = false;             ///< the next frame's shape is not led to by its fields
   std::optional<Awaited> awaited_;    ///< by the first step that is due
   HostClock::duration time_{};
   std::optional<HostClock::duration> exchanged_at_; ///< last
