@@ -54,7 +54,6 @@ FieldStatus Shaping::shape(const Points& tips, Frame& frame, LoopStats& stats,
                            bool completes) noexcept {
   make_room(frame);
   frame.puppet = puppet_;
-  if (std::exchange(leap_due_, false)) ++jumps_;
   if (!is_still_) take_steps(tips, stats);
   if (!is_still_ && !awaited_ && std::exchange(anew_due_, false) && held_) take_hold_anew(tips);
   if (!is_still_ && !held_ && hold_wanted_) {
@@ -221,10 +220,11 @@ bool Shaping::exchange(ReadySculptor& ready, const Points& tips, Frame& frame,
     make_room(frame);
     show_rest(frame);
   }
-  if (holds_on)
-    leap_due_ = true;
-  else
+  // Where the hands hold on, the rest shape stays, and readers go on from it, also over an undo.
+  if (!holds_on)
     ++otherwise_ended_;
+  else if (is_step_over)
+    --jumps_;
   ++stats.changes;
   tell(frame, stats);
   return !is_refused;

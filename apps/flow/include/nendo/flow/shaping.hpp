@@ -171,11 +171,10 @@ private:
   bool shaped_ = false;               ///< since the hands took hold, or since the last commit
   std::uint64_t otherwise_ended_ = 0; ///< strokes, by a change, without a commit
   std::uint64_t leaps_ = 0;           ///< frames in which the shape was led along the surface
-  std::uint64_t jumps_ = 0;           ///< frames in which a brush or another puppet changed it
+  std::uint64_t jumps_ = 0;           ///< frames that a brush changed, less undos over puppets
   bool in_step_ = false;              ///< shaped before the last change, and not a step yet
   LoopSettings settings_;             ///< in force
   std::uint32_t puppet_ = 0;          ///< in force
-  bool leap_due_ = false;             ///< the next frame's shape is not led to by its fields
   std::optional<Awaited> awaited_;    ///< by the first step that is due
   HostClock::duration time_{};
   std::optional<HostClock::duration> exchanged_at_; ///< last
