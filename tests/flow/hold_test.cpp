@@ -92,10 +92,15 @@ TEST_SUITE("hold") {
     clay.bend(15, HostClock::now());
     CHECK(clay.frame_after_tick(1).fields.fields().front().centres.cols() == 10);
     HeldLoop puppet(0.0, false, {.puppet = test::ball_puppet});
-    puppet.bend(15, HostClock::now());
-    const auto fields = puppet.frame_after_tick(1).fields.fields();
-    REQUIRE_FALSE(fields.empty());
-    CHECK(fields.front().centres.cols() == puppet.options.rig->starts().cols());
+    CHECK(is_solved(puppet.loop->grab_status()));
+    for (std::uint64_t tick = 1; tick <= 20; ++tick) {
+      puppet.bend(static_cast<int>(10 * tick), HostClock::now());
+      const flow::Frame& frame = puppet.frame_after_tick(tick);
+      CHECK(is_solved(frame.status));
+      for (const deform::CsrbfField& field : frame.fields.fields())
+        CHECK(field.centres.cols() == puppet.options.sculptor.deformer.supports.functions(
+                                          puppet.options.rig->starts().cols()));
+    }
   }
 
   TEST_CASE("it comes and goes while the loop runs, as a step, and a tick does not allocate") {
