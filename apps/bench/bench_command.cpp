@@ -23,8 +23,7 @@ void add_describe(cli::Command& bench) {
 void add_bench(cli::Command& program) {
   cli::Command bench = program.add_command(
       "bench", "Measures this program on this machine: latency, faults, load, loop, rings, hands, "
-               "calibration, fields, deformation, clay, cuts");
-               "calibration, fields, deformation, clay, joins");
+               "calibration, fields, deformation, clay, cuts, joins");
   bench.require_command();
   calibration_bench::add(bench);
   clay_bench::add(bench);

@@ -186,7 +186,7 @@ int is_inside(const SpacePoint& place, const CrossedPart& part) {
   const SpaceBox& box = part.tree->box();
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (place[axis] < box.low[axis] || place[axis] > box.high[axis]) return 0;
-  const double reach = 4.0 * distance(box.low, box.high);
+  const double reach = 4.0 * distance_between(box.low, box.high);
   for (const SpacePoint& direction : ray_directions)
     if (const auto crossed = count_crossed(place, place + reach * direction, part))
       return static_cast<int>(*crossed % 2);

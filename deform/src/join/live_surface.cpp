@@ -22,7 +22,8 @@ constexpr double least_gain = 1.02;
 
 /// The least height of a triangle.
 double height_of(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
-  const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
+  const double longest =
+      std::max({distance_between(a, b), distance_between(b, c), distance_between(c, a)});
   return longest > 0.0 ? length_of(area_vector(a, b, c)) / longest : 0.0;
 }
 
@@ -168,7 +169,7 @@ bool LiveSurface::keeps_shape(std::uint32_t edge, double longest, double thin) c
     if (at == next(edge) || at == twins_[edge]) return; // these two faces go
     const SpacePoint& p = point(to(at));
     const SpacePoint& q = point(from(last(at)));
-    keeps = keeps && distance(target, p) <= longest_before;
+    keeps = keeps && distance_between(target, p) <= longest_before;
     if (!keeps || height_of(target, p, q) < thin) return;
     const double before = triangle_fairness(point(b), p, q);
     const SpacePoint old_area = height_of(point(b), p, q) < thin ? around : area_of(at / 3);

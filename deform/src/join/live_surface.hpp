@@ -37,7 +37,7 @@ public:
   bool has_face(std::uint32_t face) const noexcept { return !gone_[face]; }
   std::size_t face_count() const noexcept { return surface_.faces.size(); }
   double edge_length(std::uint32_t edge) const noexcept {
-    return distance(point(from(edge)), point(to(edge)));
+    return distance_between(point(from(edge)), point(to(edge)));
   }
   /// Calls visit(edge) for the edges that begin at a point, one for each neighbour.
   template <class Visit>

@@ -33,7 +33,7 @@ SpaceBox box_around(std::span<const SpacePoint> points) {
 
 double size_of(std::span<const SpacePoint> points) {
   const SpaceBox box = box_around(points);
-  return distance(box.low, box.high);
+  return distance_between(box.low, box.high);
 }
 
 /// A part's pieces in patches between the crossings.

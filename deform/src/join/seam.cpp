@@ -87,7 +87,7 @@ std::vector<std::uint32_t> split_seam(LiveSurface& surface, std::span<const Seam
   }
   for (std::size_t at = 0; at < left.size() && left.size() < most_operations; ++at) {
     const auto [from, to] = left[at];
-    if (distance(surface.point(from), surface.point(to)) <= longest) continue;
+    if (distance_between(surface.point(from), surface.point(to)) <= longest) continue;
     const std::uint32_t middle = surface.split(surface.edge_between(from, to));
     on_seam.push_back(middle);
     left.emplace_back(from, middle);
@@ -103,7 +103,7 @@ double longest_edge(const LiveSurface& surface, std::span<const SeamEdge> edges,
                     double width) {
   double seam = 0.0;
   for (const auto& [from, to] : edges)
-    seam += distance(surface.point(from), surface.point(to));
+    seam += distance_between(surface.point(from), surface.point(to));
   const double bounded = std::sqrt(triangles_in_square * seam * width / most_triangles);
   return std::min(long_edge * mean, std::max(width / edges_in_width, bounded));
 }

@@ -10,7 +10,7 @@ namespace nendo::deform {
 
 using Corners = std::array<std::uint32_t, 3>; ///< vertices, counter-clockwise seen from outside
 
-inline double distance(const SpacePoint& a, const SpacePoint& b) noexcept {
+inline double distance_between(const SpacePoint& a, const SpacePoint& b) noexcept {
   return length_of(b - a);
 }
 
