@@ -29,8 +29,8 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "redoes, x "
       "resets; " +
       std::string("[ and ] make the radii smaller, larger; m the other mode, n the next kernel, ") +
-      "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; z "
-      "more clay, from all to air; j the whole hand holds, or its tips; e "
+      "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; "
+      "semicolon more clay, from all to air; j the whole hand holds, or its tips; e "
       "makes the model finer; t records; . marks the moment; o punches a layer in or out; s saves; "
       "comma and quote let one hand go of a puppet; y shapes both sides by one hand; z clears the "
       "masks, "
@@ -71,7 +71,7 @@ void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::Command
   if (key == 'n') wanted_.next_kernel();
   if (key == 'i') wanted_.toggle_folding();
   if (key == 'w') wanted_.next_brush();
-  if (key == 'z') wanted_.next_volume();
+  if (key == ';') wanted_.next_volume();
   if (key == 'j') wanted_.toggle_hold();
   if (key == '-') wanted_.weaken();
   if (key == '=') wanted_.strengthen();

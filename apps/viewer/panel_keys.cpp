@@ -35,7 +35,7 @@ constexpr std::array key_table{
     KeyLine{"w", "the next brush of type 2"},
     KeyLine{"-, =", "a weaker brush, a stronger one; below 0 the opposite"},
     KeyLine{"i", "the surface never folds, or may"},
-    KeyLine{"z", "more clay: the volume stays; from all to air"},
+    KeyLine{";", "more clay: the volume stays; from all to air"},
     KeyLine{"j", "the whole hand holds, or its fingertips"},
     KeyLine{"e", "subdivide: the model gets more vertices for finer strokes"},
     KeyLine{"Home", "all of the model and the hands in the picture"},
@@ -115,7 +115,7 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
   if (!edits_puppet) { // where these keys have another meaning
     if (pressed(GLFW_KEY_A)) commands.emplace_back(Request::take_hold);
     if (pressed(GLFW_KEY_O)) commands.emplace_back(flow::Punch{});
-    if (pressed(GLFW_KEY_Z)) wanted.next_volume();
+    if (pressed(GLFW_KEY_SEMICOLON)) wanted.next_volume();
     if (pressed(GLFW_KEY_J)) wanted.toggle_hold();
   }
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});

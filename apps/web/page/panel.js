@@ -33,7 +33,7 @@ const KEYS = [
   ['-', 'a weaker brush; below 0 the opposite', panel => panel.shaping.strengthen(-0.1)],
   ['=', 'a stronger brush', panel => panel.shaping.strengthen(0.1)],
   ['i', 'the surface never folds, or may', panel => panel.toggle('injective', '')],
-  ['z', 'more clay: the volume stays; from all to air', panel => panel.shaping.nextVolume()],
+  [';', 'more clay: the volume stays; from all to air', panel => panel.shaping.nextVolume()],
   ['j', 'the whole hand holds, or its fingertips', panel => panel.toggle('hold', '')],
   ['e', 'subdivide: the model gets more vertices for finer strokes', panel => panel.ask('subdivide')],
   ['h', 'hands on and off', panel => panel.toggle('skin')],
