@@ -220,7 +220,7 @@ void measure_changes(const Options& options) {
     settings.radius_m.fill(first_m * (1.0 + 0.01 * static_cast<double>(++changes % 30)));
     loop.change_settings(settings);
   }
-  stop = cli::stop_requested();
+  stop = cli::stop_requested().load();
   thread.join();
   if (options.json) {
     const nlohmann::ordered_json line{{"measured", "changes"},

@@ -290,6 +290,7 @@ private:
   Result<void> set_surface(SculptorOptions& sculptor, const ModelVersion& model) const;
   Result<void> set_model(SculptorOptions& sculptor, const ModelVersion& model) const;
   int hands_of(std::uint32_t puppet) const noexcept;
+  Eigen::Index points_of_hand(const deform::Points& tips) const noexcept;
   Eigen::Index control_points(std::uint32_t puppet) const noexcept;
   SculptorSetup first_with(std::uint32_t puppet) const;
   Result<SculptorSetup> setup_with(std::uint32_t puppet) const;
