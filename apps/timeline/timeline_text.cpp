@@ -146,8 +146,13 @@ std::string clutch_text(const flow::SetClutch& clutch) {
          ", holds = " + word(clutch.holds) + " }";
 }
 
-std::string masks_text(const puppet::Rig* masks) {
-  return masks == nullptr ? "\"\"" : toml_lines(masks->puppet().text);
+/// The texts of all masks, by their numbers.
+std::string masks_text(const Timeline& timeline) {
+  if (timeline.masks.empty()) return {};
+  std::string texts;
+  for (const auto& masks : timeline.masks)
+    texts += "  " + (masks ? toml_lines(masks->puppet().text) : std::string("\"\"")) + ",\n";
+  return "masks = [\n" + texts + "]\n";
 }
 
 std::string event_text(const Timeline& timeline, const Event& event) {
@@ -161,7 +166,7 @@ std::string event_text(const Timeline& timeline, const Event& event) {
            toml_string(timeline.rig->puppet().functions[role->function].name) +
            ", input = " + toml_string(role->input.name()) + " }";
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
-    return "masks = " + masks_text(timeline.masks_numbered(change->number));
+    return "masks = " + std::to_string(change->number);
   if (const auto* symmetry = std::get_if<flow::SetSymmetry>(&command))
     return "symmetric = " + word(symmetry->on);
   return "request = " + toml_string(in_words(timeline, event));
@@ -178,10 +183,7 @@ std::string head_text(const Timeline& timeline) {
          line("units_per_metre", decimal_text(timeline.units_per_metre)) +
          line("rate_hz", decimal_text(timeline.rate_hz)) +
          line("duration_s", decimal_text(timeline.duration_s)) + line("held", word(timeline.held)) +
-         (timeline.pull_is_step ? line("pull_is_step", "true") : "") +
-         (timeline.masks_numbered(0) != nullptr
-              ? line("masks", masks_text(timeline.masks_numbered(0)))
-              : "") +
+         (timeline.pull_is_step ? line("pull_is_step", "true") : "") + masks_text(timeline) +
          "events = [\n" + events + "]\n" + "\n[model]\n" +
          line("file", toml_string(timeline.mesh)) +
          line("vertices", std::to_string(timeline.mesh_sum.vertices)) +

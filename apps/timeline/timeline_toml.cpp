@@ -209,22 +209,20 @@ void complain_in_text(TomlReader& reader, const toml::node& text, const std::str
   reader.complain(source.begin.line + (is_below ? line : 0), "the puppet's text" + what);
 }
 
-/// Returns the number of the masks that the text tells; without a text, there are none.
-std::uint32_t read_masks(TomlReader& reader, const toml::table& table, Timeline& timeline) {
-  const std::string text = reader.text(table, "masks");
-  auto& all = timeline.masks;
-  if (all.empty() && table.contains("time_s")) all.emplace_back(); // none at 0 s
-  for (std::size_t at = 0; at < all.size(); ++at)
-    if ((all[at] ? all[at]->puppet().text : std::string()) == text)
-      return static_cast<std::uint32_t>(at);
-  if (text.empty() || reader.error()) return 0;
-  auto masks = puppet::parse_puppet(text, "");
-  if (!masks) {
-    complain_in_text(reader, *table.get("masks"), masks.error().message);
-    return 0;
+/// The texts of all masks, by their numbers; an empty one: none.
+void read_masks(TomlReader& reader, const toml::table& root, Timeline& timeline) {
+  const toml::array* const texts = reader.array(root, "masks");
+  if (texts == nullptr) return;
+  for (const toml::node& node : *texts) {
+    const auto text = node.value<std::string>();
+    if (!text) return reader.complain(node, "masks must be texts of mask files");
+    auto& masks = timeline.masks.emplace_back();
+    if (text->empty()) continue;
+    auto puppet = puppet::parse_puppet(*text, "");
+    if (!puppet) return complain_in_text(reader, node, puppet.error().message);
+    if (puppet->is_played()) return reader.complain(node, "masks must have no points");
+    masks = std::make_shared<const puppet::Rig>(*std::move(puppet), deform::Points(3, 0));
   }
-  all.push_back(std::make_shared<const puppet::Rig>(*std::move(masks), deform::Points(3, 0)));
-  return static_cast<std::uint32_t>(all.size() - 1);
 }
 
 flow::Command read_request(TomlReader& reader, const toml::table& event) {
@@ -234,14 +232,15 @@ flow::Command read_request(TomlReader& reader, const toml::table& event) {
   return reader.named(event, "request", flow::request_named);
 }
 
-flow::Command read_command(TomlReader& reader, const toml::table& event, Timeline& timeline) {
-  const puppet::Rig* const rig = timeline.rig.get();
+flow::Command read_command(TomlReader& reader, const toml::table& event, const puppet::Rig* rig) {
   if (event.size() > 2)
     reader.complain(event, "an event has a time and one thing that happens; make two events of it");
   if (event.contains("settings")) return flow::ChangeSettings{read_settings(reader, event)};
   if (event.contains("clutch")) return read_clutch(reader, event);
   if (event.contains("role")) return read_role(reader, event, rig);
-  if (event.contains("masks")) return flow::ChangePuppet{read_masks(reader, event, timeline)};
+  if (event.contains("masks"))
+    return flow::ChangePuppet{
+        static_cast<std::uint32_t>(reader.count(event, "masks", most_events))};
   if (event.contains("symmetric")) return flow::SetSymmetry{reader.truth(event, "symmetric")};
   return read_request(reader, event);
 }
@@ -256,7 +255,7 @@ void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline
                       {"time_s", "request", "settings", "clutch", "role", "symmetric", "masks"});
     Event read;
     read.time_s = reader.number(*event, "time_s");
-    read.command = read_command(reader, *event, timeline);
+    read.command = read_command(reader, *event, timeline.rig.get());
     timeline.events.push_back(read);
     if (!reader.error() && flow::is_for_puppet(read.command) && timeline.rig == nullptr)
       reader.complain(*event, "is about a puppet, and there is none; add [puppet]");

@@ -217,7 +217,7 @@ TEST_SUITE("mask change") {
     CHECK(held_now.count() > 2 * held_at_first.count());
     std::size_t count = 0;
     for (const Eigen::Index v : moved(before, after))
-      count += held_now[v] ? 1 : 0;
+      count += held_now[v] ? 1U : 0U;
     CHECK(count == 0);
     CHECK(gap(before, after) > 1e-3);
   }
