@@ -358,7 +358,7 @@ void DeformLoop::set_rig(const Command& command) noexcept {
 
 void DeformLoop::compute_hands(Frame& frame) noexcept {
   Eigen::Index column = 0;
-  const Eigen::Index points = tips_.cols() / hand_count();
+  const Eigen::Index points = points_of_hand(tips_);
   frame.layers_on = 0;
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     const Hand& hand = hands_[at];

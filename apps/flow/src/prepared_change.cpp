@@ -104,7 +104,7 @@ void DeformLoop::change_filters(const hand::FilterOptions& filter) noexcept {
 void DeformLoop::place_tips(Points& tips) noexcept {
   if (rig_) return rig_->take_hold(hands_now()); // the points stay where they are
   Eigen::Index column = 0;
-  const Eigen::Index points = tips.cols() / ((mirror_ ? 2 : 1) * hand_count());
+  const Eigen::Index points = points_of_hand(tips);
   for (const Hand& hand : hands_) {
     if (!hand.is_lowest) continue;
     write_tips(pose_of(hand), units_per_metre_, points, column, tips);
@@ -203,6 +203,11 @@ Eigen::Index DeformLoop::hand_count() const noexcept {
 /// Of which with_settings() makes the supports; 0: they are a puppet's.
 int DeformLoop::hands_of(std::uint32_t puppet) const noexcept {
   return is_played(puppets_[puppet].get()) ? 0 : static_cast<int>(hand_count());
+}
+
+/// Without their mirror images.
+Eigen::Index DeformLoop::points_of_hand(const Points& tips) const noexcept {
+  return tips.cols() / ((mirror_ ? 2 : 1) * hand_count());
 }
 
 Eigen::Index DeformLoop::control_points(std::uint32_t puppet) const noexcept {
