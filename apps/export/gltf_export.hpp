@@ -14,7 +14,8 @@
 // - All other takes (with commits, motion in several links, or Type-2) have key shapes
 //   (key_shapes.hpp). Each key shape is a target, and at any time two of them are mixed.
 // - Where the model becomes another one, as when it is subdivided, or its puppet is edited, each
-//   part of the take has a mesh of its own. Its node is shown in its time by an animation of its scale, which is 0 otherwise.
+//   part of the take has a mesh of its own. Its node is shown in its time by an animation of its
+//   scale, which is 0 otherwise.
 // - Normals are those of the rest shape only. Blender computes its own from the faces.
 // - A take of gloves alone has no model, and the file then has the hands alone.
 // - Time 0 is that of the first frame. Weights and joints are interpolated linearly, as players do.
