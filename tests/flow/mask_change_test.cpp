@@ -73,6 +73,7 @@ TEST_SUITE("mask change") {
         Clocked loop(mode, fixture);
         loop.stroke(0, 12);
         change(loop, puppet::with_masks(masks_of(loop), north, 1.2));
+        loop.tick(); // takes them, after it has made its shape
         const deform::Points before = loop.tick();
         CHECK(loop.frame().puppet == 1);
         const deform::Points after = loop.stroke(12, 30);
@@ -83,7 +84,7 @@ TEST_SUITE("mask change") {
           ++(weights[v] == 0.0 ? held : free);
         CHECK(held == 0);
         CHECK(free > 20);
-        CHECK((weights.array() == 0.0).count() > 20);
+        CHECK((weights.array() == 0.0).count() > 10);
         change(loop, puppet::with_masks_inverted(masks_of(loop)));
         const deform::Points inverted = loop.tick();
         const deform::Points other = loop.stroke(30, 5);
@@ -91,7 +92,7 @@ TEST_SUITE("mask change") {
         for (const Eigen::Index v : moved(inverted, other))
           ++(weights[v] == 1.0 ? outside : inside);
         CHECK(outside == 0);
-        CHECK(inside > 20);
+        CHECK(inside > 10);
         change(loop, puppet::without_any_mask(masks_of(loop)));
         const deform::Points cleared = loop.tick();
         CHECK(moved(cleared, loop.stroke(5, 25)).size() >
@@ -115,6 +116,7 @@ TEST_SUITE("mask change") {
       loop.change(settings);
       change(loop, puppet::with_symmetry(masks_of(loop), true, 0.0));
       loop.tick();
+      loop.tick();
       CHECK(loop.frame().symmetric);
       CHECK(loop.frame().puppet == 1);
       // Only the right hand moves.
@@ -127,6 +129,7 @@ TEST_SUITE("mask change") {
       CHECK(asymmetry(loop.test.model.vertices, shape) < 1e-6);
       // The other way, it shapes one side again.
       change(loop, puppet::with_symmetry(masks_of(loop), false, 0.0));
+      loop.tick();
       loop.tick();
       CHECK_FALSE(loop.frame().symmetric);
       for (int counts = 25; counts > 0; --counts) {
