@@ -109,9 +109,9 @@ TEST_SUITE("gltf_export") {
 
   TEST_CASE(
       "with masks a take of Type-1 is its control vectors as exactly, and so it is mirrored") {
-    const char* const held = "version = 1\n[[masks]]\nat = [0, 1, 0]\nradius = 1.0\n";
+    const char* const held = "version = 1\n[[masks]]\nat = [0.8, 0.6, 0]\nradius = 1.2\n";
     const std::string mirrored = std::string("version = 1\nmirror = \"x\"\n") + (held + 12);
-    std::vector<double> ways{way(RecordedMotion(Motion{}))};
+    const RecordedMotion free(Motion{});
     for (const char* const masks : {held, mirrored.c_str()}) {
       const RecordedMotion motion(Motion{.puppet = masks});
       const auto done = export_it(motion);
@@ -121,17 +121,19 @@ TEST_SUITE("gltf_export") {
       const double off = farthest_off(motion, read(motion));
       CHECK(off < 1e-6);
       CHECK(off <= done->morphs->greatest_error + readers_rounding);
-      ways.push_back(way(motion));
-      CHECK(ways.back() > 0.005);
+      CHECK(way(motion) > 0.005);
       const auto puppet = puppet::parse_puppet(masks, "masks");
       REQUIRE(puppet);
       const deform::Points& model = motion.played.test.model.vertices;
       const Eigen::VectorXd weights = puppet::mask_weights(*puppet, model);
+      int stopped = 0; // of what moves without a mask
       for (Eigen::Index v = 0; v < model.cols(); ++v)
-        if (weights[v] == 0.0) CHECK(motion.shapes[30].col(v) == model.col(v));
+        if (weights[v] == 0.0) {
+          CHECK(motion.shapes[30].col(v) == model.col(v));
+          stopped += free.shapes[30].col(v) != model.col(v) ? 1 : 0;
+        }
+      CHECK(stopped > 10);
     }
-    CHECK(ways[1] != ways[0]);
-    CHECK(ways[2] != ways[1]);
   }
 
   TEST_CASE("commits and Type-2 become key shapes, as near as is asked for and as is said") {
