@@ -57,7 +57,7 @@ def main():
         status = os.fstat(file.fileno())
         segment = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     assert status.st_mode & 0o7777 == 0o400, "mode"
-    assert take("8s", 0) == b"NENDOPUB" and take("I2HQ", 8) == [0x01020304, 1, 0, len(segment)], "header"
+    assert take("8s", 0) == b"NENDOPUB" and take("I2HQ", 8) == [0x01020304, 1, 1, len(segment)], "header"
     pid, vertices, triangles, slots, shape_slots = take("5I", 24)
     setup, faces, rest, records, stride, shapes, shape_stride, created, _ = take("7Q2q", 48)
     assert created <= time.clock_gettime_ns(time.CLOCK_MONOTONIC), "created"

@@ -233,13 +233,14 @@ TEST_SUITE("layered_take") {
       }
       return true;
     };
-    // The last bytes: joints (4), in (1), how far (8), has a hand below (1).
+    // The last bytes: joints (4), in (1), how far (8), has a hand below (1), is of another form (1).
     CHECK(read({layer}, 0, 0));
-    CHECK(read({layer}, 14, 0));
-    CHECK_FALSE(read({layer}, 11, 0xFF)); // joints that no hand has
-    CHECK_FALSE(read({layer}, 2, 0xFF));  // NaN
-    CHECK_FALSE(read({layer}, 2, 0x40));  // 2 or more
-    CHECK_FALSE(read({layer}, 1, 1));     // the angles below are cut off
+    CHECK(read({layer}, 15, 0));
+    CHECK_FALSE(read({layer}, 12, 0xFF)); // joints that no hand has
+    CHECK_FALSE(read({layer}, 3, 0xFF));  // NaN
+    CHECK_FALSE(read({layer}, 3, 0x40));  // 2 or more
+    CHECK_FALSE(read({layer}, 2, 1));     // the angles below are cut off
+    CHECK_FALSE(read({layer}, 1, 1));     // and what form the hand has
     CHECK_FALSE(read({layer, like.inputs[0]}, 0, 0));
     CHECK_FALSE(read({like.inputs[0], like.inputs[0]}, 0, 0));
     std::vector<flow::HandInput> many{like.inputs[0]};

@@ -60,6 +60,8 @@ def hand(b):
         h["layer"] = dict(zip(("joints", "on", "part"), b.take("IBd")))
         if b.take("B"):
             h["layer"]["below"] = b.take("23d")
+    if b.take("B"):
+        h["shape"], h["swapped_shape"] = b.take("26d"), b.take("26d")
     return h
 
 
@@ -157,7 +159,7 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 6, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 7, crc32c(data[:12])), "header"
     at = 16
     number = 0
     readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}

@@ -273,11 +273,16 @@ TEST_SUITE("take_reader") {
     while (const auto chunk = reader->next()) {
       if (chunk->type != driver::chunk_type("HAND")) continue;
       const std::span whole(chunk->payload);
-      Setup cut = setup;
-      // It ends with two flags: that nothing was learned, and that it is no layer (since 1.6).
-      CHECK_FALSE(read_setup_chunk(chunk->type, whole.first(whole.size() - 3), cut));
-      CHECK(read_setup_chunk(chunk->type, whole.first(whole.size() - 1), cut));
-      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - 2), setup));
+      // It ends with three flags: that nothing was learned, that it is no layer (since 1.6), and
+      // that hands are average ones (since 1.7).
+      const auto reads_without = [&](std::size_t bytes) {
+        Setup cut = setup;
+        return read_setup_chunk(chunk->type, whole.first(whole.size() - bytes), cut);
+      };
+      CHECK_FALSE(reads_without(4));
+      CHECK(reads_without(1));
+      CHECK(reads_without(2));
+      REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - 3), setup));
       CHECK_FALSE(setup.hands.back().wearer.learned.has_value());
     }
     CHECK(setup.hands.size() == 2);
@@ -295,7 +300,9 @@ TEST_SUITE("take_reader") {
       Setup now, then;
       REQUIRE(read_setup_chunk(chunk->type, whole, now));
       CHECK(now.loop->options.pull_is_step);
-      constexpr std::size_t since = 1 + 13; // that rule, and since 1.6 the brushes
+      // That rule, since 1.6 the brushes, and since 1.7 how much of the volume is kept and what
+      // holds.
+      constexpr std::size_t since = 1 + 13 + 9;
       REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - since), then));
       CHECK_FALSE(then.loop->options.pull_is_step);
       CHECK(then.loop->subdivisions == now.loop->subdivisions);

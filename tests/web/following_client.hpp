@@ -20,7 +20,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 4;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 5;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
