@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
@@ -203,21 +204,22 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
 FrameCapacity frame_capacity(const PlacedLoop& placed) {
   const auto& rig = placed.setup.options.rig;
   const bool is_played = flow::is_played(rig.get());
-  // The whole hand may hold, or fingertips shape both sides, from some time on.
-  constexpr std::size_t most_of_hand = std::max<std::size_t>(hand::held_point_count, 10);
-  const auto points =
-      (is_played
-           ? rig->starts().cols()
-           : static_cast<Eigen::Index>(most_of_hand * flow::count_hands(placed.setup.inputs))) +
-      placed.setup.spare_points;
+  const auto hands = static_cast<Eigen::Index>(flow::count_hands(placed.setup.inputs));
+  const Eigen::Index spare = placed.setup.spare_points;
+  // Fingertips may shape both sides from some time on.
+  const Eigen::Index points = (is_played ? rig->starts().cols() : 10 * hands) + spare;
   const auto& deformer = placed.setup.options.sculptor.deformer;
   // A radius for each finger: a function that is its own, and one that all share.
-  const Eigen::Index functions =
-      std::max(deformer.supports.functions(points) + placed.setup.spare_points, 2 * points);
-  const int links = deformer.injective.value_or(deform::InjectiveOptions{}).most_links;
-  return {static_cast<std::size_t>(std::max(links, deform::Type2Deformer::most_pieces)),
-          static_cast<std::size_t>(functions),
-          static_cast<std::size_t>(is_played || placed.setup.spare_points > 0 ? 2 * points : 0)};
+  const Eigen::Index functions = std::max(deformer.supports.functions(points) + spare, 2 * points);
+  const int links = std::max(deformer.injective.value_or(deform::InjectiveOptions{}).most_links,
+                             deform::Type2Deformer::most_pieces);
+  const int fields = std::max(links, deform::most_midpoint_fields);
+  // The whole hand may hold, which has more points and fewer fields.
+  const Eigen::Index all_over =
+      is_played ? 0 : 2 * static_cast<Eigen::Index>(hand::held_point_count) * hands;
+  return {static_cast<std::size_t>(fields),
+          static_cast<std::size_t>(std::max(functions, all_over * links / fields + 1)),
+          static_cast<std::size_t>(is_played || spare > 0 ? 2 * points : 0)};
 }
 
 } // namespace nendo::session

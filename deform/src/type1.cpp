@@ -13,7 +13,7 @@ namespace nendo::deform {
 
 namespace {
 
-constexpr int most_steps = 32; // of a way: one and a half radii
+constexpr int most_steps = most_midpoint_fields / 2; // of a way: one and a half radii
 
 std::size_t most_fields_of_type1(const DeformerOptions& options) {
   if (keeps_volume(options)) return 2 * static_cast<std::size_t>(most_steps);

@@ -18,6 +18,7 @@ namespace {
 static_assert(Type2Deformer::most_pieces == FingertipCurve::most_pieces);
 
 constexpr int most_steps_of_piece = 2;
+static_assert(2 * most_steps_of_piece * Type2Deformer::most_pieces <= most_midpoint_fields);
 
 /// Of one call.
 std::size_t most_fields(const DeformerOptions& options) {

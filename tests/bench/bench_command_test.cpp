@@ -146,7 +146,7 @@ TEST_SUITE("bench") {
     const auto done = nendo::test::nendo({"bench", "deform", "--short", "--json"});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
     const auto lines = lines_of(done.out);
-    REQUIRE(lines.size() == 11); // two meshes, five radii, and the large model
+    REQUIRE(lines.size() == 12); // two meshes, five radii, the volume, and the large model
     for (std::size_t at = 0; at < 10; ++at) {
       const auto cell = nlohmann::json::parse(lines[at]);
       CAPTURE(lines[at]);
@@ -160,7 +160,11 @@ TEST_SUITE("bench") {
       CHECK(number("apart_of_diagonal") < 1e-5);
       CHECK(number("weight_bytes") > 0.0);
     }
-    const auto large = nlohmann::json::parse(lines[10]);
+    const auto volume = nlohmann::json::parse(lines[10]);
+    CHECK(volume["vertices"] == 4096);
+    for (const char* key : {"air_ns_an_influence", "clay_ns_an_influence", "type2_clay_us"})
+      CHECK(volume[key].get<double>() > 0.0);
+    const auto large = nlohmann::json::parse(lines[11]);
     CHECK(large["reached"].get<int>() > 0);
     CHECK(large["influences"] > large["reached"].get<int>() / 4);
     const double floor_us = std::max(large["memory_floor_us"].get<double>(),

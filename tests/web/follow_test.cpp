@@ -364,7 +364,8 @@ TEST_SUITE("follow") {
     }
     CHECK(followed.client.good);
     CHECK(worst < 1e-5);
-    CHECK(compared > 500);
+    // Clay takes several fields a piece. They drift sooner, so that whole shapes are asked for.
+    CHECK(compared > 250);
     CHECK(followed.client.weights > 3);
     CHECK(followed.client.weights < 30);
     CHECK(streamed.test.loop->stats().changes > 15);

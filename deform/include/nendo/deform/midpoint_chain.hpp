@@ -10,6 +10,9 @@
 
 namespace nendo::deform {
 
+/// Fields of one frame at most, where the volume is kept: two for each midpoint step.
+inline constexpr int most_midpoint_fields = 64;
+
 /// Call go(), then apply field() to the shape as long as next() is true, in the order in which
 /// displace() applies several fields. A step has two, of which the first is halfway. After the
 /// constructor nothing allocates, locks or calls the system, up to CsrbfSolver::lean_size points.
