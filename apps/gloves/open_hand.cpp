@@ -97,27 +97,43 @@ Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& opti
   return {};
 }
 
-driver::GloveContext touching_context(const deform::Mesh& model, std::optional<Side> side,
-                                      const hand::HandSize& size,
-                                      std::optional<Eigen::Isometry3d>& T_stage_wrist) {
-  const auto motion =
-      [=, &model, &T_stage_wrist](
-          const driver::SimulatedGloveOptions& options) -> Result<driver::SensorMotion> {
-    flow::TouchOptions touch;
-    touch.seed = options.seed;
-    const hand::HandSkeleton skeleton(side.value_or(options.side), size);
-    const auto hand = flow::TouchingHand::make(model, skeleton, touch);
-    if (!hand) {
-      return Error{hand.error().code, options.source + ": " + hand.error().message +
-                                          "; choose another model, or another motion, like "
-                                          "sim:sculpt"};
-    }
-    note_idle_fingers(options.source, *hand);
-    T_stage_wrist = hand->wrist_pose();
-    return driver::SensorMotion(
-        [hand = *hand](double time_s) { return hand.sensor_angles(time_s); });
-  };
-  return {motion};
+namespace {
+
+Result<driver::SensorMotion> kneading_motion(const driver::SimulatedGloveOptions& options,
+                                             flow::KneadTask task, PlannedHand& planned) {
+  const hand::HandSkeleton skeleton(planned.side.value_or(options.side), planned.size);
+  auto hand = flow::KneadingHand::make(planned.model, skeleton, task, planned.model_size_m);
+  if (!hand) return Error{hand.error().code, options.source + ": " + hand.error().message};
+  planned.wrist_path = hand->wrist();
+  planned.T_stage_wrist = hand->wrist()->at(0.0);
+  return driver::SensorMotion(
+      [hand = *std::move(hand)](double time_s) { return hand.sensor_angles(time_s); });
+}
+
+Result<driver::SensorMotion> touching_motion(const driver::SimulatedGloveOptions& options,
+                                             PlannedHand& planned) {
+  flow::TouchOptions touch;
+  touch.seed = options.seed;
+  touch.model_size_m = planned.model_size_m;
+  const hand::HandSkeleton skeleton(planned.side.value_or(options.side), planned.size);
+  const auto hand = flow::TouchingHand::make(planned.model, skeleton, touch);
+  if (!hand) {
+    return Error{hand.error().code, options.source + ": " + hand.error().message +
+                                        "; choose another model, or another motion, like "
+                                        "sim:sculpt"};
+  }
+  note_idle_fingers(options.source, *hand);
+  planned.T_stage_wrist = hand->wrist_pose();
+  return driver::SensorMotion([hand = *hand](double time_s) { return hand.sensor_angles(time_s); });
+}
+
+} // namespace
+
+driver::GloveContext planned_context(PlannedHand& hand) {
+  return {[&hand](const driver::SimulatedGloveOptions& options) {
+    const auto task = flow::knead_task_named(options.motion);
+    return task ? kneading_motion(options, *task, hand) : touching_motion(options, hand);
+  }};
 }
 
 } // namespace nendo::gloves

@@ -8,6 +8,7 @@
 #include <string>
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/flow/kneading_hand.hpp>
 #include <nendo/flow/placement.hpp>
 
 #include "gloves/glove_calibration.hpp"
@@ -23,6 +24,7 @@ struct OpenHand {
   bool uncalibrated = false; ///< is_uncalibrated() of `wearer` and `first`; set by calibrate()
   /// The pose of the end of the forearm, if something other than the glove knows it.
   std::optional<Eigen::Isometry3d> T_stage_wrist{};
+  std::shared_ptr<const flow::WristPath> wrist_path{}; ///< likewise, of a wrist that moves
 };
 
 /// Opens a glove as driver::open_glove() does, for a command that a stop signal ends. From then on
@@ -56,14 +58,22 @@ bool have_ended(std::span<const OpenHand> hands) noexcept;
 Result<void> calibrate(std::span<OpenHand> hands, const CalibrationOptions& options,
                        const HandLength& length);
 
+/// A hand that does something to a model.
+struct PlannedHand {
+  const deform::Mesh& model;
+  double model_size_m = 0.8; ///< its longest side, on the stage
+  std::optional<Side> side;  ///< nothing: the hand that the specification names
+  hand::HandSize size{};
+  // Set by the opening, because a real glove would not know it:
+  std::optional<Eigen::Isometry3d> T_stage_wrist{};    ///< where it begins
+  std::shared_ptr<const flow::WristPath> wrist_path{}; ///< null: it stays there
+};
+
 /// Returns the context in which open_glove() can open `sim:touch`, a simulated glove whose hand
-/// touches `model`. The hand is that of `side`, and has that size. Without a side, it is the hand
-/// that the specification names. Opening such a glove takes about 0.2 s, sets `T_stage_wrist` to
-/// the pose of its wrist, which a real glove would not know, and says on standard error which
-/// fingers cannot reach the model. Opening fails with bad_input if the model cannot be touched.
-/// `model` and `T_stage_wrist` must outlive the opening.
-driver::GloveContext touching_context(const deform::Mesh& model, std::optional<Side> side,
-                                      const hand::HandSize& size,
-                                      std::optional<Eigen::Isometry3d>& T_stage_wrist);
+/// touches the model, and `sim:press`, `sim:knead` and `sim:grip`, whose hands work on clay.
+/// Opening such a glove takes about 0.2 s, and says on standard error which fingers cannot reach
+/// the model. Opening fails with bad_input if nothing can be done to the model. `hand` must outlive
+/// the opening.
+driver::GloveContext planned_context(PlannedHand& hand);
 
 } // namespace nendo::gloves

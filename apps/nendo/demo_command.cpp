@@ -11,6 +11,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "nendo/clay_demo.hpp"
 #include "nendo/commands.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_report.hpp"
@@ -55,12 +56,14 @@ Result<DemoGlove> emulate(Side side, const Options& demo) {
 
 Result<session::RunOptions> run_options(const Options& options) {
   const auto mode = flow::mode_named(options.mode);
-  if (!mode) return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
+  if (!mode || *mode == flow::Mode::clay)
+    return Error{Errc::usage, "--mode " + options.mode +
+                                  ": use type1 or type2; `nendo demo clay` has a mode of its own"};
   if (!std::isfinite(options.duration_s) || options.duration_s <= 0.0 ||
       options.duration_s > longest_s)
     return Error{Errc::usage, "--duration: use a number of seconds above 0, up to 3600"};
-  if (options.what != "face" && options.what != "moai")
-    return Error{Errc::usage, options.what + ": there is no such demo; use face or moai"};
+  if (options.what != "face" && options.what != "moai" && options.what != "clay")
+    return Error{Errc::usage, options.what + ": there is no such demo; use face, moai or clay"};
   if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
   if (auto fine = cli::check_place("--out", options.out, {".obj", ".ply"}); !fine)
     return fine.error();
@@ -90,6 +93,7 @@ Result<session::RunOptions> run_options(const Options& options) {
 int demonstrate(const Options& options) {
   auto run = run_options(options);
   if (!run) return cli::report(run.error());
+  if (options.what == "clay") return clay_demo::demonstrate(options.out, options.picture);
   auto model = deform::read_mesh(run->mesh);
   if (!model) return cli::report(model.error());
   cli::install_stop_signals();
@@ -127,9 +131,11 @@ int demonstrate(const Options& options) {
 void add(cli::Command& program) {
   auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
-      "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver; "
-              "leaves a picture");
-  command.add_option("DEMO", options->what, "face: ten fingers make it live; moai: hands shape it");
+      "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver, or "
+              "simulated hands knead clay; leaves a picture");
+  command.add_option("DEMO", options->what,
+                     "face: ten fingers make it live; moai: hands shape it; clay: whole hands make "
+                     "a cake, a bowl and ears, in some 30 s, whatever the other options say");
   command.add_option("--mode", options->mode,
                      "type1: the rest shape follows the fingertips; type2: strokes");
   command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");

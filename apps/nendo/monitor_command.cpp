@@ -15,8 +15,8 @@
 #include "cli/cli.hpp"
 #include "cli/terminal.hpp"
 #include "gloves/glove_calibration.hpp"
+#include "gloves/glove_feedback.hpp"
 #include "gloves/glove_json.hpp"
-#include "gloves/glove_light.hpp"
 #include "gloves/monitor_screen.hpp"
 #include "gloves/open_hand.hpp"
 #include "nendo/commands.hpp"
@@ -78,7 +78,7 @@ void note_losses(const driver::Glove& glove) {
 }
 
 /// Returns false if the user wants to end.
-bool handle(char key, gloves::SeenCounts& seen, gloves::GloveLight& light) {
+bool handle(char key, gloves::SeenCounts& seen, gloves::GloveFeedback& light) {
   if (key == 'r') seen.clear();
   if (key == 'l') light.show(!light.is_lit());
   return key != 'q';
@@ -87,7 +87,7 @@ bool handle(char key, gloves::SeenCounts& seen, gloves::GloveLight& light) {
 void show_screen(Monitored& monitored) {
   constexpr std::chrono::milliseconds frame_time{34}; // at most 30 pictures a second
   cli::Terminal terminal;
-  gloves::GloveLight light(monitored.glove);
+  gloves::GloveFeedback light(monitored.glove);
   gloves::SeenCounts seen;
   GloveSample sample;
   bool any = false;

@@ -38,6 +38,8 @@ struct Options {
   std::uint32_t columns = 0; ///< 0: as many as make the sheet nearly square
   bool numbered = false;
   std::string colour = "model";
+  SceneParts parts{};
+  bool no_hands = false;
 };
 
 constexpr std::uint32_t most_panels = 64;
@@ -219,16 +221,18 @@ Result<void> make_picture(const Options& options) {
   const auto times = times_of(options, *take);
   if (!times) return times.error();
   const SceneBuilder builder(take->rest, take->units_per_metre);
+  SceneParts parts = options.parts;
+  parts.hands = parts.vectors = !options.no_hands;
   std::vector<Scene> scenes;
   std::vector<SceneFrame> frames;
   for (const double time : *times) {
     auto scene_frame = take->frame_at(time);
     if (!scene_frame) return scene_frame.error();
     if (scene_frame->mesh == nullptr)
-      builder.build(*scene_frame, {}, scenes.emplace_back());
+      builder.build(*scene_frame, parts, scenes.emplace_back());
     else // the model has become finer; it fills the same box
       SceneBuilder(*scene_frame->mesh, builder.units_per_metre())
-          .build(*scene_frame, {}, scenes.emplace_back());
+          .build(*scene_frame, parts, scenes.emplace_back());
     if (options.colour == "distance") frames.push_back(*std::move(scene_frame));
   }
   if (options.colour == "distance") {
@@ -270,6 +274,9 @@ void add(cli::Command& program) {
                      "rest, from grey to dark red");
   command.add_flag("--numbered", options->numbered,
                    "In place of a sheet: files of their own, FILE-00.png and so on");
+  command.add_flag("--contact", options->parts.contacts,
+                   "Of a recording: draws where hands touch clay, and how hard");
+  command.add_flag("--no-hands", options->no_hands, "Of a recording: leaves the hands out");
   command.on_chosen([options] {
     const auto done = make_picture(*options);
     return done ? 0 : cli::report(done.error());

@@ -15,6 +15,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
+#include "cli/quantities.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/puppet_file.hpp"
 #include "service/service_notice.hpp"
@@ -35,6 +36,7 @@ struct CommandOptions {
   std::string radius;
   std::string mode; ///< empty: type1, or type2 with a brush
   std::string hold = "tips";
+  std::string size; ///< of the model on the stage; empty: as the mode has it
   std::string switch_action = "none";
   session::FilterArguments filter;
   session::KernelArguments kernel;
@@ -79,8 +81,8 @@ Result<void> check_out_puppet(const CommandOptions& options) {
 Result<void> check_outputs(const CommandOptions& options) {
   const session::RunOptions& run = options.run;
   const session::ViewOptions& view = options.view;
-  if (!view.window && (view.frames > 0 || !view.screenshot.empty()))
-    return Error{Errc::usage, "--frames and --screenshot are the window's; add --view"};
+  if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty()))
+    return Error{Errc::usage, "--frames, --screenshot and --contact are the window's; add --view"};
   if (auto fine = cli::check_place("--out", run.out, {".obj", ".ply"}); !fine) return fine;
   const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
   if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
@@ -173,13 +175,46 @@ Result<deform::Mesh> read_model(CommandOptions& options) {
   return model;
 }
 
+/// What acts on fingertips, or on a puppet's points, has nothing to do with whole hands.
+Result<void> check_clay(const session::RunOptions& run) {
+  if (run.loop.sculptor.mode != flow::Mode::clay) return {};
+  const auto refuse = [](const char* option, const char* why) {
+    return Error{Errc::usage,
+                 std::string("--mode clay and ") + option + ": " + why + "; give one of them"};
+  };
+  if (!run.puppet_file.empty())
+    return refuse("--puppet", "whole hands press clay, and a puppet has points");
+  if (!run.mask_file.empty()) return refuse("--mask", "a mask does not hold clay");
+  if (run.symmetric) return refuse("--symmetry", "only fingertips have images");
+  if (run.loop.sculptor.hold == flow::Hold::hand)
+    return refuse("--hold hand", "clay is pressed, and hands hold it only by closing on it");
+  if (run.loop.sculptor.deformer.csrbf.keep_volume > 0.0)
+    return refuse("--keep-volume", "clay keeps its volume by itself");
+  return {};
+}
+
+Result<void> set_size(CommandOptions& options) {
+  session::RunOptions& run = options.run;
+  if (run.loop.sculptor.mode == flow::Mode::clay) run.model_size_m = session::clay_size_m;
+  if (options.size.empty()) return {};
+  const auto size_m = cli::metres_of(options.size);
+  constexpr double least_m = 0.01;
+  constexpr double most_m = 10.0;
+  if (!size_m || !(*size_m >= least_m && *size_m <= most_m))
+    return Error{Errc::usage, "--size " + options.size + ": use " + std::string(cli::length_words) +
+                                  ", from 1cm to 10m"};
+  run.model_size_m = *size_m;
+  return {};
+}
+
 Result<void> check(CommandOptions& options) {
   auto& run = options.run;
   const auto mode = flow::mode_named(options.mode);
   if (!mode && !options.mode.empty())
-    return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1 or type2"};
+    return Error{Errc::usage, "--mode " + options.mode + ": unknown; use type1, type2 or clay"};
   run.loop.sculptor.mode = mode.value_or(flow::Mode::type1);
   if (auto fine = options.brush.parse(options.mode, run.loop.sculptor); !fine) return fine;
+  if (auto fine = set_size(options); !fine) return fine;
   const auto action = flow::switch_action_named(options.switch_action);
   if (!action) {
     return Error{Errc::usage, "--switch " + options.switch_action +
@@ -197,6 +232,7 @@ Result<void> check(CommandOptions& options) {
   const auto hold = flow::hold_named(options.hold);
   if (!hold) return Error{Errc::usage, "--hold " + options.hold + ": unknown; use tips or hand"};
   run.loop.sculptor.hold = *hold;
+  if (auto fine = check_clay(run); !fine) return fine;
   if (*hold == flow::Hold::hand && run.loop.sculptor.mode == flow::Mode::type2)
     return Error{Errc::usage,
                  "--hold hand: type 2 follows the ways of fingertips; use --mode type1"};
@@ -233,7 +269,10 @@ Result<void> check(CommandOptions& options) {
                                   "\"air\" in it"};
   if (auto fine = read_masks(run); !fine) return fine;
   if (auto fine = read_take(options); !fine) return fine;
-  if (run.mesh.empty() && !run.over) run.mesh = cli::shipped_model("moai.obj").string();
+  if (run.mesh.empty() && !run.over)
+    run.mesh =
+        cli::shipped_model(run.loop.sculptor.mode == flow::Mode::clay ? "clay.ply" : "moai.obj")
+            .string();
   if (options.view.window && run.out_puppet.file.empty() && !run.over)
     run.out_puppet.file =
         std::filesystem::path(run.mesh).filename().replace_extension(".puppet.toml").string();
@@ -359,8 +398,12 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
       "hands that touch it. In a window with a MODEL, also a file that is to be made");
   command.add_option(
       "--mode", options.mode,
-      "type1: the rest shape follows the fingertips; type2: strokes along their paths; without it, "
-      "type1, or type2 with a brush");
+      "type1: the rest shape follows the fingertips; type2: strokes along their paths; clay: whole "
+      "hands press; without it, type1, or type2 with a brush");
+  command.add_option(
+      "--size", options.size,
+      "The model's longest side on the stage, where the hands are, e.g. 20cm; without "
+      "it 80 cm, and with --mode clay 7.5 cm");
   command.add_option(
       "--radius", options.radius,
       "Radius of a fingertip's influence, in the mesh's units, without it 0.2 of its longest side; "
@@ -420,13 +463,15 @@ void add_run_options(cli::Command& command, const std::shared_ptr<CommandOptions
                      "that was opened, or beside you, named after the model");
   command.add_option("--screenshot", options->view.screenshot,
                      "Where the window's last picture goes, .png");
+  command.add_flag("--contact", options->view.contact,
+                   "The window shows at first where hands touch clay, and how hard (0)");
   command.add_option("--frames", options->view.frames,
                      "The window's pictures after which it ends; 0: when it is closed");
   command.on_chosen([options, command] {
     options->decided_by_take = command.first_given(
-        {"--puppet", "--mask", "--symmetry", "--mode", "--radius", "--kernel", "--polynomial",
-         "--keep-volume", "--hold", "--injective", "--no-injective", "--rate", "--policy",
-         "--switch", "--filter", "--filter-min-cutoff", "--filter-beta"});
+        {"--puppet", "--mask", "--symmetry", "--mode", "--size", "--radius", "--kernel",
+         "--polynomial", "--keep-volume", "--hold", "--injective", "--no-injective", "--rate",
+         "--policy", "--switch", "--filter", "--filter-min-cutoff", "--filter-beta"});
     return run(*options);
   });
 }

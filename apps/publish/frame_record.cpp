@@ -115,7 +115,7 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
   head.units_per_metre = frame.units_per_metre;
   if (frame.held) head.flags |= NENDO_PUBLISH_HELD;
   head.status = status_number(frame.status);
-  head.mode = frame.settings.mode == flow::Mode::type1 ? 1 : 2;
+  head.mode = static_cast<std::uint8_t>(1 + static_cast<int>(frame.settings.mode));
   used_ = head_words;
   for (const auto& field : frame.fields.fields()) {
     const std::size_t end = put_field(field, used_);

@@ -1,6 +1,7 @@
 #include "render/scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nendo::render {
@@ -21,6 +22,10 @@ const Material bone{{0.80F, 0.78F, 0.70F}, 0.10F};
 const Material arrow{{0.95F, 0.52F, 0.02F}, 0.20F};
 const Material reach{{0.80F, 0.40F, 0.05F}, 0.0F, 0.0F, 0.30F};
 const Material ground{{0.74F, 0.74F, 0.74F}, 0.0F, 1.0F, 1.0F, 0.1F, 1.0F};
+
+const std::array contact_colours{Material{{0.95F, 0.80F, 0.10F}, 0.10F},
+                                 Material{{0.95F, 0.40F, 0.02F}, 0.10F},
+                                 Material{{0.75F, 0.04F, 0.02F}, 0.10F}};
 
 constexpr float arrow_width_m = 0.007F;
 constexpr double ground_of_size = 2.6; // half its side, of the model's longest
@@ -85,6 +90,7 @@ void SceneBuilder::build_beside(const SceneFrame& scene_frame, const SceneParts&
   for (std::size_t slot = 0; slot < scene_frame.hands.size(); ++slot)
     if (scene_frame.hands[slot])
       add_hand(*scene_frame.hands[slot], slot, scene_frame, parts, scene);
+  if (parts.contacts) add_contacts(scene_frame, scene);
   if (parts.ground) add_ground(scene);
 }
 
@@ -110,6 +116,23 @@ void SceneBuilder::add_hand(const SceneHand& hand, std::size_t slot, const Scene
     add_sphere(scene.veils.back(), start, static_cast<float>(std::min(radius, 10.0)), 40);
   }
   if (!arrows.is_empty()) scene.solids.push_back(std::move(arrows));
+}
+
+// The harder a hand presses, the larger and the redder.
+void SceneBuilder::add_contacts(const SceneFrame& scene_frame, Scene& scene) const {
+  const auto longest = static_cast<float>(std::clamp(size_m_.maxCoeff(), 0.05, 0.3));
+  std::array<Surface, contact_colours.size()> surfaces;
+  for (const SceneContact& contact : scene_frame.contacts) {
+    const auto colour =
+        std::min(static_cast<std::size_t>(contact.strength * contact_colours.size()),
+                 contact_colours.size() - 1);
+    add_sphere(surfaces[colour], (contact.place_m - origin_m_).cast<float>(),
+               longest * (0.010F + 0.015F * contact.strength), 10);
+  }
+  for (std::size_t colour = 0; colour < surfaces.size(); ++colour) {
+    surfaces[colour].material = contact_colours[colour];
+    if (!surfaces[colour].is_empty()) scene.solids.push_back(std::move(surfaces[colour]));
+  }
 }
 
 // In cells, for what light reaches it is known at its vertices.

@@ -14,10 +14,11 @@
 namespace nendo::render {
 
 struct SceneParts {
-  bool hands = true;   ///< the skin
-  bool bones = false;  ///< visible through the skin
-  bool vectors = true; ///< control vectors, as arrows
-  bool radii = true;   ///< the radius of each fingertip's support
+  bool hands = true;     ///< the skin
+  bool bones = false;    ///< visible through the skin
+  bool vectors = true;   ///< control vectors, as arrows
+  bool radii = true;     ///< the radius of each fingertip's support
+  bool contacts = false; ///< where hands touch clay, and how hard
   bool ground = true;
 };
 
@@ -57,6 +58,7 @@ public:
 private:
   void add_hand(const SceneHand& hand, std::size_t slot, const SceneFrame& scene_frame,
                 const SceneParts& parts, Scene& scene) const;
+  void add_contacts(const SceneFrame& scene_frame, Scene& scene) const;
   void add_ground(Scene& scene) const;
 
   double units_per_metre_;

@@ -10,7 +10,11 @@ void HoldTracker::follow(const flow::Frame& frame) noexcept {
 
 void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& scene_frame) {
   const bool is_puppet = frame.function_count > 0; // which fingertips do not touch
-  scene_frame.held = frame.held && !is_puppet;
+  scene_frame.held = frame.held && !is_puppet && !frame.clay.is_clay; // whose hands hold nothing
+  scene_frame.contacts.clear();
+  for (const deform::ClayContact& contact : frame.contacts.all())
+    scene_frame.contacts.push_back(
+        {contact.place / frame.units_per_metre, flow::strength_of(contact)});
   for (std::size_t slot = 0; slot < scene_frame.hands.size(); ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];
     scene_frame.hands[slot].reset();

@@ -20,6 +20,12 @@ struct SceneHand {
   bool silent = false; ///< its glove has stopped sending
 };
 
+/// A place at which a hand touches clay.
+struct SceneContact {
+  Eigen::Vector3d place_m = Eigen::Vector3d::Zero(); ///< on the stage
+  float strength = 0.0F;                             ///< 0 to 1: how hard
+};
+
 struct SceneFrame {
   double time_s = 0.0;
   deform::Points vertices;                       ///< 3 by #vertices, model units
@@ -28,6 +34,7 @@ struct SceneFrame {
   bool held = false; ///< fingertips hold the model; otherwise there are no control vectors
   /// The radius of each fingertip's support, on the stage; 0 means not shown.
   std::array<double, 5> radius_m{};
+  std::vector<SceneContact> contacts{};
 };
 
 /// Remembers where the fingertips took hold. The places are exact if the tracker sees every frame.

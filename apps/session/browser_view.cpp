@@ -72,6 +72,7 @@ void BrowserView::update(const RunStatus& status, flow::CommandRing& commands) {
   server_->set_settings(status.frame.settings, status.recording);
   server_->set_steps(status.frame.steps);
   server_->set_puppet(status.frame.puppet, status.puppet.get());
+  server_->set_clay(status.frame);
   follow_weights();
   while (auto command = server_->next_command()) {
     if (auto* const change = std::get_if<flow::ChangeSettings>(&*command))

@@ -33,6 +33,7 @@ public:
     const PlacedLoop& placed = start.placed;
     const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
     window_->begin(placed.loop->layout(), builder, placed.loop->settings());
+    window_->show_contacts(options_.contact);
     window_->editor().begin(start.model, model_name_, placed.loop->puppet(0));
     if (edits_) window_->editor().turn(true);
   }

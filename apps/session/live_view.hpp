@@ -11,6 +11,7 @@ namespace nendo::session {
 
 struct ViewOptions {
   bool window = false;
+  bool contact = false;     ///< shows at first where hands touch clay
   std::string screenshot;   ///< where the last picture goes, .png; empty: nowhere
   std::uint32_t frames = 0; ///< pictures after which the run ends; 0: as the person likes
 };

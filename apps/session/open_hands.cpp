@@ -58,12 +58,11 @@ open_named(const RunOptions& options, const deform::Mesh& model, EventCount* eve
   for (const auto& [spec, side] :
        {std::pair{&options.left, Side::left}, {&options.right, Side::right}}) {
     if (spec->empty()) continue;
-    std::optional<Eigen::Isometry3d> T_stage_wrist;
-    const auto context =
-        gloves::touching_context(model, side, options.length.size({}), T_stage_wrist);
-    auto hand = gloves::open_hand(*spec, side, event_count, context);
+    gloves::PlannedHand planned{model, options.model_size_m, side, options.length.size({})};
+    auto hand = gloves::open_hand(*spec, side, event_count, gloves::planned_context(planned));
     if (!hand) return hand.error();
-    hand->T_stage_wrist = T_stage_wrist;
+    hand->T_stage_wrist = planned.T_stage_wrist;
+    hand->wrist_path = std::move(planned.wrist_path);
     hands.push_back(*std::move(hand));
   }
   return hands;

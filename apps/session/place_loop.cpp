@@ -16,6 +16,8 @@ namespace {
 // the supports of its neighbours overlap enough that no ridge is left between two fingers that
 // press together.
 constexpr double default_radius_fraction = 0.2;
+// Of clay, so that a ball of 7.5 cm gives way for 2.4 cm about a hand.
+constexpr double clay_radius_fraction = 0.32;
 // The length of a piece of type 2, as a fraction of the radius. It is far below the step at which a
 // single finger would fold the surface (0.47).
 constexpr double piece_fraction = 0.05;
@@ -27,15 +29,29 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
   for (const auto& hand : hands) {
     inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
     inputs.back().filter = options.filter;
+    if (!options.over) inputs.back().wrist_path = hand.wrist_path; // a take's wrists are its own
     if (options.live)
       inputs.back().layer.emplace().joints = (*options.live)[flow::Placement::index_of(hand.side)];
   }
   return inputs;
 }
 
+/// Hands that press clay begin beside it, from where bent fingers or a moved hand reach it.
+void stand_beside(const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
+                  flow::Placement& placement) {
+  constexpr double clear_m = 0.010;
+  for (const auto& hand : inputs) {
+    const Side glove = hand.first.side;
+    Eigen::Isometry3d& wrist = placement.T_stage_wrist[flow::Placement::index_of(hand.side)];
+    wrist = flow::beside(model, placement.units_per_metre, hand.skeleton(glove),
+                         hand::joint_angles(hand.first, hand.wearer.of(glove).calibration), wrist,
+                         clear_m);
+  }
+}
+
 flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
                               const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
-                              bool is_puppet) {
+                              const RunOptions& options) {
   std::array<std::optional<flow::Fingertips>, 2> tips;
   for (const auto& hand : inputs) {
     const Side glove = hand.first.side;
@@ -44,7 +60,10 @@ flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
         hand.skeleton(glove).pose(angles, Eigen::Isometry3d::Identity()).fingertip_positions();
   }
   flow::Placement placement =
-      is_puppet ? flow::place_player(model) : flow::place_hands(model, tips);
+      options.puppet_file.empty() && !options.puppet
+          ? flow::place_hands(model, tips, {.model_size_m = options.model_size_m})
+          : flow::place_player(model);
+  if (options.loop.sculptor.mode == flow::Mode::clay) stand_beside(inputs, model, placement);
   for (const auto& hand : open) {
     if (hand.T_stage_wrist)
       placement.T_stage_wrist[flow::Placement::index_of(hand.side)] = *hand.T_stage_wrist;
@@ -63,9 +82,11 @@ Error bad_radius(const std::string& text, const std::string& why) {
 }
 
 Result<deform::Supports> supports_for(const std::optional<deform::Supports>& of_two,
-                                      std::size_t hands, double model_size) {
+                                      std::size_t hands, flow::Mode mode, double model_size) {
   if (!of_two)
-    return deform::one_radius(default_radius_fraction * (model_size > 0.0 ? model_size : 1.0));
+    return deform::one_radius(
+        (mode == flow::Mode::clay ? clay_radius_fraction : default_radius_fraction) *
+        (model_size > 0.0 ? model_size : 1.0));
   auto supports = flow::supports_of_hands(*of_two, static_cast<int>(hands));
   if (!supports) return bad_radius("", "is for two hands, and there is one");
   return *std::move(supports);
@@ -134,7 +155,7 @@ Result<PlacedLoop> place_over(const RunOptions& options, const std::vector<glove
                               const deform::Mesh& model) {
   const recording::Setup& take = options.over->take.setup;
   auto inputs = inputs_of(hands, options);
-  const auto joining = placement_for(hands, inputs, model, options.puppet.has_value());
+  const auto joining = placement_for(hands, inputs, model, options);
   if (const auto played = play_over(options, inputs); !played) return played.error();
   PlacedSetup setup{std::move(inputs), take.loop->placement, options.loop};
   const Eigen::Index points = setup.options.rig ? setup.options.rig->starts().cols() : 0;
@@ -181,7 +202,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
   flow::LoopOptions loop_options = options.loop;
   auto& sculptor = loop_options.sculptor;
   auto inputs = inputs_of(hands, options);
-  auto supports = supports_for(options.supports, inputs.size(), size);
+  auto supports = supports_for(options.supports, inputs.size(), sculptor.mode, size);
   if (!supports) return supports.error();
   sculptor.piece_length = piece_fraction * deform::least_radius(*supports);
   sculptor.deformer.supports = *std::move(supports);
@@ -194,7 +215,7 @@ Result<PlacedLoop> place_loop(const RunOptions& options, const std::vector<glove
           ? set_rig(options, model, loop_options)
           : set_masks(options, model, 5 * static_cast<Eigen::Index>(inputs.size()), loop_options);
   if (!fine) return fine.error();
-  const auto placement = placement_for(hands, inputs, model, !options.puppet_file.empty());
+  const auto placement = placement_for(hands, inputs, model, options);
   constexpr Eigen::Index points_to_add = 64;
   PlacedSetup setup{inputs, placement, loop_options,
                     options.out_puppet.file.empty() ? 0 : points_to_add};

@@ -28,7 +28,7 @@ RunKeys::RunKeys(std::chrono::milliseconds timeout, bool keeps_last_minute) : ti
       "keys: g lets go, takes hold again; a takes hold anew; c keeps the shape so far; u undoes, r "
       "redoes, x "
       "resets; " +
-      std::string("[ and ] make the radii smaller, larger; m the other mode, n the next kernel, ") +
+      std::string("[ and ] make the radii smaller, larger; m the next mode, n the next kernel, ") +
       "w the next brush of type 2, - and = make it weaker, stronger; i never folds, or may; "
       "semicolon more clay, from all to air; j the whole hand holds, or its tips; e "
       "makes the model finer; t records; . marks the moment; o punches a layer in or out; s saves; "
@@ -60,14 +60,14 @@ void RunKeys::update(const RunStatus& status, flow::CommandRing& commands) {
   if (*key == 's') commands.try_push(flow::SaveShape{});
   if (*key == 'k') commands.try_push(flow::SaveRecording{});
   if (*key == 'q') commands.try_push(flow::EndRun{});
-  change(*key, status.frame.settings, commands);
+  change(*key, status.frame, commands);
 }
 
-void RunKeys::change(char key, const flow::LoopSettings& in_force, flow::CommandRing& commands) {
-  wanted_.follow(in_force);
+void RunKeys::change(char key, const flow::Frame& frame, flow::CommandRing& commands) {
+  wanted_.follow(frame.settings);
   if (key == '[') wanted_.reduce_radii();
   if (key == ']') wanted_.enlarge_radii();
-  if (key == 'm') wanted_.other_mode();
+  if (key == 'm') wanted_.next_mode(frame.function_count > 0);
   if (key == 'n') wanted_.next_kernel();
   if (key == 'i') wanted_.toggle_folding();
   if (key == 'w') wanted_.next_brush();

@@ -24,7 +24,7 @@ public:
 private:
   static void clutch(Side side, const flow::Frame& frame, flow::CommandRing& commands);
   void step(flow::Request request, std::uint64_t steps, flow::CommandRing& commands);
-  void change(char key, const flow::LoopSettings& in_force, flow::CommandRing& commands);
+  void change(char key, const flow::Frame& frame, flow::CommandRing& commands);
 
   cli::Keys keys_;
   std::chrono::milliseconds timeout_;

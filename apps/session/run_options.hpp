@@ -14,6 +14,10 @@
 
 namespace nendo::session {
 
+/// The longest side of clay on the stage: hands hold a statue at the fingertips, and clay in the
+/// palms.
+inline constexpr double clay_size_m = 0.075;
+
 /// Where a puppet that was edited goes.
 struct PuppetPlace {
   std::string file;             ///< .toml; empty: nobody can edit one
@@ -36,6 +40,7 @@ struct RunOptions {
   /// The supports of both hands' fingertips in model units (flow::parse_finger_supports). nullopt
   /// means one radius for all, computed from the model's size.
   std::optional<deform::Supports> supports{};
+  double model_size_m = 0.8; ///< the model's longest side, on the stage
   bool json = false;
   bool verbose = false; ///< the summary has what matters to those who look into a deformation, too
   std::optional<double> undo_memory_mb{}; ///< nothing: half of what there is

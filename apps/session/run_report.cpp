@@ -34,6 +34,7 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
   }
   if (!frame.held) line += "  let go";
   if (frame.chain.held_pairs > 0) line += "  fingertips held apart";
+  if (frame.clay.touching > 0) line += fmt::format("  touching at {} places", frame.clay.touching);
   return line;
 }
 
@@ -157,6 +158,23 @@ void print_injective(const RunOptions& options, const flow::LoopStats& stats) {
                                       thousands(stats.held_apart_ticks)));
 }
 
+void print_clay(const flow::LoopStats& stats, double units_per_metre) {
+  const flow::ClayState& clay = stats.clay;
+  if (!clay.is_clay) return;
+  print_row("clay",
+            fmt::format("touched in {} ticks; at most {:.3f} mm deep in a hand, before it was "
+                        "set right",
+                        thousands(stats.touching_ticks), stats.most_penetration_mm));
+  if (!(clay.first_volume > 0.0)) {
+    print_row("volume", "not kept: the surface is not closed");
+    return;
+  }
+  const double cm3 = 1e6 / (units_per_metre * units_per_metre * units_per_metre);
+  print_row("volume",
+            fmt::format("{:.2f} cm3, at first {:.2f} cm3 ({:+.4f} %)", cm3 * clay.volume,
+                        cm3 * clay.first_volume, 100.0 * (clay.volume / clay.first_volume - 1.0)));
+}
+
 void print_recordings(const std::vector<RecordingOutcome>& recordings) {
   for (const auto& [file, recorded] : recordings) {
     const std::string name = file.empty() ? "" : file + ", ";
@@ -213,6 +231,7 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   print_row("", "from a sample's last byte to the finished mesh");
   print_filter(options.filter, stats);
   print_injective(options, stats);
+  print_clay(stats, outcome.units_per_metre);
   print_row("vertices", fmt::format("{} a second ({} in the model)",
                                     thousands(static_cast<double>(outcome.vertices) *
                                               static_cast<double>(stats.ticks) / outcome.elapsed_s),

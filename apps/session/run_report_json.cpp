@@ -64,6 +64,16 @@ ordered_json injective_json(const RunOptions& options, const flow::LoopStats& st
           {"held_apart_ticks", stats.held_apart_ticks}};
 }
 
+ordered_json clay_json(const flow::LoopStats& stats, double units_per_metre) {
+  const flow::ClayState& clay = stats.clay;
+  if (!clay.is_clay) return nullptr;
+  const double cm3 = 1e6 / (units_per_metre * units_per_metre * units_per_metre);
+  return {{"touching_ticks", stats.touching_ticks},
+          {"most_penetration_mm", stats.most_penetration_mm},
+          {"first_volume_cm3", cm3 * clay.first_volume},
+          {"volume_cm3", cm3 * clay.volume}};
+}
+
 ordered_json recordings_json(const std::vector<RecordingOutcome>& recordings) {
   auto lines = ordered_json::array();
   for (const auto& [file, recorded] : recordings) {
@@ -106,6 +116,10 @@ void print_progress_json(const flow::Frame& frame, double elapsed_s) {
   ordered_json line{{"event", "progress"},      {"elapsed_s", elapsed_s},
                     {"ticks", frame.ticks_run}, {"missed", frame.missed},
                     {"held", frame.held},       {"pairs_held_apart", frame.chain.held_pairs}};
+  if (frame.clay.is_clay)
+    line["clay"] = {{"touching", frame.clay.touching},
+                    {"penetration_mm", frame.clay.penetration_mm},
+                    {"volume_part", frame.clay.volume_part()}};
   for (const Side side : {Side::left, Side::right}) {
     const auto& hand = frame.hands[flow::Placement::index_of(side)];
     if (!hand.present) continue;
@@ -160,6 +174,7 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
       of_hand["ranges"] = ranges_json(stats.ranges[slot], hand.glove->info().sensors);
   }
   line["injective"] = injective_json(options, stats);
+  line["clay"] = clay_json(stats, outcome.units_per_metre);
   line["filter"] = filter_json(options.filter, stats);
   line["end_to_end_ms"] = percentiles(stats.end_to_end);
   line["wake_latency_ms"] = percentiles(stats.wake_latency);

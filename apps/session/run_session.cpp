@@ -11,7 +11,7 @@
 #include <nendo/deform/undo_memory.hpp>
 
 #include "cli/cli.hpp"
-#include "gloves/glove_light.hpp"
+#include "gloves/glove_feedback.hpp"
 #include "session/loop_thread.hpp"
 #include "session/mask_edits.hpp"
 #include "session/run_keys.hpp"
@@ -48,8 +48,7 @@ public:
         recorder_(options_, placed_, hands_, model_), models_(placed_, participants_.sinks),
         saving_(options_, recorder_) {
     for (const auto& hand : hands_)
-      if (options_.loop.switch_action != flow::SwitchAction::none)
-        lights_.emplace_back(*hand.glove);
+      feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
     options_.loop.commands = &loop_commands_;
     const std::size_t most = most_undo_bytes(options_);
     const std::size_t at_once = std::min(undo_bytes_for(model_), most);
@@ -72,8 +71,8 @@ public:
     observers_.insert(observers_.end(), participants_.observers.begin(),
                       participants_.observers.end());
     run_loop(picture);
-    for (auto& light : lights_)
-      light.put_out();
+    for (auto& [side, feedback] : feedback_)
+      feedback.put_out();
     for (const auto& hand : hands_)
       hand.glove->stop();
     if (const auto written = write_shape(options_.out, model_); !written) return written.error();
@@ -86,6 +85,7 @@ public:
                        options_.out,           std::move(grants_),
                        recorder_.outcomes()};
     outcome.sculptor = sculptor;
+    outcome.units_per_metre = placed_.setup.placement.units_per_metre;
     return outcome;
   }
 
@@ -138,8 +138,9 @@ private:
     const bool awaits = frame.awaited.has_value(); // by an undo or a redo
     if (fresh && awaits && !settings_) tell(models_.go_to(*frame.awaited));
     if (settings_ && !loop.is_changing() && !loop.change_settings(*std::exchange(settings_, {})))
-      report("settings that nothing can be done with; the run goes on as it was (a puppet whose "
-             "distances go along the surface cannot keep the volume in type 1)");
+      report("settings that nothing can be done with; the run goes on as it was (masks, symmetry "
+             "and puppets do not act on clay, and a puppet whose distances go along the surface "
+             "cannot keep the volume in type 1)");
     if (!awaits) edit_masks();
     if (puppet_ && !awaits && !loop.is_changing() && !recorder_.is_changing() &&
         !models_.is_handing_over())
@@ -338,6 +339,16 @@ private:
     return false;
   }
 
+  // The LED shows whether the hands hold the model. What they touch of clay is felt.
+  void give_feedback(const flow::Frame& frame) noexcept {
+    const bool both = frame.hands[0].present && frame.hands[1].present;
+    for (auto& [side, feedback] : feedback_) {
+      if (options_.loop.switch_action != flow::SwitchAction::none) feedback.show(frame.held);
+      feedback.feel(
+          flow::touch_of(frame.contacts.all(), both ? flow::Placement::index_of(side) : 0));
+    }
+  }
+
   void watch(const LoopThread& thread, RunPicture& picture) {
     auto& frames = placed_.loop->frames();
     HostTime next_progress = thread.start;
@@ -347,8 +358,7 @@ private:
       const bool fresh = frames.update();
       if (fresh) {
         is_news = true;
-        for (auto& light : lights_) // the LED shows whether the hands hold the model
-          light.show(frames.front().held);
+        give_feedback(frames.front());
         picture.add(frames.front());
       }
       update_observers(fresh);
@@ -386,7 +396,11 @@ private:
   RunModels models_;
   std::uint32_t shown_model_ = 0; ///< of the latest frame
   RunSaving saving_;
-  std::vector<gloves::GloveLight> lights_; ///< of all gloves, if their switches do something
+  struct Felt {
+    Side side;
+    gloves::GloveFeedback feedback;
+  };
+  std::vector<Felt> feedback_; ///< of all gloves
   GloveStatuses gloves_;
   double elapsed_s_ = 0.0;
   std::uint64_t marks_ = 0;

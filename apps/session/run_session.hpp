@@ -24,6 +24,7 @@ struct RunOutcome {
   std::vector<PublishedTo> published{}; ///< added by whoever owns the sinks
   /// After all changes of settings.
   flow::SculptorOptions sculptor{};
+  double units_per_metre = 1.0; ///< from the stage to the model
 };
 
 /// Returns how many deadlines of the grid a run lasts. The number is unlimited if only the clock

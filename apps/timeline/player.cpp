@@ -24,10 +24,23 @@ flow::ShapingOptions shaping_options(const Timeline& timeline,
   return options;
 }
 
-flow::SculptorSetup first_setup(const Timeline& timeline) {
+/// The bodies of all hands, left hand first.
+std::shared_ptr<flow::HandBodies> bodies_of(const Timeline& timeline, const deform::Mesh& model) {
+  std::vector<hand::HandSkeleton> hands;
+  for (const Side side : {Side::left, Side::right})
+    for (const auto& track : timeline.hands)
+      if (track.side == side) hands.push_back(track.skeleton());
+  return std::make_shared<flow::HandBodies>(hands, timeline.units_per_metre, model);
+}
+
+flow::SculptorSetup first_setup(const Timeline& timeline,
+                                std::shared_ptr<const flow::HandBodies> bodies) {
   flow::SculptorSetup setup{timeline.sculptor,
                             flow::settings_of(timeline.sculptor, {}, timeline.units_per_metre)};
-  if (timeline.rig) setup.options.hold = flow::Hold::fingertips; // its points hold
+  if (timeline.rig)
+    setup.options.hold = flow::Hold::fingertips; // its points hold
+  else
+    setup.options.bodies = std::move(bodies); // if masks are in the way, only for later
   return setup;
 }
 
@@ -96,7 +109,8 @@ Result<std::unique_ptr<Player>> Player::make(Timeline timeline, const deform::Me
 
 Player::Player(Timeline timeline, const deform::Mesh& model)
     : timeline_(std::move(timeline)), tips_(deform::Points::Zero(3, points_at_first(timeline_))),
-      first_(first_setup(timeline_)), now_(first_), versions_{first_version(model)},
+      bodies_(bodies_of(timeline_, model)), first_(first_setup(timeline_, bodies_)), now_(first_),
+      versions_{first_version(model)},
       shaping_(*versions_.front(), tips_.cols(), shaping_options(timeline_, first_)),
       frames_(static_cast<std::uint64_t>(timeline_.duration_s * timeline_.rate_hz + a_hair) + 1) {
   for (const auto& track : timeline_.hands)
@@ -133,7 +147,10 @@ void Player::pose_hands(double time_s) {
     shown.pose = hand.skeleton.pose(key.angles, shown.T_stage_wrist);
     shown.present = true;
     shown.samples = made_ + 1;
-    if (puppet_) puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
+    if (puppet_)
+      puppet_->pose(hand.side, {shown.angles, shown.pose, shown.T_stage_wrist});
+    else
+      bodies_->follow(bodies_->count() == 2 ? hand.slot : 0, shown.pose);
   }
   if (puppet_) return;
   const puppet::Rig* const masks = timeline_.masks_numbered(shaping_.puppet());
@@ -207,6 +224,9 @@ flow::SculptorSetup Player::first_with(std::uint32_t masks) const {
 /// As the loop does at the end of a tick. Returns false, and goes on as it was, if nothing can be
 /// done with the settings.
 bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
+  const puppet::Rig* const rig =
+      puppet_ ? timeline_.rig.get() : timeline_.masks_numbered(awaited.puppet);
+  if (awaited.settings.mode == flow::Mode::clay && !flow::can_press(rig)) return false;
   flow::ModelVersion& model = *versions_[awaited.model];
   const flow::LoopSettings& before = shaping_.settings();
   const int hands = puppet_ ? 0 : static_cast<int>(hands_.size());
@@ -219,8 +239,6 @@ bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   const bool same = &model == &shaping_.model() && awaited.settings.kernel == before.kernel &&
                     awaited.settings.radius_m == before.radius_m;
   if (!same && !set_surface(wanted.options, model)) return false;
-  const puppet::Rig* const rig =
-      puppet_ ? timeline_.rig.get() : timeline_.masks_numbered(awaited.puppet);
   if (other_masks || &model != &shaping_.model())
     flow::set_masks(rig, model.mesh, model.layout(), wanted.options);
   now_ = std::move(wanted);

@@ -70,8 +70,9 @@ private:
   Timeline timeline_;
   std::vector<Hand> hands_;
   std::optional<PuppetHands> puppet_;
-  deform::Points tips_;             ///< the fingertips, or the points of the puppet
-  flow::SculptorSetup first_, now_; ///< of the timeline, and in force
+  deform::Points tips_;                      ///< the fingertips, or the points of the puppet
+  std::shared_ptr<flow::HandBodies> bodies_; ///< that press clay
+  flow::SculptorSetup first_, now_;          ///< of the timeline, and in force
   std::vector<std::shared_ptr<flow::ModelVersion>> versions_;
   flow::Shaping shaping_;
   flow::Frame frame_;

@@ -52,6 +52,9 @@ public:
   /// is none. fresh: the frame differs from that of the previous call.
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
+  /// Shows where hands touch clay, or not.
+  void show_contacts(bool yes) noexcept;
+
   /// Edits the puppet, if begin() has been called of it, too.
   PuppetEditor& editor() noexcept { return *editor_; }
 

@@ -128,9 +128,10 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
 
 void LiveWindow::Panel::parts(SceneWindow& window) {
   render::SceneParts& shown = window.parts();
-  const std::array boxes{std::pair{"hands", &shown.hands}, std::pair{"bones", &shown.bones},
-                         std::pair{"vectors", &shown.vectors}, std::pair{"radii", &shown.radii},
-                         std::pair{"facets", &window.facets()}};
+  const std::array boxes{
+      std::pair{"hands", &shown.hands},       std::pair{"bones", &shown.bones},
+      std::pair{"vectors", &shown.vectors},   std::pair{"radii", &shown.radii},
+      std::pair{"contacts", &shown.contacts}, std::pair{"facets", &window.facets()}};
   constexpr std::size_t a_line = 3;
   const float width = ImGui::GetContentRegionAvail().x / a_line;
   for (std::size_t at = 0; at < boxes.size(); ++at) {
@@ -175,6 +176,8 @@ void LiveWindow::Panel::settings() {
   flow::LoopSettings& chosen = wanted.now;
   int mode = static_cast<int>(chosen.mode);
   ImGui::RadioButton("type 1: pull", &mode, 0);
+  ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.6F);
+  ImGui::RadioButton("clay: press", &mode, 2);
   ImGui::RadioButton("type 2: strokes", &mode, 1);
   chosen.mode = static_cast<flow::Mode>(mode);
   ImGui::PushItemWidth(-label_width);
@@ -246,9 +249,20 @@ void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
   ImGui::EndChild();
 }
 
+void LiveWindow::Panel::clay(const flow::Frame& frame) {
+  const flow::ClayState& clay = frame.clay;
+  ImGui::Text("touches at %u places, %.3f mm deep", clay.touching, clay.penetration_mm);
+  if (!(clay.first_volume > 0.0)) {
+    ImGui::TextWrapped("volume not kept: no closed surface");
+    return;
+  }
+  const double units = frame.units_per_metre;
+  const double cm3 = 1e6 / (units * units * units);
+  ImGui::Text("volume %.1f cm3, at first %.1f", cm3 * clay.volume, cm3 * clay.first_volume);
+}
+
 void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) const {
-  ImGui::Text("%g Hz wanted, type %d", gauges.rate_hz,
-              frame.settings.mode == flow::Mode::type1 ? 1 : 2);
+  ImGui::Text("%g Hz wanted, %s", gauges.rate_hz, name_of(frame.settings.mode).data());
   ImGui::TextWrapped("%llu ticks, %llu missed", static_cast<unsigned long long>(frame.ticks_run),
                      static_cast<unsigned long long>(frame.missed));
   ImGui::TextWrapped("%llu commits, %llu undone", static_cast<unsigned long long>(frame.commits),
@@ -308,6 +322,8 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
     if (ImGui::CollapsingHeader("History", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->history(frame, commands);
     if (!edits) puppet();
+    if (frame.clay.is_clay && ImGui::CollapsingHeader("Clay", ImGuiTreeNodeFlags_DefaultOpen))
+      Panel::clay(frame);
     if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
       panel_->timing(frame, gauges);
     if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))

@@ -61,6 +61,7 @@ struct LiveWindow::Panel {
   /// Edits the puppet.
   static void puppet(PuppetEditor& editor, Commands& commands);
   static void puppet_keys(PuppetEditor& editor, Commands& commands);
+  static void clay(const flow::Frame& frame);
   void timing(const flow::Frame& frame, const Gauges& gauges) const;
   void hands(const flow::Frame& frame, const Gauges& gauges) const;
   /// What keys do. It also draws their list.
@@ -72,7 +73,7 @@ private:
   void step_keys(const flow::Frame& frame, Commands& commands);
   void single_keys(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
                    Commands& commands);
-  void settings_keys();
+  void settings_keys(const flow::Frame& frame);
 };
 
 } // namespace nendo::viewer

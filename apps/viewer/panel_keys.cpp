@@ -30,7 +30,7 @@ constexpr std::array key_table{
     KeyLine{"o", "overdub: the gloves' layer comes in, or goes out (--over, --layer)"},
     KeyLine{"k", "keep the recording of what was just done (--keep-last)"},
     KeyLine{"s", "save the model as it is now"},
-    KeyLine{"m, n", "the other mode, the next kernel"},
+    KeyLine{"m, n", "the next mode, the next kernel"},
     KeyLine{"[, ]", "smaller radii, larger ones"},
     KeyLine{"w", "the next brush of type 2"},
     KeyLine{"-, =", "a weaker brush, a stronger one; below 0 the opposite"},
@@ -45,8 +45,8 @@ constexpr std::array key_table{
 
 } // namespace
 
-void LiveWindow::Panel::settings_keys() {
-  if (pressed(GLFW_KEY_M)) wanted.other_mode();
+void LiveWindow::Panel::settings_keys(const flow::Frame& frame) {
+  if (pressed(GLFW_KEY_M)) wanted.next_mode(frame.function_count > 0);
   if (pressed(GLFW_KEY_N)) wanted.next_kernel();
   if (pressed(GLFW_KEY_LEFT_BRACKET, true)) wanted.reduce_radii();
   if (pressed(GLFW_KEY_RIGHT_BRACKET, true)) wanted.enlarge_radii();
@@ -121,7 +121,7 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
   if (pressed(GLFW_KEY_E)) commands.emplace_back(flow::Subdivide{});
   if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});
-  settings_keys();
+  settings_keys(frame);
   if (pressed(GLFW_KEY_Q)) commands.emplace_back(flow::EndRun{});
   if (pressed(GLFW_KEY_SLASH)) keys_shown = !keys_shown;
   if (pressed(GLFW_KEY_HOME)) window.frame_all();

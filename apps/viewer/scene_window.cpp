@@ -218,6 +218,7 @@ void SceneWindow::follow_part_keys() {
                                   {GLFW_KEY_B, &parts_.bones},
                                   {GLFW_KEY_V, &parts_.vectors},
                                   {GLFW_KEY_D, &parts_.radii},
+                                  {GLFW_KEY_0, &parts_.contacts},
                                   {GLFW_KEY_F, &facets_}})
     if (pressed(key)) *part = !*part;
 }

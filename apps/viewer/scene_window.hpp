@@ -53,7 +53,7 @@ public:
   void move_camera();
   /// Moves the camera, without turning it, so that it has all of the model and the hands.
   void frame_all();
-  /// Lets the keys h, b, v, d and f show and hide parts of the scene, unless a text is being
+  /// Lets the keys h, b, v, d, 0 and f show and hide parts of the scene, unless a text is being
   /// entered or a question is open.
   void follow_part_keys();
   /// Lets the keys 1, 3 and 7 turn the camera to the front, the right and the top, and with ctrl to

@@ -20,7 +20,7 @@ SharedBytes shared_bytes(std::string_view text);
 
 /// The messages that each client gets when it comes and whenever they change: the settings, the
 /// steps.
-enum Fact : std::size_t { settings_fact, history_fact, puppet_fact, fact_count };
+enum Fact : std::size_t { settings_fact, history_fact, puppet_fact, clay_fact, fact_count };
 using Facts = std::array<SharedBytes, fact_count>;
 
 class Connection {

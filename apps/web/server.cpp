@@ -64,6 +64,11 @@ void Server::set_settings(const flow::LoopSettings& settings, bool recorded) {
 void Server::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
   work_->set_puppet(number, rig);
 }
+
+void Server::set_clay(const flow::Frame& frame) {
+  work_->set_clay(frame);
+}
+
 void Server::set_steps(const flow::StepList& steps) {
   work_->set_steps(steps);
 }

@@ -112,6 +112,20 @@ void Server::Work::set_puppet(std::uint32_t number, const puppet::Rig* rig) {
   wake();
 }
 
+void Server::Work::set_clay(const flow::Frame& frame) {
+  constexpr milliseconds period(33);
+  {
+    const std::scoped_lock lock(mutex_);
+    const HostTime now = HostClock::now();
+    if ((!facts_[clay_fact] && !frame.clay.is_clay) || now < next_clay_) return;
+    auto message = clay_message(frame);
+    if (facts_[clay_fact] && message == *facts_[clay_fact]) return;
+    next_clay_ = now + period;
+    facts_[clay_fact] = std::make_shared<const std::vector<std::byte>>(std::move(message));
+  }
+  wake();
+}
+
 std::size_t Server::Work::clients() const noexcept {
   return static_cast<std::size_t>(
       std::count_if(connections_.begin(), connections_.end(), [](const Connection& connection) {

@@ -30,6 +30,7 @@ public:
   void set_settings(const flow::LoopSettings& settings, bool recorded);
   void set_steps(const flow::StepList& steps);
   void set_puppet(std::uint32_t number, const puppet::Rig* rig);
+  void set_clay(const flow::Frame& frame);
 
   const Endpoint endpoint;
   const std::string token;
@@ -95,7 +96,8 @@ private:
   flow::LoopSettings settings_;
   std::uint64_t steps_version_ = 0;
   std::uint32_t puppet_ = 0;
-  Facts facts_; ///< as messages; null before they are known
+  HostTime next_clay_{}; ///< not before that
+  Facts facts_;          ///< as messages; null before they are known
   bool recorded_ = false;
   std::vector<Weights> weights_; ///< the newest last
   std::uint64_t weights_in_use_ = 0;

@@ -149,7 +149,7 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
 
 SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) noexcept {
   SettingsMessage message;
-  message.mode = settings.mode == flow::Mode::type1 ? 1 : 2;
+  message.mode = static_cast<std::uint8_t>(1 + static_cast<int>(settings.mode));
   message.kernel = static_cast<std::uint8_t>(settings.kernel);
   const bool filtered = settings.filter.kind == hand::FilterKind::one_euro;
   message.flags = static_cast<std::uint8_t>((settings.injective ? 1U : 0U) | (filtered ? 2U : 0U) |
@@ -198,6 +198,24 @@ std::vector<std::byte> message_of(const flow::StepList& steps) {
   for (const flow::Step& step : steps.all()) {
     out.put(static_cast<std::uint32_t>(step.kind));
     out.put(step.at_s);
+  }
+  return message;
+}
+
+std::vector<std::byte> clay_message(const flow::Frame& frame) {
+  constexpr std::size_t contact_bytes = 16;
+  std::vector<std::byte> message(sizeof(ClayMessage) + contact_bytes * frame.contacts.count);
+  WireWriter out(message);
+  ClayMessage head;
+  head.contacts = static_cast<std::uint16_t>(frame.contacts.count);
+  head.penetration_mm = as_float(frame.clay.penetration_mm);
+  head.volume = frame.clay.volume;
+  head.first_volume = frame.clay.first_volume;
+  out.put(head);
+  for (const deform::ClayContact& contact : frame.contacts.all()) {
+    for (const double coordinate : contact.place)
+      out.put(as_float(coordinate / frame.units_per_metre));
+    out.put(flow::strength_of(contact));
   }
   return message;
 }

@@ -23,7 +23,8 @@ enum class MessageType : std::uint8_t {
   settings = 4,
   history = 5,
   weights = 6,
-  puppet = 7
+  puppet = 7,
+  clay = 8
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
@@ -124,6 +125,17 @@ struct SettingsMessage {
 };
 static_assert(sizeof(SettingsMessage) == 64);
 
+/// The head of the clay message, in PROTOCOL.md's order and without gaps. The contacts follow.
+struct ClayMessage {
+  std::uint8_t type = static_cast<std::uint8_t>(MessageType::clay);
+  std::uint8_t spare = 0;
+  std::uint16_t contacts = 0;
+  float penetration_mm = 0.0F;
+  double volume = 0.0;
+  double first_volume = 0.0;
+};
+static_assert(sizeof(ClayMessage) == 24);
+
 /// Of the history's message.
 inline constexpr std::size_t history_head_bytes = 8;
 inline constexpr std::size_t history_step_bytes = 8;
@@ -183,6 +195,8 @@ SettingsMessage message_of(const flow::LoopSettings& settings, bool recorded) no
 std::vector<std::byte> message_of(const flow::StepList& steps);
 /// Returns the message with the functions of a puppet, or that there is none. Allocates.
 std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig);
+/// Returns the message about clay: where hands touch it, and its volume. Allocates.
+std::vector<std::byte> clay_message(const flow::Frame& frame);
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
 /// Writes the frame's step: the vectors of its surface, if it has one, or else its fields. `origin`
 /// and `unit` are those of the loop's BlockLayout. Functions whose coefficient is zero are left

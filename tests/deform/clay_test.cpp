@@ -106,6 +106,44 @@ struct Ball {
 } // namespace
 
 TEST_SUITE("clay") {
+  TEST_CASE("a body that stands still, such as a table, only holds against another") {
+    ClayOptions options;
+    options.still_bodies = 1;
+    Ball ball(options, 2);
+    ContactPart table;
+    table.corner_count = 3;
+    table.corners = {Vector3d(-200, -200, -40), Vector3d(200, -200, -40), Vector3d(0, 300, -40)};
+    table.radii = {10.0, 10.0, 10.0};
+    Parts parts = moved(finger(), Vector3d(0.0, 0.0, 35.0));
+    parts.push_back(table);
+    REQUIRE(is_solved(ball.clay.begin(parts)));
+    const auto lower = [&](double by) {
+      for (int call = 0; call < 40; ++call) {
+        parts[0] = moved({parts[0]}, Vector3d(0.0, 0.0, -by / 40.0))[0];
+        CHECK(is_solved(ball.clay.press_to(parts).status));
+        for (const ClayContact& contact : ball.clay.contacts())
+          CHECK(contact.body == 0);
+      }
+    };
+    lower(2.0); // not yet at the ball
+    CHECK(ball.now().vertices == ball.mesh.vertices);
+    lower(50.0);
+    const Mesh pressed = ball.now();
+    CHECK(pressed.vertices.row(2).minCoeff() > -30.1);
+    CHECK(std::abs(volume_of(pressed) / volume_of(ball.mesh) - 1.0) < 0.0015);
+    Ball free; // of a table
+    Parts alone = moved(finger(), Vector3d(0.0, 0.0, 33.0));
+    REQUIRE(is_solved(free.clay.begin(alone)));
+    free.go(alone, {0.0, 0.0, -50.0}, 40);
+    CHECK(free.now().vertices.row(2).minCoeff() < -30.5);
+    lower(-60.0);
+    for (int call = 0; call < 90; ++call)
+      ball.clay.press_to(parts);
+    const Mesh left = ball.now();
+    CHECK_FALSE(ball.clay.press_to(parts).is_moved);
+    CHECK(ball.now().vertices == left.vertices);
+  }
+
   TEST_CASE("a finger pushes the surface out of itself and folds nothing") {
     Ball ball;
     Parts parts = moved(finger(), Vector3d(0, 0, 32));

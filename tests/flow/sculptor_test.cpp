@@ -34,7 +34,7 @@ Points unpacked(const Sculptor& sculptor, const deform::BlockShape& shape) {
 
 TEST_SUITE("sculptor") {
   TEST_CASE("modes have names") {
-    for (const Mode mode : {Mode::type1, Mode::type2})
+    for (const Mode mode : {Mode::type1, Mode::type2, Mode::clay})
       CHECK(mode_named(name_of(mode)) == mode);
     CHECK_FALSE(mode_named("type3").has_value());
   }

@@ -158,9 +158,9 @@ TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
     CHECK(seen.page_faults == 1);
   }
 
-  TEST_CASE("100,000 ticks of two hands, in either mode, with a viewer and a recorder attached: no "
+  TEST_CASE("100,000 ticks of two hands, in each mode, with a viewer and a recorder attached: no "
             "call, no allocation, no page fault") {
-    for (const Mode mode : {Mode::type1, Mode::type2}) {
+    for (const Mode mode : {Mode::type1, Mode::type2, Mode::clay}) {
       CAPTURE(name_of(mode));
       test::RecordedLoop recorded(mode);
       recorded.record();
@@ -178,6 +178,7 @@ TEST_SUITE("sleep_only" * doctest::skip(!nendo::test::restraint_is_counted)) {
       CHECK(seen.page_faults == 0);
       CHECK(test.loop->stats().ticks == 100'300);
       CHECK(test.loop->stats().failed == 0);
+      CHECK((test.loop->stats().touching_ticks > 0) == (mode == Mode::clay));
       CHECK(test.loop->stats().samples[1] == 100'300);
       const auto taken = recorded.end(); // faster than a disk perhaps, but all is accounted for
       REQUIRE(taken);

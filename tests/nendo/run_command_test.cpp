@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -162,6 +163,47 @@ TEST_SUITE("run") {
       CAPTURE(wrong.back());
       const auto done = run(wrong);
       CHECK(done.exit_code == 2);
+      CHECK(std::count(done.err.begin(), done.err.end(), '\n') == 1);
+    }
+  }
+
+  TEST_CASE("hands press clay, its volume stays, and the recording replays to the same bytes") {
+    const TemporaryFolder folder;
+    const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+    const auto done =
+        nendo::test::nendo({"run", "--mode", "clay", "--left", "sim:press", "--right", "sim:press",
+                            "--calibration", "none", "--duration", "2", "--record",
+                            at("take.nendo"), "--out", at("cake.ply"), "--json"});
+    REQUIRE(done.exit_code == 0);
+    const json clay = last_object(done)["clay"];
+    CHECK(clay["touching_ticks"] > 5);
+    const double first = clay["first_volume_cm3"];
+    CHECK(first == doctest::Approx(4.0 / 3.0 * 3.14159 * std::pow(3.75, 3)).epsilon(0.01));
+    CHECK(std::abs(clay["volume_cm3"].get<double>() / first - 1.0) < 0.0015);
+    const auto cake = deform::read_mesh(at("cake.ply"));
+    REQUIRE(cake);
+    CHECK(cake->vertices.row(1).maxCoeff() < 0.030); // of a ball of 75 mm
+    CHECK(cake->vertices.row(1).minCoeff() > -0.0376);
+    REQUIRE(nendo::test::nendo({"replay", at("take.nendo"), "--no-clock", "--out", at("again.ply")})
+                .exit_code == 0);
+    CHECK(nendo::test::contents(at("again.ply")) == nendo::test::contents(at("cake.ply")));
+  }
+
+  TEST_CASE("what acts on fingertips is refused in clay, in one line that names it") {
+    const TemporaryFolder folder;
+    const std::string mask = (folder.path() / "nose.toml").string();
+    std::ofstream(mask) << "version = 1\n[[masks]]\nat = [0, 1, 0]\nradius = 1\n";
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--mask", mask},
+                                                  {"--symmetry"},
+                                                  {"--hold", "hand"},
+                                                  {"--keep-volume", "0.5"},
+                                                  {"--puppet", "face"}}) {
+      CAPTURE(wrong.front());
+      std::vector<std::string> arguments{"run", "--right", "sim:press", "--mode", "clay"};
+      arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+      const auto done = nendo::test::nendo(arguments);
+      CHECK(done.exit_code == 2);
+      CHECK(done.err.find(wrong.front()) != std::string::npos);
       CHECK(std::count(done.err.begin(), done.err.end(), '\n') == 1);
     }
   }

@@ -26,19 +26,17 @@ constexpr double most_off_m = 0.008;
 TEST_SUITE("touching_glove") {
   TEST_CASE("a GLOVE is told from others by its kind and motion") {
     const deform::Mesh ball = test::sphere(16, 32, 10.0);
-    for (const char* touching : {"sim:touch", "sim:touch?seed=3"}) {
-      std::optional<Eigen::Isometry3d> T_stage_wrist;
-      CHECK(driver::open_glove(
-          touching, Side::right,
-          gloves::touching_context(ball, Side::right, hand::HandSize{}, T_stage_wrist)));
-      CHECK(T_stage_wrist);
+    for (const char* touching :
+         {"sim:touch", "sim:touch?seed=3", "sim:press", "sim:knead", "sim:grip?rate=120"}) {
+      gloves::PlannedHand planned{ball, 0.8, Side::right};
+      CHECK(driver::open_glove(touching, Side::right, gloves::planned_context(planned)));
+      CHECK(planned.T_stage_wrist);
+      CHECK((planned.wrist_path == nullptr) == std::string_view(touching).starts_with("sim:touch"));
     }
     for (const char* other : {"sim", "sim:grasp", "sim:touching", "serial:touch", "", "?"}) {
-      std::optional<Eigen::Isometry3d> T_stage_wrist;
-      (void)driver::open_glove(
-          other, Side::right,
-          gloves::touching_context(ball, Side::right, hand::HandSize{}, T_stage_wrist));
-      CHECK_FALSE(T_stage_wrist);
+      gloves::PlannedHand planned{ball, 0.8, Side::right};
+      (void)driver::open_glove(other, Side::right, gloves::planned_context(planned));
+      CHECK_FALSE(planned.T_stage_wrist);
     }
   }
 

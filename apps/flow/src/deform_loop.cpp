@@ -29,15 +29,30 @@ Frame first_frame(const Shaping& shaping, Eigen::Index points, double units_per_
   return frame;
 }
 
+/// The bodies of all hands, left hand first.
+std::shared_ptr<HandBodies> bodies_of(std::span<const HandInput> inputs, double units_per_metre,
+                                      const deform::Mesh& model) {
+  std::vector<hand::HandSkeleton> hands;
+  for (const Side side : {Side::left, Side::right}) {
+    const auto lowest = std::find_if(inputs.begin(), inputs.end(),
+                                     [&](const HandInput& hand) { return hand.side == side; });
+    if (lowest != inputs.end()) hands.push_back(lowest->skeleton(lowest->first.side));
+  }
+  return std::make_shared<HandBodies>(hands, units_per_metre, model);
+}
+
 SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
-                          const ModelVersion& model, double units_per_metre) {
+                          const ModelVersion& model, std::shared_ptr<const HandBodies> bodies,
+                          double units_per_metre) {
   SculptorSetup setup{options.sculptor,
                       options.settings
                           ? *options.settings
                           : settings_of(options.sculptor, hand.filter, units_per_metre)};
-  if (is_played(options.rig.get())) setup.options.hold = Hold::fingertips; // its points hold
-  set_masks(options.rig.get(), model.mesh, model.layout(), setup.options);
-  if (!is_played(options.rig.get()) || setup.options.surface) return setup;
+  const puppet::Rig* const rig = options.rig.get();
+  if (is_played(rig)) setup.options.hold = Hold::fingertips; // its points hold
+  if (can_press(rig)) setup.options.bodies = std::move(bodies);
+  set_masks(rig, model.mesh, model.layout(), setup.options);
+  if (!is_played(rig) || setup.options.surface) return setup;
   if (auto surface =
           surface_for(*options.rig, model.mesh, model.layout(), options.sculptor.deformer))
     setup.options.surface = *std::move(surface);
@@ -107,6 +122,12 @@ std::optional<double> mirror_of(const puppet::Rig* rig) noexcept {
   return rig->puppet().mirror_at;
 }
 
+bool can_press(const puppet::Rig* rig) noexcept {
+  if (rig == nullptr) return true;
+  const puppet::Puppet& puppet = rig->puppet();
+  return !is_played(rig) && !mirror_of(rig) && puppet.masks.empty() && !puppet.inverted;
+}
+
 StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept {
   if (is_played(before) || is_played(after)) return StepKind::puppet;
   return mirror_of(before) == mirror_of(after) ? StepKind::mask : StepKind::symmetry;
@@ -161,8 +182,10 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     : options_(options), units_per_metre_(placement.units_per_metre),
       mirror_(mirror_of(options.rig.get())),
       tips_(Points::Zero(3, points_at_first(options, count_hands(hands)))),
+      bodies_(bodies_of(hands, placement.units_per_metre, model)),
       versions_(first_version(model, options, first)),
-      first_(first_setup(options, hands.front(), *versions_.front(), placement.units_per_metre)),
+      first_(first_setup(options, hands.front(), *versions_.front(), bodies_,
+                         placement.units_per_metre)),
       first_rig_(options.rig), puppets_{options.rig}, asked_model_(versions_.front().get()),
       shaping_(*asked_model_, tips_.cols(), shaping_options(options, first_)), asked_(first_),
       frames_(first_frame(shaping_, is_played(options.rig.get()) ? tips_.cols() : 0,
@@ -253,6 +276,9 @@ void DeformLoop::take_samples(TickRecord& record) noexcept {
     ++number;
     hand.fresh = count > 0;
     if (hand.fresh) {
+      if (hand.input.wrist_path)
+        apply(WristMove::to(hand.input.side,
+                            hand.input.wrist_path->at(to_seconds(hand.latest.device_time))));
       const HostTime arrival = hand.latest.arrival;
       newest = std::max(newest, arrival);
       record.input = record.samples == 0 ? arrival : std::min(record.input, arrival);
@@ -378,10 +404,17 @@ void DeformLoop::compute_hands(Frame& frame) noexcept {
     }
     write_tips(shown.pose, units_per_metre_, points, column, tips_);
     column += points;
+    if (shaping_.sculptor().mode() == Mode::clay || taken_ != nullptr || stats_.ticks == 0)
+      place_body(hand, shown.pose);
   }
   if (rig_) play_rig();
   if (mirror_) mirror_half(*mirror_, tips_);
   tell_rig(frame);
+}
+
+/// Hands that hold still press where they stopped, until they go on.
+void DeformLoop::place_body(const Hand& hand, const hand::HandPose& pose) noexcept {
+  if (!shaping_.is_still()) bodies_->follow(bodies_->count() == 2 ? hand.slot : 0, pose);
 }
 
 void DeformLoop::tell_rig(Frame& frame) const noexcept {

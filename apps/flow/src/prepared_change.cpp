@@ -34,8 +34,11 @@ void DeformLoop::take_change() noexcept {
   if (log != nullptr) {
     if (taken_->holds_still) log->command(HoldStill{});
     if (taken_->model) log->command(*taken_->model);
-    if (taken_->settings) log->command(ChangeSettings{*taken_->settings});
+    // Whoever does the same in this order is refused neither: masks are not for clay.
+    const bool becomes_clay = taken_->settings && taken_->settings->mode == Mode::clay;
+    if (taken_->settings && !becomes_clay) log->command(ChangeSettings{*taken_->settings});
     if (taken_->rig) log->command(ChangePuppet{taken_->rig->number});
+    if (becomes_clay) log->command(ChangeSettings{*taken_->settings});
   }
   if (!taken_->log || !shaping_.is_held()) return;
   // What was recorded leads to a shape that is committed, so that a replay ends with the same one.
@@ -107,8 +110,10 @@ void DeformLoop::place_tips(Points& tips) noexcept {
   const Eigen::Index points = points_of_hand(tips);
   for (const Hand& hand : hands_) {
     if (!hand.is_lowest) continue;
-    write_tips(pose_of(hand), units_per_metre_, points, column, tips);
+    const hand::HandPose pose = pose_of(hand);
+    write_tips(pose, units_per_metre_, points, column, tips);
     column += points;
+    place_body(hand, pose);
   }
   if (mirror_) mirror_half(*mirror_, tips);
 }
@@ -251,6 +256,7 @@ Result<SculptorSetup> DeformLoop::setup_with(std::uint32_t puppet) const {
   SculptorSetup setup =
       with_settings(first, first, asked_.settings, hands_of(puppet), units_per_metre_);
   setup.options.surface.reset();
+  setup.options.bodies = can_press(rig.get()) ? bodies_ : nullptr;
   const auto of_masks = [](const puppet::Rig* of) {
     return of == nullptr ? std::pair(std::vector<puppet::Mask>(), false)
                          : std::pair(of->puppet().masks, of->puppet().inverted);
@@ -299,6 +305,9 @@ ReadyRig DeformLoop::ready_rig(std::uint32_t number, std::uint32_t before) const
 
 Result<void> DeformLoop::change_puppet(std::shared_ptr<const puppet::Rig> rig) {
   assert(rig != nullptr);
+  if (asked_.settings.mode == Mode::clay && !can_press(rig.get()))
+    return Error{Errc::bad_input,
+                 "masks, symmetry and puppets do not act on clay; choose type 1 or 2 first"};
   puppets_.push_back(std::move(rig));
   auto changed = change_puppet(next_puppet() - 1);
   if (!changed) puppets_.pop_back();
@@ -337,10 +346,14 @@ Result<void> DeformLoop::change_puppet(std::uint32_t number) {
 /// Nothing, if nothing can be done with the settings.
 std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
                                                    const LoopSettings& settings) const {
+  const bool presses = can_press(puppets_[asked_puppet_].get());
+  if (!presses && settings.mode == Mode::clay && settings.mode != asked_.settings.mode)
+    return std::nullopt;
   SculptorSetup setup = with_settings(before, first_with(asked_puppet_), settings,
                                       hands_of(asked_puppet_), units_per_metre_);
   setup.options.surface = asked_.options.surface; // others may be another version's
   setup.options.deformer.mask = asked_.options.deformer.mask;
+  setup.options.bodies = presses ? bodies_ : nullptr;
   const bool same =
       settings.kernel == asked_.settings.kernel && settings.radius_m == asked_.settings.radius_m;
   if (!same && !set_surface(setup.options, *asked_model_)) return std::nullopt;

@@ -1,9 +1,11 @@
 #include <nendo/flow/sculptor.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
+#include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
 
 namespace nendo::flow {
@@ -17,7 +19,7 @@ using deform::Type2Deformer;
 
 namespace {
 
-using Deformer = std::variant<Type1Deformer, Type2Deformer, deform::SurfaceDeformer>;
+using Deformer = std::variant<Type1Deformer, Type2Deformer, deform::SurfaceDeformer, ClayHands>;
 
 constexpr Eigen::Index fingers = 5;
 
@@ -60,6 +62,12 @@ deform::DeformerOptions brushed(const SculptorOptions& options, Eigen::Index con
 }
 
 Deformer make(SculptedShape& shape, Eigen::Index control_points, const SculptorOptions& options) {
+  if (options.mode == Mode::clay && options.bodies && options.clay) {
+    const auto radii = radii_on_stage(options.deformer.supports, options.bodies->units_per_metre());
+    return ClayHands(shape, options.clay, options.bodies,
+                     std::accumulate(radii.begin(), radii.end(), 0.0) / fingers,
+                     options.deformer.evaluation);
+  }
   if (options.mode == Mode::type2)
     return Type2Deformer(shape, control_points, options.piece_length,
                          brushed(options, control_points));
@@ -75,28 +83,37 @@ Deformer make(Points rest, Eigen::Index control_points, const SculptorOptions& o
   return Type1Deformer(std::move(rest), control_points, of_type1(options, control_points));
 }
 
-/// Of type 1 or of type 2, whose functions have other names.
-template <class Of1, class Of2>
-auto either(Deformer& deformer, const Of1& of_type1, const Of2& of_type2) {
+/// Of type 1, of type 2 or of clay, whose functions have other names.
+template <class Of1, class Of2, class OfClay>
+auto each(Deformer& deformer, const Of1& of_type1, const Of2& of_type2, const OfClay& of_clay) {
   return std::visit(
       [&](auto& one) {
         if constexpr (std::is_same_v<std::decay_t<decltype(one)>, Type2Deformer>)
           return of_type2(one);
+        else if constexpr (std::is_same_v<std::decay_t<decltype(one)>, ClayHands>)
+          return of_clay(one);
         else
           return of_type1(one);
       },
       deformer);
 }
 
+FieldStatus press(ClayHands& hands, bool ends, BlockShape& out) {
+  const FieldStatus status = hands.press(ends);
+  out.follow(hands.shape());
+  return status;
+}
+
 } // namespace
 
 std::string_view name_of(Mode mode) noexcept {
-  return mode == Mode::type1 ? "type1" : "type2";
+  return mode == Mode::type1 ? "type1" : mode == Mode::type2 ? "type2" : "clay";
 }
 
 std::optional<Mode> mode_named(std::string_view name) noexcept {
   if (name == "type1") return Mode::type1;
   if (name == "type2") return Mode::type2;
+  if (name == "clay") return Mode::clay;
   return std::nullopt;
 }
 
@@ -152,36 +169,45 @@ Sculptor::Sculptor(SculptedShape& shape, Eigen::Index control_points,
                    const SculptorOptions& options)
     : deformer_(make(shape, control_points, options)), control_points_(control_points) {}
 
+Mode Sculptor::mode() const noexcept {
+  if (std::holds_alternative<ClayHands>(deformer_)) return Mode::clay;
+  return std::holds_alternative<Type2Deformer>(deformer_) ? Mode::type2 : Mode::type1;
+}
+
 FieldStatus Sculptor::grab(const Points& tips) noexcept {
-  return counted(either(
+  return counted(each(
       deformer_, [&](auto& type1) { return type1.grab(tips); },
-      [&](Type2Deformer& type2) { return type2.begin(tips); }));
+      [&](Type2Deformer& type2) { return type2.begin(tips); },
+      [](ClayHands& hands) { return hands.begin(); }));
 }
 
 FieldStatus Sculptor::update(const Points& tips, BlockShape& out) noexcept {
-  return either(
+  return each(
       deformer_, [&](auto& type1) { return type1.apply(tips, out); },
       [&](Type2Deformer& type2) {
         const FieldStatus status = type2.stroke_to(tips).status;
         out.follow(type2.shape());
         return status;
-      });
+      },
+      [&](ClayHands& hands) { return press(hands, false, out); });
 }
 
 FieldStatus Sculptor::finish(const Points& tips, BlockShape& out) noexcept {
-  return either(
+  return each(
       deformer_, [&](auto& type1) { return type1.apply(tips, out); },
       [&](Type2Deformer& type2) {
         const FieldStatus status = type2.end_at(tips).status;
         out.follow(type2.shape());
         return status;
-      });
+      },
+      [&](ClayHands& hands) { return press(hands, true, out); });
 }
 
 FieldStatus Sculptor::commit(const Points& tips) noexcept {
-  return counted(either(
+  return counted(each(
       deformer_, [&](auto& type1) { return type1.commit(tips); },
-      [&](Type2Deformer& type2) { return type2.begin(tips); }));
+      [&](Type2Deformer& type2) { return type2.begin(tips); },
+      [](ClayHands& hands) { return hands.begin(); }));
 }
 
 FieldStatus Sculptor::grab_on(const Points& tips) noexcept {
@@ -193,9 +219,10 @@ void Sculptor::release(bool is_step) noexcept {
 }
 
 void Sculptor::drop(bool is_step) noexcept {
-  either(
+  each(
       deformer_, [&](auto& type1) { type1.drop(is_step); },
-      [&](Type2Deformer& type2) { type2.release(is_step); });
+      [&](Type2Deformer& type2) { type2.release(is_step); },
+      [&](ClayHands& hands) { hands.release(is_step); });
 }
 
 FieldStatus Sculptor::reset(const Points& tips) noexcept {
@@ -207,9 +234,10 @@ FieldStatus Sculptor::undo(const Points& tips) noexcept {
 }
 
 FieldStatus Sculptor::take_back(const Points& tips) noexcept {
-  return counted(either(
+  return counted(each(
       deformer_, [&](auto& type1) { return type1.take_back(tips); },
-      [&](Type2Deformer& type2) { return type2.undo(tips); }));
+      [&](Type2Deformer& type2) { return type2.undo(tips); },
+      [&](ClayHands& hands) { return hands.undo(tips); }));
 }
 
 FieldStatus Sculptor::redo(const Points& tips) noexcept {
@@ -230,6 +258,7 @@ std::size_t Sculptor::forgotten_steps() const noexcept {
 
 const BlockShape& Sculptor::rest() const noexcept {
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_)) return type2->shape();
+  if (const ClayHands* hands = clay()) return hands->shape();
   if (const auto* type1 = std::get_if<Type1Deformer>(&deformer_)) return type1->rest();
   return std::get_if<deform::SurfaceDeformer>(&deformer_)->rest();
 }
@@ -249,6 +278,7 @@ const deform::FieldSequence& Sculptor::fields() const noexcept {
 bool Sculptor::is_told_by_fields() const noexcept {
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_))
     return !type2->is_brushed() && !type2->is_masked();
+  if (const ClayHands* hands = clay()) return !hands->is_moved();
   const auto* type1 = std::get_if<Type1Deformer>(&deformer_);
   return type1 != nullptr && !type1->is_masked();
 }
@@ -275,6 +305,7 @@ deform::SurfaceMove Sculptor::room_to_tell() const {
 bool Sculptor::moves_anything() const noexcept {
   if (const auto* surface = std::get_if<deform::SurfaceDeformer>(&deformer_))
     return surface->is_moved();
+  if (const ClayHands* hands = clay()) return hands->is_moved();
   if (const auto* type2 = std::get_if<Type2Deformer>(&deformer_); type2 && type2->is_brushed())
     return true;
   const auto all = fields().fields();

@@ -12,6 +12,8 @@ namespace {
 
 // What is shaped between changes that are less than this apart is one step for undo.
 constexpr HostClock::duration one_step = std::chrono::seconds(1);
+// Hands that have been away from clay for so long have ended their stroke.
+constexpr HostClock::duration left_for = std::chrono::milliseconds(300);
 
 void count_chain(const deform::ChainReport& chain, LoopStats& stats) noexcept {
   stats.most_links = std::max(stats.most_links, chain.links);
@@ -27,6 +29,10 @@ std::unique_ptr<Sculptor> sculptor_on(ModelVersion& model, Eigen::Index control_
     if (!model.rings)
       model.rings = std::make_shared<const deform::VertexRings>(model.mesh, model.layout());
     options.rings = model.rings;
+  }
+  if (options.mode == Mode::clay) {
+    if (!model.clay) model.clay = std::make_shared<const ClayModel>(model.mesh);
+    options.clay = model.clay;
   }
   return std::make_unique<Sculptor>(model.shape, control_points, options);
 }
@@ -92,15 +98,47 @@ FieldStatus Shaping::shape_by_hands(const Points& tips, Frame& frame, LoopStats&
   count_chain(frame.chain, stats);
   if (!sculptor_->is_told_by_fields()) ++(frame.surface.field == 0 ? jumps_ : leaps_);
   shaped_ = sculptor_->moves_anything() ||
-            (shaped_ && sculptor_->mode() == Mode::type2); // type 1 begins at the rest
+            (shaped_ && sculptor_->mode() != Mode::type1); // type 1 begins at the rest
+  tell_clay(frame);
+  follow_clay(frame.clay, stats);
   // What cannot be committed now stays held, and is tried again at the next tick.
   if (commits && is_solved(status) && is_solved(sculptor_->commit(tips))) {
     ++stats.commits;
     commit_due_ = false;
     shaped_ = in_step_ = false;
     held_ = hold_wanted_;
+  } else if (has_left_clay()) {
+    end_clay_stroke(tips);
   }
   return status;
+}
+
+void Shaping::tell_clay(Frame& frame) const noexcept {
+  const ClayHands* const hands = sculptor_->clay();
+  frame.clay = hands == nullptr ? ClayState{} : hands->state();
+  frame.contacts.take(hands == nullptr ? std::span<const deform::ClayContact>{}
+                                       : hands->contacts());
+}
+
+void Shaping::follow_clay(const ClayState& clay, LoopStats& stats) noexcept {
+  if (!clay.is_clay) return;
+  if (clay.touching > 0 || sculptor_->moves_anything()) touched_at_ = time_;
+  if (clay.touching > 0) ++stats.touching_ticks;
+  stats.most_penetration_mm = std::max(stats.most_penetration_mm, clay.penetration_mm);
+  stats.clay = clay;
+}
+
+/// The hands are away from the clay, which has come to rest: a stroke in clay is a contact.
+bool Shaping::has_left_clay() const noexcept {
+  return sculptor_->mode() == Mode::clay && (shaped_ || in_step_) && touched_at_ &&
+         time_ - *touched_at_ >= left_for;
+}
+
+void Shaping::end_clay_stroke(const Points& tips) noexcept {
+  if (!is_solved(sculptor_->commit(tips))) return;
+  ++otherwise_ended_;
+  shaped_ = in_step_ = false;
+  touched_at_.reset();
 }
 
 FieldStatus Shaping::show_rest(Frame& frame) noexcept {
@@ -108,6 +146,7 @@ FieldStatus Shaping::show_rest(Frame& frame) noexcept {
   frame.fields.clear();
   frame.surface.clear();
   frame.chain = {};
+  tell_clay(frame);
   return FieldStatus::ok;
 }
 
@@ -247,6 +286,7 @@ void Shaping::begin_anew(const Points& tips, bool fences, Frame& frame, LoopStat
   sculptor_->release(true);
   shaped_ = in_step_ = commit_due_ = anew_due_ = false;
   exchanged_at_.reset();
+  touched_at_.reset();
   steps_due_.clear();
   awaited_.reset();
   if (fenced_ != nullptr) fenced_->shape.unfence();

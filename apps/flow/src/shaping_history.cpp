@@ -149,7 +149,7 @@ bool Shaping::is_pulled() const noexcept {
 }
 
 bool Shaping::is_in_hand() const noexcept {
-  return in_step_ || is_pulled() || (held_ && shaped_ && sculptor_->mode() == Mode::type2);
+  return in_step_ || is_pulled() || (held_ && shaped_ && sculptor_->mode() != Mode::type1);
 }
 
 /// Memory that has ended, or a recording that has begun, bars the way to the version before.

@@ -148,7 +148,7 @@ void Planner::take_hold() {
       skeleton_.pose(grip_, Eigen::Isometry3d::Identity()).fingertip_positions();
   std::array<std::optional<Fingertips>, 2> tips;
   tips[Placement::index_of(skeleton_.side())] = tips_wrist;
-  const Placement placement = place_hands(model_, tips);
+  const Placement placement = place_hands(model_, tips, {.model_size_m = options_.model_size_m});
   plan_.T_stage_wrist = placement.T_stage_wrist[Placement::index_of(skeleton_.side())];
 
   std::mt19937 random(options_.seed);
@@ -306,7 +306,7 @@ Result<TouchPlan> plan_touch(const deform::Mesh& model, const hand::HandSkeleton
     return length_m > 0.0 ? std::min(length_m, 0.1) : 0.0;
   };
   const TouchOptions fine{options.seed, usable(options.press_m), usable(options.pull_m),
-                          usable(options.glide_m)};
+                          usable(options.glide_m), options.model_size_m};
   return Planner(model, skeleton, fine).make();
 }
 

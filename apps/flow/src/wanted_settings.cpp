@@ -18,8 +18,9 @@ std::optional<Command> WantedSettings::ask() noexcept {
   return ChangeSettings{now};
 }
 
-void WantedSettings::other_mode() noexcept {
-  now.mode = now.mode == Mode::type1 ? Mode::type2 : Mode::type1;
+void WantedSettings::next_mode(bool is_puppet) noexcept {
+  const unsigned modes = is_puppet ? mode_count - 1U : mode_count;
+  now.mode = static_cast<Mode>((static_cast<unsigned>(now.mode) + 1U) % modes);
 }
 
 void WantedSettings::next_volume() noexcept {

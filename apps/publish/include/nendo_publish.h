@@ -57,7 +57,7 @@ struct nendo_publish_setup {
   double unit;
   double rate_hz;
   double units_per_metre; /* from the stage, on which the hands are, to the model */
-  uint32_t mode;          /* at the beginning; 1: type-1, 2: type-2 */
+  uint32_t mode;          /* at the beginning; 1: type-1, 2: type-2, 3: clay */
   uint32_t reserved0;
   uint64_t reserved1[7];
 };

@@ -82,6 +82,7 @@ function open(model) {
     else if (type === 5) panel.setHistory(readSteps(data))
     else if (type === 7) panel.setPuppet(readPuppet(data))
     else if (type === 6) takeWeights(readWeights(data), model)
+    else if (type === 8) takeClay(readClay(data))
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
@@ -93,7 +94,12 @@ function open(model) {
 
 function takeSettings(settings) {
   panel.setSettings(settings)
-  if (scene) scene.radii = settings.radii
+  if (scene) Object.assign(scene, { radii: settings.radii, isClay: settings.mode === 3 })
+}
+
+function takeClay(clay) {
+  panel.clay = clay
+  if (scene) scene.contacts = clay.contacts
 }
 
 function takeWeights(weights, model) {

@@ -25,7 +25,7 @@ const KEYS = [
   ['o', 'overdub: the gloves\' layer comes in, or goes out (--over, --layer)', panel => panel.ask('punch')],
   ['k', 'keep the recording of what was just done (--keep-last)', panel => panel.ask('keep')],
   ['s', 'save the model as it is now', panel => panel.ask('save')],
-  ['m', 'the other mode', panel => panel.shaping.otherMode()],
+  ['m', 'the next mode', panel => panel.shaping.nextMode(Boolean(panel.update && panel.update.isPuppet))],
   ['n', 'the next kernel', panel => panel.shaping.nextKernel()],
   ['[', 'smaller radii', panel => panel.shaping.scale(1 / 1.1)],
   [']', 'larger radii', panel => panel.shaping.scale(1.1)],
@@ -40,6 +40,7 @@ const KEYS = [
   ['b', 'bones on and off', panel => panel.toggle('bones')],
   ['v', 'control vectors on and off', panel => panel.toggle('vectors')],
   ['d', 'radii on and off', panel => panel.toggle('radii')],
+  ['0', 'where hands touch clay, on and off', panel => panel.toggle('contacts')],
   ['f', 'facets in place of smooth shading', panel => panel.toggle('facets')],
   ['1', 'the view from the front; with Ctrl from the back', panel => panel.camera.look(...VIEWS[1].plain)],
   ['3', 'from the right; with Ctrl from the left', panel => panel.camera.look(...VIEWS[3].plain)],
@@ -68,7 +69,7 @@ class Panel {
     this.buttons = [...requests, element('record'), element('symmetry')]
     element('record').addEventListener('click', () => this.record())
     element('symmetry').addEventListener('click', () => this.toggleSymmetry())
-    for (const part of ['skin', 'bones', 'vectors', 'radii', 'facets'])
+    for (const part of ['skin', 'bones', 'vectors', 'radii', 'contacts', 'facets'])
       element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
     element('help-button').addEventListener('click', () => this.help())
     element('fold-button').addEventListener('click', () => this.fold())
@@ -212,10 +213,19 @@ class Panel {
     element('symmetry').classList.toggle('on', update.symmetric)
     this.showSteps()
     const lost = update.lost + update.skipped
-    element('timing').textContent = `${model.rate} Hz wanted, type ${settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
+    element('timing').textContent = `${model.rate} Hz wanted, ${MODES[settings.mode]}\n${update.ticks} ticks, ${update.missed} missed` +
       `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.commits} commits, ${update.undos} undone`
+    this.drawClay()
     for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
     update.hands.forEach((hand, slot) => this.drawGlove(hand, slot))
+  }
+  drawClay() {
+    const { clay, settings, model } = this
+    element('clay').hidden = !clay || settings.mode !== 3
+    if (element('clay').hidden) return
+    const cm3 = volume => (volume * (100 / model.unitsPerMetre) ** 3).toFixed(1)
+    element('clay-told').textContent = `touches at ${clay.contacts.length} places, ${clay.penetration.toFixed(3)} mm deep\n` +
+      (clay.first > 0 ? `volume ${cm3(clay.volume)} cm\u00b3, at first ${cm3(clay.first)}` : 'volume not kept: no closed surface')
   }
   drawGlove(hand, slot) {
     const id = 'glove-' + slot

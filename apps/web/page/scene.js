@@ -5,6 +5,7 @@ const SILENT = { colour: [0.22, 0.22, 0.22], gloss: 0.10, opacity: 0.6, rim_opac
 const BONE = { colour: [0.80, 0.78, 0.70], gloss: 0.10, opacity: 1, rim_opacity: 1 }
 const ARROW = { colour: [0.95, 0.52, 0.02], gloss: 0.20, opacity: 1, rim_opacity: 1 }
 const REACH = { colour: [0.80, 0.40, 0.05], gloss: 0, opacity: 0, rim_opacity: 0.3, unlit: true }
+const CONTACTS = [[0.95, 0.80, 0.10], [0.95, 0.40, 0.02], [0.75, 0.04, 0.02]].map(colour => ({ ...ARROW, colour }))
 const LIT = { grid: 0, dark: 0, facets: false, unlit: false, fade: 1, shadow: [0, 0, 0] }
 
 // A ball of two halves; the fourth number says to which end of a capsule a half belongs.
@@ -33,7 +34,8 @@ class Scene {
     this.gl = gl
     this.canvas = canvas
     this.radii = [0, 0, 0, 0, 0]
-    this.parts = { skin: true, bones: true, vectors: true, radii: false, facets: false }
+    this.parts = { skin: true, bones: true, vectors: true, radii: false, contacts: false, facets: false }
+    this.contacts = []
     const light = glsl('plain') + glsl('light')
     this.model = makeProgram(gl, glsl('deform') + glsl('model'), glsl('paint') + glsl('light'))
     this.capsule = makeProgram(gl, glsl('capsule'), light)
@@ -153,6 +155,7 @@ class Scene {
     this.shape.draw(this.model, part => this.paint.each(this.model, CLAY.colour, part))
     this.capsules(beside.bones, BONE)
     this.capsules(beside.arrows, ARROW)
+    beside.contacts.forEach((some, at) => this.capsules(some, CONTACTS[at]))
     beside.skins.forEach(([skin, material]) => this.capsules(skin, material))
     gl.depthMask(false)
     this.capsules(beside.reaches, REACH)
@@ -161,8 +164,9 @@ class Scene {
 
   // What there is beside the model, about the scene's origin.
   beside(update, holds) {
-    const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), skins: [] }
+    const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), contacts: CONTACTS.map(() => new Capsules()), skins: [] }
     if (!update) return parts
+    if (this.isClay && this.parts.contacts) this.addContacts(parts.contacts)
     update.hands.forEach((given, slot) => {
       if (!given) return
       const place = at => minus(at, this.origin)
@@ -173,7 +177,7 @@ class Scene {
       const material = given.silent ? SILENT : SKIN
       parts.skins.push([skin, this.parts.bones ? material : { ...material, opacity: 1 }])
       const starts = holds.starts[slot]
-      if (!update.held || !starts) return
+      if (!update.held || !starts || this.isClay) return // hands in clay hold nothing
       TIPS.forEach((tip, finger) => {
         const start = place(starts[finger])
         if (this.parts.vectors) arrow(start, hand.joints[tip].place, 0.007, parts.arrows)
@@ -181,6 +185,15 @@ class Scene {
       })
     })
     return parts
+  }
+
+  // The harder a hand presses, the larger and the redder.
+  addContacts(capsules) {
+    const longest = Math.min(0.3, Math.max(0.05, this.height))
+    for (const { place, strength } of this.contacts) {
+      const at = minus(place, this.origin), radius = longest * (0.010 + 0.015 * strength)
+      capsules[Math.min(CONTACTS.length - 1, Math.floor(CONTACTS.length * strength))].add(at, at, radius, radius)
+    }
   }
 
   // With the shadows on it, none of which is drawn twice: the stencil says where one is.

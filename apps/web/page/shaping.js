@@ -1,5 +1,6 @@
 // Mode, kernel, radii and filter. What is chosen is asked for at once, once a picture at most.
 const LEAST_RADIUS = 0.01, MOST_RADIUS = 0.4
+const MODES = { 1: 'type1', 2: 'type2', 3: 'clay' }
 const FINGERS = ['thumb', 'index', 'middle', 'ring', 'little']
 const PATIENCE = 1000 // ms, for which what was asked for is shown before what is in force
 
@@ -53,7 +54,7 @@ class Shaping {
   send() {
     if (!this.due || !this.live) return
     const { mode, kernel, injective, filtered, radii, brushes, strength, volume, hold } = this.wanted
-    this.ask(`settings type${mode} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')} ${brushes.join(' ')} ${strength} ${volume} ${hold}`)
+    this.ask(`settings ${MODES[mode]} ${kernel} ${injective ? 'injective' : 'free'} ${filtered ? 'one-euro' : 'off'} ${radii.join(' ')} ${brushes.join(' ')} ${strength} ${volume} ${hold}`)
     Object.assign(this, { due: false, askedAt: performance.now() })
   }
   choose(input) {
@@ -74,7 +75,11 @@ class Shaping {
     if (one && (slider || input.id === 'one-radius')) wanted.radii.fill(wanted.radii[0])
     this.change()
   }
-  otherMode() { document.querySelector('[name=mode]:not(:checked)').click() }
+  // The points of a puppet do not press clay.
+  nextMode(isPuppet) {
+    const modes = isPuppet ? 2 : 3
+    if (this.wanted) document.querySelector(`[name=mode][value="${this.wanted.mode % modes + 1}"]`).click()
+  }
   // Brushes are of type 2.
   useStrokes() {
     this.wanted.mode = 2

@@ -79,6 +79,15 @@ function readSteps(buffer) {
   return { steps, undoable: view.getUint8(2) }
 }
 
+function readClay(buffer) {
+  const view = new DataView(buffer), f32 = at => view.getFloat32(at, true)
+  const contacts = Array.from({ length: view.getUint16(2, true) }, (_, n) => {
+    const at = 24 + 16 * n
+    return { place: [f32(at), f32(at + 4), f32(at + 8)], strength: f32(at + 12) }
+  })
+  return { contacts, penetration: f32(4), volume: view.getFloat64(8, true), first: view.getFloat64(16, true) }
+}
+
 function readShape(buffer) {
   const view = new DataView(buffer)
   return {

@@ -36,6 +36,14 @@ const ClayReport& ClayDeformer::press_to(std::span<const ContactPart> parts) {
   return report_;
 }
 
+std::span<const ClayContact> ClayDeformer::contacts() const noexcept {
+  return work_->contacts();
+}
+
+double ClayDeformer::volume() const noexcept {
+  return work_->volume();
+}
+
 FieldStatus ClayDeformer::take_hold(std::span<const ContactPart> parts) {
   if (!work_->accepts(parts)) return FieldStatus::not_finite;
   work_->take_hold(shape_->parts().now, parts);

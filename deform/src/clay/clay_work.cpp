@@ -88,7 +88,9 @@ ClayDeformer::Work::Work(const SculptedShape& shape, std::span<const std::uint32
           room_for(most_centres(bodies, options), options.radius_mm * options.units_a_mm, layout_)),
       evaluator_(layout_, most_centres(bodies, options), options.evaluation),
       volume_(layout_, options.keeps_volume ? triangles : std::span<const std::uint32_t>{}),
-      around_(BoxGate::shut()) {
+      pressed_(from_.size()), around_(BoxGate::shut()) {
+  contacts_.reserve(static_cast<std::size_t>(options.most_constraints));
+  assert(options.still_bodies <= bodies);
   assert(options.units_a_mm > 0.0 && options.radius_mm > 0.0 && options.most_constraints > 0);
   for (std::size_t body = 0; body < bodies; ++body)
     grips_.emplace_back(body * parts_a_body, parts_a_body, mm_);
@@ -136,7 +138,8 @@ void ClayDeformer::Work::take_hold(const BoundedShape& shape,
   for (Grip& grip : grips_)
     grip.let_go();
   leave_out_held(true);
-  if (volume_.is_closed()) whole_volume_ = volume_.volume(shape);
+  if (volume_.is_closed()) volume_now_ = whole_volume_ = volume_.volume(shape);
+  contacts_.clear();
   is_settling_ = swells_all_ = false;
   around_ = BoxGate::shut();
   holds_ = true;
@@ -151,14 +154,15 @@ double ClayDeformer::Work::way_to_target() const noexcept {
   return way;
 }
 
-/// All that a body sweeps over lies in the box of both poses.
+/// All that a body sweeps over lies in the box of both poses. Bodies that stand still come to
+/// nothing.
 bool ClayDeformer::Work::is_way_free(const BoundedShape& shape) noexcept {
   std::fill(boxes_.begin(), boxes_.end(), BoxGate::shut());
   for (std::size_t at = 0; at < from_.size(); ++at) {
     boxes_[at / parts_a_body_].extend(BoxGate::of(from_[at]));
     boxes_[at / parts_a_body_].extend(BoxGate::of(target_[at]));
   }
-  return !search_.is_any_near(shape, boxes_, margin_mm * mm_);
+  return !search_.is_any_near(shape, {boxes_.data(), moving_bodies()}, margin_mm * mm_);
 }
 
 void ClayDeformer::Work::place_at(double share) noexcept {
@@ -193,6 +197,7 @@ void ClayDeformer::Work::drag(std::size_t part) noexcept {
 void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart> parts,
                                ClayReport& report) noexcept {
   status_ = FieldStatus::ok;
+  contacts_.clear();
   search_.distances() = 0;
   pack(parts, target_);
   const double way = way_to_target();
@@ -210,6 +215,7 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     const int steps =
         static_cast<int>(std::clamp(std::ceil(way / (0.5 * least_radius)), 1.0, most_sub_steps));
     is_ = from_;
+    std::fill(pressed_.begin(), pressed_.end(), 0.0F);
     int used = 0;
     double left = 0.0;
     for (int step = 1; step <= steps && (step == 1 || used < options_.most_passes); ++step) {
@@ -222,7 +228,9 @@ void ClayDeformer::Work::press(BoundedShape& shape, std::span<const ContactPart>
     }
     if (gone < 1.0) left = press_out(shape, skin_mm * mm_, report);
     report.penetration_mm = left / mm_;
+    list_contacts();
     push_straight(shape);
+    report.is_moved = report.passes > 0 || report.carried_mm > 0.0 || left > 0.0;
     if (options_.grips) look_for_grips(report);
   }
   report.behind_mm = (1.0 - gone) * way / mm_;
@@ -293,6 +301,7 @@ void ClayDeformer::Work::offer(const BoundedShape& shape, std::size_t body, std:
     if (!(nearest.distance[lane] < margin)) continue;
     const auto part = static_cast<std::uint32_t>(nearest.part[lane]);
     const double depth = -static_cast<double>(nearest.distance[lane]);
+    pressed_[part] = std::max(pressed_[part], static_cast<float>(depth));
     ContactPoint* const point = chosen_.offer(lane, part, depth);
     if (point == nullptr) continue;
     const std::size_t place = block * block_size + lane;
@@ -362,6 +371,19 @@ bool ClayDeformer::Work::displace(BoundedShape& shape, Eigen::Index count) noexc
   return false;
 }
 
+/// Of the places that the last search has found near the bodies, those with a load.
+void ClayDeformer::Work::list_contacts() noexcept {
+  for (const ContactPoint& point : choose()) {
+    if (point.body >= moving_bodies()) continue;
+    const double load = loads_[point.body].at(point.place, -point.depth) / mm_;
+    if (!(load > loaded_mm)) continue;
+    contacts_.push_back({layout_.origin() + layout_.unit() * point.at, static_cast<float>(load),
+                         static_cast<float>(static_cast<double>(pressed_[point.part]) / mm_),
+                         point.body,
+                         point.part - point.body * static_cast<std::uint32_t>(parts_a_body_)});
+  }
+}
+
 /// What is left goes straight out. This may fold, but it is less than a tenth of an edge.
 void ClayDeformer::Work::push_straight(BoundedShape& shape) noexcept {
   const double most = most_straight_mm * mm_;
@@ -397,10 +419,12 @@ void ClayDeformer::Work::give_back(BoundedShape& shape, bool is_pressed,
     const GiveBack how{near, most_swell * near, swells_all_ ? nullptr : &around_,
                        swell_reach * near};
     const double given = volume_.give_back(shape, search_, -change, how);
+    report.is_moved = report.is_moved || given != 0.0;
     swells_all_ = std::abs(given) < 0.999 * std::abs(change);
     change += given;
   }
   is_settling_ = std::abs(change) > kept;
+  volume_now_ = whole_volume_ + change;
   report.volume_change = change / whole_volume_;
 }
 

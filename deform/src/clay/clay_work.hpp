@@ -28,7 +28,14 @@ public:
   bool accepts(std::span<const ContactPart> parts) const noexcept;
   /// Puts the bodies there, and takes the shape's volume as the one to keep.
   void take_hold(const BoundedShape& shape, std::span<const ContactPart> parts) noexcept;
-  void release() noexcept { holds_ = false; }
+  void release() noexcept {
+    holds_ = false;
+    contacts_.clear();
+  }
+  std::span<const ClayContact> contacts() const noexcept { return contacts_; }
+  double volume() const noexcept {
+    return volume_now_ * layout_.unit() * layout_.unit() * layout_.unit();
+  }
   bool holds() const noexcept { return holds_; }
   /// Moves the bodies and deforms the shape.
   void press(BoundedShape& shape, std::span<const ContactPart> parts, ClayReport& report) noexcept;
@@ -43,6 +50,7 @@ private:
   };
 
   void pack(std::span<const ContactPart> parts, std::vector<ContactPart>& packed) const noexcept;
+  std::size_t moving_bodies() const noexcept { return boxes_.size() - options_.still_bodies; }
   double way_to_target() const noexcept;
   bool is_way_free(const BoundedShape& shape) noexcept;
   void place_at(double share) noexcept;
@@ -63,6 +71,7 @@ private:
   void slide(std::span<const ContactPoint> points) noexcept;
   bool apply(BoundedShape& shape, std::span<const ContactPoint> points) noexcept;
   bool displace(BoundedShape& shape, Eigen::Index count) noexcept;
+  void list_contacts() noexcept;
   void push_straight(BoundedShape& shape) noexcept;
   void give_back(BoundedShape& shape, bool is_pressed, ClayReport& report) noexcept;
 
@@ -92,6 +101,9 @@ private:
   BlockEvaluator evaluator_;
   VolumeKeeper volume_;
   double whole_volume_ = 0.0;
+  double volume_now_ = 0.0;
+  std::vector<float> pressed_; ///< how deep each part came in this call
+  std::vector<ClayContact> contacts_;
   bool is_settling_ = false; ///< some volume has not been given back yet
   bool swells_all_ = false;  ///< what is near the contacts did not suffice
   BoxGate around_;           ///< the contacts

@@ -123,17 +123,22 @@ Error usage(const GloveSpec& spec, std::string_view what) {
   return Error{Errc::usage, std::string(spec.text).append(": ").append(what)};
 }
 
-/// The motion that needs what GloveContext has.
-constexpr std::string_view touching_motion = "touch";
+/// The motions that need what GloveContext has.
+constexpr std::array<std::string_view, 4> planned_motions{"touch", "press", "knead", "grip"};
+constexpr std::string_view planned_names = "touch, press, knead, grip";
 
-Result<std::unique_ptr<Glove>> open_touching(const GloveSpec& spec, std::optional<Side> side,
-                                             const GloveContext& context) {
-  if (!context.touching_motion)
+bool is_planned(std::string_view motion) noexcept {
+  return std::find(planned_motions.begin(), planned_motions.end(), motion) != planned_motions.end();
+}
+
+Result<std::unique_ptr<Glove>> open_planned(const GloveSpec& spec, std::optional<Side> side,
+                                            const GloveContext& context) {
+  if (!context.planned_motion)
     return usage(spec, "needs a model to touch, which only nendo run and nendo stress have; use "
                        "another motion here, like sim:sculpt");
   const auto options = simulated_glove_options(spec, side);
   if (!options) return options.error();
-  auto motion = context.touching_motion(*options);
+  auto motion = context.planned_motion(*options);
   if (!motion) return motion.error();
   return make_simulated_glove(*options, *std::move(motion));
 }
@@ -168,9 +173,9 @@ std::unique_ptr<Glove> make_simulated_glove(const SimulatedGloveOptions& options
 
 Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
                                               const GloveContext& context) {
-  if (spec.target == touching_motion) return open_touching(spec, side, context);
+  if (is_planned(spec.target)) return open_planned(spec, side, context);
   const auto motion = find_motion(spec.target.empty() ? "sculpt" : spec.target);
-  if (!motion) return usage(spec, motion.error().message + ", " + std::string(touching_motion));
+  if (!motion) return usage(spec, motion.error().message + ", " + std::string(planned_names));
   auto settings = simulated_glove_options(spec, side);
   if (!settings) return settings.error();
   return make_simulated_glove(

@@ -27,11 +27,23 @@ struct ClayOptions {
   /// Two parts of a body that press from sides that face each other take hold of what is under
   /// them, until they have opened.
   bool grips = true;
+  /// So many of the last bodies stand still, such as a table. They press nothing by themselves, and
+  /// contacts() does not tell of them.
+  std::size_t still_bodies = 0;
   int most_constraints = 256; ///< of one pass
   /// Of one call. When they are used up, the bodies' step is shortened, and the rest of their way
   /// waits for the next call. What has begun is always finished.
   int most_passes = 48;
   EvaluationOptions evaluation{};
+};
+
+/// A place where a body touches the surface; model units.
+struct ClayContact {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  float load_mm = 0.0F; ///< the pressure: by how much the clay would spring back there, up to 0.5
+  float pressed_mm = 0.0F; ///< how deep the part came in this call, before the surface gave way
+  std::uint32_t body = 0;
+  std::uint32_t part = 0; ///< of the body
 };
 
 struct ClayReport {
@@ -47,6 +59,7 @@ struct ClayReport {
   std::size_t held = 0;       ///< places that bodies hold on to
   double carried_mm = 0.0;    ///< the way of the model's middle as a rigid body
   double turned_rad = 0.0;    ///< and its turns, added up
+  bool is_moved = false;      ///< something of the shape has changed
   double volume_change = 0.0; ///< relative to that when the bodies took hold; 0 if none is kept
 };
 
@@ -88,6 +101,11 @@ public:
   const BlockShape& shape() const noexcept { return shape_->shape(); }
   /// Returns what the last press_to() took.
   const ClayReport& report() const noexcept { return report_; }
+  /// Returns the places where bodies touch the surface after the last press_to(): at most
+  /// ClayOptions::most_constraints, evenly over what is touched.
+  std::span<const ClayContact> contacts() const noexcept;
+  /// Returns the shape's volume after the last call, in cubic model units; 0 if none is kept.
+  double volume() const noexcept;
 
 private:
   class Work;

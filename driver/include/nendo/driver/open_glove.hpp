@@ -46,9 +46,10 @@ struct SimulatedGloveOptions {
 
 /// What some kinds of gloves need and this library does not know.
 struct GloveContext {
-  /// Makes the motion of `sim:touch`, a hand that touches something. It is called at most once, by
-  /// open_glove(), and its error is returned. Without it, `sim:touch` is a usage error.
-  std::function<Result<SensorMotion>(const SimulatedGloveOptions&)> touching_motion;
+  /// Makes the motion of a hand that does something to a model: `sim:touch`, `sim:press`,
+  /// `sim:knead` or `sim:grip`, which the options name. It is called at most once, by open_glove(),
+  /// and its error is returned. Without it, these are usage errors.
+  std::function<Result<SensorMotion>(const SimulatedGloveOptions&)> planned_motion;
 };
 
 /// Opens and identifies the glove; may block, 5 seconds at most. `side` is the hand that the user

@@ -16,8 +16,10 @@
 #include <nendo/base/job_offer.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/frame_sink.hpp>
+#include <nendo/flow/hand_contact.hpp>
 #include <nendo/flow/input_log.hpp>
 #include <nendo/flow/input_script.hpp>
+#include <nendo/flow/kneading_hand.hpp>
 #include <nendo/flow/layer.hpp>
 #include <nendo/flow/loop_stats.hpp>
 #include <nendo/flow/pacer.hpp>
@@ -48,6 +50,9 @@ struct HandInput {
   /// A layer has its own glove and calibration; the hand's bones are those of the first input of
   /// its side.
   std::optional<Layer> layer{};
+  /// Where the wrist of a simulated hand is, by its glove's own time. The loop moves the wrist with
+  /// each sample as a WristMove does, which a recording keeps.
+  std::shared_ptr<const WristPath> wrist_path{};
 
   /// Returns the skeleton for samples from a glove of that side. It always has the side `side`.
   hand::HandSkeleton skeleton(Side glove) const {
@@ -124,6 +129,9 @@ Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexce
 /// Returns the x of the plane, in model units, of whose both sides the fingertips shape; nothing:
 /// of none.
 std::optional<double> mirror_of(const puppet::Rig* rig) noexcept;
+/// Tells whether hands with that puppet, which may be null, can press clay: it has no points, masks
+/// or symmetry.
+bool can_press(const puppet::Rig* rig) noexcept;
 /// Returns what the step from one of them to the other is: of a puppet, of masks, or of symmetry.
 StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept;
 /// Makes the second half of the points the mirror images of the first.
@@ -279,6 +287,7 @@ private:
   void begin_anew(LogChange& change, Frame& frame) noexcept;
   void give_back_change() noexcept;
   void place_tips(deform::Points& tips) noexcept;
+  void place_body(const Hand& hand, const hand::HandPose& pose) noexcept;
   void take_rig(ReadyRig& rig, ReadySculptor& ready) noexcept;
   void note_hold() noexcept;
   void tell_rig(Frame& frame) const noexcept;
@@ -357,8 +366,9 @@ private:
   std::array<puppet::HandState, 2> hand_states_;  ///< by side, for the rig
   /// The control points, 3 by 5 a hand, or by as many as a puppet has; model units.
   deform::Points tips_;
-  std::vector<double> held_at_;  ///< the rig's values when the hands took hold of the shape
-  std::vector<double> still_at_; ///< and when they stopped (Shaping::is_still())
+  std::shared_ptr<HandBodies> bodies_; ///< of hands that press clay; by side, if there are two
+  std::vector<double> held_at_;        ///< the rig's values when the hands took hold of the shape
+  std::vector<double> still_at_;       ///< and when they stopped (Shaping::is_still())
   // For the thread that asks for changes:
   std::vector<std::unique_ptr<ModelVersion>> versions_;
   SculptorSetup first_;

@@ -2,9 +2,11 @@
 // The result of a tick: both hands, the field, and the deformed vertices. It is published through a
 // lock-free exchange of the latest value.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include <nendo/base/triple_buffer.hpp>
 #include <nendo/deform/field_sequence.hpp>
@@ -12,6 +14,7 @@
 #include <nendo/deform/surface_field.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/driver/sample.hpp>
+#include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/placement.hpp>
 #include <nendo/flow/step.hpp>
@@ -38,6 +41,22 @@ struct Awaited {
   std::uint32_t model = 0;  ///< ModelVersion::number
   std::uint32_t puppet = 0; ///< DeformLoop::puppet()
   friend bool operator==(const Awaited&, const Awaited&) = default;
+};
+
+/// The places where hands touch clay.
+struct Contacts {
+  static constexpr std::size_t most = 128;
+
+  std::array<deform::ClayContact, most> places{};
+  std::uint32_t count = 0;
+
+  /// Takes the first of them that have room. Their `body` counts the hands that are present, left
+  /// hand first.
+  void take(std::span<const deform::ClayContact> contacts) noexcept {
+    count = static_cast<std::uint32_t>(std::min(contacts.size(), most));
+    std::copy_n(contacts.begin(), count, places.begin());
+  }
+  std::span<const deform::ClayContact> all() const noexcept { return {places.data(), count}; }
 };
 
 struct Frame {
@@ -77,8 +96,10 @@ struct Frame {
   /// What led along the surface from the rest shape to this shape, in place of fields.
   deform::SurfaceMove surface;
   deform::ChainReport chain; ///< how the shape stayed injective; all 0 if that is not asked for
-  std::uint32_t model = 0;   ///< the version of the model that `shape` is of
-  std::uint32_t puppet = 0;  ///< the number of the puppet whose functions made this frame
+  ClayState clay{};
+  Contacts contacts{};
+  std::uint32_t model = 0;  ///< the version of the model that `shape` is of
+  std::uint32_t puppet = 0; ///< the number of the puppet whose functions made this frame
   /// The values of a puppet's functions, in their order, and how many there are; 0 without a
   /// puppet.
   std::array<float, puppet::Puppet::most_functions> functions{};

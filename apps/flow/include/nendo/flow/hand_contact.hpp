@@ -1,9 +1,12 @@
 #pragma once
-// A hand as the body that presses clay.
+// Hands as the bodies that press clay.
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include <nendo/deform/contact_part.hpp>
+#include <nendo/deform/mesh.hpp>
 #include <nendo/hand/hand_body.hpp>
 
 namespace nendo::flow {
@@ -12,5 +15,34 @@ namespace nendo::flow {
 /// units. Each part's surface goes with the joint that carries it. Wait-free, no allocation.
 void contact_parts(hand::HandBody& body, const hand::HandPose& pose, double units_per_metre,
                    std::span<deform::ContactPart> parts) noexcept;
+
+/// Returns T_stage_wrist, moved away from the model's middle until the hand is `clear_m` from all
+/// vertices, of which some thousands are looked at. Hands that begin to press clay must not be in
+/// it. Allocates.
+Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
+                         const hand::HandSkeleton& skeleton, const hand::JointAngles& angles,
+                         const Eigen::Isometry3d& T_stage_wrist, double clear_m);
+
+/// The bodies of one hand or two, where they are now, and a table on which the model lies.
+class HandBodies {
+public:
+  /// Allocates. All hands are in the pose of zero angles. The table's top is as low as the lowest
+  /// vertex of `model`, and reaches far beyond it.
+  HandBodies(std::span<const hand::HandSkeleton> hands, double units_per_metre,
+             const deform::Mesh& model);
+
+  /// Moves a hand's body; its pose is on the stage. Wait-free, no allocation.
+  void follow(std::size_t hand, const hand::HandPose& pose) noexcept;
+  /// Returns the parts of the first hand, then those of the next, and of the table; model units.
+  std::span<const deform::ContactPart> parts() const noexcept { return parts_; }
+  std::size_t count() const noexcept { return bodies_.size(); } ///< of hands
+  static constexpr std::size_t tables = 1;
+  double units_per_metre() const noexcept { return units_per_metre_; }
+
+private:
+  std::vector<hand::HandBody> bodies_;
+  std::vector<deform::ContactPart> parts_;
+  double units_per_metre_;
+};
 
 } // namespace nendo::flow

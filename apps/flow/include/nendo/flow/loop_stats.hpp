@@ -6,6 +6,7 @@
 
 #include <nendo/base/units.hpp>
 #include <nendo/driver/sample.hpp>
+#include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/histogram.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 
@@ -48,6 +49,9 @@ struct LoopStats {
   double most_bound = 0.0;                    ///< Lipschitz bound of a tick, had it been one link
   double least_determinant = 1.0;             ///< ChainReport::least_determinant of any tick
   std::uint64_t held_apart_ticks = 0;         ///< in which fingertips were held apart
+  std::uint64_t touching_ticks = 0;           ///< in which hands touched clay
+  double most_penetration_mm = 0.0;           ///< of clay in a hand, before it was set right
+  ClayState clay{};                           ///< of the last tick in which hands shaped clay
   Histogram wake_latency;                     ///< from TickRecord::scheduled to the loop's running
   Histogram work;                             ///< from there to the published frame
   Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it

@@ -9,6 +9,7 @@
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/subdivision.hpp>
 #include <nendo/deform/vertex_rings.hpp>
+#include <nendo/flow/clay_hands.hpp>
 
 namespace nendo::flow {
 
@@ -31,6 +32,7 @@ struct ModelVersion {
   const deform::Mesh mesh;    ///< before the hands; a reset goes back to it
   /// Made when a brush first needs them, by the thread that asks for changes; the loop never looks.
   std::shared_ptr<const deform::VertexRings> rings{};
+  std::shared_ptr<const ClayModel> clay{}; ///< likewise, when hands first press it
 
   // What follows belongs to the loop's thread while the loop has this version, and to the thread
   // that asks for changes otherwise.

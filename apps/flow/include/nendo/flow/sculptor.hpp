@@ -1,6 +1,5 @@
 #pragma once
-// One interface for the two ways of deforming, so that the loop need not know which of them it
-// runs.
+// One interface for the ways of deforming, so that the loop need not know which of them it runs.
 
 #include <array>
 #include <cstdint>
@@ -14,12 +13,15 @@
 #include <nendo/deform/surface_deformer.hpp>
 #include <nendo/deform/type1.hpp>
 #include <nendo/deform/type2.hpp>
+#include <nendo/flow/clay_hands.hpp>
 
 namespace nendo::flow {
 
 /// With type1, the start points are frozen and the rest shape is deformed anew each tick. With
-/// type2, the fingertips' paths are followed piece by piece.
-enum class Mode : std::uint8_t { type1, type2 };
+/// type2, the fingertips' paths are followed piece by piece. With clay, whole hands press the
+/// surface out of themselves.
+enum class Mode : std::uint8_t { type1, type2, clay };
+inline constexpr std::uint8_t mode_count = 3;
 
 std::string_view name_of(Mode mode) noexcept;
 std::optional<Mode> mode_named(std::string_view name) noexcept;
@@ -46,6 +48,10 @@ struct SculptorOptions {
   /// If set, type1 measures distances along the surface. Type2 does not: it moves its centres with
   /// the surface, where all distances would have to be measured anew at each piece.
   std::shared_ptr<const deform::SurfaceField> surface{};
+  /// The hands that press clay, and the model that is clay. A loop sets them. Without hands, as
+  /// with a puppet, clay is shaped as in type 1.
+  std::shared_ptr<const HandBodies> bodies{};
+  std::shared_ptr<const ClayModel> clay{};
 
   /// Tells whether a brush does something that needs the triangles about each vertex.
   bool needs_rings() const noexcept;
@@ -65,14 +71,12 @@ public:
   Sculptor(deform::SculptedShape& shape, Eigen::Index control_points,
            const SculptorOptions& options);
 
-  Mode mode() const noexcept {
-    return std::holds_alternative<deform::Type2Deformer>(deformer_) ? Mode::type2 : Mode::type1;
-  }
+  Mode mode() const noexcept;
 
   Eigen::Index control_points() const noexcept { return control_points_; }
 
   /// Tells whether fields() tells all that the last update did: not where distances are along the
-  /// surface, nor where a brush has changed something or a mask holds something.
+  /// surface, nor where a brush or a hand in clay has changed something or a mask holds something.
   bool is_told_by_fields() const noexcept;
 
   /// Lets the fingertips take hold of the model at `tips` (3 by control_points, model units).
@@ -136,6 +140,8 @@ public:
   bool moves_anything() const noexcept;
   /// Returns what the last update() needed to stay injective; all 0 if that is not asked for.
   deform::ChainReport report() const noexcept;
+  /// Returns the hands in clay; null in other modes.
+  const ClayHands* clay() const noexcept { return std::get_if<ClayHands>(&deformer_); }
 
 private:
   deform::FieldStatus counted(deform::FieldStatus status) noexcept {
@@ -143,7 +149,8 @@ private:
     return status;
   }
 
-  std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer> deformer_;
+  std::variant<deform::Type1Deformer, deform::Type2Deformer, deform::SurfaceDeformer, ClayHands>
+      deformer_;
   Eigen::Index control_points_;
   std::uint64_t holds_ = 0;
 };

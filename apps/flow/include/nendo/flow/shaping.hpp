@@ -126,6 +126,11 @@ private:
   deform::FieldStatus shape_by_hands(const deform::Points& tips, Frame& frame, LoopStats& stats,
                                      bool completes) noexcept;
   deform::FieldStatus show_rest(Frame& frame) noexcept;
+  // In clay, a stroke is a contact: from the first touch until the hands have left.
+  void tell_clay(Frame& frame) const noexcept;
+  void follow_clay(const ClayState& clay, LoopStats& stats) noexcept;
+  bool has_left_clay() const noexcept;
+  void end_clay_stroke(const deform::Points& tips) noexcept;
   bool is_pulled() const noexcept;
   bool is_in_hand() const noexcept;
   void take_hold_anew(const deform::Points& tips) noexcept;
@@ -178,6 +183,7 @@ private:
   std::optional<Awaited> awaited_;    ///< by the first step that is due
   HostClock::duration time_{};
   std::optional<HostClock::duration> exchanged_at_; ///< last
+  std::optional<HostClock::duration> touched_at_;   ///< clay, last
   std::vector<Request> steps_due_;                  ///< undos, redos and resets, in their order
 };
 

@@ -22,6 +22,7 @@ struct TouchOptions {
   double press_m = 0.020;
   double pull_m = 0.090;
   double glide_m = 0.012;
+  double model_size_m = PlacementOptions{}.model_size_m;
 };
 
 /// The place on the stage that a fingertip is to reach.

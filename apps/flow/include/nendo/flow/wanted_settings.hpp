@@ -28,7 +28,8 @@ public:
   /// Returns the command that asks for what is chosen, if nobody has asked for it yet.
   std::optional<Command> ask() noexcept;
 
-  void other_mode() noexcept;
+  /// The points of a puppet do not press clay.
+  void next_mode(bool is_puppet) noexcept;
   void next_kernel() noexcept;
   /// Gives all fingers the next brush, none left out; brushes are of type 2.
   void next_brush() noexcept;

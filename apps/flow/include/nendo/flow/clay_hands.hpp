@@ -1,0 +1,90 @@
+#pragma once
+// Hands that press clay, in the form that a Sculptor has for its ways of deforming.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <nendo/deform/clay.hpp>
+#include <nendo/deform/field_sequence.hpp>
+#include <nendo/deform/injective_chain.hpp>
+#include <nendo/flow/hand_contact.hpp>
+
+namespace nendo::flow {
+
+/// The corners of a model's triangles, three each, and the volume that they enclose in the model's
+/// own units.
+struct ClayModel {
+  explicit ClayModel(const deform::Mesh& mesh);
+
+  std::vector<std::uint32_t> corners;
+  double volume = 0.0; ///< >= 0
+};
+
+/// What the hands do to clay in a frame, and did before. `contacts` of Frame tell where.
+struct ClayState {
+  bool is_clay = false;        ///< the mode is clay; otherwise all else is 0
+  std::uint32_t touching = 0;  ///< places at which hands touch the surface
+  double penetration_mm = 0.0; ///< how deep the surface was left in a hand, before it was set right
+  double behind_mm = 0.0;      ///< the way of a hand that waits for the next tick
+  double volume = 0.0;         ///< now, in cubic model units; 0 if the surface is not closed
+  double first_volume = 0.0;   ///< of the model before the hands
+
+  /// Returns the volume, of what it was at first; 1 if there is none.
+  double volume_part() const noexcept { return first_volume > 0.0 ? volume / first_volume : 1.0; }
+};
+
+/// Returns how hard a hand presses there, from 0 to 1: half of it by the pressure that stays, half
+/// by how fast it presses on.
+float strength_of(const deform::ClayContact& contact) noexcept;
+
+/// How hard each finger, thumb to little finger, and the palm press, from 0 to 1.
+using HandTouch = std::array<float, hand::finger_count + 1>;
+/// Returns that of a body: HandBodies counts them.
+HandTouch touch_of(std::span<const deform::ClayContact> contacts, std::size_t body) noexcept;
+
+/// Its functions do what those of deform::Type2Deformer do; the bodies, and not the fingertips,
+/// tell where the hands are. None but the constructors allocates.
+class ClayHands {
+public:
+  /// `radius_m` tells how far clay gives way about a hand, on the stage; less than least_radius_m
+  /// counts as that, because palms crease the surface otherwise. `shape` must outlive this.
+  ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
+            std::shared_ptr<const HandBodies> bodies, double radius_m,
+            const deform::EvaluationOptions& evaluation);
+  static constexpr double least_radius_m = 0.020;
+
+  deform::FieldStatus begin() { return clay_.begin(bodies_->parts()); }
+  deform::FieldStatus grab(const deform::Points&) { return clay_.grab(bodies_->parts()); }
+  /// Presses the surface out of where the bodies are now. With `ends`, all of their way is made.
+  deform::FieldStatus press(bool ends);
+  void release(bool is_step) noexcept;
+  deform::FieldStatus reset(const deform::Points&) { return clay_.reset(bodies_->parts()); }
+  deform::FieldStatus undo(const deform::Points&) { return clay_.undo(bodies_->parts()); }
+  deform::FieldStatus redo(const deform::Points&) { return clay_.redo(bodies_->parts()); }
+  std::size_t undo_steps() const noexcept { return clay_.undo_steps(); }
+  std::size_t redo_steps() const noexcept { return clay_.redo_steps(); }
+  std::size_t forgotten_steps() const noexcept { return clay_.forgotten_steps(); }
+
+  const deform::BlockLayout& layout() const noexcept { return clay_.layout(); }
+  const deform::BlockShape& shape() const noexcept { return clay_.shape(); }
+  /// Always empty: what hands do has no formula that is short enough to be told.
+  const deform::FieldSequence& fields() const noexcept { return fields_; }
+  deform::ChainReport report() const noexcept { return {}; }
+  /// Tells whether the last press() changed the shape.
+  bool is_moved() const noexcept { return is_moved_; }
+  ClayState state() const noexcept;
+  std::span<const deform::ClayContact> contacts() const noexcept { return clay_.contacts(); }
+
+private:
+  std::shared_ptr<const ClayModel> model_;
+  std::shared_ptr<const HandBodies> bodies_;
+  deform::ClayDeformer clay_;
+  deform::FieldSequence fields_;
+  bool is_moved_ = false;
+  bool presses_ = false; ///< since it was released
+};
+
+} // namespace nendo::flow

@@ -1,0 +1,69 @@
+#pragma once
+// Simulated hands that work on clay: their wrists move, and their fingers bend, by a plan for the
+// model that stands before them.
+
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <nendo/base/result.hpp>
+#include <nendo/deform/mesh.hpp>
+#include <nendo/hand/calibration.hpp>
+#include <nendo/hand/joint_angles.hpp>
+#include <nendo/hand/skeleton.hpp>
+
+namespace nendo::flow {
+
+/// What a hand does. A left hand helps the right one, and can do it alone, too.
+enum class KneadTask : std::uint8_t {
+  press, ///< flattens the model on its table with the palm, turned from press to press; by turns
+  knead, ///< thumbs it into a bowl; left: holds the wall from outside
+  grip,  ///< pinches it with thumb and index finger, and pulls an ear; left: on the other side
+};
+std::string_view name_of(KneadTask task) noexcept;
+std::optional<KneadTask> knead_task_named(std::string_view name) noexcept;
+
+/// Where a wrist is at each time.
+class WristPath {
+public:
+  /// Poses on the stage, evenly in time, at least two.
+  WristPath(std::vector<Eigen::Isometry3d> poses, double step_s);
+
+  /// Returns the pose at that time since the beginning: before it the first, after the end the
+  /// last. Between two poses it is a line and the shortest turn. Any thread, wait-free.
+  Eigen::Isometry3d at(double time_s) const noexcept;
+  double length_s() const noexcept { return step_s_ * static_cast<double>(poses_.size() - 1); }
+
+private:
+  std::vector<Eigen::Isometry3d> poses_;
+  double step_s_;
+};
+
+/// The motion: it begins and ends beside the model, and the hand then stays there.
+class KneadingHand {
+public:
+  /// Plans the motion. The model's longest side is `model_size_m` on the stage. Error: bad_input,
+  /// if the model has no size. The same arguments give the same motion. Allocates.
+  static Result<KneadingHand> make(const deform::Mesh& model, const hand::HandSkeleton& skeleton,
+                                   KneadTask task, double model_size_m);
+
+  /// Returns the joint angles at a time since the start; times before it, and such as are not
+  /// finite, count as 0. Any thread, wait-free.
+  hand::JointAngles angles(double time_s) const noexcept;
+  /// Returns the sensors' angles of a glove at that time; joint_angles() turns them into
+  /// angles(time_s).
+  hand::SensorAngles sensor_angles(double time_s) const noexcept;
+  const std::shared_ptr<const WristPath>& wrist() const noexcept { return wrist_; }
+  double length_s() const noexcept { return wrist_->length_s(); }
+
+private:
+  KneadingHand() = default;
+
+  std::shared_ptr<const std::vector<hand::JointAngles>> keys_;
+  std::shared_ptr<const WristPath> wrist_;
+};
+
+} // namespace nendo::flow

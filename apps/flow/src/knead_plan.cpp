@@ -1,0 +1,336 @@
+#include "knead_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <nendo/hand/hand_body.hpp>
+#include <nendo/hand/inverse_kinematics.hpp>
+
+#include "touch_score.hpp"
+
+namespace nendo::flow {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using hand::JointAngles;
+
+constexpr double away_m = 0.05; // from the model, where a motion begins and ends
+
+/// From 0 at `begin_s` to 1 at `end_s`.
+double ease(double time_s, double begin_s, double end_s) noexcept {
+  return least_jerk((time_s - begin_s) / (end_s - begin_s));
+}
+
+/// Axes of a wrist whose fingers point along `fingers`, with the back of the hand towards `back`.
+Matrix3d axes_of(const Vector3d& fingers, const Vector3d& back) noexcept {
+  Matrix3d axes;
+  axes.col(2) = -fingers.normalized();
+  axes.col(1) = (back - back.dot(axes.col(2)) * axes.col(2)).normalized();
+  axes.col(0) = axes.col(1).cross(axes.col(2));
+  return axes;
+}
+
+JointAngles flat_hand() noexcept {
+  JointAngles angles;
+  angles.thumb_abduction_rad = from_degrees(10);
+  return angles;
+}
+
+/// Bent fingers that are out of the way of a thumb or of a pinch.
+JointAngles fist() noexcept {
+  JointAngles angles;
+  for (auto& finger : angles.fingers)
+    finger = {from_degrees(85), 0.0, from_degrees(100), from_degrees(60)};
+  return angles;
+}
+
+/// The lowest place of a flat hand, below the wrist's axis.
+double palm_depth_m(const hand::HandSkeleton& skeleton, const JointAngles& angles) {
+  hand::HandBody body(skeleton);
+  body.follow(skeleton.pose(angles, Isometry3d::Identity()));
+  double lowest = 0.0;
+  for (const hand::BodyPart& part : body.parts())
+    for (std::size_t corner = 0; corner < part.corner_count; ++corner)
+      lowest = std::min(lowest, part.corners_m[corner].y() - part.radii_m[corner]);
+  return -lowest;
+}
+
+/// A hand whose palm comes along `way`, with the palm's middle on the line through `at`.
+class Palm {
+public:
+  explicit Palm(const hand::HandSkeleton& skeleton)
+      : angles_(flat_hand()), depth_m_(palm_depth_m(skeleton, angles_)),
+        middle_m_(0.42 * skeleton.rest_offset(hand::Joint::middle_metacarpal).norm() + 0.075) {}
+
+  const JointAngles& angles() const noexcept { return angles_; }
+  /// The palm's surface touches `at`, which it faces against `back`.
+  Isometry3d wrist(const Vector3d& at, const Vector3d& fingers, const Vector3d& back) const {
+    Isometry3d T = Isometry3d::Identity();
+    T.linear() = axes_of(fingers, back);
+    T.translation() = at + depth_m_ * T.linear().col(1) + middle_m_ * T.linear().col(2);
+    return T;
+  }
+
+private:
+  JointAngles angles_;
+  double depth_m_;
+  double middle_m_; ///< from the wrist to what presses most
+};
+
+/// Presses flat on the table, from above. Two hands take turns, each from its own side.
+class Flatten final : public KneadPlan {
+public:
+  Flatten(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), palm_(skeleton), side_(skeleton.side() == Side::right ? 1.0 : -1.0) {}
+
+  double length_s() const noexcept override {
+    return turn_s * (static_cast<double>(presses) + 0.5);
+  }
+
+  Pose at(double time_s) const noexcept override {
+    const double begin_s = side_ > 0.0 ? 0.0 : 0.5 * turn_s;
+    const double own_s = std::max(0.0, time_s - begin_s);
+    const double number = std::min(std::floor(own_s / turn_s), presses - 1.0);
+    const auto press = static_cast<std::size_t>(number);
+    const double t = own_s - turn_s * number;
+    const std::size_t of_both = 2 * press + (side_ > 0.0 ? 0 : 1);
+    const double top = of_both == 0 ? 1.0 : thickness[of_both - 1];
+    const double down = top + (thickness[of_both] - top) * ease(t, 0.4, 0.8);
+    const double lifted = lift_m * (1.0 - ease(t, 0.1, 0.45) + ease(t, 0.9, 1.25));
+    const double aside = aside_m * (1.0 - ease(t, 0.0, 0.35) + ease(t, 0.95, 1.35));
+    const double next = press + 1 < presses ? turn_deg[press + 1] : turn_deg[press];
+    const double turn_rad =
+        side_ * from_degrees(turn_deg[press] + (next - turn_deg[press]) * ease(t, 1.3, turn_s));
+    Vector3d at = model_.middle() + side_ * aside * Vector3d::UnitX();
+    at.y() = model_.low.y() + down * model_.height() + lifted;
+    const Vector3d fingers(-std::sin(turn_rad), 0.0, -std::cos(turn_rad));
+    return {palm_.angles(), palm_.wrist(at, fingers, Vector3d::UnitY())};
+  }
+
+private:
+  static constexpr double turn_s = 1.8;   ///< from one press to the same hand's next
+  static constexpr double lift_m = 0.09;  ///< between presses
+  static constexpr double aside_m = 0.11; ///< then, too: there the other hand has room
+  static constexpr std::size_t presses = 5;
+  static constexpr std::array<double, presses> turn_deg{25.0, 75.0, -5.0, 50.0, 10.0};
+  /// Of the model's height, after each press of both hands.
+  static constexpr std::array<double, 2 * presses> thickness{0.72, 0.60, 0.50, 0.43, 0.38,
+                                                             0.36, 0.35, 0.34, 0.34, 0.34};
+
+  KneadedModel model_;
+  Palm palm_;
+  double side_; ///< 1: right
+};
+
+/// The rounds of a bowl: presses outwards, one beside the other.
+struct BowlRounds {
+  static constexpr double enter_s = 1.6, press_s = 0.42, leave_s = 1.0;
+  static constexpr std::size_t presses = 10, rounds = 3;
+  static constexpr double all_s = press_s * presses * rounds;
+  static constexpr std::array<double, rounds> out{0.25, 0.42, 0.56};     ///< of the radius
+  static constexpr std::array<double, rounds> wall{1.12, 1.17, 1.22};    ///< where it is held
+  static constexpr std::array<double, rounds> lean_rad{0.05, 0.1, 0.15}; ///< of the thumb
+
+  std::size_t round = 0;
+  double angle_rad = 0.0; ///< of the press about the axis
+  double going_rad = 0.0; ///< the same, but on its way from one press to the next
+  double part = 0.0;      ///< of the press, from 0 to 1
+  bool is_pressing = false;
+
+  static BowlRounds at(double time_s) noexcept {
+    const double gone = (time_s - enter_s) / press_s;
+    const double most = static_cast<double>(presses * rounds);
+    BowlRounds now;
+    now.is_pressing = gone >= 0.0 && gone < most;
+    const double within = std::clamp(gone, 0.0, most);
+    const double whole = std::min(std::floor(within), most - 1.0);
+    now.round = static_cast<std::size_t>(whole) / presses;
+    now.part = now.is_pressing ? gone - whole : 0.0;
+    now.angle_rad = angle_of(whole);
+    const double part = within - whole;
+    const double on = ease(part, 0.7, 1.3);          // to the next, half of the way
+    const double back = 1.0 - ease(part, -0.3, 0.3); // from the one before
+    now.going_rad = now.angle_rad + on * (angle_of(whole + 1.0) - now.angle_rad) -
+                    back * (now.angle_rad - angle_of(whole - 1.0));
+    return now;
+  }
+  static constexpr double length_s() noexcept { return enter_s + all_s + leave_s; }
+  Vector3d outwards() const noexcept { return along(angle_rad); }
+  static Vector3d along(double angle) noexcept { return {std::cos(angle), 0.0, -std::sin(angle)}; }
+
+private:
+  /// Each round begins half a step beside the one before.
+  static double angle_of(double press) noexcept {
+    const double round = std::max(0.0, std::floor(press / static_cast<double>(presses)));
+    return 2.0 * std::numbers::pi * (press + 0.5 * round) / static_cast<double>(presses);
+  }
+};
+
+/// The thumb goes down the middle, and then presses outwards all around.
+class Thumb final : public KneadPlan {
+public:
+  Thumb(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), angles_(fist()) {
+    angles_.thumb_abduction_rad = from_degrees(50); // 65 mm of it are free of the fist
+    const hand::HandPose pose = skeleton.pose(angles_, Isometry3d::Identity());
+    tip_m_ = pose[hand::Joint::thumb_tip].translation();
+    along_ = (tip_m_ - pose[hand::Joint::thumb_proximal].translation()).normalized();
+    const Vector3d knuckle = pose[hand::Joint::index_proximal].translation();
+    aside_ = (knuckle - tip_m_) - (knuckle - tip_m_).dot(along_) * along_;
+    aside_.normalize();
+  }
+
+  double length_s() const noexcept override { return BowlRounds::length_s(); }
+
+  Pose at(double time_s) const noexcept override {
+    const BowlRounds now = BowlRounds::at(time_s);
+    const double end_s = BowlRounds::enter_s + BowlRounds::all_s;
+    const double out = now.is_pressing ? BowlRounds::out[now.round] * ease(now.part, 0.0, 0.4) *
+                                             (1.0 - ease(now.part, 0.65, 1.0))
+                                       : 0.0;
+    const double lift = 1.0 - ease(time_s, 0.0, BowlRounds::enter_s) +
+                        ease(time_s, end_s, end_s + BowlRounds::leave_s);
+    const double deep = model_.low.y() + floor * model_.height();
+    const double above = model_.high.y() + away_m;
+    Vector3d tip = model_.middle() + out * model_.radius() * now.outwards();
+    tip.y() = deep + lift * (above - deep);
+    const double lean =
+        out > 0.0 ? BowlRounds::lean_rad[now.round] * std::min(1.0, 4.0 * out) : 0.0;
+    Pose pose{angles_, Isometry3d::Identity()};
+    const Vector3d down = (-lean * now.outwards() - Vector3d::UnitY()).normalized();
+    pose.T_stage_wrist.linear() = turn_to(down);
+    pose.T_stage_wrist.translation() = tip - pose.T_stage_wrist.linear() * tip_m_;
+    return pose;
+  }
+
+private:
+  static constexpr double floor = 0.30; ///< of the height: the thumb's tip over the model's foot
+
+  /// The thumb points down, and the knuckles to the operator's right and towards the operator.
+  Matrix3d turn_to(const Vector3d& down) const noexcept {
+    const auto frame = [](const Vector3d& x, const Vector3d& y) {
+      Matrix3d axes;
+      axes.col(0) = x;
+      axes.col(1) = (y - y.dot(x) * x).normalized();
+      axes.col(2) = axes.col(0).cross(axes.col(1));
+      return axes;
+    };
+    return frame(down, Vector3d(1.0, 0.0, 0.6)) * frame(along_, aside_).transpose();
+  }
+
+  KneadedModel model_;
+  JointAngles angles_;
+  Vector3d tip_m_, along_, aside_; ///< in the wrist's frame
+};
+
+/// The palm that holds the wall against the thumb.
+class Wall final : public KneadPlan {
+public:
+  Wall(const KneadedModel& model, const hand::HandSkeleton& skeleton)
+      : model_(model), palm_(skeleton) {}
+
+  double length_s() const noexcept override { return BowlRounds::length_s(); }
+
+  Pose at(double time_s) const noexcept override {
+    const BowlRounds now = BowlRounds::at(time_s);
+    const double held =
+        now.is_pressing ? ease(now.part, 0.05, 0.35) * (1.0 - ease(now.part, 0.65, 0.95)) : 0.0;
+    const double wall = BowlRounds::wall[now.round] * model_.radius();
+    // From one press to the next it goes around the model, not through it.
+    constexpr double end_s = BowlRounds::enter_s + BowlRounds::all_s;
+    const double off =
+        1.0 - ease(time_s, 0.0, BowlRounds::enter_s) + ease(time_s, end_s, BowlRounds::length_s());
+    const double free = (1.0 - held) * aside_m + off * (away_m - aside_m);
+    const Vector3d out = BowlRounds::along(now.going_rad);
+    const Vector3d along = Vector3d::UnitY().cross(out);
+    Vector3d at = model_.middle() + (wall + free) * out;
+    at.y() = std::max(at.y(), model_.low.y() + half_breadth_m); // of the table
+    return {palm_.angles(), palm_.wrist(at, along, out)};
+  }
+
+private:
+  static constexpr double half_breadth_m = 0.046; ///< of a palm
+  static constexpr double aside_m = 0.025;        ///< from the wall, between presses
+
+  KneadedModel model_;
+  Palm palm_;
+};
+
+/// Thumb and index finger close on a side of the model, pull, and open.
+class Pinch final : public KneadPlan {
+public:
+  Pinch(const KneadedModel& model, const hand::HandSkeleton& skeleton) : model_(model) {
+    JointAngles start;
+    for (auto& finger : start.fingers)
+      finger = {1.2, 0.0, 1.4, 0.9};
+    start.fingers[0] = {0.6, 0.0, 0.5, 0.3};
+    start.thumb_roll_rad = 0.6;
+    start.thumb_abduction_rad = 0.5;
+    stage_ = Eigen::AngleAxisd(from_degrees(30.0), Vector3d::UnitZ()).matrix() *
+             Eigen::AngleAxisd(from_degrees(-70.0), Vector3d::UnitX()).matrix();
+    if (skeleton.side() == Side::left) stage_.row(0) *= -1.0;
+    const double chord = std::sqrt(std::max(0.0, into_m * (2.0 * radius() - into_m)));
+    open_ = pinched(skeleton, start, 2.0 * (std::min(chord, most_chord_m) + clear_m));
+    closed_ = pinched(skeleton, start, closed_m);
+  }
+
+  double length_s() const noexcept override { return 4.8; }
+
+  Pose at(double time_s) const noexcept override {
+    const double closed = ease(time_s, 1.0, 2.0) - ease(time_s, 3.5, 3.9);
+    const double out = away_m * (1.0 - ease(time_s, 0.0, 0.9)) - into_m +
+                       pull_m * ease(time_s, 2.1, 3.3) + 2.0 * away_m * ease(time_s, 3.9, 4.8);
+    Pose pose{open_, wrist_at(model_.middle() + (radius() + out) * stage_.col(0))};
+    for (std::size_t k = 0; k < hand::angle_count; ++k) {
+      const hand::Angle angle = hand::angle_at(k);
+      pose.angles[angle] += closed * (closed_[angle] - open_[angle]);
+    }
+    return pose;
+  }
+
+private:
+  double radius() const noexcept { return 0.5 * (model_.high.x() - model_.low.x()); }
+  Isometry3d wrist_at(const Vector3d& tips) const noexcept {
+    Isometry3d wrist = Isometry3d::Identity();
+    wrist.linear() = axes_of(stage_ * Vector3d(-std::cos(up_rad), std::sin(up_rad), 0.0),
+                             stage_ * Vector3d(std::sin(up_rad), std::cos(up_rad), 0.0));
+    wrist.translation() = tips + stage_ * Vector3d(0.130, -0.030, -0.020);
+    return wrist;
+  }
+  /// With both fingertips that far apart.
+  JointAngles pinched(const hand::HandSkeleton& skeleton, const JointAngles& start,
+                      double gap_m) const {
+    hand::FingertipTargets targets;
+    targets[0] = {-0.5 * gap_m * stage_.col(1), 1.0};
+    targets[1] = {0.5 * gap_m * stage_.col(1), 1.0};
+    return hand::inverse_kinematics(skeleton, wrist_at(Vector3d::Zero()), targets, start).angles;
+  }
+
+  static constexpr double up_rad = from_degrees(50.0); ///< of the fingers: both tips reach then
+  static constexpr double clear_m = 0.010;             ///< of the fingertips, before they close
+  static constexpr double closed_m = 0.011;            ///< between them
+  static constexpr double into_m = 0.016;              ///< the model, before they close
+  static constexpr double most_chord_m = 0.027;        ///< no hand opens wider
+  static constexpr double pull_m = 0.032;
+
+  KneadedModel model_;
+  JointAngles open_, closed_;
+  Matrix3d stage_; ///< outwards, from the thumb to the index finger, and across; left: mirrored
+};
+
+} // namespace
+
+std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
+                                   const hand::HandSkeleton& skeleton) {
+  if (task == KneadTask::press) return std::make_unique<Flatten>(model, skeleton);
+  if (task == KneadTask::grip) return std::make_unique<Pinch>(model, skeleton);
+  if (skeleton.side() == Side::right) return std::make_unique<Thumb>(model, skeleton);
+  return std::make_unique<Wall>(model, skeleton);
+}
+
+} // namespace nendo::flow

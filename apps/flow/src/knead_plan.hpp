@@ -1,0 +1,36 @@
+#pragma once
+// What a kneading hand does at each time: where its wrist is, and how its fingers are bent.
+
+#include <memory>
+
+#include <nendo/flow/kneading_hand.hpp>
+
+namespace nendo::flow {
+
+/// The model on the stage, in metres.
+struct KneadedModel {
+  Eigen::Vector3d low, high; ///< corners of its box
+
+  Eigen::Vector3d middle() const { return 0.5 * (low + high); }
+  double height() const { return high.y() - low.y(); }
+  /// Half of its mean breadth.
+  double radius() const { return 0.25 * (high.x() - low.x() + high.z() - low.z()); }
+};
+
+class KneadPlan {
+public:
+  struct Pose {
+    hand::JointAngles angles;
+    Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();
+  };
+
+  virtual ~KneadPlan() = default;
+  virtual double length_s() const noexcept = 0;
+  /// Returns the pose at a time from 0 to length_s().
+  virtual Pose at(double time_s) const noexcept = 0;
+};
+
+std::unique_ptr<KneadPlan> plan_of(KneadTask task, const KneadedModel& model,
+                                   const hand::HandSkeleton& skeleton);
+
+} // namespace nendo::flow

@@ -1,0 +1,98 @@
+#include <nendo/flow/kneading_hand.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "knead_plan.hpp"
+#include "sensor_angles.hpp"
+
+namespace nendo::flow {
+namespace {
+
+constexpr double knead_step_s = 1.0 / 60.0;
+constexpr std::array<std::string_view, 3> task_names{"press", "knead", "grip"};
+
+/// Which two keys a time lies between, and how far.
+struct Between {
+  std::size_t first;
+  double part;
+};
+
+Between between(double time_s, double step_s, std::size_t keys) noexcept {
+  const double last = static_cast<double>(keys - 1);
+  const double at = time_s > 0.0 && std::isfinite(time_s) ? std::min(time_s / step_s, last) : 0.0;
+  const double whole = std::min(std::floor(at), last - 1.0);
+  return {static_cast<std::size_t>(whole), at - whole};
+}
+
+} // namespace
+
+std::string_view name_of(KneadTask task) noexcept {
+  return task_names[static_cast<std::size_t>(task)];
+}
+
+std::optional<KneadTask> knead_task_named(std::string_view name) noexcept {
+  const auto* const found = std::find(task_names.begin(), task_names.end(), name);
+  if (found == task_names.end()) return std::nullopt;
+  return static_cast<KneadTask>(found - task_names.begin());
+}
+
+WristPath::WristPath(std::vector<Eigen::Isometry3d> poses, double step_s)
+    : poses_(std::move(poses)), step_s_(step_s) {}
+
+Eigen::Isometry3d WristPath::at(double time_s) const noexcept {
+  const auto [first, part] = between(time_s, step_s_, poses_.size());
+  const Eigen::Isometry3d& a = poses_[first];
+  const Eigen::Isometry3d& b = poses_[first + 1];
+  const Eigen::Quaterniond from(a.linear());
+  const Eigen::Quaterniond to(b.linear());
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = from.slerp(part, to).toRotationMatrix();
+  pose.translation() = a.translation() + part * (b.translation() - a.translation());
+  return pose;
+}
+
+Result<KneadingHand> KneadingHand::make(const deform::Mesh& model,
+                                        const hand::HandSkeleton& skeleton, KneadTask task,
+                                        double model_size_m) {
+  if (model.vertices.cols() == 0) return Error{Errc::bad_input, "the model has no vertices"};
+  const Eigen::Vector3d low = model.vertices.rowwise().minCoeff();
+  const Eigen::Vector3d high = model.vertices.rowwise().maxCoeff();
+  const double size = (high - low).maxCoeff();
+  if (!(size > 0.0) || !std::isfinite(size))
+    return Error{Errc::bad_input, "the model has no size, so hands find nothing to press"};
+  const double scale = model_size_m / size;
+  const auto plan = plan_of(task, {scale * low, scale * high}, skeleton);
+  const auto count = static_cast<std::size_t>(std::ceil(plan->length_s() / knead_step_s)) + 1;
+  auto keys = std::make_shared<std::vector<hand::JointAngles>>();
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t key = 0; key < count; ++key) {
+    const KneadPlan::Pose pose =
+        plan->at(std::min(knead_step_s * static_cast<double>(key), plan->length_s()));
+    keys->push_back(pose.angles);
+    poses.push_back(pose.T_stage_wrist);
+  }
+  KneadingHand hand;
+  hand.keys_ = std::move(keys);
+  hand.wrist_ = std::make_shared<const WristPath>(std::move(poses), knead_step_s);
+  return hand;
+}
+
+hand::JointAngles KneadingHand::angles(double time_s) const noexcept {
+  const auto [first, part] = between(time_s, knead_step_s, keys_->size());
+  hand::JointAngles angles;
+  for (std::size_t k = 0; k < hand::angle_count; ++k) {
+    const hand::Angle angle = hand::angle_at(k);
+    const double before = (*keys_)[first][angle];
+    angles[angle] = before + part * ((*keys_)[first + 1][angle] - before);
+  }
+  return angles;
+}
+
+hand::SensorAngles KneadingHand::sensor_angles(double time_s) const noexcept {
+  return sensor_angles_of(angles(time_s));
+}
+
+} // namespace nendo::flow

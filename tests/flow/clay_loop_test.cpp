@@ -1,0 +1,266 @@
+// Hands that press clay, in a loop.
+
+#include <cmath>
+#include <memory>
+
+#include <doctest/doctest.h>
+
+#include <nendo/flow/hand_contact.hpp>
+
+#include "support/flow_fixtures.hpp"
+
+namespace clay_loop_test {
+
+using namespace nendo;
+using namespace nendo::flow;
+using namespace std::chrono_literals;
+using deform::Points;
+using test::LoopUnderTest;
+
+namespace {
+
+/// Both hands come from beside the ball, press it, and go back, in so many ticks.
+class Presses {
+public:
+  explicit Presses(Mode mode = Mode::clay) : test_(mode, {.rings_of_ball = 32}) {
+    for (const HandInput& hand : test_.inputs) {
+      const std::size_t slot = Placement::index_of(hand.side);
+      beside_[slot] = beside(test_.model, test_.placement.units_per_metre, hand.skeleton(hand.side),
+                             hand::joint_angles(hand.first, hand::default_calibration()),
+                             test_.placement.T_stage_wrist[slot], 0.02);
+    }
+    test_.placement.T_stage_wrist = beside_; // where hands begin that must not tear the model
+    test_.loop =
+        std::make_unique<DeformLoop>(test_.model, test_.placement, test_.inputs, test_.options);
+    go(0.0, 2);
+  }
+
+  LoopUnderTest& test() noexcept { return test_; }
+  /// Puts the hands a part of the way from beside the ball into it.
+  const Frame& go(double part, int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      for (const Side side : {Side::left, Side::right}) {
+        Eigen::Isometry3d wrist = beside_[Placement::index_of(side)];
+        wrist.translation().x() += (side == Side::left ? 1.0 : -1.0) * 0.06 * part;
+        test_.commands.try_push(WristMove::to(side, wrist));
+      }
+      now_ += 10ms;
+      test_.bend(0, now_);
+      test_.loop->tick(ticks_++, now_, now_);
+      test_.loop->frames().update();
+    }
+    return frame();
+  }
+  /// In and out, and away for long enough to end the stroke.
+  void press(double part = 1.0) {
+    constexpr int steps = 20;
+    for (int step = 1; step <= steps; ++step)
+      go(part * step / steps, 1);
+    for (int step = steps; step >= 0; --step)
+      go(part * step / steps, 1);
+    go(0.0, 60);
+  }
+  void ask(Request request) { test_.commands.try_push(request); }
+  void change_to(Mode mode) {
+    LoopSettings settings = test_.loop->settings();
+    settings.mode = mode;
+    REQUIRE(test_.loop->change_settings(settings));
+  }
+  const Frame& frame() { return test_.loop->frames().front(); }
+  Points shape() { return test_.vertices_of(frame()); }
+
+private:
+  LoopUnderTest test_;
+  std::array<Eigen::Isometry3d, 2> beside_;
+  HostTime now_ = HostClock::now();
+  std::uint64_t ticks_ = 0;
+};
+
+double farthest(const Points& a, const Points& b) {
+  return (a - b).colwise().norm().maxCoeff();
+}
+
+} // namespace
+
+TEST_SUITE("clay_loop") {
+  TEST_CASE("hands beside the model leave it as it is, and their loads are felt nowhere") {
+    Presses presses;
+    CHECK(presses.shape() == presses.test().model.vertices);
+    const Frame& frame = presses.go(0.0, 10);
+    CHECK(frame.clay.is_clay);
+    CHECK(frame.clay.touching == 0);
+    CHECK(frame.contacts.count == 0);
+    CHECK(frame.undo_steps == 0);
+    for (const std::size_t body : {0U, 1U})
+      for (const float touch : touch_of(frame.contacts.all(), body))
+        CHECK(touch == 0.0F);
+  }
+
+  TEST_CASE("beside() keeps all vertices as far from the hand as was asked for") {
+    const deform::Mesh ball = test::ball(24);
+    const hand::HandSkeleton skeleton(Side::right);
+    const Eigen::Isometry3d at_its_side(Eigen::Translation3d(0.4, 0.0, 0.0));
+    for (const double clear_m : {0.0, 0.01, 0.05}) {
+      const Eigen::Isometry3d wrist = beside(ball, 2.5, skeleton, {}, at_its_side, clear_m);
+      hand::HandBody body(skeleton);
+      body.follow(skeleton.pose({}, wrist));
+      double least_m = 1.0;
+      for (const auto vertex : ball.vertices.colwise())
+        least_m = std::min(least_m, body.nearest(vertex / 2.5).distance_m);
+      CHECK(least_m >= clear_m - 1e-9);
+      CHECK(least_m < clear_m + 0.05);
+    }
+  }
+
+  TEST_CASE("a press moves the surface, keeps the volume, and is told where it is") {
+    Presses presses;
+    std::uint32_t most = 0;
+    for (int step = 1; step <= 20; ++step) {
+      const Frame& frame = presses.go(step / 20.0, 1);
+      most = std::max(most, frame.clay.touching);
+      CHECK(frame.fields.fields().empty());
+      const double units = presses.test().placement.units_per_metre;
+      for (const deform::ClayContact& contact : frame.contacts.all()) {
+        CHECK(contact.load_mm > 0.0F);
+        CHECK(strength_of(contact) > 0.0F);
+        CHECK(strength_of(contact) <= 1.0F);
+        REQUIRE(contact.body < 2);
+        hand::HandBody body{hand::HandSkeleton(contact.body == 0 ? Side::left : Side::right)};
+        body.follow(frame.hands[contact.body].pose);
+        CHECK(std::abs(body.nearest(contact.place / units).distance_m) < 0.002);
+      }
+      if (frame.clay.touching > 0) CHECK(frame.undo_steps == 1);
+    }
+    CHECK(most > 3);
+    presses.press();
+    const Frame& frame = presses.frame();
+    CHECK(frame.clay.touching == 0);
+    CHECK(farthest(presses.shape(), presses.test().model.vertices) > 0.02);
+    CHECK(std::abs(frame.clay.volume_part() - 1.0) < 1e-3);
+    CHECK(frame.clay.first_volume == doctest::Approx(4.0 / 3.0 * 3.14159).epsilon(0.05));
+  }
+
+  TEST_CASE("a stroke is a contact until the hands have left; undo and redo go there and back") {
+    Presses presses;
+    const Points first = presses.shape();
+    presses.press();
+    const Points once = presses.shape();
+    CHECK(presses.frame().undo_steps == 1);
+    CHECK(presses.frame().steps.count == 1);
+    CHECK_FALSE(presses.frame().steps.in_hand);
+    presses.press(1.3); // farther than where the clay fits the hands already
+    const Points twice = presses.shape();
+    REQUIRE(farthest(once, twice) > 0.0);
+    CHECK(presses.frame().undo_steps == 2);
+    presses.ask(Request::undo);
+    presses.go(0.0, 1);
+    CHECK(presses.shape() == once);
+    presses.ask(Request::undo);
+    presses.go(0.0, 1);
+    CHECK(presses.shape() == first);
+    CHECK(presses.frame().redo_steps == 2);
+    for (const Points* wanted : {&once, &twice}) {
+      presses.ask(Request::redo);
+      presses.go(0.0, 1);
+      CHECK(presses.shape() == *wanted);
+    }
+  }
+
+  TEST_CASE("an undo while hands press takes the contact back, and they press on") {
+    Presses presses;
+    const Points first = presses.shape();
+    presses.go(0.3, 1);
+    presses.go(0.6, 1);
+    REQUIRE(presses.frame().clay.touching > 0);
+    presses.ask(Request::undo);
+    presses.ask(Request::let_go);
+    presses.go(0.6, 1);
+    presses.go(0.6, 2);
+    CHECK(presses.frame().steps.undoable + presses.frame().redo_steps > 0);
+    CHECK(presses.shape().allFinite());
+    while (presses.frame().undo_steps > 0) {
+      presses.ask(Request::undo);
+      presses.go(0.6, 1);
+    }
+    CHECK(presses.shape() == first);
+  }
+
+  TEST_CASE("hands that have let go go through the clay") {
+    Presses presses;
+    presses.ask(Request::let_go);
+    presses.press();
+    CHECK(presses.shape() == presses.test().model.vertices);
+    CHECK(presses.frame().clay.is_clay);
+    CHECK(presses.frame().clay.touching == 0);
+  }
+
+  TEST_CASE("modes change live, keep the shape, and are steps of their own") {
+    Presses presses(Mode::type1);
+    presses.go(0.0, 120);
+    presses.change_to(Mode::clay);
+    presses.go(0.0, 2);
+    CHECK(presses.frame().settings.mode == Mode::clay);
+    CHECK(presses.frame().clay.is_clay);
+    const Points before = presses.shape();
+    presses.press();
+    const Points pressed = presses.shape();
+    REQUIRE(farthest(before, pressed) > 0.01);
+    presses.change_to(Mode::type2);
+    presses.go(0.0, 2);
+    CHECK(presses.shape() == pressed);
+    CHECK_FALSE(presses.frame().clay.is_clay);
+    presses.ask(Request::undo);
+    for (int tick = 0; tick < 3; ++tick) {
+      presses.go(0.0, 1);
+      if (const auto awaited = presses.frame().awaited) presses.test().loop->change_to(*awaited);
+    }
+    CHECK(presses.frame().settings.mode == Mode::clay);
+    CHECK(presses.shape() == pressed);
+    presses.ask(Request::undo);
+    presses.go(0.0, 1);
+    CHECK(presses.shape() == before);
+  }
+
+  TEST_CASE("the same hands make the same shape, bit for bit") {
+    Presses one;
+    Presses other;
+    one.press();
+    other.press();
+    CHECK(one.shape() == other.shape());
+  }
+
+  TEST_CASE("masks and symmetry are refused in clay, and clay where they are") {
+    for (const char* const text : {"version = 1\n[[masks]]\nat = [0, 1, 0]\nradius = 1.2\n",
+                                   "version = 1\nmirror = \"x\"\n"}) {
+      CAPTURE(text);
+      LoopUnderTest test(Mode::type1, {.puppet = text});
+      LoopSettings settings = test.loop->settings();
+      settings.mode = Mode::clay;
+      CHECK_FALSE(test.loop->change_settings(settings));
+      Presses presses;
+      auto rig = std::make_shared<const puppet::Rig>(*puppet::parse_puppet(text, "a test's masks"),
+                                                     presses.test().model);
+      CHECK_FALSE(can_press(rig.get()));
+      const auto refused = presses.test().loop->change_puppet(rig);
+      REQUIRE_FALSE(refused);
+      CHECK(refused.error().message.find("do not act on clay") != std::string::npos);
+      presses.press();
+      CHECK(farthest(presses.shape(), presses.test().model.vertices) > 0.02);
+    }
+  }
+
+  TEST_CASE("a puppet's points do not press") {
+    LoopUnderTest test(Mode::type1, {.puppet = test::ball_puppet});
+    LoopSettings settings = test.loop->settings();
+    settings.mode = Mode::clay;
+    CHECK_FALSE(test.loop->change_settings(settings));
+    Presses presses;
+    auto rig = std::make_shared<const puppet::Rig>(
+        *puppet::parse_puppet(test::ball_puppet, "a test's puppet"), presses.test().model);
+    const auto refused = presses.test().loop->change_puppet(rig);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.find("type 1") != std::string::npos);
+  }
+}
+
+} // namespace clay_loop_test
