@@ -233,7 +233,8 @@ TEST_SUITE("layered_take") {
       }
       return true;
     };
-    // The last bytes: joints (4), in (1), how far (8), has a hand below (1), is of another form (1).
+    // The last bytes: joints (4), in (1), how far (8), has a hand below (1), is of another form
+    // (1).
     CHECK(read({layer}, 0, 0));
     CHECK(read({layer}, 15, 0));
     CHECK_FALSE(read({layer}, 12, 0xFF)); // joints that no hand has
