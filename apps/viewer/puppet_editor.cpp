@@ -424,6 +424,7 @@ void PuppetEditor::toggle_brush() {
 }
 
 void PuppetEditor::toggle_masks() {
+  if (loaded_.vertices.cols() == 0) return; // there is nothing to paint yet
   const bool begins = !brushes_;
   turn(begins);
   brushes_ = only_masks_ = begins;

@@ -79,7 +79,7 @@ TEST_SUITE("scene") {
           nearest = std::min(nearest, (place.cast<double>() - in_scene(builder, end)).norm());
         CHECK(nearest < 1e-4);
       }
-    SceneParts bare{false, false, false, false, false};
+    SceneParts bare{false, false, false, false, false, false};
     builder.build(scene_frame, bare, scene);
     CHECK(scene.solids.size() + scene.veils.size() + scene.grounds.size() == 0);
   }
