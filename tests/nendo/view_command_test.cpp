@@ -174,7 +174,7 @@ TEST_SUITE("view_command") {
     CHECK(summary["redos"].get<int>() >= 5);
     const auto told = test::nendo({"recording", "info", person.at("take.nendo"), "--json"});
     // The mask, symmetry, and both ways of each by undo and redo.
-    CHECK(nlohmann::json::parse(told.out)["puppet_changes"].get<int>() >= 6);
+    CHECK(nlohmann::json::parse(told.out)["loop"]["puppet_changes"].get<int>() >= 6);
     const auto replayed =
         test::nendo({"replay", person.at("take.nendo"), "--out", person.at("again.ply")});
     REQUIRE(replayed.exit_code == 0);
