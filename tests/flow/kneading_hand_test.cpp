@@ -77,8 +77,8 @@ TEST_SUITE("kneading_hand") {
         double fastest_m_s = 0.0;
         double fastest_rad_s = 0.0;
         for (double time_s = 0.0; time_s < hand.length_s() + 0.5; time_s += step_s) {
-          const auto way = hand.wrist()->at(time_s + step_s).translation() -
-                           hand.wrist()->at(time_s).translation();
+          const Eigen::Vector3d way = hand.wrist()->at(time_s + step_s).translation() -
+                                      hand.wrist()->at(time_s).translation();
           fastest_m_s = std::max(fastest_m_s, way.norm() / step_s);
           const hand::JointAngles now = hand.angles(time_s);
           const hand::JointAngles next = hand.angles(time_s + step_s);
