@@ -140,7 +140,8 @@ TEST_SUITE("clay_loop") {
     CHECK(frame.clay.first_volume == doctest::Approx(4.0 / 3.0 * 3.14159).epsilon(0.05));
   }
 
-  TEST_CASE("a stroke is a contact until the hands have left, and undo and redo go there and back") {
+  TEST_CASE(
+      "a stroke is a contact until the hands have left, and undo and redo go there and back") {
     Presses presses;
     const Points first = presses.shape();
     presses.press();
