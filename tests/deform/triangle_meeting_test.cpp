@@ -1,3 +1,4 @@
+#include "cut/box_tree.hpp"
 #include "cut/triangle_meeting.hpp"
 
 #include <array>
@@ -11,8 +12,7 @@ namespace triangle_meeting_test {
 using namespace nendo::deform;
 
 TEST_SUITE("triangle meeting") {
-  bool meet(const std::vector<SpacePoint>& points, const SpaceTriangle& one,
-            const SpaceTriangle& other) {
+  bool meet(const std::vector<SpacePoint>& points, const Corners& one, const Corners& other) {
     const bool found = triangles_meet(points, one, other);
     // Neither the order of the two nor that of their corners matters.
     CHECK(triangles_meet(points, other, one) == found);
@@ -62,7 +62,7 @@ TEST_SUITE("triangle meeting") {
     std::mt19937 random(2);
     std::uniform_int_distribution<int> coordinate(0, 12);
     std::vector<SpacePoint> points;
-    std::vector<SpaceTriangle> triangles;
+    std::vector<Corners> triangles;
     for (std::uint32_t k = 0; k < 200; ++k) {
       for (int corner = 0; corner < 3; ++corner) {
         const double x = coordinate(random), y = coordinate(random), z = coordinate(random);
@@ -70,15 +70,16 @@ TEST_SUITE("triangle meeting") {
       }
       triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
     }
-    const TriangleTree tree(points, triangles);
+    const BoxTree tree(points, triangles);
     std::size_t pairs = 0, found = 0;
     for (std::uint32_t a = 0; a < triangles.size(); ++a) {
       for (std::uint32_t b = 0; b < triangles.size(); ++b)
         pairs += a != b && triangles_meet(points, triangles[a], triangles[b]) ? 1U : 0U;
-      tree.any(triangles[a], [&](std::uint32_t b) {
-        found += a != b && triangles_meet(points, triangles[a], triangles[b]) ? 1U : 0U;
-        return false;
-      });
+      const SpaceBox box = box_around(points, triangles[a]);
+      tree.visit([&](const SpaceBox& other) { return nendo::deform::meet(box, other); },
+                 [&](std::uint32_t b) {
+                   found += a != b && triangles_meet(points, triangles[a], triangles[b]) ? 1U : 0U;
+                 });
     }
     CHECK(pairs > 500);
     CHECK(found == pairs);

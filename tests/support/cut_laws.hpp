@@ -12,6 +12,7 @@
 #include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
+#include "cut/box_tree.hpp"
 #include "cut/triangle_meeting.hpp"
 
 namespace nendo::test {
@@ -39,16 +40,20 @@ inline std::size_t count_meetings(const deform::Mesh& mesh) {
   std::vector<deform::SpacePoint> points;
   for (Eigen::Index at = 0; at < mesh.vertices.cols(); ++at)
     points.push_back({mesh.vertices(0, at), mesh.vertices(1, at), mesh.vertices(2, at)});
-  std::vector<deform::SpaceTriangle> triangles;
+  std::vector<deform::Corners> triangles;
   deform::for_each_triangle(
       mesh, [&](const std::array<std::uint32_t, 3>& triangle) { triangles.push_back(triangle); });
-  const deform::TriangleTree tree(points, triangles);
+  const deform::BoxTree tree(points, triangles);
   std::size_t count = 0;
-  for (std::uint32_t at = 0; at < triangles.size(); ++at)
-    if (tree.any(triangles[at], [&](std::uint32_t other) {
-          return other != at && deform::triangles_meet(points, triangles[at], triangles[other]);
-        }))
+  for (std::uint32_t at = 0; at < triangles.size(); ++at) {
+    const deform::SpaceBox box = deform::box_around(points, triangles[at]);
+    if (tree.any([&](const deform::SpaceBox& other) { return deform::meet(box, other); },
+                 [&](std::uint32_t other) {
+                   return other != at &&
+                          deform::triangles_meet(points, triangles[at], triangles[other]);
+                 }))
       ++count;
+  }
   return count;
 }
 

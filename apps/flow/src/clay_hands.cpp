@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <nendo/deform/cut.hpp>
 #include <nendo/deform/triangles.hpp>
 
 namespace nendo::flow {
@@ -41,18 +42,8 @@ HandTouch touch_of(std::span<const deform::ClayContact> contacts, std::size_t bo
   return touch;
 }
 
-ClayModel::ClayModel(const deform::Mesh& mesh) : corners(deform::corners_of_triangles(mesh)) {
-  if (corners.empty()) return;
-  const Eigen::Vector3d origin = mesh.vertices.col(0); // far from zero nothing is to be lost
-  double six_volumes = 0.0;
-  for (std::size_t at = 0; at + 2 < corners.size(); at += 3) {
-    const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
-      return mesh.vertices.col(corners[at + k]) - origin;
-    };
-    six_volumes += corner(0).dot(corner(1).cross(corner(2)));
-  }
-  volume = std::abs(six_volumes) / 6.0;
-}
+ClayModel::ClayModel(const deform::Mesh& mesh)
+    : corners(deform::corners_of_triangles(mesh)), volume(std::abs(deform::volume_of(mesh))) {}
 
 ClayHands::ClayHands(deform::SculptedShape& shape, std::shared_ptr<const ClayModel> model,
                      std::shared_ptr<const HandBodies> bodies, double radius_m,

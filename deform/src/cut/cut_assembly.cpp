@@ -251,7 +251,7 @@ void Assembler::write_cap() {
   const auto first_texcoord = static_cast<std::uint32_t>(
       static_cast<std::size_t>(cut_.mesh.texcoords.cols()) + surface_.new_texcoords().size());
   for (const bool up : {true, false})
-    for (const SpaceTriangle& triangle : cut_.cap.triangles) {
+    for (const Corners& triangle : cut_.cap.triangles) {
       const bool turned = up != cut_.faces_inwards;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t corner = triangle[turned ? 2 - k : k];

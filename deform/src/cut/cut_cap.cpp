@@ -184,7 +184,7 @@ PlaneFault add_rims(std::span<const CapLoop> loops, ConstrainedTriangulation& pl
 
 /// On which side of each loop the inside lies, by the triangles at its segments.
 std::vector<std::uint8_t> sides_of(std::span<const CapLoop> loops,
-                                   const std::vector<SpaceTriangle>& triangles) {
+                                   const std::vector<Corners>& triangles) {
   struct Neighbour {
     std::uint32_t loop, next;
   };
@@ -196,7 +196,7 @@ std::vector<std::uint8_t> sides_of(std::span<const CapLoop> loops,
       after.push_back({number, first + (k + 1) % count});
   }
   std::vector<std::uint8_t> on_left(loops.size(), 0);
-  for (const SpaceTriangle& triangle : triangles)
+  for (const Corners& triangle : triangles)
     for (std::size_t k = 0; k < 3; ++k)
       if (triangle[k] < after.size() && after[triangle[k]].next == triangle[(k + 1) % 3])
         on_left[after[triangle[k]].loop] = 1;
@@ -224,7 +224,7 @@ Cap make_cap(std::span<const CapLoop> loops, std::uint32_t crossings, const CapO
   for (const CapLoop& loop : loops)
     for (const std::uint32_t crossing : loop.crossings)
       corner_of[number++] = crossing;
-  for (SpaceTriangle& triangle : cap.triangles)
+  for (Corners& triangle : cap.triangles)
     for (std::uint32_t& corner : triangle) {
       if (corner >= rim && corner_of[corner] == std::numeric_limits<std::uint32_t>::max()) {
         corner_of[corner] = crossings + static_cast<std::uint32_t>(cap.inner.size());

@@ -23,7 +23,7 @@ struct Cap {
   std::vector<PlanePoint> inner; ///< places of new points
   /// Corners below `crossings` are crossings; corner crossings + k is inner point k. They turn to
   /// the left in the chart.
-  std::vector<SpaceTriangle> triangles;
+  std::vector<Corners> triangles;
   std::vector<std::uint8_t> on_left; ///< of each loop: the inside lies on its left
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "cut/box_tree.hpp"
 #include "cut/triangle_meeting.hpp"
 
 namespace nendo::deform {
@@ -12,12 +13,12 @@ namespace {
 
 /// The triangles of one side of the cut.
 struct CutSide {
-  std::vector<SpaceTriangle> triangles; ///< pieces of crossed faces, and then cut faces
+  std::vector<Corners> triangles; ///< pieces of crossed faces, and then cut faces
   std::size_t pieces = 0;
-  std::vector<SpaceTriangle> near; ///< faces that may meet cut faces
+  std::vector<Corners> near; ///< faces that may meet cut faces
 };
 
-SpaceTriangle corners_of_face(const Mesh& mesh, std::size_t face) noexcept {
+Corners corners_of_face(const Mesh& mesh, std::size_t face) noexcept {
   const std::uint32_t begin = mesh.face_starts[face];
   return {mesh.face_corners[begin], mesh.face_corners[begin + 1], mesh.face_corners[begin + 2]};
 }
@@ -40,9 +41,8 @@ public:
 private:
   CutSide side_of(bool up) const;
   bool is_up(std::uint32_t face) const noexcept;
-  void add_near(bool up, std::vector<SpaceTriangle>& triangles) const;
-  bool is_flat(const SpaceTriangle& triangle) const noexcept;
-  bool is_inner(const SpaceTriangle& triangle) const noexcept;
+  void add_near(bool up, std::vector<Corners>& triangles) const;
+  bool is_inner(const Corners& triangle) const noexcept;
 
   const CutAssembly& assembly_;
   const Mesh& mesh_;
@@ -59,7 +59,7 @@ bool CutCheck::is_up(std::uint32_t face) const noexcept {
   return false;
 }
 
-void CutCheck::add_near(bool up, std::vector<SpaceTriangle>& triangles) const {
+void CutCheck::add_near(bool up, std::vector<Corners>& triangles) const {
   const std::uint32_t old = surface_.vertex_count();
   for (std::size_t face = 0; face < assembly_.first_cut_face; ++face) {
     const std::uint32_t begin = mesh_.face_starts[face];
@@ -96,19 +96,8 @@ CutSide CutCheck::side_of(bool up) const {
   return side;
 }
 
-bool CutCheck::is_flat(const SpaceTriangle& triangle) const noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto flat = [&](std::size_t k) {
-      const SpacePoint& point = points_[triangle[k]];
-      return PlanePoint{point[axis], point[(axis + 1) % 3]};
-    };
-    if (orient_2d(flat(0), flat(1), flat(2)) != 0) return false;
-  }
-  return true;
-}
-
 /// Cut faces of a plane that do not touch its rim lie amid other cut faces of the same plane.
-bool CutCheck::is_inner(const SpaceTriangle& triangle) const noexcept {
+bool CutCheck::is_inner(const Corners& triangle) const noexcept {
   return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
     return assembly_.added[corner - first_added_].from == no_index;
   });
@@ -118,20 +107,23 @@ bool CutCheck::is_inner(const SpaceTriangle& triangle) const noexcept {
 /// on the upper side.
 bool CutCheck::is_sound(bool up) const {
   const CutSide side = side_of(up);
-  const std::vector<SpaceTriangle>& triangles = side.triangles;
-  const TriangleTree tree(points_, triangles);
-  const auto meets = [&](const SpaceTriangle& triangle, const auto& is_asked) {
-    return tree.any(triangle, [&](std::uint32_t other) {
-      return is_asked(other) && triangles_meet(points_, triangle, triangles[other]);
-    });
+  const std::vector<Corners>& triangles = side.triangles;
+  const BoxTree tree(points_, triangles);
+  const auto meets = [&](const Corners& triangle, const auto& is_asked) {
+    const SpaceBox box = box_around(points_, triangle);
+    return tree.any([&](const SpaceBox& other) { return meet(box, other); },
+                    [&](std::uint32_t other) {
+                      return is_asked(other) && triangles_meet(points_, triangle, triangles[other]);
+                    });
   };
   for (std::uint32_t piece = 0; piece < side.pieces; ++piece)
     if (meets(triangles[piece], [&](std::uint32_t other) { return other > piece; })) return false;
-  for (const SpaceTriangle& triangle : side.near)
+  for (const Corners& triangle : side.near)
     if (meets(triangle, [&](std::uint32_t other) { return other >= side.pieces; })) return false;
   if (!up) return true;
   for (auto face = static_cast<std::uint32_t>(side.pieces); face < triangles.size(); ++face) {
-    if (is_flat(triangles[face])) return false;
+    const Corners& corner = triangles[face];
+    if (is_degenerate(points_[corner[0]], points_[corner[1]], points_[corner[2]])) return false;
     if (reach_ == 0.0 && is_inner(triangles[face])) continue;
     const bool bad = meets(triangles[face], [&](std::uint32_t other) {
       return other >= side.pieces && other != face;

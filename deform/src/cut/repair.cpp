@@ -239,7 +239,7 @@ Result<void> Repairer::fill(const std::vector<std::uint32_t>& hole) {
                                       ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) +
                                       ") is too crooked to be filled by flat triangles"};
   }
-  for (const SpaceTriangle& triangle : cap.triangles) {
+  for (const Corners& triangle : cap.triangles) {
     for (const std::uint32_t corner : triangle) {
       mesh_.face_corners.push_back(hole[corner]);
       if (!mesh_.corner_texcoords.empty()) mesh_.corner_texcoords.push_back(0);

@@ -1,6 +1,6 @@
 #pragma once
-// Arithmetic of points in space, for the code that cuts and joins. It works on the coordinates as
-// they stand in the mesh.
+// Points and triangles in space as plain numbers, and arithmetic of them, for the code that cuts
+// and joins. It works on the coordinates as they stand in the mesh.
 
 #include <array>
 #include <cmath>
@@ -9,6 +9,8 @@
 #include "cut/exact_predicates.hpp"
 
 namespace nendo::deform {
+
+using Corners = std::array<std::uint32_t, 3>; ///< points, counter-clockwise seen from outside
 
 inline SpacePoint operator+(const SpacePoint& a, const SpacePoint& b) noexcept {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace nendo::deform {
 namespace {
@@ -94,8 +93,8 @@ std::size_t broad_axis(const SpacePoint& a, const SpacePoint& b, const SpacePoin
 
 /// Seen along the broad axis of the first triangle, an edge of it has the other triangle beyond,
 /// and touches it at most in shared corners. That is so for most pairs, and costs little.
-bool are_parted(std::span<const SpacePoint> points, const SpaceTriangle& one,
-                const SpaceTriangle& other) noexcept {
+bool are_parted(std::span<const SpacePoint> points, const Corners& one,
+                const Corners& other) noexcept {
   const std::size_t axis = broad_axis(points[one[0]], points[one[1]], points[one[2]]);
   const auto flat = [&](std::uint32_t corner) { return along_axis(points[corner], axis); };
   const std::array corners{flat(one[0]), flat(one[1]), flat(one[2])};
@@ -115,12 +114,12 @@ bool are_parted(std::span<const SpacePoint> points, const SpaceTriangle& one,
 
 } // namespace
 
-bool triangles_meet(std::span<const SpacePoint> points, const SpaceTriangle& one,
-                    const SpaceTriangle& other) noexcept {
+bool triangles_meet(std::span<const SpacePoint> points, const Corners& one,
+                    const Corners& other) noexcept {
   if (are_parted(points, one, other) || are_parted(points, other, one)) return false;
   // Shared corners to the front, in the same order.
-  SpaceTriangle a = one;
-  SpaceTriangle b = other;
+  Corners a = one;
+  Corners b = other;
   std::size_t shared = 0;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t m = shared; m < 3; ++m)
@@ -149,63 +148,10 @@ bool triangles_meet(std::span<const SpacePoint> points, const SpaceTriangle& one
          segment_meets(*second.b, *second.c, first) || segment_meets(*second.c, *second.a, first);
 }
 
-TriangleTree::TriangleTree(std::span<const SpacePoint> points,
-                           std::span<const SpaceTriangle> triangles)
-    : points_(points), order_(triangles.size()) {
-  if (triangles.empty()) return;
-  std::iota(order_.begin(), order_.end(), 0U);
-  std::vector<Box3> boxes;
-  boxes.reserve(triangles.size());
-  for (const SpaceTriangle& triangle : triangles)
-    boxes.push_back(box_of(triangle));
-  boxes_.swap(boxes);
-  nodes_.reserve(triangles.size());
-  nodes_.push_back({});
-  divide(0, 0, static_cast<std::uint32_t>(triangles.size()));
-  boxes.reserve(triangles.size());
-  for (const std::uint32_t triangle : order_)
-    boxes.push_back(boxes_[triangle]);
-  boxes_.swap(boxes);
-}
-
-TriangleTree::Box3 TriangleTree::box_of(const SpaceTriangle& triangle) const noexcept {
-  Box3 box{points_[triangle[0]], points_[triangle[0]]};
-  for (const std::uint32_t corner : {triangle[1], triangle[2]})
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], points_[corner][axis]);
-      box.high[axis] = std::max(box.high[axis], points_[corner][axis]);
-    }
-  return box;
-}
-
-/// Halves the triangles by their boxes' middles along the longest axis. While it works, boxes_ is
-/// in the order of the triangles.
-void TriangleTree::divide(std::uint32_t node, std::uint32_t first, std::uint32_t count) {
-  Box3 box = boxes_[order_[first]];
-  for (std::uint32_t at = first + 1; at < first + count; ++at)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], boxes_[order_[at]].low[axis]);
-      box.high[axis] = std::max(box.high[axis], boxes_[order_[at]].high[axis]);
-    }
-  constexpr std::uint32_t leaf = 8;
-  nodes_[node] = {box, first, count};
-  if (count <= leaf) return;
-  std::size_t axis = 0;
-  for (std::size_t k = 1; k < 3; ++k)
-    if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
-  const auto begin = order_.begin() + first;
-  const std::uint32_t half = count / 2;
-  std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t a, std::uint32_t b) {
-    const double at_a = boxes_[a].low[axis] + boxes_[a].high[axis];
-    const double at_b = boxes_[b].low[axis] + boxes_[b].high[axis];
-    return at_a != at_b ? at_a < at_b : a < b;
-  });
-  const auto child = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node].first = child;
-  nodes_[node].count = 0;
-  nodes_.resize(nodes_.size() + 2);
-  divide(child, first, half);
-  divide(child + 1, first + half, count - half);
+bool is_degenerate(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (orient_2d(along_axis(a, axis), along_axis(b, axis), along_axis(c, axis)) != 0) return false;
+  return true;
 }
 
 } // namespace nendo::deform

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "join/box_tree.hpp"
+#include "cut/box_tree.hpp"
 #include "join/triangle_surface.hpp"
 
 namespace nendo::deform {

@@ -21,18 +21,10 @@ constexpr std::array<SpacePoint, most_overlay_attempts> give_ways{{{0.6137, -0.4
                                                                    {-0.1319, -0.6841, -0.7177}}};
 constexpr double give_part = 1e-7;
 
-SpaceBox box_around(std::span<const SpacePoint> points) {
+double size_of(std::span<const SpacePoint> points) {
   SpaceBox box{points[0], points[0]};
   for (const SpacePoint& point : points)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], point[axis]);
-      box.high[axis] = std::max(box.high[axis], point[axis]);
-    }
-  return box;
-}
-
-double size_of(std::span<const SpacePoint> points) {
-  const SpaceBox box = box_around(points);
+    widen(box, {point, point});
   return distance_between(box.low, box.high);
 }
 

@@ -4,20 +4,11 @@
 #include <numeric>
 #include <utility>
 
-#include "cut/exact_predicates.hpp"
+#include "cut/box_tree.hpp"
 #include "cut/triangle_meeting.hpp"
-#include "join/box_tree.hpp"
 
 namespace nendo::deform {
 namespace {
-
-/// How the three turn, seen along an axis.
-int turn_along(std::size_t axis, const SpacePoint& a, const SpacePoint& b,
-               const SpacePoint& c) noexcept {
-  const std::size_t x = (axis + 1) % 3;
-  const std::size_t y = (axis + 2) % 3;
-  return orient_2d({a[x], a[y]}, {b[x], b[y]}, {c[x], c[y]});
-}
 
 /// Collects pairs, sorted at the end.
 std::vector<TrianglePair> sorted_pairs(std::vector<TrianglePair> pairs, std::size_t most) {
@@ -29,10 +20,6 @@ std::vector<TrianglePair> sorted_pairs(std::vector<TrianglePair> pairs, std::siz
 
 } // namespace
 
-bool is_degenerate(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept {
-  return turn_along(0, a, b, c) == 0 && turn_along(1, a, b, c) == 0 && turn_along(2, a, b, c) == 0;
-}
-
 std::vector<TrianglePair> intersections_between(std::span<const SpacePoint> places,
                                                 std::span<const Corners> triangles,
                                                 std::span<const std::uint32_t> some,
@@ -43,7 +30,7 @@ std::vector<TrianglePair> intersections_between(std::span<const SpacePoint> plac
   const BoxTree tree(places, triangles, {some.begin(), some.end()});
   std::vector<std::uint32_t> near;
   for (const std::uint32_t triangle : others)
-    if (meet(tree.box(), box_of(places, triangles[triangle]))) near.push_back(triangle);
+    if (meet(tree.box(), box_around(places, triangles[triangle]))) near.push_back(triangle);
   const BoxTree near_tree(places, triangles, std::move(near));
   tree.visit_pairs(near_tree, [&](std::uint32_t mine, std::uint32_t other) {
     if (mine != other && found.size() < most &&

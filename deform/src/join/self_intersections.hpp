@@ -13,9 +13,6 @@ namespace nendo::deform {
 
 using TrianglePair = std::pair<std::uint32_t, std::uint32_t>; ///< the lesser number first
 
-/// Returns true if the three places are in line, exactly.
-bool is_degenerate(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) noexcept;
-
 /// Returns the pairs of triangles that meet (triangle_meeting.hpp), sorted, and a triangle without
 /// area as a pair with itself. It stops when it has found `most`. Places must be finite; for their
 /// size see exact_predicates.hpp. Allocates.

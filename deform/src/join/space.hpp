@@ -1,14 +1,9 @@
 #pragma once
 // Triangles in space, as plain numbers: what joining computes with.
 
-#include <array>
-#include <cstdint>
-
 #include "cut/space.hpp"
 
 namespace nendo::deform {
-
-using Corners = std::array<std::uint32_t, 3>; ///< vertices, counter-clockwise seen from outside
 
 inline double distance_between(const SpacePoint& a, const SpacePoint& b) noexcept {
   return length_of(b - a);

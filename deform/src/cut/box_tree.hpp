@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "join/space.hpp"
+#include "cut/space.hpp"
 
 namespace nendo::deform {
 
@@ -18,7 +18,8 @@ inline bool meet(const SpaceBox& a, const SpaceBox& b) noexcept {
          b.low[1] <= a.high[1] && a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
-SpaceBox box_of(std::span<const SpacePoint> places, const Corners& triangle) noexcept;
+void widen(SpaceBox& box, const SpaceBox& by) noexcept;
+SpaceBox box_around(std::span<const SpacePoint> places, const Corners& triangle) noexcept;
 
 /// The tree keeps no reference to what it was built of.
 class BoxTree {
@@ -32,11 +33,11 @@ public:
   /// The box around all triangles. The tree must not be empty.
   const SpaceBox& box() const noexcept { return nodes_.front().box; }
 
-  /// Calls visit(triangle) for each triangle whose box meets `box`. `enters(node's box)` may refuse
-  /// a subtree besides.
+  /// Calls visit(triangle) for each triangle of which enters(box) is true, for its box and for
+  /// those around it, until visit returns true. Returns whether it did.
   template <class Enters, class Visit>
-  void visit(const Enters& enters, const Visit& visit) const {
-    if (empty()) return;
+  bool any(const Enters& enters, const Visit& visit) const {
+    if (empty()) return false;
     std::uint32_t stack[64];
     std::size_t depth = 0;
     stack[depth++] = 0;
@@ -49,8 +50,18 @@ public:
         continue;
       }
       for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
-        if (enters(boxes_[at])) visit(order_[at]);
+        if (enters(boxes_[at]) && visit(order_[at])) return true;
     }
+    return false;
+  }
+
+  /// Calls visit(triangle) for all of them.
+  template <class Enters, class Visit>
+  void visit(const Enters& enters, const Visit& visit) const {
+    any(enters, [&](std::uint32_t triangle) {
+      visit(triangle);
+      return false;
+    });
   }
 
   /// Calls visit(own triangle, other's triangle) for each two whose boxes meet.

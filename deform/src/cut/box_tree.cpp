@@ -1,4 +1,4 @@
-#include "join/box_tree.hpp"
+#include "cut/box_tree.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -8,13 +8,6 @@ namespace nendo::deform {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-
-void widen(SpaceBox& box, const SpaceBox& by) noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::min(box.low[axis], by.low[axis]);
-    box.high[axis] = std::max(box.high[axis], by.high[axis]);
-  }
-}
 
 std::size_t longest_axis(const SpaceBox& box) noexcept {
   const SpacePoint size = box.high - box.low;
@@ -29,7 +22,14 @@ std::vector<std::uint32_t> counted(std::size_t count) {
 
 } // namespace
 
-SpaceBox box_of(std::span<const SpacePoint> places, const Corners& triangle) noexcept {
+void widen(SpaceBox& box, const SpaceBox& by) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::min(box.low[axis], by.low[axis]);
+    box.high[axis] = std::max(box.high[axis], by.high[axis]);
+  }
+}
+
+SpaceBox box_around(std::span<const SpacePoint> places, const Corners& triangle) noexcept {
   SpaceBox box{places[triangle[0]], places[triangle[0]]};
   for (std::size_t k = 1; k < 3; ++k)
     widen(box, {places[triangle[k]], places[triangle[k]]});
@@ -52,7 +52,7 @@ void BoxTree::build(std::span<const SpacePoint> places, std::span<const Corners>
   unsorted.reserve(order_.size());
   middles.reserve(order_.size());
   for (const std::uint32_t triangle : order_) {
-    unsorted.push_back(box_of(places, triangles[triangle]));
+    unsorted.push_back(box_around(places, triangles[triangle]));
     middles.push_back(0.5 * (unsorted.back().low + unsorted.back().high));
   }
   const std::vector<std::uint32_t> chosen = std::exchange(order_, counted(order_.size()));
