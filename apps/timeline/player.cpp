@@ -30,7 +30,8 @@ std::shared_ptr<flow::HandBodies> bodies_of(const Timeline& timeline, const defo
   for (const Side side : {Side::left, Side::right})
     for (const auto& track : timeline.hands)
       if (track.side == side) hands.push_back(track.skeleton());
-  return std::make_shared<flow::HandBodies>(hands, timeline.units_per_metre, model);
+  const double units = timeline.units_per_metre;
+  return std::make_shared<flow::HandBodies>(hands, units, flow::table_under(model, units));
 }
 
 flow::SculptorSetup first_setup(const Timeline& timeline,

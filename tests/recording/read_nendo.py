@@ -84,6 +84,8 @@ def loop(b):
     o.update(hold(b))
     if "settings" in o:
         o["settings"].update(hold(b))
+    if b.take("B"):
+        o["table"] = b.take("4d")
     return o
 
 

@@ -117,6 +117,7 @@ Setup unusual_setup() {
   setup.loop->options.sculptor.hold = flow::Hold::hand;
   setup.loop->options.sculptor.deformer.csrbf.keep_volume = 0.75;
   setup.loop->options.settings->keep_volume = 0.125;
+  setup.loop->placement.table = flow::Table{{1.5, -2.5, 0.25}, 8.0};
   setup.loop->rest.resize(2);
   setup.loop->rest[1].y[2] = -0.5F;
   setup.loop->rest[1].z[63] = 0.25F;
@@ -219,6 +220,7 @@ TEST_SUITE("take_reader") {
     CHECK(is_settings(lines[at]["settings"], *options.settings));
     CHECK(are_brushes(lines[at], options.sculptor));
     CHECK(is_hold(lines[at], 0.75, flow::Hold::hand));
+    CHECK(lines[at]["table"] == json::parse("[1.5, -2.5, 0.25, 8.0]"));
     CHECK(lines[at++]["least_gap"] == 0.04);
     REQUIRE(lines[at]["chunk"] == "REST");
     REQUIRE(lines[at]["blocks"].size() == 2);
@@ -303,9 +305,9 @@ TEST_SUITE("take_reader") {
       Setup now, then;
       REQUIRE(read_setup_chunk(chunk->type, whole, now));
       CHECK(now.loop->options.pull_is_step);
-      // That rule, since 1.6 the brushes, and since 1.7 how much of the volume is kept and what
-      // holds.
-      constexpr std::size_t since = 1 + 13 + 9;
+      // That rule, since 1.6 the brushes, and since 1.7 how much of the volume is kept, what holds,
+      // and whether there is a table.
+      constexpr std::size_t since = 1 + 13 + 9 + 1;
       REQUIRE(read_setup_chunk(chunk->type, whole.first(whole.size() - since), then));
       CHECK_FALSE(then.loop->options.pull_is_step);
       CHECK(then.loop->subdivisions == now.loop->subdivisions);

@@ -144,7 +144,8 @@ TEST_SUITE("follow") {
         bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
         if (random() % 6 == 0) {
           auto settings = test::any_settings(streamed.test.loop->settings(), random);
-          settings.brushes = {}; // whose work no field tells
+          settings.brushes = {}; // whose work no field tells, nor that of hands in clay
+          if (settings.mode == flow::Mode::clay) settings.mode = flow::Mode::type2;
           streamed.test.loop->change_settings(settings);
         }
         const auto shape = streamed.tick(bent);
@@ -351,7 +352,7 @@ TEST_SUITE("follow") {
     int bent = 0;
     double worst = 0.0;
     int compared = 0;
-    for (int tick = 0; tick < 600; ++tick) {
+    for (int tick = 0; tick < 1200; ++tick) {
       bent = std::clamp(bent + static_cast<int>(random() % 7) - 3, 0, 40);
       if (random() % 20 == 0)
         streamed.test.loop->change_settings(
@@ -364,8 +365,7 @@ TEST_SUITE("follow") {
     }
     CHECK(followed.client.good);
     CHECK(worst < 1e-5);
-    // Clay takes several fields a piece. They drift sooner, so that whole shapes are asked for.
-    CHECK(compared > 250);
+    CHECK(compared > 500);
     CHECK(followed.client.weights > 3);
     CHECK(followed.client.weights < 30);
     CHECK(streamed.test.loop->stats().changes > 15);

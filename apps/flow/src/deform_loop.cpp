@@ -30,7 +30,7 @@ Frame first_frame(const Shaping& shaping, Eigen::Index points, double units_per_
 }
 
 /// The bodies of all hands, left hand first.
-std::shared_ptr<HandBodies> bodies_of(std::span<const HandInput> inputs, double units_per_metre,
+std::shared_ptr<HandBodies> bodies_of(std::span<const HandInput> inputs, const Placement& placement,
                                       const deform::Mesh& model) {
   std::vector<hand::HandSkeleton> hands;
   for (const Side side : {Side::left, Side::right}) {
@@ -38,7 +38,9 @@ std::shared_ptr<HandBodies> bodies_of(std::span<const HandInput> inputs, double 
                                      [&](const HandInput& hand) { return hand.side == side; });
     if (lowest != inputs.end()) hands.push_back(lowest->skeleton(lowest->first.side));
   }
-  return std::make_shared<HandBodies>(hands, units_per_metre, model);
+  const double units = placement.units_per_metre;
+  return std::make_shared<HandBodies>(
+      hands, units, placement.table ? *placement.table : table_under(model, units));
 }
 
 SculptorSetup first_setup(const LoopOptions& options, const HandInput& hand,
@@ -182,8 +184,7 @@ DeformLoop::DeformLoop(const deform::Mesh& model, const Placement& placement,
     : options_(options), units_per_metre_(placement.units_per_metre),
       mirror_(mirror_of(options.rig.get())),
       tips_(Points::Zero(3, points_at_first(options, count_hands(hands)))),
-      bodies_(bodies_of(hands, placement.units_per_metre, model)),
-      versions_(first_version(model, options, first)),
+      bodies_(bodies_of(hands, placement, model)), versions_(first_version(model, options, first)),
       first_(first_setup(options, hands.front(), *versions_.front(), bodies_,
                          placement.units_per_metre)),
       first_rig_(options.rig), puppets_{options.rig}, asked_model_(versions_.front().get()),

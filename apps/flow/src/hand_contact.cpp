@@ -54,21 +54,13 @@ Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
 }
 
 /// Two large triangles, of which the other parts are corners.
-static void place_table(const deform::Mesh& model, double units_per_metre,
+static void place_table(const Table& table, double units_per_metre,
                         std::span<deform::ContactPart> parts) {
   constexpr double half_thickness_m = 0.010;
-  constexpr double least_side_m = 0.5;
-  Eigen::Vector3d low = Eigen::Vector3d::Zero();
-  Eigen::Vector3d high = Eigen::Vector3d::Zero();
-  if (model.vertices.cols() > 0) {
-    low = model.vertices.rowwise().minCoeff();
-    high = model.vertices.rowwise().maxCoeff();
-  }
   const double thick = half_thickness_m * units_per_metre;
-  const double half = std::max(least_side_m * units_per_metre, 2.0 * (high - low).maxCoeff());
   const auto corner = [&](double x, double z) {
-    return Eigen::Vector3d(0.5 * (low.x() + high.x()) + x * half, low.y() - thick,
-                           0.5 * (low.z() + high.z()) + z * half);
+    return Eigen::Vector3d(table.top.x() + x * table.half_side, table.top.y() - thick,
+                           table.top.z() + z * table.half_side);
   };
   constexpr std::array sides{1.0, -1.0};
   for (std::size_t at = 0; at < parts.size(); ++at) {
@@ -83,14 +75,25 @@ static void place_table(const deform::Mesh& model, double units_per_metre,
 }
 
 HandBodies::HandBodies(std::span<const hand::HandSkeleton> hands, double units_per_metre,
-                       const deform::Mesh& model)
-    : parts_((hands.size() + tables) * hand::HandBody::part_count),
+                       const Table& table)
+    : parts_((hands.size() + tables) * hand::HandBody::part_count), table_(table),
       units_per_metre_(units_per_metre) {
-  place_table(model, units_per_metre, std::span(parts_).last(hand::HandBody::part_count));
+  place_table(table, units_per_metre, std::span(parts_).last(hand::HandBody::part_count));
   for (const hand::HandSkeleton& skeleton : hands) {
     bodies_.emplace_back(skeleton);
     follow(bodies_.size() - 1, skeleton.pose({}, Eigen::Isometry3d::Identity()));
   }
+}
+
+Table table_under(const deform::Mesh& model, double units_per_metre) noexcept {
+  constexpr double least_side_m = 0.5;
+  Table table{Eigen::Vector3d::Zero(), least_side_m * units_per_metre};
+  if (model.vertices.cols() == 0) return table;
+  const Eigen::Vector3d low = model.vertices.rowwise().minCoeff();
+  const Eigen::Vector3d high = model.vertices.rowwise().maxCoeff();
+  table.top = {0.5 * (low.x() + high.x()), low.y(), 0.5 * (low.z() + high.z())};
+  table.half_side = std::max(table.half_side, 2.0 * (high - low).maxCoeff());
+  return table;
 }
 
 void HandBodies::follow(std::size_t hand, const hand::HandPose& pose) noexcept {

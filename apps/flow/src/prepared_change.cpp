@@ -369,6 +369,7 @@ void DeformLoop::change_log(InputLog* log, const deform::BlockShape& like) {
   LogChange begins;
   begins.log = log;
   begins.state.placement.units_per_metre = units_per_metre_;
+  begins.state.placement.table = bodies_->table();
   // A frame may be of a version before.
   begins.state.shape = like.block_count() == asked_model_->layout().block_count()
                            ? like

@@ -103,7 +103,7 @@ bool LoopReplay::follow(const flow::ChangeModel& change) {
     // What was not made since the recording began is the model with which it began.
     const auto known = versions_.find(change.number);
     const std::uint32_t number = known == versions_.end() ? 0 : known->second;
-    return !is_new && loop_->change_to({loop_->settings(), number});
+    return !is_new && loop_->change_to({loop_->settings(), number, loop_->newest_puppet()});
   }
   const flow::ModelVersion& now = loop_->newest_model();
   if (!is_new || !flow::FinerModel::can_be_made_of(now)) {

@@ -40,6 +40,23 @@ flow::Placement read_placement(CheckedReader& checked) {
   return placement;
 }
 
+void put_table(ByteWriter& writer, const flow::Placement& placement) {
+  writer.u8(static_cast<std::uint8_t>(placement.table.has_value()));
+  if (!placement.table) return;
+  for (const double coordinate : placement.table->top)
+    writer.f64_le(coordinate);
+  writer.f64_le(placement.table->half_side);
+}
+
+std::optional<flow::Table> read_table(ByteReader& reader, CheckedReader& checked) {
+  if (reader.u8() == 0) return std::nullopt;
+  flow::Table table;
+  for (double& coordinate : table.top)
+    coordinate = checked.number(-deform::most_units, deform::most_units);
+  table.half_side = checked.number(0.0, largest_number);
+  return table;
+}
+
 void put_support(ByteWriter& writer, const deform::Support& support) {
   writer.f64_le(support.radius);
   writer.f64_le(support.weight);
@@ -136,6 +153,7 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   put_brushes(writer, options.sculptor.brushes, options.sculptor.brush_strength);
   put_hold(writer, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold);
   if (options.settings) put_hold(writer, options.settings->keep_volume, options.settings->hold);
+  put_table(writer, loop.placement);
 }
 
 void put_brushes(ByteWriter& writer, const std::array<deform::Brush, 5>& brushes, double strength) {
@@ -368,12 +386,13 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
       options.settings->brush_strength = options.sculptor.brush_strength;
     }
   }
-  if (reader.remaining() > 0) { // since 1.6, too
+  if (reader.remaining() > 0) { // since 1.7
     checked.require(
         read_hold(reader, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold));
     if (options.settings)
       checked.require(read_hold(reader, options.settings->keep_volume, options.settings->hold));
   }
+  if (reader.remaining() > 0) read.placement.table = read_table(reader, checked); // since 1.7
   if (loop || !checked.fine()) return false;
   loop = std::move(read);
   return true;

@@ -31,6 +31,7 @@ public:
   void release() noexcept {
     holds_ = false;
     contacts_.clear();
+    volume_.forget(); // so that what comes does not depend on what was
   }
   std::span<const ClayContact> contacts() const noexcept { return contacts_; }
   double volume() const noexcept {

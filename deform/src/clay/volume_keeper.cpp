@@ -197,6 +197,11 @@ double VolumeKeeper::volume(const BoundedShape& shape) noexcept {
   return sum;
 }
 
+void VolumeKeeper::forget() noexcept {
+  std::fill(stamps_.begin(), stamps_.end(), 0);
+  std::fill(normals_.begin(), normals_.end(), Vector4f::Zero());
+}
+
 /// By the distance from the box along the farthest axis.
 void VolumeKeeper::weigh_around(const BoundedShape& shape, std::size_t block,
                                 const GiveBack& how) noexcept {

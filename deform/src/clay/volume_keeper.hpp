@@ -36,6 +36,9 @@ public:
   bool is_closed() const noexcept { return is_closed_; }
   /// Returns the volume of that shape. Does not allocate.
   double volume(const BoundedShape& shape) noexcept;
+  /// The next volume() then measures all anew. Between, only what has changed is measured, and the
+  /// directions in which the shape swells are, to rounding, those of the calls before.
+  void forget() noexcept;
   /// Moves what is free along its normals, so that the volume grows by `missing`, or by what
   /// GiveBack::most permits. Call volume() first. Returns how much it grew, to second order. Does
   /// not allocate.

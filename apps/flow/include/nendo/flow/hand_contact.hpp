@@ -7,6 +7,7 @@
 
 #include <nendo/deform/contact_part.hpp>
 #include <nendo/deform/mesh.hpp>
+#include <nendo/flow/placement.hpp>
 #include <nendo/hand/hand_body.hpp>
 
 namespace nendo::flow {
@@ -23,13 +24,11 @@ Eigen::Isometry3d beside(const deform::Mesh& model, double units_per_metre,
                          const hand::HandSkeleton& skeleton, const hand::JointAngles& angles,
                          const Eigen::Isometry3d& T_stage_wrist, double clear_m);
 
-/// The bodies of one hand or two, where they are now, and a table on which the model lies.
+/// The bodies of one hand or two, where they are now, and the table on which the model lies.
 class HandBodies {
 public:
-  /// Allocates. All hands are in the pose of zero angles. The table's top is as low as the lowest
-  /// vertex of `model`, and reaches far beyond it.
-  HandBodies(std::span<const hand::HandSkeleton> hands, double units_per_metre,
-             const deform::Mesh& model);
+  /// Allocates. All hands are in the pose of zero angles.
+  HandBodies(std::span<const hand::HandSkeleton> hands, double units_per_metre, const Table& table);
 
   /// Moves a hand's body; its pose is on the stage. Wait-free, no allocation.
   void follow(std::size_t hand, const hand::HandPose& pose) noexcept;
@@ -37,11 +36,13 @@ public:
   std::span<const deform::ContactPart> parts() const noexcept { return parts_; }
   std::size_t count() const noexcept { return bodies_.size(); } ///< of hands
   static constexpr std::size_t tables = 1;
+  const Table& table() const noexcept { return table_; }
   double units_per_metre() const noexcept { return units_per_metre_; }
 
 private:
   std::vector<hand::HandBody> bodies_;
   std::vector<deform::ContactPart> parts_;
+  Table table_;
   double units_per_metre_;
 };
 

@@ -21,12 +21,19 @@ struct PlacementOptions {
   double height_fraction = 0.7; ///< of the model's height, where the fingertips touch
 };
 
+/// The table on which clay lies: a square plate, in model units.
+struct Table {
+  Eigen::Vector3d top = Eigen::Vector3d::Zero(); ///< the middle of its upper side
+  double half_side = 0.0;
+};
+
 /// The stage has the model's axes and origin, in metres: x to the operator's right, y up, z towards
 /// the operator. Models are taken to have y up and z to the front, as most OBJ files have.
 struct Placement {
   double units_per_metre = 1.0; ///< model units on a metre of the stage
   std::array<Eigen::Isometry3d, 2> T_stage_wrist{Eigen::Isometry3d::Identity(),
                                                  Eigen::Isometry3d::Identity()};
+  std::optional<Table> table; ///< nothing: table_under() the model with which a loop begins
   std::array<double, 2> greatest_gap_m{}; ///< farthest that a fingertip is from the surface
 
   static constexpr std::size_t index_of(Side side) noexcept { return side == Side::left ? 0 : 1; }
@@ -43,5 +50,8 @@ Placement place_hands(const deform::Mesh& model,
 /// Places the hands of a puppet's player before the model and beside it, as the player sees them:
 /// backs towards the viewer, fingers up and a little forward. Nothing is searched for.
 Placement place_player(const deform::Mesh& model, double model_size_m = 0.46);
+
+/// Returns a table as high as the lowest vertex of the model, which reaches far beyond it.
+Table table_under(const deform::Mesh& model, double units_per_metre) noexcept;
 
 } // namespace nendo::flow
