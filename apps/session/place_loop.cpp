@@ -6,6 +6,7 @@
 
 #include <nendo/deform/midpoint_chain.hpp>
 #include <nendo/flow/finger_supports.hpp>
+#include <nendo/flow/rig_setup.hpp>
 #include <nendo/hand/held_points.hpp>
 #include <nendo/puppet/puppet_edit.hpp>
 

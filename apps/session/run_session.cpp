@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/rig_setup.hpp>
 
 #include "cli/cli.hpp"
 #include "gloves/glove_feedback.hpp"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/flow/rig_setup.hpp>
+
 namespace nendo::takes {
 namespace {
 

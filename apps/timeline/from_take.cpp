@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/flow/rig_setup.hpp>
 #include <nendo/hand/active_calibration.hpp>
 #include <nendo/recording/loop_replay.hpp>
 

@@ -6,6 +6,7 @@
 #include <nendo/deform/undo_memory.hpp>
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/finger_supports.hpp>
+#include <nendo/flow/rig_setup.hpp>
 #include <nendo/flow/tips_of_hand.hpp>
 
 namespace nendo::timeline {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <nendo/flow/deform_loop.hpp>
+#include <nendo/flow/rig_setup.hpp>
 #include <nendo/flow/tick_grid.hpp>
 
 namespace nendo::timeline {

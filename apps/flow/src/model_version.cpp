@@ -32,6 +32,10 @@ ModelVersion::ModelVersion(std::uint32_t version, deform::Mesh model, deform::Bl
     : number(version), mesh(std::move(model)), undo_memory(undo_memory_for(layout, undo)),
       shape(std::move(layout), with_undo(undo.bytes, undo_memory.get()), first) {}
 
+deform::BlockShape room_for_shape(const ModelVersion& version) {
+  return deform::BlockShape(std::vector<deform::VertexBlock>(version.layout().block_count()));
+}
+
 FinerModel::FinerModel(const ModelVersion& from)
     : from_(&from), subdivision_(deform::subdivide(from.mesh)),
       layout_(subdivision_.mesh.vertices) {}

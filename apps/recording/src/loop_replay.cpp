@@ -7,6 +7,7 @@
 #include <variant>
 
 #include <nendo/deform/undo_memory.hpp>
+#include <nendo/flow/rig_setup.hpp>
 
 namespace nendo::recording {
 namespace {

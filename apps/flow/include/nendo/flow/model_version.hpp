@@ -42,6 +42,9 @@ struct ModelVersion {
   ModelVersion* behind = nullptr; ///< a redo of the last step here leads to the first one there
 };
 
+/// Returns a shape of that version's size, without its content. Allocates.
+deform::BlockShape room_for_shape(const ModelVersion& version);
+
 /// A finer version in the making. Making it takes longer than a tick; only finish() needs the
 /// shape.
 class FinerModel {

@@ -1,0 +1,86 @@
+#include <nendo/flow/rig_setup.hpp>
+
+#include <utility>
+
+#include <nendo/flow/finger_supports.hpp>
+#include <nendo/puppet/puppet.hpp>
+
+namespace nendo::flow {
+
+using deform::Points;
+
+bool is_played(const puppet::Rig* rig) noexcept {
+  return rig != nullptr && rig->puppet().is_played();
+}
+
+Eigen::Index control_points_of(const puppet::Rig* rig, const SculptorOptions& sculptor,
+                               Eigen::Index hands) noexcept {
+  if (is_played(rig)) return rig->starts().cols();
+  return (sculptor.are_mirrored ? 2 : 1) * sculptor.points_of_hand() * hands;
+}
+
+Eigen::Index supported_points(const puppet::Rig* rig, Eigen::Index hands) noexcept {
+  if (is_played(rig)) return rig->starts().cols();
+  return (mirror_of(rig) ? 10 : 5) * hands;
+}
+
+std::optional<double> mirror_of(const puppet::Rig* rig) noexcept {
+  if (rig == nullptr || is_played(rig) || !rig->puppet().mirrors) return std::nullopt;
+  return rig->puppet().mirror_at;
+}
+
+bool can_press(const puppet::Rig* rig) noexcept {
+  if (rig == nullptr) return true;
+  const puppet::Puppet& puppet = rig->puppet();
+  return !is_played(rig) && !mirror_of(rig) && puppet.masks.empty() && !puppet.inverted;
+}
+
+StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept {
+  if (is_played(before) || is_played(after)) return StepKind::puppet;
+  return mirror_of(before) == mirror_of(after) ? StepKind::mask : StepKind::symmetry;
+}
+
+void mirror_half(double at, Points& points) noexcept {
+  const Eigen::Index half = points.cols() / 2;
+  for (Eigen::Index point = 0; point < half; ++point) {
+    points.col(half + point) = points.col(point);
+    points(0, half + point) = 2.0 * at - points(0, point);
+  }
+}
+
+void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::BlockLayout& layout,
+               SculptorOptions& sculptor) {
+  sculptor.are_mirrored = mirror_of(rig).has_value();
+  sculptor.deformer.mask.reset();
+  if (rig == nullptr) return;
+  const Eigen::VectorXd weights = puppet::mask_weights(rig->puppet(), model.vertices);
+  if (weights.size() > 0)
+    sculptor.deformer.mask = std::make_shared<const deform::VertexMask>(layout, weights);
+}
+
+SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,
+                                  const puppet::Rig* masks, Eigen::Index hands) {
+  first.options.are_mirrored = mirror_of(masks).has_value();
+  if (first.options.are_mirrored) supports = of_both_sides(std::move(supports), 5 * hands);
+  first.options.piece_length = first.settings.piece_fraction * deform::least_radius(supports);
+  first.options.deformer.supports = std::move(supports);
+  first.options.surface.reset();
+  return first;
+}
+
+Result<std::shared_ptr<const deform::SurfaceField>>
+surface_for(const puppet::Rig& rig, const deform::Mesh& model, const deform::BlockLayout& layout,
+            const deform::DeformerOptions& options) {
+  if (!rig.puppet().is_played() || rig.puppet().distance == puppet::Distance::air)
+    return std::shared_ptr<const deform::SurfaceField>();
+  deform::SurfaceSetup setup = puppet::surface_setup(rig.puppet(), model, options.csrbf.kernel);
+  for (deform::SurfacePoint& point : setup.points)
+    point.mix.clear();
+  for (const deform::OwnSupport& own : options.supports.own)
+    setup.points[static_cast<std::size_t>(own.point)].mix.push_back(own.support);
+  for (deform::SurfacePoint& point : setup.points) // where all are equal, none has one of its own
+    if (point.mix.empty()) point.mix = options.supports.shared;
+  return deform::SurfaceField::make(model, layout, setup);
+}
+
+} // namespace nendo::flow
