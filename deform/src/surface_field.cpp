@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace nendo::deform {
@@ -94,20 +95,36 @@ std::uint32_t nearest_reached(const Mesh& mesh, const std::vector<std::uint32_t>
       [&](std::uint32_t one, std::uint32_t other) { return squared(one) < squared(other); });
 }
 
-/// The coordinates of `place` among those points: the least whose sum is 1 and whose weighted mean
-/// is the place, so that an affine motion of the points is one of the place.
+/// The coordinates of the vertex among those points: the least whose sum is 1 and whose weighted
+/// mean is its place, so that an affine motion of the points is one of the vertex. They are the
+/// same for all, but for X^T (X X^T)^+ y, X being the points and y the vertex about the points'
+/// middle.
 VectorXd affine_coordinates(const Mesh& mesh, const SurfaceSetup& setup,
                             const std::vector<Index>& points, std::uint32_t vertex) {
-  MatrixXd system(4, static_cast<Index>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const auto column = static_cast<Index>(k);
-    system.col(column).head<3>() =
-        setup.points[static_cast<std::size_t>(points[k])].place.in(mesh.vertices);
-    system(3, column) = 1.0;
+  constexpr double least_spread = 1e-6; // of the widest one; the points are flat along less
+  const auto count = static_cast<Index>(points.size());
+  Points about(3, count);
+  for (Index k = 0; k < count; ++k)
+    about.col(k) =
+        setup.points[static_cast<std::size_t>(points[static_cast<std::size_t>(k)])].place.in(
+            mesh.vertices);
+  const Eigen::Vector3d middle = about.rowwise().mean();
+  about.colwise() -= middle;
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
+  for (Index k = 0; k < count; ++k)
+    gram += about.col(k) * about.col(k).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spreads(gram);
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  for (Index k = 0; k < 3; ++k) {
+    const double square = spreads.eigenvalues()[k];
+    if (!(square > least_spread * least_spread * spreads.eigenvalues()[2])) continue;
+    const Eigen::Vector3d axis = spreads.eigenvectors().col(k);
+    way += axis.dot(mesh.vertices.col(vertex) - middle) / square * axis;
   }
-  Eigen::Vector4d wanted;
-  wanted << mesh.vertices.col(vertex), 1.0;
-  return system.completeOrthogonalDecomposition().solve(wanted);
+  VectorXd coordinates(count);
+  for (Index k = 0; k < count; ++k)
+    coordinates[k] = 1.0 / static_cast<double>(count) + about.col(k).dot(way);
+  return coordinates;
 }
 
 /// Shepard's weights (1968): the inverse squares of the distances, whose sum is made 1.
