@@ -41,7 +41,7 @@ def read_ply(file):
             inside = words[1] == "vertex"
             count = int(words[2]) if inside else count
         elif words[0] == "property" and inside:
-            kinds.append((words[2], {"double": "<f8", "float": "<f4"}[words[1]]))
+            kinds.append((words[2], {"double": "<f8", "float": "<f4", "uchar": "u1"}[words[1]]))
     table = np.frombuffer(body, dtype=np.dtype(kinds), count=count)
     return np.stack([table["x"], table["y"], table["z"]], axis=1).astype(float)
 
