@@ -285,9 +285,48 @@ def judge_functions(take, puppet, obj):
     return used
 
 
+def base_colour(material):
+    """What the importer made of a material's base colour, by which it may multiply the vertices' own."""
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+
+    def factor(socket, of_vertices):
+        if not socket.is_linked:
+            return socket.default_value
+        inputs = socket.links[0].from_node.inputs
+        return next((one.default_value for one in inputs if one.type == socket.type and not one.is_linked), of_vertices)
+
+    return [*factor(shader.inputs["Base Color"], (1.0, 1.0, 1.0))[:3], factor(shader.inputs["Alpha"], 1.0)]
+
+
+def judge_colours(name, mtl):
+    import_glb(name)
+    lines = [line.split() for line in open(mtl) if line.strip() and not line.startswith("#")]
+    named, colours = None, {}
+    for words in lines:
+        named = words[1] if words[0] == "newmtl" else named
+        if words[0] == "Kd":
+            colours[named] = [float(word) for word in words[1:4]]
+    far = max(abs(a - b) for one, kd in colours.items() for a, b in zip(base_colour(bpy.data.materials[one]), kd))
+    say(f"{name}: colours of {len(colours)} materials", far, 1e-3)
+
+
+def judge_texture(name, file):
+    import_glb(name)
+    kept = [image for image in bpy.data.images if image.size[0] > 0 and image.type == "IMAGE"]
+    used = [node.image for material in bpy.data.materials if material.use_nodes
+            for node in material.node_tree.nodes if node.type == "TEX_IMAGE"]
+    wanted = np.array(bpy.data.images.load(os.path.abspath(file)).pixels)
+    pixels = [np.array(image.pixels) for image in kept if image in used]
+    far = min((np.abs(one - wanted).max() for one in pixels if one.shape == wanted.shape), default=1.0)
+    say(f"{name}: texture", far, 1e-6)
+
+
 def draw(name, frame, camera_from):
     import_glb(name)
     go_to(frame)
+    for material in bpy.data.materials: # the engine below does not look at shaders
+        if material.use_nodes:
+            material.diffuse_color = base_colour(material)
     scene = bpy.context.scene
     for place, energy in (((1.5, -2.0, 2.0), 90.0), ((-2.0, -1.0, 1.0), 40.0)):
         light = bpy.data.objects.new("light", bpy.data.lights.new("light", "POINT"))
@@ -317,6 +356,8 @@ used = judge_functions("face", "apps/models/face.puppet.toml", "apps/models/face
 complaints += sorted(used.values())[1] < 0.5  # sim:faces plays all of them but one eye
 used = judge_functions("stone", "tools/exports/moai.puppet.toml", MODEL)
 complaints += used["noseLift_negative"] < 0.5 or used["chinOut"] < 0.5
+judge_colours("face.glb", "apps/models/face.mtl")
+judge_texture("page.glb", "apps/models/face689.png")
 judge_even("type1", NEAR)
 judge_even("linked", 1e-4 + NEAR)
 judge_even("type2", 1e-4 + NEAR)
