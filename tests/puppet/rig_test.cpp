@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include <nendo/hand/angle.hpp>
 #include <nendo/puppet/rig_check.hpp>
 
+#include "support/rounds.hpp"
 #include "support/test_meshes.hpp"
 
 namespace rig_test {
@@ -77,6 +79,14 @@ std::size_t number_of(const Rig& rig, std::string_view name) {
     if (rig.puppet().functions[at].name == name) return at;
   FAIL("no function ", std::string(name));
   return 0;
+}
+
+deform::SurfacePlace place_of(const Rig& rig, std::string_view name, const deform::Mesh& mesh) {
+  const auto& points = rig.puppet().points;
+  const auto at = std::find_if(points.begin(), points.end(),
+                               [&](const auto& point) { return point.name == name; });
+  REQUIRE(at != points.end());
+  return places_on(rig.puppet(), mesh)[static_cast<std::size_t>(at - points.begin())];
 }
 
 double asymmetry(const Points& shape, const Points& rest) {
@@ -218,6 +228,46 @@ TEST_SUITE("rig") {
       const Points shape = (*shapes)->at(values);
       CHECK((shape - mesh.vertices).colwise().norm().maxCoeff() > 0.1);
       CHECK(asymmetry(shape, mesh.vertices) < 1e-6 * deform::diagonal_of(mesh.vertices));
+    }
+  }
+
+  TEST_CASE(
+      "in 10,000 poses at random pins stay, masked vertices do not move by a bit, twins at the "
+      "same value stay symmetric, and at rest the model is as it is") {
+    const deform::Mesh mesh = ball();
+    const Eigen::Vector3d middle(0.0, 0.6, 0.8); // of the mask, half of whose radius is 0
+    for (const char* const distance : {"surface", "air"}) {
+      CAPTURE(std::string(distance));
+      std::string file = text + "[[masks]]\nat = [0.0, 0.6, 0.8]\nradius = 0.6\n";
+      file.insert(file.find("[points]"), "distance = \"" + std::string(distance) + "\"\n");
+      const auto rig = rig_of(file, mesh);
+      auto shapes = RigShapes::make(rig, mesh);
+      REQUIRE(shapes);
+      const double diagonal = deform::diagonal_of(mesh.vertices);
+      const auto foot = place_of(*rig, "foot", mesh);
+      const std::size_t left = number_of(*rig, "outLeft"), right = number_of(*rig, "outRight");
+      const Points rest = (*shapes)->at(std::vector<double>(3, 0.0));
+      CHECK((rest - mesh.vertices).cwiseAbs().maxCoeff() < 1e-6 * diagonal);
+      std::mt19937 random(41);
+      std::uniform_real_distribution<double> any(-0.5, 1.0);
+      double pinned = 0.0, apart = 0.0, farthest = 0.0;
+      int masked = 0;
+      for (int pose = 0; pose < test::rounds(5'000); ++pose) {
+        std::vector<double> values{any(random), any(random), any(random)};
+        const bool is_symmetric = pose % 10 == 0;
+        if (is_symmetric) values[right] = values[left];
+        const Points shape = (*shapes)->at(values);
+        pinned = std::max(pinned, (foot.in(shape)-foot.in(rest)).norm());
+        farthest = std::max(farthest, (shape - rest).colwise().norm().maxCoeff());
+        if (is_symmetric) apart = std::max(apart, asymmetry(shape, mesh.vertices));
+        for (Eigen::Index v = 0; v < shape.cols(); ++v)
+          if ((mesh.vertices.col(v) - middle).norm() < 0.29)
+            masked += shape.col(v) == rest.col(v) ? 1 : -1'000'000;
+      }
+      CHECK(pinned < 1e-6 * diagonal);
+      CHECK(apart < 1e-6 * diagonal);
+      CHECK(masked > test::rounds(5'000));
+      CHECK(farthest > 0.1);
     }
   }
 
