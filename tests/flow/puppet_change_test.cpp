@@ -272,6 +272,34 @@ TEST_SUITE("puppet change") {
         rig_of(*puppet::parse_puppet(other_puppet, "other"), loop.test.model)));
   }
 
+  TEST_CASE("more points than a tick solves for without allocating are refused, unless their field "
+            "is ready before") {
+    const deform::Mesh model = test::ball(12);
+    const auto of = [&](const char* distance, int points) {
+      std::string text = puppet_of(points);
+      text.replace(text.find("\"air\""), 5, distance);
+      const auto read = puppet::parse_puppet(text, "many");
+      REQUIRE(read);
+      return rig_of(*read, model);
+    };
+    CHECK(check_points(nullptr, Mode::type2));
+    CHECK(check_points(of("\"air\"", 100).get(), Mode::type2));
+    const auto many = of("\"air\"", 101), along = of("\"surface\"", 101);
+    CHECK_FALSE(check_points(many.get(), Mode::type1));
+    CHECK(check_points(along.get(), Mode::type1));
+    const auto refused = check_points(along.get(), Mode::type2);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.find("101 points") != std::string::npos);
+    Clocked loop(Mode::type1, with_puppet);
+    CHECK_FALSE(loop.test.loop->change_puppet(many));
+    REQUIRE(loop.test.loop->change_puppet(along));
+    loop.bent(3);
+    LoopSettings settings = loop.test.loop->settings();
+    settings.mode = Mode::type2;
+    CHECK_FALSE(loop.test.loop->change_settings(settings));
+    CHECK(loop.test.loop->settings().mode == Mode::type1);
+  }
+
   TEST_CASE("ticks that take puppets allocate nothing, free nothing, lock nothing") {
     constexpr std::uint64_t ticks = test::rounds(1500);
     test::RestraintCounts sum;

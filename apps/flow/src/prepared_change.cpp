@@ -59,6 +59,9 @@ std::optional<SculptorSetup> DeformLoop::setup_for(const SculptorSetup& before,
   const bool presses = can_press(puppets_[asked_puppet_].get());
   if (!presses && settings.mode == Mode::clay && settings.mode != asked_.settings.mode)
     return std::nullopt;
+  if (settings.mode != asked_.settings.mode &&
+      !check_points(puppets_[asked_puppet_].get(), settings.mode))
+    return std::nullopt;
   SculptorSetup setup = with_settings(before, first_with(asked_puppet_), settings,
                                       hands_of(asked_puppet_), units_per_metre_);
   setup.options.surface = asked_.options.surface; // others may be another version's

@@ -1,5 +1,6 @@
 #include <nendo/flow/rig_setup.hpp>
 
+#include <string>
 #include <utility>
 
 #include <nendo/flow/finger_supports.hpp>
@@ -33,6 +34,15 @@ bool can_press(const puppet::Rig* rig) noexcept {
   if (rig == nullptr) return true;
   const puppet::Puppet& puppet = rig->puppet();
   return !is_played(rig) && !mirror_of(rig) && puppet.masks.empty() && !puppet.inverted;
+}
+
+Result<void> check_points(const puppet::Rig* rig, Mode mode) {
+  if (!is_played(rig) || rig->starts().cols() <= deform::CsrbfSolver::lean_size) return {};
+  if (mode == Mode::type1 && rig->puppet().distance == puppet::Distance::surface) return {};
+  return Error{Errc::bad_input, "the puppet has " + std::to_string(rig->starts().cols()) +
+                                    " points; a tick solves for at most " +
+                                    std::to_string(deform::CsrbfSolver::lean_size) +
+                                    " of them, unless distances go along the surface in type 1"};
 }
 
 StepKind kind_of_edit(const puppet::Rig* before, const puppet::Rig* after) noexcept {
