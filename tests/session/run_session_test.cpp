@@ -158,6 +158,25 @@ struct Run {
     REQUIRE(outcome);
     return *std::move(outcome);
   }
+  /// Opens the left hand for a run over `take`, of which the left index finger is played anew, and
+  /// which is recorded to `file`.
+  Result<RunHands> open_over(const std::string& take, const std::string& file) {
+    const OverdubArguments arguments{take, "left.index", "", ""};
+    auto over = read_overdub(arguments);
+    REQUIRE(over);
+    options.over = *over;
+    options.right.clear();
+    const auto live = live_part(arguments, options);
+    REQUIRE(live);
+    options.live = *live;
+    REQUIRE(take_over_settings(mesh, options));
+    options.recording = {};
+    options.recording.file = file;
+    REQUIRE(options.recording.check(options.out, flow::SwitchAction::none));
+    auto opened = open_hands(options, mesh, event_count);
+    REQUIRE(opened);
+    return opened;
+  }
 };
 
 constexpr flow::Command reset = flow::Request::reset;
@@ -263,21 +282,8 @@ TEST_SUITE("run_session") {
     REQUIRE(before);
     CHECK(before->puppet_changes >= 4);
 
-    const OverdubArguments arguments{file("take.nendo"), "left.index", "", ""};
-    auto over = read_overdub(arguments);
-    REQUIRE(over);
-    CHECK((*over)->take.puppets.size() >= 3);
-    run.options.over = *over;
-    run.options.right.clear();
-    const auto live = live_part(arguments, run.options);
-    REQUIRE(live);
-    run.options.live = *live;
-    REQUIRE(take_over_settings(run.mesh, run.options));
-    run.options.recording = {};
-    run.options.recording.file = file("over.nendo");
-    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
-    auto opened = open_hands(run.options, run.mesh, run.event_count);
-    REQUIRE(opened);
+    auto opened = run.open_over(file("take.nendo"), file("over.nendo"));
+    CHECK(run.options.over->take.puppets.size() >= 3);
     Asker asker({}); // a sink, whose room the puppets must fit
     const RunParticipants participants{[](const auto&, double) {}, {&asker}, {}};
     REQUIRE(run_session(run.options, opened->hands, run.mesh, participants));
@@ -310,20 +316,7 @@ TEST_SUITE("run_session") {
     CHECK(changes >= 2);
     CHECK(before->model_changes == 1);
 
-    const OverdubArguments arguments{file("take.nendo"), "left.index", "", ""};
-    auto over = read_overdub(arguments);
-    REQUIRE(over);
-    run.options.over = *over;
-    run.options.right.clear();
-    const auto live = live_part(arguments, run.options);
-    REQUIRE(live);
-    run.options.live = *live;
-    REQUIRE(take_over_settings(run.mesh, run.options));
-    run.options.recording = {};
-    run.options.recording.file = file("over.nendo");
-    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
-    auto opened = open_hands(run.options, run.mesh, run.event_count);
-    REQUIRE(opened);
+    auto opened = run.open_over(file("take.nendo"), file("over.nendo"));
     CHECK(opened->hands.size() == 1);
     Asker puncher({{flow::Punch{}}, {flow::Punch{}}});
     const RunParticipants participants{[](const auto&, double) {}, {&puncher}, {&puncher}};

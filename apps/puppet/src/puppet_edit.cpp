@@ -244,13 +244,21 @@ Result<Puppet> with_pinned(const Rig& rig, std::size_t point, bool pinned) {
   return draft.done();
 }
 
+namespace {
+
+Result<void> check_movable(const PuppetPoint& point) {
+  if (point.is_pin) return refused("'" + point.name + "' is a pin, and stays where it is");
+  return {};
+}
+
+} // namespace
+
 Result<Puppet> with_move(const Rig& rig, std::size_t function, std::size_t point,
                          const Vector3d& vector) {
   if (!vector.allFinite()) return refused("a way must be finite");
   EditedPuppet draft(rig);
   Puppet& puppet = draft.puppet();
-  if (puppet.points[point].is_pin)
-    return refused("'" + puppet.points[point].name + "' is a pin, and stays where it is");
+  if (const auto fine = check_movable(puppet.points[point]); !fine) return fine.error();
   const bool is_twin = puppet.functions[function].is_twin;
   Function& edited = puppet.functions[draft.source_of_function(function)];
   const std::size_t moved = is_twin ? draft.twin_of_point(point) : point;
@@ -297,8 +305,7 @@ Result<Puppet> with_turn(const Rig& rig, std::size_t function, std::size_t point
     return refused("a turn needs an axis, and at most 360 degrees");
   EditedPuppet draft(rig);
   Puppet& puppet = draft.puppet();
-  if (puppet.points[point].is_pin)
-    return refused("'" + puppet.points[point].name + "' is a pin, and stays where it is");
+  if (const auto fine = check_movable(puppet.points[point]); !fine) return fine.error();
   const bool is_twin = puppet.functions[function].is_twin;
   Function& edited = puppet.functions[draft.source_of_function(function)];
   AxisTurn wanted = is_twin ? flipped(turn) : turn;
