@@ -107,7 +107,6 @@ TEST_SUITE("edit_command") {
     for (const auto& key : before)
       for (const auto& [function, value] : key["values"].items())
         if (value.get<double>() > 0.5) {
-          CAPTURE(function);
           CHECK(table.find(function + " 0.") != std::string::npos);
           ++named;
         }
