@@ -219,7 +219,7 @@ TEST_SUITE("puppet_timeline") {
       CHECK(player->stats().changes == test.loop->stats().changes);
       changes += count<flow::ChangeSettings>(made);
     }
-    CHECK(changes > 10);
+    CHECK(changes > 5 * static_cast<std::size_t>(test::rounds(6)));
   }
 
   TEST_CASE(
