@@ -278,11 +278,15 @@ TEST_SUITE("bench") {
   }
 
   TEST_CASE("bench models tells what another version of the model costs a tick") {
-    const auto done =
-        nendo::test::nendo({"bench", "models", "--cells", "20", "--repetitions", "1", "--json"});
+    const auto done = nendo::test::nendo(
+        {"bench", "models", "--cells", "20", "--repetitions", "1", "--seconds", "1", "--json"});
     REQUIRE_MESSAGE(done.exit_code == 0, done.err);
-    const auto lines = lines_of(done.out);
-    REQUIRE(lines.size() == 2); // hands that have let go, and hands that hold
+    auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 3); // hands that have let go, hands that hold, and changes of radius
+    const auto changes = nlohmann::json::parse(lines.back());
+    CHECK(changes["changes"].get<int>() > 5);
+    CHECK(changes["taken"].get<int>() > 5);
+    lines.pop_back();
     for (const auto& text : lines) {
       const auto line = nlohmann::json::parse(text);
       CHECK(line["vertices"].get<int>() > 1500);
