@@ -223,7 +223,7 @@ TEST_SUITE("exchange") {
     REQUIRE(loop.test.commands.try_push(Request::undo));
     for (int tick = 0; tick < 5; ++tick) {
       loop.tick();
-      CHECK(loop.frame().awaited == Awaited{first, 0});
+      CHECK(loop.frame().awaited == Awaited{first, 0, 0});
       CHECK(loop.frame().undos == 0);
     }
     loop.change(first);
@@ -242,7 +242,7 @@ TEST_SUITE("exchange") {
     loop.tick();
     CHECK(loop.frame().undos == 2);
     loop.tick();
-    CHECK(loop.frame().awaited == Awaited{with_radius(first, 0.25), 0});
+    CHECK(loop.frame().awaited == Awaited{with_radius(first, 0.25), 0, 0});
   }
 
   TEST_CASE("what is shaped between changes within a second is one step") {

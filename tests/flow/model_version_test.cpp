@@ -216,7 +216,7 @@ TEST_SUITE("model_version") {
     CHECK(run.loop().model(0));
     CHECK_FALSE(run.loop().model(1));
     CHECK_FALSE(run.loop().model(2));
-    CHECK_FALSE(run.loop().change_to({run.loop().settings(), 1}));
+    CHECK_FALSE(run.loop().change_to({run.loop().settings(), 1, 0}));
     run.step(Request::undo);
     CHECK(gap(run.tick(), before) == 0.0);
   }

@@ -9,8 +9,6 @@
 
 namespace nendo::flow {
 
-using deform::Points;
-
 bool DeformLoop::hold_still() {
   if (is_changing() || is_still_) return false;
   next_change().holds_still = true;

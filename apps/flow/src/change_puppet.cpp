@@ -100,7 +100,7 @@ Result<SculptorSetup> DeformLoop::setup_with(std::uint32_t puppet) const {
 
 ReadyRig DeformLoop::ready_rig(std::uint32_t number, std::uint32_t before) const {
   ReadyRig ready{number, before};
-  ready.tips = deform::Points::Zero(3, control_points(number));
+  ready.tips = Points::Zero(3, control_points(number));
   const auto& rig = puppets_[number];
   ready.mirror = mirror_of(rig.get());
   if (!is_played(rig.get())) return ready;

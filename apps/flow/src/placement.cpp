@@ -218,4 +218,15 @@ Placement place_player(const deform::Mesh& model, double model_size_m) {
   return placement;
 }
 
+Table table_under(const deform::Mesh& model, double units_per_metre) noexcept {
+  constexpr double least_side_m = 0.5;
+  Table table{Eigen::Vector3d::Zero(), least_side_m * units_per_metre};
+  if (model.vertices.cols() == 0) return table;
+  const Eigen::Vector3d low = model.vertices.rowwise().minCoeff();
+  const Eigen::Vector3d high = model.vertices.rowwise().maxCoeff();
+  table.top = {0.5 * (low.x() + high.x()), low.y(), 0.5 * (low.z() + high.z())};
+  table.half_side = std::max(table.half_side, 2.0 * (high - low).maxCoeff());
+  return table;
+}
+
 } // namespace nendo::flow

@@ -61,11 +61,8 @@ void mirror_half(double at, Points& points) noexcept {
 void set_masks(const puppet::Rig* rig, const deform::Mesh& model, const deform::BlockLayout& layout,
                SculptorOptions& sculptor) {
   sculptor.are_mirrored = mirror_of(rig).has_value();
-  sculptor.deformer.mask.reset();
-  if (rig == nullptr) return;
-  const Eigen::VectorXd weights = puppet::mask_weights(rig->puppet(), model.vertices);
-  if (weights.size() > 0)
-    sculptor.deformer.mask = std::make_shared<const deform::VertexMask>(layout, weights);
+  sculptor.deformer.mask =
+      rig == nullptr ? nullptr : puppet::vertex_mask(rig->puppet(), layout, model.vertices);
 }
 
 SculptorSetup with_control_points(SculptorSetup first, deform::Supports supports,

@@ -212,4 +212,12 @@ Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertice
   return weights;
 }
 
+std::shared_ptr<const deform::VertexMask> vertex_mask(const Puppet& puppet,
+                                                      const deform::BlockLayout& layout,
+                                                      const deform::Points& vertices) {
+  const Eigen::VectorXd weights = mask_weights(puppet, vertices);
+  if (weights.size() == 0) return nullptr;
+  return std::make_shared<const deform::VertexMask>(layout, weights);
+}
+
 } // namespace nendo::puppet

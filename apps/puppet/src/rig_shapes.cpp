@@ -42,9 +42,7 @@ Result<std::unique_ptr<RigShapes>> RigShapes::make(std::shared_ptr<const Rig> ri
     parts->condition = (*field)->condition();
     status = parts->along.emplace(parts->shape, *std::move(field)).grab(starts);
   } else {
-    const Eigen::VectorXd weights = mask_weights(parts->rig->puppet(), model.vertices);
-    if (weights.size() > 0)
-      options.mask = std::make_shared<const deform::VertexMask>(parts->shape.layout(), weights);
+    options.mask = vertex_mask(parts->rig->puppet(), parts->shape.layout(), model.vertices);
     status = parts->through.emplace(parts->shape, starts.cols(), options).grab(starts);
   }
   if (!deform::is_solved(status))

@@ -35,11 +35,11 @@ struct HandFrame {
 };
 
 /// What an undo or a redo waits for. Whoever runs the loop must ask for it
-/// (DeformLoop::change_to()).
+/// (DeformLoop::change_to()). None has a default, so that compilers see when one is left out.
 struct Awaited {
   LoopSettings settings;
-  std::uint32_t model = 0;  ///< ModelVersion::number
-  std::uint32_t puppet = 0; ///< DeformLoop::puppet()
+  std::uint32_t model;  ///< ModelVersion::number
+  std::uint32_t puppet; ///< DeformLoop::puppet()
   friend bool operator==(const Awaited&, const Awaited&) = default;
 };
 

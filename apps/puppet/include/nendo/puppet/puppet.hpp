@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include <nendo/base/units.hpp>
 #include <nendo/deform/supports.hpp>
 #include <nendo/deform/surface_field.hpp>
+#include <nendo/deform/vertex_mask.hpp>
 #include <nendo/puppet/hand_signal.hpp>
 
 namespace nendo::puppet {
@@ -160,6 +162,10 @@ std::vector<deform::SurfacePlace> places_on(const Puppet& puppet, const deform::
 /// Returns how far each of these vertices follows what moves the model, 0 to 1: by the masks.
 /// Empty: there is no mask, and all follow.
 Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertices);
+/// Returns them for a deformer; null: everything moves. Allocates.
+std::shared_ptr<const deform::VertexMask> vertex_mask(const Puppet& puppet,
+                                                      const deform::BlockLayout& layout,
+                                                      const deform::Points& vertices);
 /// Returns the x of the plane x = constant in which the model is symmetric: that of the middle of
 /// its bounds, if nearly all vertices that are looked at have a mirror image; otherwise 0.
 double plane_of_symmetry(const deform::Points& vertices);
