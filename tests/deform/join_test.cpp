@@ -176,7 +176,7 @@ TEST_SUITE("join") {
 
   TEST_CASE("the same parts make the same bits") {
     const Mesh a = normalised(nendo::test::torus(24, 12));
-    const Mesh b = moved(a, {0.3, 0.2, 0.1});
+    const Mesh b = moved(normalised(nendo::test::sphere(16, 24, 1.0)), {0.3, 0.2, 0.1});
     const auto one = join_two(a, b, 0.05);
     const auto other = join_two(a, b, 0.05);
     REQUIRE(one);

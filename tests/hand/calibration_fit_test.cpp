@@ -323,7 +323,7 @@ TEST_SUITE("calibration_fit") {
   TEST_CASE("random counts under random names give an error or finite numbers") {
     std::mt19937 random(17);
     int fits = 0;
-    for (int round = 0; round < test::rounds(30); ++round) {
+    for (int round = 0; round < test::rounds(12); ++round) {
       const auto sensors =
           round % 2 == 0 ? sensors_22 : SensorMask{static_cast<std::uint32_t>(random())};
       std::vector<PoseReading> readings(2 + random() % 12);
