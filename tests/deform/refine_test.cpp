@@ -153,7 +153,7 @@ TEST_SUITE("refine") {
         surface.flip(edge);
         break;
       default:
-        surface.collapse(edge, 10.0, 0.0);
+        surface.collapse(edge, {.longest = 10.0});
       }
       if (step % 100 == 0)
         for (std::uint32_t at = 0; at < 3 * surface.face_count(); ++at)

@@ -9,8 +9,6 @@
 namespace nendo::deform {
 namespace {
 
-/// No normal turns by more than 60 degrees.
-constexpr double least_normal_cosine = 0.5;
 /// Two faces whose normals differ by more than 32 degrees are a feature, and are not flipped.
 constexpr double least_flat_cosine = 0.85;
 /// The normal of a needle says little: its neighbours' decide.
@@ -79,6 +77,19 @@ std::uint32_t LiveSurface::middle_texture(std::uint32_t edge) {
   return static_cast<std::uint32_t>(surface_.texture_points.size() - 1);
 }
 
+/// Of a new point between two.
+void LiveSurface::add_attributes(std::uint32_t a, std::uint32_t b) {
+  if (!surface_.colours.empty()) {
+    Colour mixed = surface_.colours[a];
+    for (std::size_t k = 0; k < mixed.size(); ++k)
+      mixed[k] = 0.5f * (mixed[k] + surface_.colours[b][k]);
+    surface_.colours.push_back(mixed);
+  }
+  if (!surface_.rest.empty()) surface_.rest.push_back(0.5 * (surface_.rest[a] + surface_.rest[b]));
+  if (!surface_.detail.empty())
+    surface_.detail.push_back({0.5f * (surface_.detail[a].edge + surface_.detail[b].edge), true});
+}
+
 std::uint32_t LiveSurface::add_face(std::uint32_t like) {
   surface_.faces.push_back({});
   surface_.looks.push_back(surface_.looks[like]);
@@ -100,12 +111,7 @@ std::uint32_t LiveSurface::split(std::uint32_t edge) {
   const auto middle = static_cast<std::uint32_t>(surface_.points.size());
   surface_.points.push_back(0.5 * (point(a) + point(b)));
   edge_at_.push_back(no_entry);
-  if (!surface_.colours.empty()) {
-    Colour mixed = surface_.colours[a];
-    for (std::size_t k = 0; k < mixed.size(); ++k)
-      mixed[k] = 0.5f * (mixed[k] + surface_.colours[b][k]);
-    surface_.colours.push_back(mixed);
-  }
+  add_attributes(a, b);
   const bool is_cut = is_border(edge);
   const std::uint32_t in_face = middle_texture(edge);
   const std::uint32_t in_back = is_cut ? middle_texture(back) : in_face;
@@ -129,6 +135,7 @@ std::uint32_t LiveSurface::split(std::uint32_t edge) {
   link(back, to_b);
   edge_at_[a] = edge;
   edge_at_[b] = back;
+  note(EdgeOperation::Kind::split, a, b);
   return middle;
 }
 
@@ -155,11 +162,11 @@ bool LiveSurface::keeps_borders(std::uint32_t edge) const {
   return borders == 0 || (borders == 2 && is_border(edge));
 }
 
-bool LiveSurface::keeps_shape(std::uint32_t edge, double longest, double thin) const {
+bool LiveSurface::keeps_shape(std::uint32_t edge, const CollapseLimits& limits) const {
   const SpacePoint& target = point(from(edge));
   const std::uint32_t b = to(edge);
   SpacePoint around{};
-  double longest_before = longest;
+  double longest_before = limits.longest;
   visit_edges(b, [&](std::uint32_t at) {
     around = around + area_of(at / 3);
     longest_before = std::max(longest_before, edge_length(at));
@@ -170,21 +177,26 @@ bool LiveSurface::keeps_shape(std::uint32_t edge, double longest, double thin) c
     const SpacePoint& p = point(to(at));
     const SpacePoint& q = point(from(last(at)));
     keeps = keeps && distance_between(target, p) <= longest_before;
-    if (!keeps || height_of(target, p, q) < thin) return;
+    if (!keeps || height_of(target, p, q) < limits.thin) return;
     const double before = triangle_fairness(point(b), p, q);
-    const SpacePoint old_area = height_of(point(b), p, q) < thin ? around : area_of(at / 3);
-    keeps = cosine(area_vector(target, p, q), old_area) >= least_normal_cosine &&
+    const SpacePoint old_area = height_of(point(b), p, q) < limits.thin ? around : area_of(at / 3);
+    keeps = cosine(area_vector(target, p, q), old_area) >= limits.least_cosine &&
             triangle_fairness(target, p, q) >= std::min(before, fair_enough);
   });
   return keeps;
 }
 
-bool LiveSurface::may_collapse(std::uint32_t edge, double longest, double thin) const {
-  return keeps_links(edge) && keeps_borders(edge) && keeps_shape(edge, longest, thin);
+bool LiveSurface::can_collapse(std::uint32_t edge) const {
+  return keeps_links(edge) && keeps_borders(edge);
 }
 
-bool LiveSurface::collapse(std::uint32_t edge, double longest, double thin) {
-  if (!may_collapse(edge, longest, thin)) return false;
+bool LiveSurface::collapse(std::uint32_t edge, const CollapseLimits& limits) {
+  if (!can_collapse(edge) || !keeps_shape(edge, limits)) return false;
+  collapse_now(edge);
+  return true;
+}
+
+void LiveSurface::collapse_now(std::uint32_t edge) {
   const std::uint32_t back = twins_[edge];
   const std::uint32_t a = from(edge);
   const std::uint32_t b = to(edge);
@@ -210,17 +222,16 @@ bool LiveSurface::collapse(std::uint32_t edge, double longest, double thin) {
   edge_at_[c] = beyond_c;
   edge_at_[d] = beyond_d;
   edge_at_[b] = no_entry;
-  return true;
+  if (!surface_.detail.empty()) surface_.detail[a].is_refined = true;
+  note(EdgeOperation::Kind::collapse, a, b);
 }
 
-bool LiveSurface::flip(std::uint32_t edge) {
+bool LiveSurface::makes_fairer(std::uint32_t edge) const {
   const std::uint32_t back = twins_[edge];
-  if (is_border(edge)) return false;
   const std::uint32_t a = from(edge);
   const std::uint32_t b = from(back);
   const std::uint32_t c = from(last(edge));
   const std::uint32_t d = from(last(back));
-  if (c == d) return false;
   const double one = triangle_fairness(point(a), point(b), point(c));
   const double other = triangle_fairness(point(b), point(a), point(d));
   const double then = std::min(triangle_fairness(point(d), point(c), point(a)),
@@ -230,15 +241,34 @@ bool LiveSurface::flip(std::uint32_t edge) {
   if (std::min(one, other) > needle &&
       cosine(area_of(edge / 3), area_of(back / 3)) < least_flat_cosine)
     return false;
-  if (cosine(area_vector(point(d), point(c), point(a)), both) < least_flat_cosine ||
-      cosine(area_vector(point(c), point(d), point(b)), both) < least_flat_cosine)
-    return false;
+  return cosine(area_vector(point(d), point(c), point(a)), both) >= least_flat_cosine &&
+         cosine(area_vector(point(c), point(d), point(b)), both) >= least_flat_cosine;
+}
+
+bool LiveSurface::can_flip(std::uint32_t edge) const {
+  const std::uint32_t back = twins_[edge];
+  const std::uint32_t c = from(last(edge));
+  const std::uint32_t d = from(last(back));
+  if (is_border(edge) || c == d) return false;
   std::size_t at_a = 0;
   std::size_t at_b = 0;
-  visit_edges(a, [&](std::uint32_t) { ++at_a; });
-  visit_edges(b, [&](std::uint32_t) { ++at_b; });
-  if (at_a <= 3 || at_b <= 3 || edge_between(c, d) != no_entry) return false;
+  visit_edges(from(edge), [&](std::uint32_t) { ++at_a; });
+  visit_edges(from(back), [&](std::uint32_t) { ++at_b; });
+  return at_a > 3 && at_b > 3 && edge_between(c, d) == no_entry;
+}
 
+bool LiveSurface::flip(std::uint32_t edge) {
+  if (is_border(edge) || !makes_fairer(edge) || !can_flip(edge)) return false;
+  flip_now(edge);
+  return true;
+}
+
+void LiveSurface::flip_now(std::uint32_t edge) {
+  const std::uint32_t back = twins_[edge];
+  const std::uint32_t a = from(edge);
+  const std::uint32_t b = from(back);
+  const std::uint32_t c = from(last(edge));
+  const std::uint32_t d = from(last(back));
   const std::array<std::uint32_t, 4> beyond{twins_[next(edge)], twins_[last(edge)],
                                             twins_[next(back)], twins_[last(back)]};
   const std::uint32_t at_c = texture_or_none(last(edge));
@@ -255,7 +285,30 @@ bool LiveSurface::flip(std::uint32_t edge) {
   link(last(edge), beyond[2]); // from a to d
   link(next(back), beyond[3]); // from d to b
   link(last(back), beyond[0]); // from b to c
-  return true;
+  note(EdgeOperation::Kind::flip, a, b);
+}
+
+bool LiveSurface::repeat(const EdgeOperation& operation) {
+  if (operation.from >= point_count() || operation.to >= point_count() ||
+      !has_point(operation.from) || !has_point(operation.to))
+    return false;
+  const std::uint32_t edge = edge_between(operation.from, operation.to);
+  if (edge == no_entry) return false;
+  using Kind = EdgeOperation::Kind;
+  if (operation.kind == Kind::collapse && !can_collapse(edge)) return false;
+  if (operation.kind == Kind::flip && !can_flip(edge)) return false;
+  switch (operation.kind) {
+  case Kind::split:
+    split(edge);
+    return true;
+  case Kind::collapse:
+    collapse_now(edge);
+    return true;
+  case Kind::flip:
+    flip_now(edge);
+    return true;
+  }
+  return false;
 }
 
 TriangleSurface LiveSurface::take(std::vector<std::uint32_t>* numbers) {
@@ -266,6 +319,8 @@ TriangleSurface LiveSurface::take(std::vector<std::uint32_t>* numbers) {
     renumbered[at] = static_cast<std::uint32_t>(kept.points.size());
     kept.points.push_back(surface_.points[at]);
     if (!surface_.colours.empty()) kept.colours.push_back(surface_.colours[at]);
+    if (!surface_.rest.empty()) kept.rest.push_back(surface_.rest[at]);
+    if (!surface_.detail.empty()) kept.detail.push_back(surface_.detail[at]);
   }
   for (std::uint32_t face = 0; face < surface_.faces.size(); ++face) {
     if (gone_[face]) continue;

@@ -7,9 +7,17 @@
 #include <span>
 #include <vector>
 
+#include <nendo/deform/refinement.hpp>
+
 #include "join/triangle_surface.hpp"
 
 namespace nendo::deform {
+
+struct CollapseLimits {
+  double longest = 0.0;      ///< no edge becomes longer, unless one around the point was
+  double thin = 0.0;         ///< the normals of faces that are lower say nothing
+  double least_cosine = 0.5; ///< of the angle by which a face's normal turns
+};
 
 class LiveSurface {
 public:
@@ -57,14 +65,18 @@ public:
 
   /// Puts a new point into the middle of an edge, and returns its number: point_count() before.
   std::uint32_t split(std::uint32_t edge);
-  /// Lets the edge's end go into its beginning, which stays in its place. No edge becomes longer
-  /// than `longest`, unless one around the end was, and no face's normal turns by more than 60
-  /// degrees; that of faces which are lower than `thin` says nothing. Returns false if it is
+  /// Lets the edge's end go into its beginning, which stays in its place. Returns false if it is
   /// refused.
-  bool collapse(std::uint32_t edge, double longest, double thin);
+  bool collapse(std::uint32_t edge, const CollapseLimits& limits);
   /// Turns the edge in its two faces if that makes the worse of them fairer. Returns false if it is
   /// refused.
   bool flip(std::uint32_t edge);
+
+  /// Does what was done before to a surface of the same faces, wherever its points are. Returns
+  /// false, and does nothing, if that cannot be done to this one.
+  bool repeat(const EdgeOperation& operation);
+  /// Appends each operation from now on to that list, which must live as long.
+  void note_in(std::vector<EdgeOperation>* list) noexcept { noted_ = list; }
 
   /// Returns the surface without what is gone, points and faces in their order. `numbers`, if not
   /// null, becomes each point's new number, or no_entry. The object is empty afterwards.
@@ -85,15 +97,24 @@ private:
   std::uint32_t middle_texture(std::uint32_t edge);
   std::uint32_t add_face(std::uint32_t like);
   SpacePoint area_of(std::uint32_t face) const noexcept;
-  bool may_collapse(std::uint32_t edge, double longest, double thin) const;
+  void add_attributes(std::uint32_t a, std::uint32_t b);
+  void note(EdgeOperation::Kind kind, std::uint32_t a, std::uint32_t b) {
+    if (noted_ != nullptr) noted_->push_back({kind, a, b});
+  }
+  bool can_collapse(std::uint32_t edge) const;
+  void collapse_now(std::uint32_t edge);
+  bool makes_fairer(std::uint32_t edge) const;
+  bool can_flip(std::uint32_t edge) const;
+  void flip_now(std::uint32_t edge);
   bool keeps_links(std::uint32_t edge) const;
   bool keeps_borders(std::uint32_t edge) const;
-  bool keeps_shape(std::uint32_t edge, double longest, double thin) const;
+  bool keeps_shape(std::uint32_t edge, const CollapseLimits& limits) const;
 
   TriangleSurface surface_;
   std::vector<std::uint32_t> twins_;
   std::vector<std::uint32_t> edge_at_; ///< of each point some edge that begins there
   std::vector<char> gone_;             ///< of each face
+  std::vector<EdgeOperation>* noted_ = nullptr;
 };
 
 /// From 0 for a triangle without area to 1 for an equilateral one.

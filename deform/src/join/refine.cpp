@@ -12,6 +12,34 @@ struct RefineEdge {
   std::uint32_t from, to;
 };
 
+bool is_near(const RefineZone& zone, std::uint32_t point) {
+  return zone.coarseness[point] > 0.0f;
+}
+
+double coarseness_between(const RefineZone& zone, std::uint32_t a, std::uint32_t b) {
+  const auto [least, most] = std::minmax(zone.coarseness[a], zone.coarseness[b]);
+  return static_cast<double>(least > 0.0f ? least : most);
+}
+
+/// Calls visit(length, from, to) for each edge in the zone, with its length as the limits count it.
+template <class Visit>
+void visit_zone(const LiveSurface& surface, const RefineZone& zone, const Visit& visit) {
+  for (std::uint32_t point = 0; point < surface.point_count(); ++point) {
+    if (!is_near(zone, point) || !surface.has_point(point)) continue;
+    surface.visit_edges(point, [&](std::uint32_t edge) {
+      const std::uint32_t other = surface.to(edge);
+      if (is_near(zone, other) && other < point) return; // seen from there
+      const auto [from, to] = std::minmax(point, other);
+      visit(surface.edge_length(edge) / coarseness_between(zone, point, other), from, to);
+    });
+  }
+}
+
+/// Both ends hold.
+bool is_fixed(const RefineZone& zone, std::uint32_t from, std::uint32_t to) {
+  return zone.hold[from] == 2 && zone.hold[to] == 2;
+}
+
 class RefineRound {
 public:
   RefineRound(LiveSurface& surface, RefineZone& zone, const RefineLimits& limits)
@@ -20,6 +48,7 @@ public:
   RefineCounts run() {
     collect();
     split_long();
+    if (limits_.only_splits) return counts_;
     collapse_short();
     flip_all();
     return counts_;
@@ -31,25 +60,13 @@ private:
       return std::tie(a.order, a.from, a.to) < std::tie(b.order, b.from, b.to);
     });
   }
-  bool is_near(std::uint32_t point) const { return zone_.coarseness[point] > 0.0f; }
-  double coarseness_between(std::uint32_t a, std::uint32_t b) const {
-    const auto [least, most] = std::minmax(zone_.coarseness[a], zone_.coarseness[b]);
-    return static_cast<double>(least > 0.0f ? least : most);
-  }
   bool has_budget() const { return counts_.splits + counts_.collapses < limits_.budget; }
 
   void collect() {
-    for (std::uint32_t point = 0; point < surface_.point_count(); ++point) {
-      if (!is_near(point) || !surface_.has_point(point)) continue;
-      surface_.visit_edges(point, [&](std::uint32_t edge) {
-        const std::uint32_t other = surface_.to(edge);
-        if (is_near(other) && other < point) return; // seen from there
-        const double length = surface_.edge_length(edge) / coarseness_between(point, other);
-        const auto [from, to] = std::minmax(point, other);
-        if (length > limits_.longest) long_.push_back({-length, from, to});
-        if (length < limits_.shortest) short_.push_back({length, from, to});
-      });
-    }
+    visit_zone(surface_, zone_, [&](double length, std::uint32_t from, std::uint32_t to) {
+      if (length > limits_.longest) long_.push_back({-length, from, to});
+      if (length < limits_.shortest) short_.push_back({length, from, to});
+    });
     sort(long_);
     sort(short_);
   }
@@ -78,15 +95,15 @@ private:
       if (!may_go(goes, stays)) continue;
       const std::uint32_t edge = surface_.edge_between(stays, goes);
       if (edge == no_entry) return false;
-      const double longest = limits_.longest * coarseness_between(stays, goes);
-      if (surface_.collapse(edge, longest, limits_.thin)) return true;
+      const double longest = limits_.longest * coarseness_between(zone_, stays, goes);
+      if (surface_.collapse(edge, {longest, limits_.thin, limits_.least_cosine})) return true;
     }
     return false;
   }
   void collapse_short() {
     for (const RefineEdge& wanted : short_) {
       if (!surface_.has_point(wanted.from) || !surface_.has_point(wanted.to)) continue;
-      if (zone_.hold[wanted.from] == 2 && zone_.hold[wanted.to] == 2) continue;
+      if (is_fixed(zone_, wanted.from, wanted.to)) continue;
       if (!has_budget()) {
         ++counts_.left;
         continue;
@@ -96,7 +113,7 @@ private:
   }
   void flip_all() {
     for (std::uint32_t point = 0; point < surface_.point_count(); ++point) {
-      if (!is_near(point) || !surface_.has_point(point)) continue;
+      if (!is_near(zone_, point) || !surface_.has_point(point)) continue;
       around_.clear();
       surface_.visit_edges(point,
                            [&](std::uint32_t edge) { around_.push_back(surface_.to(edge)); });
@@ -116,6 +133,16 @@ private:
 };
 
 } // namespace
+
+std::size_t unfit_edges(const LiveSurface& surface, const RefineZone& zone,
+                        const RefineLimits& limits) {
+  std::size_t count = 0;
+  visit_zone(surface, zone, [&](double length, std::uint32_t from, std::uint32_t to) {
+    const bool is_short = length < limits.shortest && !is_fixed(zone, from, to);
+    count += length > limits.longest || is_short ? 1u : 0u;
+  });
+  return count;
+}
 
 RefineCounts refine(LiveSurface& surface, RefineZone& zone, const RefineLimits& limits) {
   return RefineRound(surface, zone, limits).run();

@@ -18,11 +18,13 @@
 namespace nendo::deform {
 
 struct RefineLimits {
-  double longest = 0.0;     ///< an edge that is longer is split; > 0
-  double shortest = 0.0;    ///< one that is shorter is collapsed; at most longest / 2
-  double thin = 0.0;        ///< faces that are lower may fold: they say little of the shape
-  std::size_t budget = 500; ///< splits and collapses in one call
+  double longest = 0.0;      ///< an edge that is longer is split; > 0
+  double shortest = 0.0;     ///< one that is shorter is collapsed; at most longest / 2
+  double thin = 0.0;         ///< faces that are lower may fold: they say little of the shape
+  double least_cosine = 0.5; ///< of the angle by which a collapse turns a face: at most 60 degrees
+  std::size_t budget = 500;  ///< splits and collapses in one call
   std::size_t most_points = 4000000; ///< no splits beyond it
+  bool only_splits = false;          ///< what never makes the surface meet itself
 };
 
 struct RefineCounts {
@@ -41,6 +43,10 @@ struct RefineZone {
   /// less goes into the other. New points have 0.
   std::vector<char> hold;
 };
+
+/// Returns how many edges in the zone are too long or too short.
+std::size_t unfit_edges(const LiveSurface& surface, const RefineZone& zone,
+                        const RefineLimits& limits);
 
 /// Goes once over the edges in the zone: splits, the longest first, then collapses, the shortest
 /// first, then flips. Edges of the same length are taken in the order of their points. Call it

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include <nendo/deform/mesh.hpp>
+
 #include "join/space.hpp"
 
 namespace nendo::deform {
@@ -33,6 +35,8 @@ struct TriangleSurface {
   std::vector<Colour> colours;              ///< one for each point, or none at all
   std::vector<TexturePoint> texture_points; ///< none, if there are no texture coordinates
   std::vector<Corners> face_texture;        ///< of each face's corners, or none at all
+  std::vector<SpacePoint> rest;     ///< where each point is before the hands, or none at all
+  std::vector<VertexDetail> detail; ///< one for each point, or none at all
 };
 
 /// Returns the volume that closed surfaces enclose: positive if they face outwards.

@@ -15,6 +15,13 @@ namespace nendo::deform {
 /// Points as columns: 3 by #points, in model units. A model unit is the unit of the file.
 using Points = Eigen::Matrix3Xd;
 
+/// What refining (refinement.hpp) must know of a vertex.
+struct VertexDetail {
+  float edge = 0.0f;       ///< how long edges should be here, model units
+  bool is_refined = false; ///< the surface was refined here before
+  friend bool operator==(const VertexDetail&, const VertexDetail&) = default;
+};
+
 struct Mesh {
   Points vertices;
   /// Face f has the corners face_corners[face_starts[f]] to face_corners[face_starts[f + 1] - 1].
@@ -26,6 +33,8 @@ struct Mesh {
   Eigen::Matrix2Xd texcoords;
   std::vector<std::uint32_t> corner_texcoords;
   Appearance look; ///< materials, colours and names
+  /// One for each vertex of a refined mesh, or none at all. No file has them.
+  std::vector<VertexDetail> detail;
 
   std::size_t face_count() const noexcept { return face_starts.size() - 1; }
 };

@@ -1,0 +1,266 @@
+#include <nendo/deform/refinement.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <nendo/deform/closed_manifold.hpp>
+
+#include "join/live_surface.hpp"
+#include "join/mesh_surface.hpp"
+#include "join/refine.hpp"
+#include "join/self_intersections.hpp"
+
+namespace nendo::deform {
+namespace {
+
+// Of Mesh::detail.
+constexpr double long_edge = 1.5;
+constexpr double short_edge = 0.5;
+constexpr double thin_face = 1e-3;
+/// No collapse turns a face by more than 25 degrees: sharp edges stay sharp.
+constexpr double least_cosine = 0.9;
+/// Where no edge has changed its length by more, nobody has been, and the triangles are left alone,
+/// however uneven they are.
+constexpr double least_change = 0.3;
+constexpr int most_rounds = 8;
+/// Where an operation made a self-intersection, nothing is done the next time.
+constexpr int most_attempts = 4;
+
+/// The mean length of the edges around each point, of a surface that was not refined before.
+std::vector<VertexDetail> present_detail(const LiveSurface& surface) {
+  std::vector<VertexDetail> means(surface.point_count());
+  for (std::uint32_t point = 0; point < means.size(); ++point) {
+    if (!surface.has_point(point)) continue;
+    double sum = 0.0;
+    int count = 0;
+    surface.visit_edges(point, [&](std::uint32_t edge) {
+      sum += surface.edge_length(edge);
+      ++count;
+    });
+    means[point].edge = static_cast<float>(sum / count);
+  }
+  return means;
+}
+
+/// The surface of one mesh, and its lists of materials and names.
+std::pair<TriangleSurface, Appearance> surface_of(const Mesh& mesh) {
+  const Mesh* const one = &mesh;
+  SharedSurfaces shared = surfaces_of({&one, 1});
+  TriangleSurface surface = std::move(shared.surfaces[0]);
+  surface.rest = surface.points;
+  surface.detail = mesh.detail;
+  if (surface.detail.empty()) surface.detail = present_detail(LiveSurface(surface));
+  return {std::move(surface), std::move(shared.look)};
+}
+
+/// The mesh before the hands.
+Mesh mesh_at_rest(TriangleSurface surface, const Appearance& look) {
+  surface.points = std::move(surface.rest);
+  Mesh mesh = mesh_of(surface, look);
+  mesh.detail = std::move(surface.detail);
+  return mesh;
+}
+
+Result<void> check_closed(const Mesh& mesh) {
+  if (!mesh.vertices.allFinite())
+    return Error{Errc::bad_input, "has a coordinate that is not finite"};
+  if (const ManifoldCheck check = check_closed_manifold(mesh); !check)
+    return Error{Errc::bad_input, describe(check, mesh)};
+  return {};
+}
+
+/// The vertices that bound the box: where they stay, the layout's numbers mean the same.
+std::vector<char> bounding(const Points& vertices) {
+  std::vector<char> bounds(static_cast<std::size_t>(vertices.cols()), 0);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Eigen::Index least = 0, most = 0;
+    vertices.row(axis).minCoeff(&least);
+    vertices.row(axis).maxCoeff(&most);
+    bounds[static_cast<std::size_t>(least)] = bounds[static_cast<std::size_t>(most)] = 1;
+  }
+  return bounds;
+}
+
+} // namespace
+
+struct Refiner::Parts {
+  Appearance look;
+  LiveSurface surface; ///< of the mesh before the hands
+  std::vector<SpacePoint> rest;
+  std::vector<VertexDetail> detail;
+  std::vector<char> bounds;
+  double target = 1.0; ///< the limits' measure; Mesh::detail says what part or multiple of it
+
+  /// The points in the numbers of blocks.
+  std::vector<SpacePoint> places(const BlockShape& shape, const BlockLayout& layout) const {
+    std::vector<SpacePoint> points(surface.point_count());
+    for (std::size_t at = 0; at < points.size(); ++at) {
+      const Eigen::Vector3d place = vertex_at(shape, at).cast<double>();
+      points[layout.order()[at]] = {place[0], place[1], place[2]};
+    }
+    return points;
+  }
+  LiveSurface shaped(const std::vector<SpacePoint>& points) const {
+    LiveSurface live = surface;
+    for (std::uint32_t point = 0; point < points.size(); ++point)
+      live.move(point, points[point]);
+    return live;
+  }
+  /// What the shape stretches or presses, and may be worked at.
+  RefineZone zone_of(const LiveSurface& live, double unit) const {
+    RefineZone zone;
+    zone.coarseness.assign(live.point_count(), 0.0f);
+    zone.hold.assign(live.point_count(), 2);
+    for (std::uint32_t point = 0; point < live.point_count(); ++point) {
+      if (!live.has_point(point)) continue;
+      bool is_changed = detail[point].is_refined;
+      live.visit_edges(point, [&](std::uint32_t edge) {
+        const double before = distance_between(rest[point], rest[live.to(edge)]);
+        is_changed =
+            is_changed || std::abs(unit * live.edge_length(edge) - before) > least_change * before;
+      });
+      if (!is_changed) continue;
+      zone.coarseness[point] = static_cast<float>(static_cast<double>(detail[point].edge) / target);
+      zone.hold[point] = bounds[point] ? 2 : 0;
+    }
+    return zone;
+  }
+  RefineLimits limits(double unit, const RefinementLimits& asked) const {
+    RefineLimits limits;
+    limits.longest = long_edge * target / unit;
+    limits.shortest = short_edge * target / unit;
+    limits.thin = thin_face * limits.longest;
+    limits.least_cosine = least_cosine;
+    limits.budget = asked.budget;
+    limits.most_points = asked.most_vertices;
+    return limits;
+  }
+};
+
+Refiner::Refiner(std::unique_ptr<const Parts> parts) : parts_(std::move(parts)) {}
+Refiner::Refiner(Refiner&&) noexcept = default;
+Refiner& Refiner::operator=(Refiner&&) noexcept = default;
+Refiner::~Refiner() = default;
+
+Result<Refiner> Refiner::make(const Mesh& mesh) {
+  if (const auto closed = check_closed(mesh); !closed) return closed.error();
+  auto [surface, look] = surface_of(mesh);
+  std::vector<SpacePoint> rest = surface.rest;
+  std::vector<VertexDetail> detail = surface.detail;
+  double sum = 0.0;
+  for (const VertexDetail& of : detail)
+    sum += static_cast<double>(of.edge);
+  auto parts =
+      std::make_unique<Parts>(Parts{std::move(look), LiveSurface(std::move(surface)),
+                                    std::move(rest), std::move(detail), bounding(mesh.vertices)});
+  parts->target = sum / static_cast<double>(parts->detail.size());
+  return Refiner(std::move(parts));
+}
+
+std::size_t Refiner::count_unfit(const BlockShape& shape, const BlockLayout& layout) const {
+  const LiveSurface live = parts_->shaped(parts_->places(shape, layout));
+  const RefineZone zone = parts_->zone_of(live, layout.unit());
+  return unfit_edges(live, zone, parts_->limits(layout.unit(), {}));
+}
+
+namespace {
+
+/// What came of one attempt.
+struct Attempt {
+  TriangleSurface surface;
+  std::vector<std::uint32_t> numbers; ///< of each point, those that are gone as well
+  std::vector<EdgeOperation> operations;
+};
+
+Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool only_splits) {
+  Attempt made;
+  live.note_in(&made.operations);
+  limits.only_splits = only_splits;
+  for (int round = 0; round < most_rounds; ++round) {
+    const RefineCounts done = refine(live, zone, limits);
+    limits.budget -= done.splits + done.collapses;
+    if (done.splits + done.collapses + done.flips == 0) break;
+  }
+  made.surface = live.take(&made.numbers);
+  return made;
+}
+
+/// The points at faces that meet others and were not there before.
+std::vector<std::uint32_t> meeting_points(const Attempt& made) {
+  std::vector<char> is_changed(made.surface.points.size(), 0);
+  for (const EdgeOperation& operation : made.operations)
+    for (const std::uint32_t point : {operation.from, operation.to})
+      if (made.numbers[point] != no_entry) is_changed[made.numbers[point]] = 1;
+  std::vector<std::uint32_t> changed;
+  for (std::uint32_t face = 0; face < made.surface.faces.size(); ++face) {
+    const Corners& corner = made.surface.faces[face];
+    if (is_changed[corner[0]] || is_changed[corner[1]] || is_changed[corner[2]])
+      changed.push_back(face);
+  }
+  std::vector<std::uint32_t> points;
+  for (const auto& [one, other] :
+       self_intersections_of(made.surface.points, made.surface.faces, changed))
+    for (const std::uint32_t face : {one, other})
+      points.insert(points.end(), made.surface.faces[face].begin(), made.surface.faces[face].end());
+  return points;
+}
+
+} // namespace
+
+Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
+                           const RefinementLimits& asked) const {
+  const LiveSurface live = parts_->shaped(parts_->places(shape, layout));
+  RefineZone zone = parts_->zone_of(live, layout.unit());
+  const RefineLimits limits = parts_->limits(layout.unit(), asked);
+  Attempt made;
+  for (int count = 0; count < most_attempts; ++count) {
+    made = attempt(live, zone, limits, count + 1 == most_attempts);
+    const std::vector<std::uint32_t> meeting = meeting_points(made);
+    if (meeting.empty()) break;
+    std::vector<char> is_meeting(made.surface.points.size(), 0);
+    for (const std::uint32_t point : meeting)
+      is_meeting[point] = 1;
+    for (std::uint32_t point = 0; point < zone.hold.size(); ++point) {
+      const std::uint32_t now = made.numbers[point];
+      if (now == no_entry || !is_meeting[now]) continue;
+      zone.hold[point] = 2;
+      zone.coarseness[point] = 0.0f;
+    }
+  }
+  Refinement result;
+  result.operations = std::move(made.operations);
+  result.shape.resize(3, static_cast<Eigen::Index>(made.surface.points.size()));
+  for (std::size_t at = 0; at < made.surface.points.size(); ++at) {
+    const SpacePoint& point = made.surface.points[at];
+    result.shape.col(static_cast<Eigen::Index>(at)) << static_cast<float>(point[0]),
+        static_cast<float>(point[1]), static_cast<float>(point[2]);
+  }
+  result.mesh = mesh_at_rest(std::move(made.surface), parts_->look);
+  return result;
+}
+
+Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations) {
+  if (const auto closed = check_closed(mesh); !closed) return closed.error();
+  auto [surface, look] = surface_of(mesh);
+  LiveSurface live(std::move(surface));
+  for (const EdgeOperation& operation : operations)
+    if (!live.repeat(operation))
+      return Error{Errc::bad_input, "cannot be refined as it was when it was recorded"};
+  return mesh_at_rest(live.take(), look);
+}
+
+BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout) {
+  const std::vector<std::uint32_t>& order = layout.order();
+  std::vector<VertexBlock> blocks(layout.block_count());
+  for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
+    const auto place = shape.col(static_cast<Eigen::Index>(order[std::min(at, order.size() - 1)]));
+    VertexBlock& block = blocks[at / block_size];
+    block.x[at % block_size] = place[0];
+    block.y[at % block_size] = place[1];
+    block.z[at % block_size] = place[2];
+  }
+  return BlockShape(std::move(blocks));
+}
+
+} // namespace nendo::deform
