@@ -10,6 +10,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/deform/closed_manifold.hpp>
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/flow/tick_grid.hpp>
 
@@ -49,6 +50,7 @@ struct CommandOptions {
   std::string web; ///< [ADDR:]PORT; empty: none
   bool injective = false;
   bool not_injective = false;
+  std::optional<std::uint32_t> refine_to;
   std::string out_puppet;
   bool force = false; ///< --out may be the model, and --out-puppet may be there
 };
@@ -221,6 +223,10 @@ Result<void> check(CommandOptions& options) {
                                   ": unknown; use none, grab, commit, toggle or keep"};
   }
   run.loop.switch_action = *action;
+  run.refine_to = options.refine_to.value_or(0);
+  if (options.refine_to && !(run.refine_to >= 4 && run.refine_to <= flow::Refine{}.most_vertices))
+    return Error{Errc::usage, fmt::format("--refine {}: use 4 to {} vertices", run.refine_to,
+                                          flow::Refine{}.most_vertices)};
   const auto filter = options.filter.parse();
   if (!filter) return filter.error();
   run.filter = *filter;
@@ -323,6 +329,15 @@ void note_oddities(const deform::Mesh& model, const CommandOptions& options) {
             ", so no part of it stays as it is; use a smaller radius to shape a part");
 }
 
+Result<void> check_refinable(const deform::Mesh& model, const CommandOptions& options) {
+  if (options.run.refine_to == 0) return {};
+  const auto closed = deform::check_closed_manifold(model);
+  if (closed) return {};
+  return Error{Errc::bad_input, "--refine: " + options.run.mesh + ": " +
+                                    deform::describe(closed, model) +
+                                    "; only closed models can be refined, so mend it first"};
+}
+
 /// Turns the guard against folds on, or says that a model of this size goes without.
 void choose_injective(const deform::Mesh& model, CommandOptions& options) {
   if (options.not_injective || options.run.puppet || options.run.over) return;
@@ -341,6 +356,7 @@ int run(CommandOptions& options) {
   if (!published) return cli::report(published.error());
   auto model = read_model(options);
   if (!model) return cli::report(model.error());
+  if (const auto fine = check_refinable(*model, options); !fine) return cli::report(fine.error());
   note_oddities(*model, options);
   choose_injective(*model, options);
   cli::install_stop_signals();
@@ -412,6 +428,9 @@ void add_shape_options(cli::Command& command, CommandOptions& options) {
   command.add_option("--mask", run_options.mask_file,
                      "A file of places that fingertips leave as they are: [[masks]] with at and "
                      "radius, as in a puppet's file; the window paints and saves them");
+  command.add_option("--refine", options.refine_to,
+                     "While the hands shape it, the model gets more triangles where it is "
+                     "stretched, and fewer where it is crowded, up to so many vertices");
   command.add_flag("--symmetry", run_options.symmetric,
                    "Fingertips shape both sides of the model's plane of symmetry, or of x = 0");
   gloves::add_calibration_options(command, run_options.calibration);

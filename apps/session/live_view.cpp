@@ -31,6 +31,7 @@ public:
 
   void loop_begins(const LoopStart& start) override {
     const PlacedLoop& placed = start.placed;
+    gauges_.has_layers = placed.setup.live_layers() != 0;
     const SceneBuilder builder(start.model, placed.setup.placement.units_per_metre);
     window_->begin(placed.loop->layout(), builder, placed.loop->settings());
     window_->show_contacts(options_.contact);

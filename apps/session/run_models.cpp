@@ -1,9 +1,27 @@
 #include "session/run_models.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 namespace nendo::session {
+
+namespace {
+
+/// So often at most is the shape looked at for edges that are too long or too short.
+constexpr std::chrono::milliseconds look_interval(500);
+/// Fewer are not worth another version of the model: the larger of these.
+constexpr std::size_t least_unfit = 24;
+constexpr double least_unfit_fraction = 0.004; ///< of the vertices
+
+std::uint64_t newest_stamp(const deform::BlockShape& shape) {
+  std::uint64_t newest = 0;
+  for (std::size_t block = 0; block < shape.block_count(); ++block)
+    newest = std::max(newest, shape.stamp(block));
+  return newest;
+}
+
+} // namespace
 
 Result<void> RunModels::prepare(const flow::ModelVersion& version) {
   for (Sink* sink : sinks_)
@@ -26,40 +44,74 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
   flow::DeformLoop& loop = *placed_.loop;
   if (stage_ == Stage::handing_over && !loop.is_changing()) stage_ = Stage::none;
   if (stage_ == Stage::holding_still && loop.is_still()) return hand_over();
-  if (making_.valid() && making_.wait_for(seconds(0)) == std::future_status::ready)
-    finer_ = making_.get();
+  if (making_.valid() && making_.wait_for(seconds(0)) == std::future_status::ready) {
+    Made made = making_.get();
+    if (!made.finer) {
+      refine_to_ = is_by_itself_ ? 0 : refine_to_;
+      return "the model " + made.finer.error().message + "; the run goes on as it was";
+    }
+    if (made.is_wanted) finer_ = *std::move(made.finer);
+  }
   if (finer_ && stage_ == Stage::none && may_begin && loop.hold_still())
     stage_ = Stage::holding_still;
   if (asked_ && !finer_ && !making_.valid() && !is_handing_over()) return begin();
+  if (refine_to_ > 0 && !asked_ && !finer_ && !making_.valid() && !is_handing_over()) look();
   return std::nullopt;
 }
 
+/// Lets another thread see whether the newest shape needs refining, and make ready for it.
+void RunModels::look() {
+  flow::DeformLoop& loop = *placed_.loop;
+  const flow::Frame& frame = loop.frames().front();
+  const flow::ModelVersion& model = loop.newest_model();
+  const HostTime now = HostClock::now();
+  if (now - looked_at_ < look_interval || frame.model != model.number) return;
+  looked_at_ = now;
+  const std::uint64_t stamp = newest_stamp(frame.shape);
+  if (std::exchange(looked_stamp_, stamp) == stamp) return;
+  made_ = {0, flow::ModelSource::refined, refine_to_};
+  is_by_itself_ = true;
+  making_ = std::async(std::launch::async, [&model, how = made_, shape = frame.shape] {
+    Made made{flow::FinerModel::repeated(model, how)};
+    if (!made.finer) return made;
+    const auto vertices = static_cast<double>(model.layout().vertex_count());
+    const std::size_t least =
+        std::max(least_unfit, static_cast<std::size_t>(least_unfit_fraction * vertices));
+    made.is_wanted = made.finer->count_unfit(shape) >= least;
+    return made;
+  });
+}
+
 std::optional<std::string> RunModels::begin() {
-  asked_ = false;
+  made_ = *std::exchange(asked_, {});
+  is_by_itself_ = false;
   const flow::ModelVersion& model = placed_.loop->newest_model();
-  if (!flow::FinerModel::can_be_made_of(model))
-    return "the model has " + std::to_string(model.layout().vertex_count()) +
-           " vertices and cannot be subdivided again; the run goes on as it was";
-  making_ = std::async(std::launch::async,
-                       [&model] { return std::make_unique<flow::FinerModel>(model); });
+  making_ = std::async(std::launch::async, [&model, how = made_] {
+    return Made{flow::FinerModel::repeated(model, how)};
+  });
   return std::nullopt;
 }
 
 /// The loop holds still.
 std::optional<std::string> RunModels::hand_over() {
   flow::DeformLoop& loop = *placed_.loop;
-  const std::unique_ptr<flow::FinerModel> finer = std::exchange(finer_, nullptr);
+  std::optional<flow::FinerModel> finer = std::exchange(finer_, {});
   stage_ = Stage::handing_over;
   if (!finer->is_of(loop.newest_model())) { // somebody has undone meanwhile
     loop.keep_model();
-    asked_ = true; // of the model that there is now
+    if (!is_by_itself_) asked_ = made_; // of the model that there is now
     return std::nullopt;
   }
   Result<void> prepared;
+  bool was_made = false;
   const bool takes = loop.change_model(*finer, [&](const auto& version) {
+    was_made = true;
     prepared = prepare(version);
     return static_cast<bool>(prepared);
   });
+  if (is_by_itself_ && takes) return std::nullopt; // many times a minute: the report has it
+  if (!was_made && is_by_itself_) return std::nullopt;
+  if (!was_made) return "there is nothing to refine; the model stays as it is";
   if (!takes) return prepared.error().message + "; the model stays as it is";
   return "the model has " + std::to_string(loop.newest_model().layout().vertex_count()) +
          " vertices now";

@@ -14,12 +14,16 @@ namespace nendo::session {
 
 class RunModels {
 public:
-  /// Both must outlive this. `placed` has its loop before the first call.
-  RunModels(const PlacedLoop& placed, const std::vector<Sink*>& sinks)
-      : placed_(placed), sinks_(sinks) {}
+  /// Both must outlive this. `placed` has its loop before the first call. The model is refined
+  /// again and again where it needs that, up to `refine_to` vertices; 0: only when asked.
+  RunModels(const PlacedLoop& placed, const std::vector<Sink*>& sinks, std::uint32_t refine_to)
+      : placed_(placed), sinks_(sinks), refine_to_(refine_to) {}
 
-  /// Asks for the present model, subdivided.
-  void subdivide() noexcept { asked_ = true; }
+  /// Asks for the present model, subdivided, or refined for the shape that it will have then.
+  void subdivide() noexcept { asked_ = flow::ChangeModel{0, flow::ModelSource::subdivided}; }
+  void refine(const flow::Refine& limits) noexcept {
+    asked_ = flow::ChangeModel{0, flow::ModelSource::refined, limits.most_vertices};
+  }
   /// Goes back, or on, to settings and a version that are kept: flow::Frame::awaited. Returns a
   /// message for people if that cannot be.
   std::optional<std::string> go_to(const flow::Awaited& awaited);
@@ -28,23 +32,34 @@ public:
   /// if there is something to tell.
   std::optional<std::string> follow(bool may_begin);
   /// Tells whether something was asked for and is not done.
-  bool is_due() const noexcept { return asked_ || finer_ || making_.valid(); }
+  bool is_due() const noexcept { return asked_ || (!is_by_itself_ && (finer_ || making_.valid())); }
   /// Tells whether the loop holds still, or will, or is about to get a model. No recording may
   /// begin or end then.
   bool is_handing_over() const noexcept { return stage_ != Stage::none; }
 
 private:
   enum class Stage { none, holding_still, handing_over };
+  /// What another thread has made.
+  struct Made {
+    Result<flow::FinerModel> finer;
+    bool is_wanted = true; ///< enough edges are unfit, if nobody has asked for it
+  };
 
   std::optional<std::string> begin();
+  void look();
   std::optional<std::string> hand_over();
   Result<void> prepare(const flow::ModelVersion& version);
 
   const PlacedLoop& placed_;
   const std::vector<Sink*>& sinks_;
-  bool asked_ = false;
-  std::future<std::unique_ptr<flow::FinerModel>> making_;
-  std::unique_ptr<flow::FinerModel> finer_; ///< made, and not the loop's yet
+  std::uint32_t refine_to_;
+  HostTime looked_at_{};                   ///< whether the model needs refining
+  std::uint64_t looked_stamp_ = 0;         ///< the newest in the shape then
+  bool is_by_itself_ = false;              ///< what is being made
+  std::optional<flow::ChangeModel> asked_; ///< without its number
+  std::future<Made> making_;
+  flow::ChangeModel made_;                ///< what making_ and finer_ are
+  std::optional<flow::FinerModel> finer_; ///< made, and not the loop's yet
   Stage stage_ = Stage::none;
 };
 

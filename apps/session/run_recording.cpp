@@ -99,7 +99,7 @@ recording::Setup RunRecorder::setup_now() const {
   if (options_.over) { // whose model may have been subdivided, and shaped, before it began
     const recording::LoopSetup& taken = *options_.over->take.setup.loop;
     setup.loop->mesh_sum = taken.mesh_sum;
-    setup.loop->subdivisions = taken.subdivisions;
+    setup.loop->origins = taken.origins;
     setup.loop->rest = taken.rest;
   }
   return setup;

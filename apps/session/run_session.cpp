@@ -46,8 +46,8 @@ public:
           const RunParticipants& participants, std::vector<flow::Grant> grants)
       : options_(std::move(options)), hands_(hands), model_(std::move(model)),
         participants_(participants), grants_(std::move(grants)),
-        recorder_(options_, placed_, hands_, model_), models_(placed_, participants_.sinks),
-        saving_(options_, recorder_) {
+        recorder_(options_, placed_, hands_, model_),
+        models_(placed_, participants_.sinks, options_.refine_to), saving_(options_, recorder_) {
     for (const auto& hand : hands_)
       feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
     options_.loop.commands = &loop_commands_;
@@ -247,6 +247,7 @@ private:
       settings_ = change->settings; // only the newest count
     if (const auto* recording = std::get_if<flow::SetRecording>(&command)) record_ = recording->on;
     if (std::holds_alternative<flow::Subdivide>(command)) models_.subdivide();
+    if (const auto* refine = std::get_if<flow::Refine>(&command)) models_.refine(*refine);
     if (std::holds_alternative<flow::Mark>(command)) mark();
     if (std::holds_alternative<flow::Punch>(command)) punch();
     if (std::holds_alternative<flow::SetMask>(command)) mask_edits_.push_back(command);

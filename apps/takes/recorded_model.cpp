@@ -30,12 +30,14 @@ Result<deform::Mesh> model_of_file(const recording::LoopSetup& loop, const std::
 
 Result<deform::Mesh> recorded_model(const recording::LoopSetup& loop, const std::string& named) {
   auto model = model_of_file(loop, named);
-  for (std::uint32_t done = 0; model && done < loop.subdivisions; ++done) {
-    if (model->face_corners.size() > flow::FinerModel::most_corners)
-      return Error{Errc::bad_input, printable(named.empty() ? loop.mesh : named) +
-                                        ": is too large to be subdivided as often as was recorded; "
-                                        "name the model of then with --mesh"};
-    model = deform::subdivide(*model).mesh;
+  for (const auto& origin : loop.origins) {
+    if (!model) break;
+    auto made = flow::made_again(*model, *origin);
+    if (!made)
+      return Error{Errc::bad_input, printable(named.empty() ? loop.mesh : named) + ": " +
+                                        made.error().message +
+                                        "; name the model of then with --mesh"};
+    model = *std::move(made);
   }
   return model;
 }

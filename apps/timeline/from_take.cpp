@@ -149,6 +149,8 @@ public:
     is_still_ = false;
     if (change.source == flow::ModelSource::subdivided)
       timeline_.events.push_back({still_at_s_, flow::Subdivide{}});
+    if (change.source == flow::ModelSource::refined)
+      timeline_.events.push_back({still_at_s_, flow::Refine{change.most_vertices}});
   }
 
   /// Returns false if a timeline has no such settings.
@@ -324,7 +326,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
   auto replay = LoopReplay::make(reader->setup(), model);
   if (!replay) return bad(replay.error().message);
   const Setup& setup = reader->setup();
-  if (!setup.loop->rest.empty() || setup.loop->subdivisions > 0)
+  if (!setup.loop->rest.empty() || !setup.loop->origins.empty())
     return bad(
         "begins in the middle of a run, with a shape that is no file's; a timeline begins with "
         "its model. Record from the beginning of the run, with --record");

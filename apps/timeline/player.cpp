@@ -193,7 +193,10 @@ void Player::ask(const Event& event) {
   if (const auto* change = std::get_if<flow::ChangeSettings>(&command))
     settings_due_ = change->settings; // of several in a frame the last counts, as in the loop
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command)) masks_due_ = change->number;
-  if (std::holds_alternative<flow::Subdivide>(command)) subdivides_ = true;
+  if (std::holds_alternative<flow::Subdivide>(command))
+    model_due_ = {0, flow::ModelSource::subdivided};
+  if (const auto* refine = std::get_if<flow::Refine>(&command))
+    model_due_ = {0, flow::ModelSource::refined, refine->most_vertices};
   const auto* request = std::get_if<flow::Request>(&command);
   // A puppet's hands take hold of its functions.
   if (request != nullptr && !(puppet_ && *request == flow::Request::take_hold))
@@ -266,14 +269,17 @@ bool Player::change_to(const flow::Awaited& awaited, bool is_new_model) {
   return true;
 }
 
-void Player::subdivide() {
+void Player::make_model(const flow::ChangeModel& change) {
   shaping_.hold_still(tips_, frame_, stats_);
   const auto number = static_cast<std::uint32_t>(versions_.size());
-  flow::FinerModel finer(shaping_.model());
-  versions_.push_back(finer.finish(number, undo_room()));
-  if (change_to({shaping_.settings(), number, shaping_.puppet()}, true)) return;
-  was_refused_ = true;
-  versions_.pop_back();
+  auto finer = flow::FinerModel::repeated(shaping_.model(), change);
+  if (auto made = finer ? finer->finish(number, undo_room()) : nullptr) {
+    versions_.push_back(std::move(made));
+    if (change_to({shaping_.settings(), number, shaping_.puppet()}, true)) return;
+    versions_.pop_back();
+    was_refused_ = true;
+  }
+  was_refused_ = was_refused_ || !finer;
   change_to({shaping_.settings(), shaping_.model().number, shaping_.puppet()});
 }
 
@@ -303,8 +309,8 @@ bool Player::next() {
   // The hands have just taken hold here: without a wish there is nothing to do.
   if (made_ > 0 || asked)
     frame_.status =
-        shaping_.shape(tips_, frame_, stats_, settings_due_ || masks_due_ || subdivides_);
-  if (std::exchange(subdivides_, false)) subdivide();
+        shaping_.shape(tips_, frame_, stats_, settings_due_ || masks_due_ || model_due_);
+  if (const auto change = std::exchange(model_due_, {})) make_model(*change);
   if (settings_due_ || masks_due_) {
     const flow::Awaited wanted{std::exchange(settings_due_, {}).value_or(shaping_.settings()),
                                shaping_.model().number,

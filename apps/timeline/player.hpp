@@ -64,7 +64,7 @@ private:
   bool set_surface(flow::SculptorOptions& sculptor, const flow::ModelVersion& model) const;
   flow::SculptorSetup first_with(std::uint32_t masks) const;
   void place_tips(deform::Points& tips, const puppet::Rig* masks) const noexcept;
-  void subdivide();
+  void make_model(const flow::ChangeModel& change);
   void describe(std::uint64_t number);
 
   Timeline timeline_;
@@ -79,11 +79,11 @@ private:
   flow::LoopStats stats_;
   std::size_t next_event_ = 0;
   std::optional<flow::LoopSettings> settings_due_;
-  std::optional<std::uint32_t> masks_due_; ///< their number
-  bool subdivides_ = false;                ///< in this frame
-  bool was_refused_ = false;               ///< a change in this frame
-  std::uint64_t made_ = 0;                 ///< frames
-  std::uint64_t frames_ = 0;               ///< in all
+  std::optional<std::uint32_t> masks_due_;     ///< their number
+  std::optional<flow::ChangeModel> model_due_; ///< without its number
+  bool was_refused_ = false;                   ///< a change in this frame
+  std::uint64_t made_ = 0;                     ///< frames
+  std::uint64_t frames_ = 0;                   ///< in all
 };
 
 } // namespace nendo::timeline

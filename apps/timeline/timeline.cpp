@@ -102,6 +102,7 @@ std::string complaint_about(const Event& event, const puppet::Rig* rig, std::siz
   const bool is_known = std::holds_alternative<flow::Request>(command) ||
                         std::holds_alternative<flow::ChangeSettings>(command) ||
                         std::holds_alternative<flow::Subdivide>(command) ||
+                        std::holds_alternative<flow::Refine>(command) ||
                         std::holds_alternative<flow::Mark>(command) || flow::is_for_puppet(command);
   if (const auto* change = std::get_if<flow::ChangePuppet>(&command))
     return change->number < std::max<std::size_t>(masks, 1) ? "" : "there are no such masks";
@@ -227,6 +228,7 @@ std::string in_words(const Timeline& timeline, const Event& event) {
            (count > 0 && masks->puppet().inverted ? ", inverted" : "") +
            (flow::mirror_of(masks) ? ", symmetric" : "");
   }
+  if (std::holds_alternative<flow::Refine>(event.command)) return "refine";
   return std::holds_alternative<flow::Subdivide>(event.command) ? "subdivide" : "mark";
 }
 

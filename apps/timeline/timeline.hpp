@@ -42,8 +42,9 @@ struct HandTrack {
 struct Event {
   double time_s = 0.0;
   /// A Request, ChangeSettings (without a filter, because keys are poses that were filtered),
-  /// Subdivide, Mark, or, with a puppet, SetClutch, SetRole or SetSymmetry. These three find the
-  /// hands as they were in the frame before. Without a puppet, ChangePuppet names other `masks`.
+  /// Subdivide, Refine, Mark, or, with a puppet, SetClutch, SetRole or SetSymmetry. These three
+  /// find the hands as they were in the frame before. Without a puppet, ChangePuppet names other
+  /// `masks`.
   flow::Command command = flow::Request::grab;
 };
 

@@ -228,12 +228,19 @@ void read_masks(TomlReader& reader, const toml::table& root, Timeline& timeline)
 flow::Command read_request(TomlReader& reader, const toml::table& event) {
   const auto name = event["request"].value<std::string_view>();
   if (name == "subdivide") return flow::Subdivide{};
+  if (name == "refine") {
+    flow::Refine refine;
+    if (event.contains("most_vertices"))
+      refine.most_vertices = static_cast<std::uint32_t>(
+          reader.count(event, "most_vertices", std::numeric_limits<std::uint32_t>::max()));
+    return refine;
+  }
   if (name == "mark") return flow::Mark{};
   return reader.named(event, "request", flow::request_named);
 }
 
 flow::Command read_command(TomlReader& reader, const toml::table& event, const puppet::Rig* rig) {
-  if (event.size() > 2)
+  if (event.size() > (event.contains("most_vertices") ? 3U : 2U))
     reader.complain(event, "an event has a time and one thing that happens; make two events of it");
   if (event.contains("settings")) return flow::ChangeSettings{read_settings(reader, event)};
   if (event.contains("clutch")) return read_clutch(reader, event);
@@ -251,8 +258,8 @@ void read_events(TomlReader& reader, const toml::table& root, Timeline& timeline
   for (const toml::node& node : *events) {
     const toml::table* const event = reader.as_table(node, "an event");
     if (event == nullptr || reader.error()) return;
-    reader.allow_only(*event,
-                      {"time_s", "request", "settings", "clutch", "role", "symmetric", "masks"});
+    reader.allow_only(*event, {"time_s", "request", "settings", "clutch", "role", "symmetric",
+                               "masks", "most_vertices"});
     Event read;
     read.time_s = reader.number(*event, "time_s");
     read.command = read_command(reader, *event, timeline.rig.get());

@@ -23,8 +23,9 @@ struct Gauges {
   double rate_hz = 0.0;              ///< wanted
   std::array<std::string, 2> gloves; ///< their names; empty means no glove
   std::array<driver::RecordCounts, 2> counts{};
-  bool recording = false; ///< to a file
-  std::string report;     ///< the result of the last command that saved something
+  bool recording = false;  ///< to a file
+  bool has_layers = false; ///< gloves play some joints over a recording, or over other gloves
+  std::string report;      ///< the result of the last command that saved something
 };
 
 class PuppetEditor;

@@ -118,9 +118,12 @@ void LiveWindow::Panel::buttons(const flow::Frame& frame, const Gauges& gauges,
     commands.emplace_back(flow::SaveRecording{});
   if (button("Subdivide", "More vertices for finer strokes; undo takes it back (e)"))
     commands.emplace_back(flow::Subdivide{});
+  if (button("Refine", "More triangles where the model was stretched, fewer where it was crowded; "
+                       "undo takes it back (shift e)"))
+    commands.emplace_back(flow::Refine{});
   if (button(gauges.recording ? "End recording" : "Record", "A recording from here on (t)"))
     commands.emplace_back(flow::SetRecording{!gauges.recording});
-  if (button("Punch", "The gloves' layer comes in, or goes out (o)"))
+  if (gauges.has_layers && button("Punch", "The gloves' layer comes in, or goes out (o)"))
     commands.emplace_back(flow::Punch{});
   told = note.empty() ? gauges.report : note;
   if (!told.empty()) ImGui::TextWrapped("%s", told.c_str());

@@ -38,6 +38,7 @@ constexpr std::array key_table{
     KeyLine{";", "more clay: the volume stays; from all to air"},
     KeyLine{"j", "the whole hand holds, or its fingertips"},
     KeyLine{"e", "subdivide: the model gets more vertices for finer strokes"},
+    KeyLine{"shift e", "refine: more triangles where it was stretched, fewer where it was crowded"},
     KeyLine{"Home", "all of the model and the hands in the picture"},
     KeyLine{"p", "the panel folded and unfolded"},
     KeyLine{"q", "quit; the shape is written"},
@@ -119,7 +120,12 @@ void LiveWindow::Panel::single_keys(const flow::Frame& frame, const Gauges& gaug
     if (pressed(GLFW_KEY_J)) wanted.toggle_hold();
   }
   if (pressed(GLFW_KEY_K)) commands.emplace_back(flow::SaveRecording{});
-  if (pressed(GLFW_KEY_E)) commands.emplace_back(flow::Subdivide{});
+  if (pressed(GLFW_KEY_E)) {
+    if (ImGui::GetIO().KeyShift)
+      commands.emplace_back(flow::Refine{});
+    else
+      commands.emplace_back(flow::Subdivide{});
+  }
   if (pressed(GLFW_KEY_S)) commands.emplace_back(flow::SaveShape{});
   settings_keys(frame);
   if (pressed(GLFW_KEY_Q)) commands.emplace_back(flow::EndRun{});

@@ -150,6 +150,7 @@ std::optional<flow::Command> role_in(Words words) noexcept {
 std::optional<flow::Command> parse_command(std::string_view text) noexcept {
   if (const auto request = flow::request_named(text)) return *request;
   if (text == "subdivide") return flow::Subdivide{};
+  if (text == "refine") return flow::Refine{};
   if (text == "mark") return flow::Mark{};
   if (text == "punch") return flow::Punch{};
   if (text == "record") return flow::SetRecording{true};

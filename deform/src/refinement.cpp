@@ -25,7 +25,7 @@ constexpr double least_cosine = 0.9;
 constexpr double least_change = 0.3;
 constexpr int most_rounds = 8;
 /// Where an operation made a self-intersection, nothing is done the next time.
-constexpr int most_attempts = 4;
+constexpr int most_attempts = 6;
 
 /// The mean length of the edges around each point, of a surface that was not refined before.
 std::vector<VertexDetail> present_detail(const LiveSurface& surface) {
@@ -186,8 +186,23 @@ Attempt attempt(LiveSurface live, RefineZone zone, RefineLimits limits, bool onl
   return made;
 }
 
-/// The points at faces that meet others and were not there before.
-std::vector<std::uint32_t> meeting_points(const Attempt& made) {
+/// Of each point whether a face there meets another before anything is done.
+std::vector<char> meeting_before(const LiveSurface& live) {
+  std::vector<std::uint32_t> numbers;
+  const TriangleSurface surface = LiveSurface(live).take(&numbers);
+  std::vector<char> of_number(surface.points.size(), 0);
+  for (const auto& [one, other] : self_intersections(surface.points, surface.faces))
+    for (const std::uint32_t face : {one, other})
+      for (const std::uint32_t corner : surface.faces[face])
+        of_number[corner] = 1;
+  std::vector<char> meets(numbers.size(), 0);
+  for (std::size_t point = 0; point < meets.size(); ++point)
+    meets[point] = numbers[point] != no_entry && of_number[numbers[point]] ? 1 : 0;
+  return meets;
+}
+
+/// The faces at points of operations.
+std::vector<std::uint32_t> changed_faces(const Attempt& made) {
   std::vector<char> is_changed(made.surface.points.size(), 0);
   for (const EdgeOperation& operation : made.operations)
     for (const std::uint32_t point : {operation.from, operation.to})
@@ -198,12 +213,38 @@ std::vector<std::uint32_t> meeting_points(const Attempt& made) {
     if (is_changed[corner[0]] || is_changed[corner[1]] || is_changed[corner[2]])
       changed.push_back(face);
   }
-  std::vector<std::uint32_t> points;
-  for (const auto& [one, other] :
-       self_intersections_of(made.surface.points, made.surface.faces, changed))
+  return changed;
+}
+
+/// Lets the zone leave alone what an attempt made meet. Returns whether there is any. What met
+/// before, and what lies between such points now, does not count.
+bool leave_alone(const Attempt& made, const LiveSurface& live, RefineZone& zone) {
+  const auto pairs =
+      self_intersections_of(made.surface.points, made.surface.faces, changed_faces(made));
+  if (pairs.empty()) return false;
+  std::vector<char> met = meeting_before(live);
+  for (const EdgeOperation& operation : made.operations)
+    if (operation.kind == EdgeOperation::Kind::split)
+      met.push_back(met[operation.from] || met[operation.to] ? 1 : 0);
+  std::vector<std::uint32_t> points(made.surface.points.size());
+  for (std::uint32_t point = 0; point < made.numbers.size(); ++point)
+    if (made.numbers[point] != no_entry) points[made.numbers[point]] = point;
+  const auto met_at = [&](std::uint32_t face) {
+    const Corners& corner = made.surface.faces[face];
+    return met[points[corner[0]]] || met[points[corner[1]]] || met[points[corner[2]]];
+  };
+  bool is_any = false;
+  for (const auto& [one, other] : pairs) {
+    if (met_at(one) || met_at(other)) continue;
+    is_any = true;
     for (const std::uint32_t face : {one, other})
-      points.insert(points.end(), made.surface.faces[face].begin(), made.surface.faces[face].end());
-  return points;
+      for (const std::uint32_t corner : made.surface.faces[face]) {
+        if (points[corner] >= zone.hold.size()) continue;
+        zone.hold[points[corner]] = 2;
+        zone.coarseness[points[corner]] = 0.0f;
+      }
+  }
+  return is_any;
 }
 
 } // namespace
@@ -216,17 +257,7 @@ Refinement Refiner::refine(const BlockShape& shape, const BlockLayout& layout,
   Attempt made;
   for (int count = 0; count < most_attempts; ++count) {
     made = attempt(live, zone, limits, count + 1 == most_attempts);
-    const std::vector<std::uint32_t> meeting = meeting_points(made);
-    if (meeting.empty()) break;
-    std::vector<char> is_meeting(made.surface.points.size(), 0);
-    for (const std::uint32_t point : meeting)
-      is_meeting[point] = 1;
-    for (std::uint32_t point = 0; point < zone.hold.size(); ++point) {
-      const std::uint32_t now = made.numbers[point];
-      if (now == no_entry || !is_meeting[now]) continue;
-      zone.hold[point] = 2;
-      zone.coarseness[point] = 0.0f;
-    }
+    if (!leave_alone(made, live, zone)) break;
   }
   Refinement result;
   result.operations = std::move(made.operations);

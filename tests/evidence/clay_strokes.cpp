@@ -1,6 +1,8 @@
 // clay_strokes STROKES LEVEL: presses balls of clay with violent random strokes of a finger, of a
 // rod and of a whole hand, each stroke on a fresh ball, and has CGAL count the pairs of faces that
 // intersect then. Prints a table in Markdown, and fails if there is any.
+// clay_strokes --one-ball STROKES LEVEL: all strokes of a body on one ball, whose triangles are
+// refined ten times a second, or are not. Prints what became of them.
 
 #include <algorithm>
 #include <array>
@@ -8,11 +10,16 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <numbers>
 #include <random>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <nendo/deform/clay.hpp>
+#include <nendo/deform/refinement.hpp>
 #include <nendo/deform/triangles.hpp>
 #include <nendo/flow/hand_contact.hpp>
 
@@ -71,63 +78,124 @@ struct Outcome {
   double volume = 0.0, last_volume = 0.0; ///< relative; the worst, and at the end
 };
 
-/// At up to 1.5 m/s, 90 Hz: to the ball from any side, into it, on to any side, and away.
-Outcome stroke(std::mt19937& random, Parts parts, int level) {
-  deform::Mesh ball = reference::icosphere(level, ball_mm);
-  deform::SculptedShape shape(ball.vertices, {});
-  deform::ClayDeformer clay(shape, deform::corners_of_triangles(ball), 1, parts.size(),
-                            {.radius_mm = 30.0});
-  const Vector3d from = random_direction(random);
-  parts = test::moved(
-      parts, Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), from)));
-  std::uniform_real_distribution<double> share(0.2, 1.0);
-  const double speed = 16.7 * share(random);
-  const Vector3d in = -(10.0 + 30.0 * share(random)) * from;
-  const Vector3d aside = 40.0 * share(random) * from.cross(random_direction(random));
-  const Vector3d out = 60.0 * from;
-  clay.begin(parts);
-  Outcome outcome;
-  const double whole = volume_of(ball);
-  const auto note = [&](const deform::ClayReport& report) {
-    outcome.penetration_mm = std::max(outcome.penetration_mm, report.penetration_mm);
-    shape.layout().unpack(clay.shape(), ball.vertices);
-    outcome.last_volume = std::abs(volume_of(ball) / whole - 1.0);
-    outcome.volume = std::max(outcome.volume, outcome.last_volume);
-  };
-  for (const Vector3d& way : {in, aside, out}) {
-    const int calls = std::max(1, static_cast<int>(way.norm() / speed));
-    for (int call = 0; call < calls; ++call) {
-      parts = test::moved(parts, Vector3d(way / calls));
-      note(clay.press_to(parts));
-    }
+/// A ball of clay, and what presses it.
+class Trial {
+public:
+  Trial(int level, std::size_t parts, bool refines)
+      : parts_(parts), refines_(refines), ball_(reference::icosphere(level, ball_mm)),
+        whole_(volume_of(ball_)) {
+    take(deform::BlockLayout(ball_.vertices), nullptr);
   }
-  for (int wait = 0; wait < 20; ++wait)
-    note(clay.press_to(parts));
-  outcome.pairs = evidence::self_intersections(ball).size();
-  return outcome;
+  /// At up to 1.5 m/s, 90 Hz: to the ball from any side, into it, on to any side, and away.
+  void stroke(std::mt19937& random, Parts parts) {
+    const Vector3d from = random_direction(random);
+    parts = test::moved(
+        parts, Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), from)));
+    std::uniform_real_distribution<double> share(0.2, 1.0);
+    const double speed = 16.7 * share(random);
+    const Vector3d in = -(10.0 + 30.0 * share(random)) * from;
+    const Vector3d aside = 40.0 * share(random) * from.cross(random_direction(random));
+    const Vector3d out = 60.0 * from;
+    clay_->begin(parts);
+    for (const Vector3d& way : {in, aside, out}) {
+      const int calls = std::max(1, static_cast<int>(way.norm() / speed));
+      for (int call = 0; call < calls; ++call)
+        press(parts = test::moved(parts, Vector3d(way / calls)));
+    }
+    for (int wait = 0; wait < 20; ++wait)
+      press(parts);
+    outcome_.pairs = evidence::self_intersections(shown()).size();
+  }
+  const Outcome& outcome() const { return outcome_; }
+  deform::Mesh shown() const {
+    deform::Mesh mesh = ball_;
+    shape_->layout().unpack(clay_->shape(), mesh.vertices);
+    return mesh;
+  }
+
+private:
+  void take(deform::BlockLayout layout, const deform::BlockShape* first) {
+    clay_.reset();
+    shape_ = std::make_unique<deform::SculptedShape>(std::move(layout), deform::DeformerOptions{},
+                                                     first);
+    clay_ = std::make_unique<deform::ClayDeformer>(*shape_, deform::corners_of_triangles(ball_), 1,
+                                                   parts_, deform::ClayOptions{.radius_mm = 30.0});
+  }
+  void press(const Parts& parts) {
+    outcome_.penetration_mm =
+        std::max(outcome_.penetration_mm, clay_->press_to(parts).penetration_mm);
+    outcome_.last_volume = std::abs(volume_of(shown()) / whole_ - 1.0);
+    outcome_.volume = std::max(outcome_.volume, outcome_.last_volume);
+    if (refines_ && ++calls_ % 9 == 0) refine(parts);
+  }
+  void refine(const Parts& parts) {
+    const auto refiner = deform::Refiner::make(ball_);
+    if (!refiner) return;
+    deform::Refinement made = refiner->refine(clay_->shape(), shape_->layout(), {});
+    if (made.operations.empty()) return;
+    ball_ = std::move(made.mesh);
+    deform::BlockLayout layout(ball_.vertices);
+    const deform::BlockShape first = deform::shape_in_blocks(made.shape, layout);
+    take(std::move(layout), &first);
+    clay_->begin(parts);
+  }
+
+  std::size_t parts_;
+  bool refines_;
+  deform::Mesh ball_; ///< before it was pressed
+  double whole_;
+  std::unique_ptr<deform::SculptedShape> shape_;
+  std::unique_ptr<deform::ClayDeformer> clay_;
+  Outcome outcome_;
+  int calls_ = 0;
+};
+
+/// Of all triangles' least angles, in degrees, and of all edges, mm: low and high ones.
+struct Triangles {
+  double angle_p5 = 0.0, edge_p1 = 0.0, edge_p99 = 0.0;
+};
+
+Triangles triangles_of(const deform::Mesh& mesh) {
+  std::vector<double> angles, edges;
+  deform::for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
+    double least = 180.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3d at = mesh.vertices.col(corners[k]);
+      const Vector3d a = mesh.vertices.col(corners[(k + 1) % 3]) - at;
+      const Vector3d b = mesh.vertices.col(corners[(k + 2) % 3]) - at;
+      least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi);
+      edges.push_back(a.norm());
+    }
+    angles.push_back(least);
+  });
+  const auto quantile = [](std::vector<double>& values, double part) {
+    const auto at =
+        values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  return {quantile(angles, 0.05), quantile(edges, 0.01), quantile(edges, 0.99)};
 }
 
-} // namespace
+const std::vector<std::pair<const char*, Parts>>& bodies() {
+  static const std::vector<std::pair<const char*, Parts>> all{
+      {"finger", finger()}, {"rod", rod()}, {"hand", whole_hand()}};
+  return all;
+}
 
-int main(int argc, char** argv) {
-  const int strokes = argc > 2 ? std::atoi(argv[1]) : 0;
-  const int level = argc > 2 ? std::atoi(argv[2]) : 0;
-  if (strokes < 1 || level < 3 || level > 7) {
-    std::fputs("usage: clay_strokes STROKES LEVEL (3 to 7)\n", stderr);
-    return 2;
-  }
+bool strokes_on_fresh_balls(int strokes, int level) {
   std::puts(
       "| body | strokes | with pairs | pairs | left, mm: worst | volume, %: worst | at the end |\n"
       "|---|---|---|---|---|---|---|");
   bool is_any = false;
-  const std::vector<std::pair<const char*, Parts>> bodies{
-      {"finger", finger()}, {"rod", rod()}, {"hand", whole_hand()}};
-  for (const auto& body : bodies) {
+  for (const auto& body : bodies()) {
     std::mt19937 random(2004);
     int folded = 0;
     Outcome all;
     for (int at = 0; at < strokes; ++at) {
-      const Outcome one = stroke(random, body.second, level);
+      Trial trial(level, body.second.size(), false);
+      trial.stroke(random, body.second);
+      const Outcome& one = trial.outcome();
       folded += one.pairs > 0 ? 1 : 0;
       all.pairs += one.pairs;
       all.penetration_mm = std::max(all.penetration_mm, one.penetration_mm);
@@ -139,5 +207,44 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
     is_any = is_any || folded > 0;
   }
-  return is_any ? 1 : 0;
+  return !is_any;
+}
+
+bool strokes_on_one_ball(int strokes, int level) {
+  std::puts("| body | refined | strokes | first with pairs | pairs at the end | vertices | least "
+            "angle, p5 | edges, mm: p1, p99 | volume at the end, % |\n"
+            "|---|---|---|---|---|---|---|---|---|");
+  bool is_any = false;
+  for (const auto& body : bodies())
+    for (const bool refines : {false, true}) {
+      std::mt19937 random(2004);
+      Trial trial(level, body.second.size(), refines);
+      int first = 0;
+      for (int at = 1; at <= strokes; ++at) {
+        trial.stroke(random, body.second);
+        if (first == 0 && trial.outcome().pairs > 0) first = at;
+      }
+      const deform::Mesh mesh = trial.shown();
+      const Triangles of = triangles_of(mesh);
+      std::printf("| %s | %s | %d | %s | %zu | %td | %.1f | %.2f, %.2f | %.3f |\n", body.first,
+                  refines ? "yes" : "no", strokes, first > 0 ? std::to_string(first).c_str() : "-",
+                  trial.outcome().pairs, mesh.vertices.cols(), of.angle_p5, of.edge_p1, of.edge_p99,
+                  100.0 * trial.outcome().last_volume);
+      std::fflush(stdout);
+      is_any = is_any || (refines && first > 0);
+    }
+  return !is_any;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  const bool one_ball = argc == 4 && std::string_view(argv[1]) == "--one-ball";
+  const int strokes = argc > 2 ? std::atoi(argv[argc - 2]) : 0;
+  const int level = argc > 2 ? std::atoi(argv[argc - 1]) : 0;
+  if ((argc != 3 && !one_ball) || strokes < 1 || level < 3 || level > 7) {
+    std::fputs("usage: clay_strokes [--one-ball] STROKES LEVEL (3 to 7)\n", stderr);
+    return 2;
+  }
+  return (one_ball ? strokes_on_one_ball : strokes_on_fresh_balls)(strokes, level) ? 0 : 1;
 }

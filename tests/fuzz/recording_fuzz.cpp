@@ -47,8 +47,7 @@ void replay(const Setup& setup, const std::vector<Entry>& entries) {
   int finer = 0; // models, each of which is four times as large as the one before
   for (const Entry& entry : entries) {
     const auto* const change = std::get_if<flow::ChangeModel>(&entry);
-    if (change != nullptr && change->source == flow::ModelSource::subdivided && ++finer > 3)
-      continue;
+    if (change != nullptr && change->is_new() && ++finer > 3) continue;
     if ((*replayed)->feed(entry) && ++ticks == most_ticks) break;
   }
   require((*replayed)->loop().final_shape().allFinite());

@@ -82,8 +82,11 @@ struct Replayed {
 Replayed replayed(const std::filesystem::path& path, deform::Mesh model) {
   auto reader = TakeReader::open(path);
   REQUIRE(reader);
-  for (std::uint32_t done = 0; done < reader->setup().loop->subdivisions; ++done)
-    model = deform::subdivide(model).mesh;
+  for (const auto& origin : reader->setup().loop->origins) {
+    auto made = flow::made_again(model, *origin);
+    REQUIRE(made);
+    model = *std::move(made);
+  }
   auto replay = LoopReplay::make(reader->setup(), model);
   REQUIRE(replay);
   Replayed result;
@@ -131,7 +134,7 @@ TEST_SUITE("live_settings") {
 
   TEST_CASE(
       "a recording that begins and ends while the loop runs has what is between, bit for bit") {
-    int shaped = 0, subdivided = 0;
+    int shaped = 0, other_models = 0, refined = 0;
     for (unsigned seed = 0; static_cast<int>(seed) < test::rounds(16); ++seed) {
       CAPTURE(seed);
       const auto live = loop_of(seed);
@@ -152,7 +155,9 @@ TEST_SUITE("live_settings") {
       const flow::LoopState begun = change_log(&log);
       Setup setup = live->setup;
       continue_from(begun, loop.newest_model().layout(), setup);
-      subdivided += begun.subdivisions > 0 ? 1 : 0;
+      other_models += begun.origins.empty() ? 0 : 1;
+      for (const auto& origin : begun.origins)
+        refined += origin->source == flow::ModelSource::refined ? 1 : 0;
       const auto path = live->folder.path() / "part.nendo";
       auto recorder = Recorder::begin(setup, log, {.file = path});
       REQUIRE(recorder);
@@ -177,7 +182,8 @@ TEST_SUITE("live_settings") {
       shaped += (last - rest).cwiseAbs().maxCoeff() > 1e-3 ? 1 : 0;
     }
     CHECK(shaped >= test::rounds(8) / 2); // the others end with an undo or a reset
-    CHECK(subdivided > 0);
+    CHECK(other_models > 0);
+    CHECK(refined > 0);
   }
 
   TEST_CASE("gestures let go and take hold in a replay as they did live, bit for bit") {

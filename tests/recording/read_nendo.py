@@ -126,7 +126,7 @@ def sent(b):
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
              6: lambda e: {**settings(e), **brushes(e), **hold(e)}, 9: lambda e: {"mark": 1}, 10: lambda e: {"clutch": e.take("3B")}, 11: lambda e: {"role": e.take("HBB")},
-             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source"), e.take("IB"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source", "most_vertices"), e.take("IBI"))), 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")
@@ -148,6 +148,15 @@ def puppet(b):
     return dict(o, symmetric=b.take("B"), points=points(b))
 
 
+def origin(b):
+    source, goes_on = b.take("BB")
+    assert source in (1, 2), "a source of a model"
+    operations = []
+    while b.left() > 0:
+        operations.append(b.take("BII"))
+    return {"source": source, "goes_on": goes_on, "operations": operations}
+
+
 def puppet_version(b):
     o = {"number": b.take("I"), "text": b.take(f"{b.take('I')}s").decode()}
     return dict(o, points=points(b))
@@ -161,10 +170,10 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 7, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 8, crc32c(data[:12])), "header"
     at = 16
     number = 0
-    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
+    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "ORIG": origin, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
     while at < len(data):
         magic, kind, size, found, check = struct.unpack_from("<4s4sIII", data, at)
         assert magic == b"NCHK" and check == crc32c(data[at:at + 16]) and found == number, f"chunk header at {at}"

@@ -443,6 +443,32 @@ TEST_SUITE("run_session") {
       CHECK(replay(recording.file) >= 0);
   }
 
+  TEST_CASE("the model is refined while the loop runs, undone and redone, and the takes replay") {
+    Run run;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    Asker asker(Changes{{flow::Request::let_go},
+                        {flow::Refine{}},
+                        {flow::SaveShape{}},
+                        {flow::Request::undo},
+                        {flow::Request::redo},
+                        {record(false), flow::Request::grab},
+                        {record(true), flow::Refine{}}});
+    asker.least_ticks = 60;
+    const auto outcome = run.follow({&asker});
+    CHECK(asker.leaps == 0);
+    REQUIRE(asker.prepared.size() >= 3);
+    CHECK(asker.prepared[0] == 1);
+    CHECK(asker.prepared[1] == 0);
+    CHECK(asker.prepared[2] == 1);
+    const auto saved = deform::read_mesh(run.folder.path() / "out-1.ply");
+    REQUIRE(saved);
+    CHECK(saved->face_count() != run.mesh.face_count());
+    CHECK(outcome.recordings.size() == 2);
+    for (const auto& recording : outcome.recordings)
+      CHECK(replay(recording.file) >= 0);
+  }
+
   TEST_CASE("a mark is in the recording, and without one the reason is told") {
     Run run;
     Asker asker(Changes{{flow::Mark{}}, {record(true)}, {flow::Mark{}}, {flow::Mark{}}});

@@ -10,17 +10,13 @@ namespace nendo::test {
 
 class LateMaker {
 public:
-  /// Models of that many vertices or more are not subdivided.
+  /// Models of that many vertices or more are not subdivided, but refined at any time.
   explicit LateMaker(unsigned seed, std::size_t most_vertices = 3000)
       : random_(seed), most_vertices_(most_vertices) {}
 
   /// To be called between two ticks.
   void turn(flow::DeformLoop& loop) {
-    if (!finer_ && loop.newest_model().layout().vertex_count() < most_vertices_ &&
-        random_() % 40 == 0) {
-      finer_ = std::make_unique<flow::FinerModel>(loop.newest_model());
-      late_ = random_() % 8;
-    }
+    if (!finer_ && random_() % 40 == 0) begin(loop.newest_model());
     if (!finer_ || (late_ > 0 && late_-- > 0)) return;
     if (!asked_) {
       asked_ = loop.hold_still();
@@ -33,10 +29,18 @@ public:
   int made() const noexcept { return made_; }
 
 private:
+  void begin(const flow::ModelVersion& model) {
+    late_ = random_() % 8;
+    if (random_() % 2 == 0) {
+      if (auto refined = flow::FinerModel::refined(model, {}))
+        finer_ = std::make_unique<flow::FinerModel>(*std::move(refined));
+    } else if (model.layout().vertex_count() < most_vertices_) {
+      finer_ = std::make_unique<flow::FinerModel>(model);
+    }
+  }
   void give(flow::DeformLoop& loop) {
     if (finer_->is_of(loop.newest_model()) && random_() % 8 != 0) {
-      loop.change_model(*finer_);
-      ++made_;
+      made_ += loop.change_model(*finer_) ? 1 : 0;
     } else {
       loop.keep_model();
     }

@@ -33,6 +33,7 @@ TEST_SUITE("client_commands") {
     CHECK(parsed_as<flow::SaveShape>("save"));
     CHECK(parsed_as<flow::Mark>("mark"));
     CHECK(parsed_as<flow::Punch>("punch"));
+    CHECK(parsed_as<flow::Refine>("refine"));
     CHECK_FALSE(parse_command("punch in"));
     CHECK_FALSE(parse_command("mark 1"));
     CHECK(parsed_as<flow::SetClutch>("clutch left all off") ==

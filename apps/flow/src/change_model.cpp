@@ -29,20 +29,22 @@ ModelVersion* DeformLoop::version_numbered(std::uint32_t number) const noexcept 
 bool DeformLoop::change_model(FinerModel& finer,
                               const std::function<bool(const ModelVersion&)>& accepts) {
   assert(is_still() && finer.is_of(*asked_model_));
-  versions_.push_back(finer.finish(last_number_ + 1, undo_room()));
-  if (accepts && !accepts(*versions_.back())) {
-    versions_.pop_back();
+  auto made = finer.finish(last_number_ + 1, undo_room());
+  // A puppet's points may lie too near to each other on another version.
+  if (!made || !set_model(asked_.options, *made) || (accepts && !accepts(*made))) {
+    static_cast<void>(set_model(asked_.options, *asked_model_));
     keep_model();
     return false;
   }
   ++last_number_;
-  offer_model(*versions_.back(), ModelSource::subdivided);
+  versions_.push_back(std::move(made));
+  offer_model(*versions_.back(), finer.change_to(*versions_.back()));
   return true;
 }
 
 void DeformLoop::keep_model() {
   assert(is_still());
-  offer_model(*asked_model_, ModelSource::kept);
+  offer_model(*asked_model_, {asked_model_->number});
 }
 
 bool DeformLoop::change_to(const Awaited& awaited) {
@@ -51,21 +53,22 @@ bool DeformLoop::change_to(const Awaited& awaited) {
     return false;
   if (version != asked_model_) {
     if (is_changing() || is_still_) return false;
-    offer_model(*version, ModelSource::kept);
+    offer_model(*version, {version->number});
   }
   if (awaited.puppet != asked_puppet_ && !change_puppet(awaited.puppet)) return false;
   return change_settings(awaited.settings);
 }
 
 /// Offers that version, which must not change until the loop has it.
-void DeformLoop::offer_model(ModelVersion& version, ModelSource source) {
+void DeformLoop::offer_model(ModelVersion& version, const ChangeModel& model) {
   PreparedChange& change = next_change();
-  change.model = {version.number, source};
-  // Points that can be solved for on one version can be on its subdivisions.
-  if (&version != asked_model_) static_cast<void>(set_model(asked_.options, version));
+  change.model = model;
+  // A kept version was tried when it was made.
+  if (&version != asked_model_ && !model.is_new())
+    static_cast<void>(set_model(asked_.options, version));
   Shaping::prepare(asked_, version, control_points(asked_puppet_), change.ready);
   change.ready.puppet = asked_puppet_;
-  change.ready.is_new_model = source == ModelSource::subdivided;
+  change.ready.is_new_model = model.is_new();
   if (change.log) change.log->of_other_model = room_for_shape(version);
   model_before_ = asked_model_;
   if (&version != asked_model_)
@@ -84,7 +87,7 @@ void DeformLoop::go_back() {
 
 /// Where a new version has taken the way that a redo would have gone, frees those of that way.
 void DeformLoop::free_others(const ChangeModel& taken) {
-  if (taken.source == ModelSource::kept) return;
+  if (!taken.is_new()) return;
   std::erase_if(versions_, [this](const auto& version) {
     for (const ModelVersion* at = asked_model_; at != nullptr; at = at->before)
       if (at == version.get()) return false;

@@ -36,15 +36,68 @@ deform::BlockShape room_for_shape(const ModelVersion& version) {
   return deform::BlockShape(std::vector<deform::VertexBlock>(version.layout().block_count()));
 }
 
+Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin) {
+  if (origin.source == ModelSource::refined) return deform::refined(before, origin.refining);
+  if (before.face_corners.size() > FinerModel::most_corners)
+    return Error{Errc::bad_input, "is too large to be subdivided as often as was recorded"};
+  return deform::subdivide(before).mesh;
+}
+
+bool can_be_subdivided(const ModelVersion& from) noexcept {
+  return from.mesh.face_corners.size() <= FinerModel::most_corners;
+}
+
 FinerModel::FinerModel(const ModelVersion& from)
-    : from_(&from), subdivision_(deform::subdivide(from.mesh)),
-      layout_(subdivision_.mesh.vertices) {}
+    : from_(&from), making_([&] {
+        deform::Subdivision subdivision = deform::subdivide(from.mesh);
+        deform::BlockLayout layout(subdivision.mesh.vertices);
+        return Subdividing{std::move(subdivision), std::move(layout)};
+      }()) {}
+
+Result<FinerModel> FinerModel::refined(const ModelVersion& from, const Refine& limits) {
+  auto refiner = deform::Refiner::make(from.mesh);
+  if (!refiner) return refiner.error();
+  return FinerModel(from, Refining{*std::move(refiner), limits});
+}
+
+Result<FinerModel> FinerModel::repeated(const ModelVersion& from, const ChangeModel& change) {
+  if (change.source == ModelSource::refined) return refined(from, {change.most_vertices});
+  if (can_be_subdivided(from)) return FinerModel(from);
+  return Error{Errc::bad_input, "is too large to be subdivided again"};
+}
 
 std::unique_ptr<ModelVersion> FinerModel::finish(std::uint32_t number, const UndoRoom& undo) {
-  const deform::BlockShape first =
-      deform::subdivided(from_->shape.shape(), from_->layout(), subdivision_, layout_);
-  return std::make_unique<ModelVersion>(number, std::move(subdivision_.mesh), std::move(layout_),
-                                        undo, &first);
+  const deform::BlockShape& shape = from_->shape.shape();
+  if (auto* const finer = std::get_if<Subdividing>(&making_)) {
+    const deform::BlockShape first =
+        deform::subdivided(shape, from_->layout(), finer->subdivision, finer->layout);
+    auto made = std::make_unique<ModelVersion>(number, std::move(finer->subdivision.mesh),
+                                               std::move(finer->layout), undo, &first);
+    made->origin = std::make_shared<ModelOrigin>(ModelOrigin{ModelSource::subdivided, {}});
+    return made;
+  }
+  const Refining& refining = std::get<Refining>(making_);
+  deform::Refinement refinement = refining.refiner.refine(
+      shape, from_->layout(), {.most_vertices = refining.limits.most_vertices});
+  if (refinement.operations.empty()) return nullptr;
+  deform::BlockLayout layout(refinement.mesh.vertices);
+  const deform::BlockShape first = deform::shape_in_blocks(refinement.shape, layout);
+  auto made = std::make_unique<ModelVersion>(number, std::move(refinement.mesh), std::move(layout),
+                                             undo, &first);
+  made->origin = std::make_shared<ModelOrigin>(
+      ModelOrigin{ModelSource::refined, std::move(refinement.operations)});
+  return made;
+}
+
+ChangeModel FinerModel::change_to(const ModelVersion& version) const noexcept {
+  const auto* const refining = std::get_if<Refining>(&making_);
+  return {version.number, version.origin->source,
+          refining != nullptr ? refining->limits.most_vertices : 0};
+}
+
+std::size_t FinerModel::count_unfit(const deform::BlockShape& shape) const {
+  const auto* const refining = std::get_if<Refining>(&making_);
+  return refining == nullptr ? 0 : refining->refiner.count_unfit(shape, from_->layout());
 }
 
 } // namespace nendo::flow

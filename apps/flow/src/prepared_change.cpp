@@ -124,8 +124,8 @@ bool DeformLoop::is_changing() {
       played_.clear(); // no undo leads back there
       states_.push_back(std::move(change_->log->state));
       states_.back().sculptor = asked_; // nobody has asked for others since
-      for (const ModelVersion* at = asked_model_->before; at != nullptr; at = at->before)
-        ++states_.back().subdivisions;
+      for (const ModelVersion* at = asked_model_; at->before != nullptr; at = at->before)
+        states_.back().origins.insert(states_.back().origins.begin(), at->origin);
       first_ = asked_; // from here on, as a replay that begins here
       first_rig_ = puppets_[asked_puppet_];
       if (!is_played(first_rig_.get()))

@@ -123,7 +123,8 @@ void Shaping::note_settings(const LoopSettings& before, bool is_step) noexcept {
 
 /// Adds a step to that new version.
 void Shaping::note_model(ModelVersion& next, const LoopSettings& before) noexcept {
-  const Step step = step_now(StepKind::subdivide);
+  const bool is_refined = next.origin->source == ModelSource::refined;
+  const Step step = step_now(is_refined ? StepKind::refine : StepKind::subdivide);
   next.before = model_;
   model_->behind = nullptr; // as mark() forgets what was undone
   model_->shape.mark(NotedStep{step, {before, next.number, puppet_}}.note());

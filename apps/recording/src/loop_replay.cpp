@@ -99,20 +99,23 @@ void LoopReplay::take(const driver::RecordedSample& sample) noexcept {
 /// Makes that version, or goes back to it. Returns false if the loop cannot have it, as after a
 /// gap.
 bool LoopReplay::follow(const flow::ChangeModel& change) {
-  const bool is_new = change.source == flow::ModelSource::subdivided;
+  const bool is_new = change.is_new();
   if (!loop_->is_still()) {
     // What was not made since the recording began is the model with which it began.
     const auto known = versions_.find(change.number);
     const std::uint32_t number = known == versions_.end() ? 0 : known->second;
     return !is_new && loop_->change_to({loop_->settings(), number, loop_->newest_puppet()});
   }
-  const flow::ModelVersion& now = loop_->newest_model();
-  if (!is_new || !flow::FinerModel::can_be_made_of(now)) {
+  if (!is_new) {
     loop_->keep_model();
-    return !is_new;
+    return true;
   }
-  flow::FinerModel finer(now);
-  loop_->change_model(finer);
+  auto finer = flow::FinerModel::repeated(loop_->newest_model(), change);
+  if (!finer) {
+    loop_->keep_model();
+    return false;
+  }
+  if (!loop_->change_model(*finer)) return false;
   versions_[change.number] = loop_->newest_model().number;
   return true;
 }

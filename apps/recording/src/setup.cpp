@@ -41,7 +41,7 @@ void continue_from(const flow::LoopState& state, const deform::BlockLayout& layo
   loop.options.rig = state.puppet;
   loop.puppet = state.puppet ? RecordedPuppet{state.puppet->puppet().text, state.puppet->starts()}
                              : RecordedPuppet{};
-  loop.subdivisions += state.subdivisions;
+  loop.origins.insert(loop.origins.end(), state.origins.begin(), state.origins.end());
   loop.options.settings = state.sculptor.settings;
   const auto blocks = std::as_bytes(std::span(state.shape.data(), state.shape.block_count()));
   const deform::BlockShape original = layout.pack();
@@ -86,6 +86,18 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
   append(loop_chunk, [&](ByteWriter writer) { put_loop(writer, *setup.loop); });
   if (!setup.loop->puppet.text.empty())
     append(puppet_chunk, [&](ByteWriter writer) { put_puppet(writer, *setup.loop); });
+  for (std::size_t at = plain_origins(*setup.loop); at < setup.loop->origins.size(); ++at) {
+    const flow::ModelOrigin& origin = *setup.loop->origins[at];
+    std::span<const deform::EdgeOperation> left(origin.refining);
+    bool goes_on = false;
+    do {
+      const auto part = left.first(std::min(left.size(), most_operations_of_chunk));
+      append(origin_chunk,
+             [&](ByteWriter writer) { put_origin(writer, origin.source, goes_on, part); });
+      left = left.subspan(part.size());
+      goes_on = true;
+    } while (!left.empty());
+  }
   std::span<const deform::VertexBlock> rest(setup.loop->rest);
   while (!rest.empty()) {
     const std::size_t count = std::min(rest.size(), most_blocks_of_chunk);
@@ -101,6 +113,7 @@ bool read_setup_chunk(driver::ChunkType type, std::span<const std::byte> payload
   if (type == hand_chunk) return read_hand(reader, setup.hands);
   if (type == loop_chunk) return read_loop(reader, setup.loop);
   if (type == puppet_chunk) return read_puppet(reader, setup.loop);
+  if (type == origin_chunk) return read_origin(payload, setup.loop);
   if (type == rest_chunk) return read_rest(payload, setup.loop);
   if (type != driver::glove_chunk) return true;
   auto glove = driver::glove_of(payload);

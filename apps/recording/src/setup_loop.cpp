@@ -13,8 +13,7 @@ namespace {
 constexpr std::size_t most_supports = puppet::Puppet::most_points; // of each kind
 constexpr std::uint64_t most_memory = std::uint64_t{1} << 28;
 constexpr std::uint32_t most_links = 1024;
-constexpr std::uint32_t most_catch_up = 1000; // as parse_policy()
-constexpr std::uint32_t most_subdivisions = 16;
+constexpr std::uint32_t most_catch_up = 1000;               // as parse_policy()
 constexpr double most_points = puppet::Puppet::most_points; // two hands' fingertips, or a puppet's
 constexpr double largest_number = 1e100;                    // as the solver takes
 
@@ -148,7 +147,7 @@ void put_loop(ByteWriter& writer, const LoopSetup& loop) {
   writer.u8(static_cast<std::uint8_t>(options.begins_held()));
   writer.u8(static_cast<std::uint8_t>(options.settings.has_value()));
   if (options.settings) put_settings(writer, *options.settings);
-  writer.u32_le(loop.subdivisions);
+  writer.u32_le(static_cast<std::uint32_t>(plain_origins(loop)));
   writer.u8(static_cast<std::uint8_t>(options.pull_is_step));
   put_brushes(writer, options.sculptor.brushes, options.sculptor.brush_strength);
   put_hold(writer, options.sculptor.deformer.csrbf.keep_volume, options.sculptor.hold);
@@ -375,8 +374,11 @@ bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop) {
       checked.require(options.settings.has_value());
     }
   }
-  if (reader.remaining() > 0) read.subdivisions = reader.u32_le(); // since 1.4
-  checked.require(read.subdivisions <= most_subdivisions);
+  const std::uint32_t subdivisions = reader.remaining() > 0 ? reader.u32_le() : 0; // since 1.4
+  checked.require(subdivisions <= most_plain_origins);
+  if (checked.fine())
+    read.origins.assign(subdivisions, std::make_shared<const flow::ModelOrigin>(
+                                          flow::ModelOrigin{flow::ModelSource::subdivided, {}}));
   options.pull_is_step = reader.remaining() > 0 && reader.u8() != 0; // since 1.5
   if (reader.remaining() > 0) {                                      // since 1.6
     checked.require(

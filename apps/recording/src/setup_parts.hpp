@@ -16,11 +16,12 @@ inline constexpr driver::ChunkType head_chunk = driver::chunk_type("HEAD");
 inline constexpr driver::ChunkType hand_chunk = driver::chunk_type("HAND");
 inline constexpr driver::ChunkType loop_chunk = driver::chunk_type("LOOP");
 inline constexpr driver::ChunkType rest_chunk = driver::chunk_type("REST");
+inline constexpr driver::ChunkType origin_chunk = driver::chunk_type("ORIG");
 inline constexpr driver::ChunkType puppet_chunk = driver::chunk_type("PUPP");
 
 constexpr bool is_setup_chunk(driver::ChunkType type) noexcept {
   return type == head_chunk || type == hand_chunk || type == loop_chunk || type == rest_chunk ||
-         type == puppet_chunk || type == driver::glove_chunk;
+         type == origin_chunk || type == puppet_chunk || type == driver::glove_chunk;
 }
 
 /// Reads one value after another and remembers whether all of them were usable. After an unusable
@@ -69,6 +70,15 @@ void put_puppet(ByteWriter& writer, const LoopSetup& loop);
 void put_rest(ByteWriter& writer, std::span<const deform::VertexBlock> blocks);
 inline constexpr std::size_t most_blocks_of_chunk = std::size_t{1} << 14;
 
+/// Of the origins, the first ones that only subdivide. LOOP has their number, and ORIG the others.
+std::size_t plain_origins(const LoopSetup& loop) noexcept;
+inline constexpr std::size_t most_plain_origins = 16;
+/// Writes an origin, or, `goes_on`, more of the operations of the one before. A chunk has at most
+/// most_operations_of_chunk.
+void put_origin(ByteWriter& writer, flow::ModelSource source, bool goes_on,
+                std::span<const deform::EdgeOperation> operations);
+inline constexpr std::size_t most_operations_of_chunk = std::size_t{1} << 20;
+
 /// Writes settings, as they stand in a loop's chunk and in entries.
 void put_settings(ByteWriter& writer, const flow::LoopSettings& settings);
 inline constexpr std::size_t settings_bytes = 76;
@@ -89,6 +99,7 @@ bool read_head(ByteReader& reader, Setup& setup);
 bool read_hand(ByteReader& reader, std::vector<flow::HandInput>& hands);
 bool read_loop(ByteReader& reader, std::optional<LoopSetup>& loop);
 bool read_rest(std::span<const std::byte> payload, std::optional<LoopSetup>& loop);
+bool read_origin(std::span<const std::byte> payload, std::optional<LoopSetup>& loop);
 bool read_puppet(ByteReader& reader, std::optional<LoopSetup>& loop);
 
 struct NumberedPuppet {

@@ -41,6 +41,8 @@ private:
   }
   void add_one(const flow::ChangeModel& change) {
     if (change.source == flow::ModelSource::subdivided) put(flow::Command(flow::Subdivide{}));
+    if (change.source == flow::ModelSource::refined)
+      put(flow::Command(flow::Refine{change.most_vertices}));
   }
   void add_one(const flow::HoldStill&) {}
   void add_one(const PuppetChange& change) {

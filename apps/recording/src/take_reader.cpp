@@ -14,7 +14,7 @@ constexpr std::size_t tick_bytes = 24;
 constexpr std::size_t request_bytes = 1;
 constexpr std::size_t gap_bytes = 8;
 constexpr std::size_t wrist_bytes = 57;
-constexpr std::size_t model_bytes = 5;
+constexpr std::size_t model_bytes = 9;
 constexpr std::size_t clutch_bytes = 3;
 constexpr std::size_t role_bytes = 4;
 constexpr std::size_t layer_bytes = 2;
@@ -58,6 +58,7 @@ struct EntryWriter {
     driver::put_entry_head(writer, EntryKind::model, model_bytes);
     writer.u32_le(change.number);
     writer.u8(static_cast<std::uint8_t>(change.source));
+    writer.u32_le(change.most_vertices);
   }
   void operator()(const flow::Mark&) const { driver::put_entry_head(writer, EntryKind::mark, 0); }
   void operator()(const flow::SetClutch& clutch) const {
@@ -127,9 +128,10 @@ std::optional<Entry> model_of(ByteReader& reader) {
   flow::ChangeModel change;
   change.number = reader.u32_le();
   const std::uint8_t source = reader.u8();
-  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::subdivided))
+  if (reader.overrun() || source > static_cast<std::uint8_t>(flow::ModelSource::refined))
     return std::nullopt;
   change.source = static_cast<flow::ModelSource>(source);
+  if (reader.remaining() > 0) change.most_vertices = reader.u32_le(); // since 1.8
   return change;
 }
 

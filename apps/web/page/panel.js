@@ -36,6 +36,7 @@ const KEYS = [
   [';', 'more clay: the volume stays; from all to air', panel => panel.shaping.nextVolume()],
   ['j', 'the whole hand holds, or its fingertips', panel => panel.toggle('hold', '')],
   ['e', 'subdivide: the model gets more vertices for finer strokes', panel => panel.ask('subdivide')],
+  ['E', 'refine: more triangles where it was stretched, fewer where it was crowded', panel => panel.ask('refine')],
   ['h', 'hands on and off', panel => panel.toggle('skin')],
   ['b', 'bones on and off', panel => panel.toggle('bones')],
   ['v', 'control vectors on and off', panel => panel.toggle('vectors')],

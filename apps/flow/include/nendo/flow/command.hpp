@@ -27,6 +27,12 @@ struct ChangeSettings {
 struct Subdivide {
   friend bool operator==(const Subdivide&, const Subdivide&) = default;
 };
+/// Makes a model of the present one whose triangles suit the present shape (deform::Refiner).
+struct Refine {
+  /// No edge is split beyond it.
+  std::uint32_t most_vertices = std::uint32_t{1} << 22;
+  friend bool operator==(const Refine&, const Refine&) = default;
+};
 /// Begins or ends a recording to a file.
 struct SetRecording {
   bool on = false;
@@ -110,11 +116,14 @@ struct HoldStill {
 enum class ModelSource : std::uint8_t {
   kept,       ///< it was there before: an undo or a redo goes there
   subdivided, ///< it is the model before, subdivided
+  refined,    ///< it is the model before, refined for the shape that it had
 };
 /// The loop goes on with another version of the model (ModelVersion::number).
 struct ChangeModel {
   std::uint32_t number = 0;
   ModelSource source = ModelSource::kept;
+  std::uint32_t most_vertices = 0; ///< Refine::most_vertices of what is refined
+  bool is_new() const noexcept { return source != ModelSource::kept; }
   friend bool operator==(const ChangeModel&, const ChangeModel&) = default;
 };
 
@@ -131,7 +140,7 @@ struct ChangePuppet {
 using Command =
     std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
                  Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry, SetLayer,
-                 Punch, ChangePuppet, SavePuppet, SetMask>;
+                 Punch, ChangePuppet, SavePuppet, SetMask, Refine>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// One thread pushes commands, and one thread takes them.

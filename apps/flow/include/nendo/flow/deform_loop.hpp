@@ -211,7 +211,8 @@ public:
   bool is_still();
   /// Finishes the model, which must be made of newest_model(), and hands it to the loop, which must
   /// be still and goes on with it. `accepts` is called with the new version before the loop has it;
-  /// if it returns false, the loop goes on with the model that it has, and so does this function.
+  /// if it returns false, or there is nothing to refine, or a puppet cannot be put on it, the loop
+  /// goes on with the model that it has, and this function returns false.
   /// Settings that are asked for meanwhile come with it. Later, versions to which no undo or redo
   /// leads any more are freed. Allocates.
   bool change_model(FinerModel& finer,
@@ -278,7 +279,7 @@ private:
                                          const LoopSettings& settings) const;
   PreparedChange& next_change();
   void offer_change();
-  void offer_model(ModelVersion& version, ModelSource source);
+  void offer_model(ModelVersion& version, const ChangeModel& model);
   void go_back();
   Eigen::Index hand_count() const noexcept;
   void free_others(const ChangeModel& taken);

@@ -5,11 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <variant>
+#include <vector>
 
+#include <nendo/deform/refinement.hpp>
 #include <nendo/deform/sculpted_shape.hpp>
 #include <nendo/deform/subdivision.hpp>
 #include <nendo/deform/vertex_rings.hpp>
 #include <nendo/flow/clay_hands.hpp>
+#include <nendo/flow/command.hpp>
 
 namespace nendo::flow {
 
@@ -19,6 +23,14 @@ struct UndoRoom {
   std::size_t bytes = 0;
   std::size_t most_bytes = 0;
 };
+
+/// How a version came from the one before.
+struct ModelOrigin {
+  ModelSource source = ModelSource::kept;        ///< kept: the loop began with it
+  std::vector<deform::EdgeOperation> refining{}; ///< of a refined one
+};
+/// Makes that version of a mesh again. Error: bad_input, without the mesh's name.
+Result<deform::Mesh> made_again(const deform::Mesh& before, const ModelOrigin& origin);
 
 /// A version does not move in memory. What is const may be read from any thread.
 struct ModelVersion {
@@ -33,6 +45,7 @@ struct ModelVersion {
   /// Made when a brush first needs them, by the thread that asks for changes; the loop never looks.
   std::shared_ptr<const deform::VertexRings> rings{};
   std::shared_ptr<const ClayModel> clay{}; ///< likewise, when hands first press it
+  std::shared_ptr<const ModelOrigin> origin = std::make_shared<ModelOrigin>();
 
   // What follows belongs to the loop's thread while the loop has this version, and to the thread
   // that asks for changes otherwise.
@@ -45,29 +58,47 @@ struct ModelVersion {
 /// Returns a shape of that version's size, without its content. Allocates.
 deform::BlockShape room_for_shape(const ModelVersion& version);
 
-/// A finer version in the making. Making it takes longer than a tick; only finish() needs the
+/// Another version in the making. Making it takes longer than a tick; only finish() needs the
 /// shape.
 class FinerModel {
 public:
   /// Subdivides. Any thread may call it while the loop goes on. Allocates.
   explicit FinerModel(const ModelVersion& from);
-  /// Tells whether the model is not too large for it: 16 subdivisions of a triangle would be.
-  static bool can_be_made_of(const ModelVersion& from) noexcept {
-    return from.mesh.face_corners.size() <= most_corners;
-  }
+  /// Makes ready to refine, likewise. Error: bad_input, without the model's name.
+  static Result<FinerModel> refined(const ModelVersion& from, const Refine& limits);
+  /// Does what the recorded change did, likewise; its source is not `kept`.
+  static Result<FinerModel> repeated(const ModelVersion& from, const ChangeModel& change);
 
   bool is_of(const ModelVersion& version) const noexcept { return &version == from_; }
-  /// Makes the version, with the shape that `from` has now: the loop must hold still. May be called
-  /// once. Allocates.
+  /// Makes the version, with the shape that `from` has now: the loop must hold still. Null if there
+  /// is nothing to refine. May be called once. Allocates.
   std::unique_ptr<ModelVersion> finish(std::uint32_t number, const UndoRoom& undo);
+  /// Returns the change to that version.
+  ChangeModel change_to(const ModelVersion& version) const noexcept;
+  /// Of one that refines: returns how many edges of that shape of `from` are too long or too short.
+  /// Any thread. Allocates.
+  std::size_t count_unfit(const deform::BlockShape& shape) const;
 
   /// The corners of faces of the largest model that can be subdivided.
   static constexpr std::size_t most_corners = std::size_t{6} << 20;
 
 private:
+  struct Subdividing {
+    deform::Subdivision subdivision;
+    deform::BlockLayout layout;
+  };
+  struct Refining {
+    deform::Refiner refiner;
+    Refine limits;
+  };
+  FinerModel(const ModelVersion& from, Refining refining)
+      : from_(&from), making_(std::move(refining)) {}
+
   const ModelVersion* from_;
-  deform::Subdivision subdivision_;
-  deform::BlockLayout layout_;
+  std::variant<Subdividing, Refining> making_;
 };
+
+/// Tells whether the model is not too large to be subdivided: 16 times, a triangle would be.
+bool can_be_subdivided(const ModelVersion& from) noexcept;
 
 } // namespace nendo::flow

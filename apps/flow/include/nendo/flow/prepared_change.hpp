@@ -30,7 +30,8 @@ struct LoopState {
   Placement placement{};       ///< without the gaps
   bool held = true;
   SculptorSetup sculptor{};
-  std::uint32_t subdivisions = 0;              ///< of the model with which the loop began
+  /// How the model came from the one with which the loop began, the first change first.
+  std::vector<std::shared_ptr<const ModelOrigin>> origins{};
   puppet::RigState rig{};                      ///< of a puppet's player
   std::shared_ptr<const puppet::Rig> puppet{}; ///< that is played; null: none
   deform::BlockShape shape;

@@ -28,6 +28,7 @@ enum class StepKind : std::uint8_t {
   hold,      ///< LoopSettings::hold
   mask,      ///< what fingertips leave alone was painted, cleared or inverted
   symmetry,  ///< fingertips shape both sides, or no longer
+  refine,    ///< the model's triangles were made to suit the shape
 };
 
 std::string_view name_of(StepKind kind) noexcept;

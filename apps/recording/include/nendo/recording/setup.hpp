@@ -41,8 +41,8 @@ struct LoopSetup {
   flow::LoopOptions options;
   /// The vector instructions with which the field was evaluated. Others may round differently.
   std::string simd;
-  /// How often the file's model was subdivided (deform::subdivide()) before the recording began.
-  std::uint32_t subdivisions = 0;
+  /// How the model came from the file's before the recording began (flow::made_again()).
+  std::vector<std::shared_ptr<const flow::ModelOrigin>> origins{};
   /// The shape at first, in the blocks of the model's layout; empty: the model.
   std::vector<deform::VertexBlock> rest{};
   RecordedPuppet puppet{}; ///< without a text: the hands touch the model
