@@ -469,6 +469,25 @@ TEST_SUITE("run_session") {
       CHECK(replay(recording.file) >= 0);
   }
 
+  TEST_CASE("the model is refined by itself where hands stretch it, and never beyond the bound") {
+    Run run;
+    const auto most = static_cast<std::uint32_t>(run.mesh.vertices.cols()) + 60;
+    run.options.refine_to = most;
+    run.options.recording.file = (run.folder.path() / "take.nendo").string();
+    REQUIRE(run.options.recording.check(run.options.out, flow::SwitchAction::none));
+    // Nobody asks for it.
+    Asker asker(Changes{{flow::Request::commit}, {flow::Request::commit}, {flow::Request::commit}});
+    asker.least_ticks = 120;
+    const auto outcome = run.follow({&asker});
+    const auto written = deform::read_mesh(run.options.out);
+    REQUIRE(written);
+    CHECK(written->face_count() != run.mesh.face_count());
+    CHECK(written->vertices.cols() <= most);
+    CHECK(asker.prepared.size() > 0);
+    REQUIRE(outcome.recordings.size() == 1);
+    CHECK(replay(outcome.recordings[0].file) >= 0);
+  }
+
   TEST_CASE("a mark is in the recording, and without one the reason is told") {
     Run run;
     Asker asker(Changes{{flow::Mark{}}, {record(true)}, {flow::Mark{}}, {flow::Mark{}}});

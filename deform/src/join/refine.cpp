@@ -16,6 +16,10 @@ bool is_near(const RefineZone& zone, std::uint32_t point) {
   return zone.coarseness[point] > 0.0f;
 }
 
+bool is_active(const RefineZone& zone, std::uint32_t point) {
+  return zone.active.empty() || zone.active[point];
+}
+
 double coarseness_between(const RefineZone& zone, std::uint32_t a, std::uint32_t b) {
   const auto [least, most] = std::minmax(zone.coarseness[a], zone.coarseness[b]);
   return static_cast<double>(least > 0.0f ? least : most);
@@ -26,9 +30,11 @@ template <class Visit>
 void visit_zone(const LiveSurface& surface, const RefineZone& zone, const Visit& visit) {
   for (std::uint32_t point = 0; point < surface.point_count(); ++point) {
     if (!is_near(zone, point) || !surface.has_point(point)) continue;
+    if (!is_active(zone, point)) continue;
     surface.visit_edges(point, [&](std::uint32_t edge) {
       const std::uint32_t other = surface.to(edge);
-      if (is_near(zone, other) && other < point) return; // seen from there
+      if (is_near(zone, other) && is_active(zone, other) && other < point)
+        return; // seen from there
       const auto [from, to] = std::minmax(point, other);
       visit(surface.edge_length(edge) / coarseness_between(zone, point, other), from, to);
     });
@@ -48,9 +54,11 @@ public:
   RefineCounts run() {
     collect();
     split_long();
-    if (limits_.only_splits) return counts_;
-    collapse_short();
-    flip_all();
+    if (!limits_.only_splits) {
+      collapse_short();
+      flip_all();
+    }
+    note_changes();
     return counts_;
   }
 
@@ -81,6 +89,8 @@ private:
       const float b = zone_.coarseness[wanted.to];
       zone_.coarseness.push_back(a > 0.0f && b > 0.0f ? 0.5f * (a + b) : 0.0f);
       zone_.hold.push_back(0);
+      if (!zone_.active.empty()) zone_.active.push_back(1);
+      changed_.push_back(static_cast<std::uint32_t>(surface_.point_count() - 1));
       ++counts_.splits;
     }
   }
@@ -96,7 +106,10 @@ private:
       const std::uint32_t edge = surface_.edge_between(stays, goes);
       if (edge == no_entry) return false;
       const double longest = limits_.longest * coarseness_between(zone_, stays, goes);
-      if (surface_.collapse(edge, {longest, limits_.thin, limits_.least_cosine})) return true;
+      if (surface_.collapse(edge, {longest, limits_.thin, limits_.least_cosine})) {
+        changed_.push_back(stays);
+        return true;
+      }
     }
     return false;
   }
@@ -113,14 +126,29 @@ private:
   }
   void flip_all() {
     for (std::uint32_t point = 0; point < surface_.point_count(); ++point) {
-      if (!is_near(zone_, point) || !surface_.has_point(point)) continue;
+      if (!is_near(zone_, point) || !is_active(zone_, point) || !surface_.has_point(point))
+        continue;
       around_.clear();
       surface_.visit_edges(point,
                            [&](std::uint32_t edge) { around_.push_back(surface_.to(edge)); });
       for (const std::uint32_t other : around_) {
         const std::uint32_t edge = surface_.edge_between(point, other);
-        if (edge != no_entry && surface_.flip(edge)) ++counts_.flips;
+        if (edge == no_entry || !surface_.flip(edge)) continue;
+        ++counts_.flips;
+        changed_.insert(changed_.end(), {point, other});
       }
+    }
+  }
+
+  /// Around what was changed, edges may have become unfit or unfair. What the budget left is there
+  /// as well.
+  void note_changes() {
+    if (counts_.left > 0) return zone_.active.clear();
+    zone_.active.assign(surface_.point_count(), 0);
+    for (const std::uint32_t point : changed_) {
+      if (!surface_.has_point(point)) continue;
+      zone_.active[point] = 1;
+      surface_.visit_edges(point, [&](std::uint32_t edge) { zone_.active[surface_.to(edge)] = 1; });
     }
   }
 
@@ -130,6 +158,7 @@ private:
   RefineCounts counts_;
   std::vector<RefineEdge> long_, short_;
   std::vector<std::uint32_t> around_;
+  std::vector<std::uint32_t> changed_; ///< points
 };
 
 } // namespace

@@ -32,8 +32,8 @@ struct RefineCounts {
   std::size_t left = 0; ///< edges out of limits for which there was no budget
 };
 
-/// Which points may be worked at. Both lists have one entry for each point of the surface, and grow
-/// with it.
+/// Which points may be worked at. The lists have one entry for each point of the surface, and grow with
+/// it.
 struct RefineZone {
   /// How coarse the surface may be at a point: edges there are looked at, and the limits of their
   /// lengths are multiplied by this; 0: they are not looked at. Of an edge's ends the lesser counts
@@ -42,6 +42,9 @@ struct RefineZone {
   /// How firmly a point holds its place: 2 always, and of two at a short edge the one that holds
   /// less goes into the other. New points have 0.
   std::vector<char> hold;
+  /// Where the surface has changed since all edges were looked at; empty: look at all. refine()
+  /// sets it, so that its next call looks only there.
+  std::vector<char> active{};
 };
 
 /// Returns how many edges in the zone are too long or too short.

@@ -132,6 +132,7 @@ std::vector<std::uint32_t> even_out(LiveSurface& surface, std::span<const SeamEd
     }
     for (const std::uint32_t point : on_seam)
       zone.hold[point] = 1;
+    zone.active.clear(); // coarseness has changed
     const RefineCounts done = refine(surface, zone, limits);
     limits.budget -= done.splits + done.collapses;
     if (done.splits + done.collapses + done.flips == 0) break;
