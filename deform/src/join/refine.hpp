@@ -32,8 +32,8 @@ struct RefineCounts {
   std::size_t left = 0; ///< edges out of limits for which there was no budget
 };
 
-/// Which points may be worked at. The lists have one entry for each point of the surface, and grow with
-/// it.
+/// Which points may be worked at. The lists have one entry for each point of the surface, and grow
+/// with it.
 struct RefineZone {
   /// How coarse the surface may be at a point: edges there are looked at, and the limits of their
   /// lengths are multiplied by this; 0: they are not looked at. Of an edge's ends the lesser counts
